@@ -1,0 +1,48 @@
+/// Comma-separated tables of numbers with a header line; lines that start with '#' are comments.
+///
+/// The file may end lines with LF or CRLF and may start with a UTF-8 byte-order mark. A decimal comma shows as a wrong
+/// number of fields and is named as such.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidelab::base {
+
+struct CsvTable {
+  std::string file;
+  std::vector<std::string> header;
+  std::vector<std::vector<double>> columns;  ///< columns[c][row], all of one length; every value finite
+  std::vector<int> line;                     ///< line[row], 1-based
+
+  bool has(std::string_view name) const;
+  /// The column of this name; InputError where there is none.
+  const std::vector<double>& column(std::string_view name) const;
+};
+
+/// Reads the columns named in `wanted` (required) and `optional`; other columns are ignored where `allow_others`,
+/// errors otherwise. InputError (up to ten issues, with line and column) for anything that is no finite number.
+CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::string>& wanted,
+                  const std::vector<std::string>& optional = {}, bool allow_others = false);
+
+/// Builds a table line by line in memory, with the shortest text that reads back as the same double.
+class CsvWriter {
+ public:
+  explicit CsvWriter(std::string_view header);
+  CsvWriter& number(double value);          ///< appends a field; NaN and infinity are a programmer's mistake
+  CsvWriter& text(std::string_view value);  ///< appended as it stands; must hold no comma, quote or newline
+  CsvWriter& empty();
+  void end_row();
+  const std::string& str() const { return text_; }
+
+ private:
+  void separate();
+  std::string text_;
+  bool row_started_ = false;
+};
+
+}  // namespace glidelab::base

@@ -1,0 +1,371 @@
+#include "base/strict_toml.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "base/errors.h"
+#include "base/staged_output.h"
+
+namespace glidelab::base {
+
+struct TomlFile::Document {
+  std::string name;
+  toml::table tree;
+  std::vector<Issue> issues;
+  std::vector<std::shared_ptr<TomlTable::Node>> nodes;  // every table that was handed out
+};
+
+struct TomlTable::Node {
+  TomlFile::Document* document;  // nodes live in the document, so this never dangles
+  const toml::table* table;      // null: a table that was required and is missing
+  std::string prefix;            // "camera." or "clip[2]."
+  int line;
+  std::set<std::string, std::less<>> known;
+  std::set<std::string, std::less<>> ignored;
+  std::map<std::string, std::shared_ptr<Node>, std::less<>> children;
+
+  const toml::node* find(std::string_view key) {
+    known.emplace(key);
+    return table == nullptr ? nullptr : table->get(key);
+  }
+  void reject(std::string_view key, int at_line, std::string found, std::string expected) {
+    document->issues.push_back(
+        {document->name, at_line, prefix + std::string(key), std::move(found), std::move(expected)});
+  }
+  void reject(std::string_view key, const toml::node* found, std::string expected);
+};
+
+namespace {
+
+int line_of(const toml::node& node) {
+  return static_cast<int>(node.source().begin.line);
+}
+
+std::string show(const toml::node* node) {
+  if (node == nullptr) return "nothing";
+  if (const auto* value = node->as_string()) return fmt::format("text \"{}\"", value->get());
+  if (const auto* value = node->as_integer()) return fmt::format("{}", value->get());
+  if (const auto* value = node->as_floating_point()) return fmt::format("{}", value->get());
+  if (const auto* value = node->as_boolean()) return value->get() ? "true" : "false";
+  if (const auto* value = node->as_array()) return fmt::format("an array of {}", value->size());
+  if (node->is_table()) return "a table";
+  return "a date or time";
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+std::string list_of_known(std::string_view key, const std::set<std::string, std::less<>>& known) {
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+    return edit_distance(key, a) < edit_distance(key, b);
+  });
+  if (nearest == known.end()) return "no key here";
+  if (edit_distance(key, *nearest) <= std::max<std::size_t>(2, key.size() / 3)) {
+    return fmt::format("a known key; did you mean \"{}\"?", *nearest);
+  }
+  return fmt::format("one of {}", fmt::join(known, ", "));
+}
+
+std::optional<double> as_number(const toml::node& node) {
+  if (const auto* value = node.as_floating_point()) return value->get();
+  if (const auto* value = node.as_integer()) return static_cast<double>(value->get());
+  return std::nullopt;
+}
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  if (!std::isfinite(value)) return false;
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::describe() const {
+  const bool has_low = std::isfinite(low);
+  const bool has_high = std::isfinite(high);
+  if (has_low && has_high) {
+    if (low_open || high_open) {
+      return fmt::format("a number {} {} and {} {}", low_open ? "above" : "of at least", low,
+                         high_open ? "below" : "at most", high);
+    }
+    return fmt::format("a number from {} to {}", low, high);
+  }
+  if (has_low) return fmt::format("a number {} {}", low_open ? "above" : "of at least", low);
+  if (has_high) return fmt::format("a number {} {}", high_open ? "below" : "of at most", high);
+  return "a finite number";
+}
+
+Range any_number() {
+  return {};
+}
+Range above(double low) {
+  return {.low = low, .low_open = true};
+}
+Range at_least(double low) {
+  return {.low = low};
+}
+Range between(double low, double high) {
+  return {.low = low, .high = high};
+}
+Range between_open(double low, double high) {
+  return {.low = low, .high = high, .low_open = true, .high_open = true};
+}
+
+void TomlTable::Node::reject(std::string_view key, const toml::node* found, std::string expected) {
+  reject(key, found == nullptr ? line : line_of(*found), show(found), std::move(expected));
+}
+
+bool TomlTable::has(std::string_view key) const {
+  return node_->find(key) != nullptr;
+}
+int TomlTable::line() const {
+  return node_->line;
+}
+int TomlTable::line(std::string_view key) const {
+  const toml::node* found = node_->find(key);
+  return found == nullptr ? node_->line : line_of(*found);
+}
+std::string TomlTable::path(std::string_view key) const {
+  return node_->prefix + std::string(key);
+}
+
+double TomlTable::number(std::string_view key, Range range) const {
+  const toml::node* found = node_->find(key);
+  if (found == nullptr) {
+    node_->reject(key, nullptr, range.describe());
+    return kMissing;
+  }
+  return maybe_number(key, range).value_or(kMissing);
+}
+
+double TomlTable::number_or(std::string_view key, double otherwise, Range range) const {
+  return has(key) ? number(key, range) : otherwise;
+}
+
+std::optional<double> TomlTable::maybe_number(std::string_view key, Range range) const {
+  const toml::node* found = node_->find(key);
+  if (found == nullptr) return std::nullopt;
+  const std::optional<double> value = as_number(*found);
+  if (value && range.contains(*value)) return value;
+  node_->reject(key, found, range.describe());
+  return kMissing;
+}
+
+long TomlTable::integer(std::string_view key, long low, long high) const {
+  const toml::node* found = node_->find(key);
+  const auto* value = found == nullptr ? nullptr : found->as_integer();
+  if (value != nullptr && value->get() >= low && value->get() <= high) return static_cast<long>(value->get());
+  node_->reject(key, found, fmt::format("a whole number from {} to {}", low, high));
+  return low;
+}
+
+long TomlTable::integer_or(std::string_view key, long otherwise, long low, long high) const {
+  return has(key) ? integer(key, low, high) : otherwise;
+}
+
+bool TomlTable::boolean_or(std::string_view key, bool otherwise) const {
+  const toml::node* found = node_->find(key);
+  if (found == nullptr) return otherwise;
+  if (const auto* value = found->as_boolean()) return value->get();
+  node_->reject(key, found, "true or false");
+  return otherwise;
+}
+
+std::string TomlTable::text(std::string_view key) const {
+  const toml::node* found = node_->find(key);
+  const auto* value = found == nullptr ? nullptr : found->as_string();
+  if (value != nullptr && !value->get().empty()) return value->get();
+  node_->reject(key, found, "a text");
+  return {};
+}
+
+std::string TomlTable::text_or(std::string_view key, std::string_view otherwise) const {
+  return has(key) ? text(key) : std::string(otherwise);
+}
+
+std::optional<std::string> TomlTable::maybe_text(std::string_view key) const {
+  if (!has(key)) return std::nullopt;
+  return text(key);
+}
+
+std::string TomlTable::word(std::string_view key, const std::vector<std::string>& allowed,
+                            std::string_view otherwise) const {
+  const toml::node* found = node_->find(key);
+  if (found == nullptr && !otherwise.empty()) return std::string(otherwise);
+  const auto* value = found == nullptr ? nullptr : found->as_string();
+  if (value != nullptr && std::find(allowed.begin(), allowed.end(), value->get()) != allowed.end()) return value->get();
+  node_->reject(key, found, fmt::format("one of \"{}\"", fmt::join(allowed, "\", \"")));
+  return allowed.front();
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count, Range range) const {
+  const toml::node* found = node_->find(key);
+  const std::string expected =
+      fmt::format("an array of {}numbers, each {}", count == 0 ? "" : fmt::format("{} ", count), range.describe());
+  const auto* array = found == nullptr ? nullptr : found->as_array();
+  if (array == nullptr || (count != 0 && array->size() != count)) {
+    node_->reject(key, found, expected);
+    return std::vector<double>(count, kMissing);
+  }
+  std::vector<double> values;
+  for (const toml::node& element : *array) {
+    const std::optional<double> value = as_number(element);
+    if (!value || !range.contains(*value)) {
+      node_->reject(key, &element, expected);
+      return std::vector<double>(array->size(), kMissing);
+    }
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::optional<std::vector<double>> TomlTable::maybe_numbers(std::string_view key, std::size_t count,
+                                                            Range range) const {
+  if (!has(key)) return std::nullopt;
+  return numbers(key, count, range);
+}
+
+std::vector<std::string> TomlTable::texts_or_none(std::string_view key) const {
+  const toml::node* found = node_->find(key);
+  if (found == nullptr) return {};
+  std::vector<std::string> values;
+  if (const auto* array = found->as_array()) {
+    for (const toml::node& element : *array) {
+      if (const auto* value = element.as_string()) values.push_back(value->get());
+    }
+    if (values.size() == array->size()) return values;
+  }
+  node_->reject(key, found, "an array of texts");
+  return {};
+}
+
+std::optional<TomlTable> TomlTable::maybe_table(std::string_view key) const {
+  const toml::node* found = node_->find(key);
+  if (found == nullptr) return std::nullopt;
+  if (const auto child = node_->children.find(key); child != node_->children.end()) return TomlTable(child->second);
+  const toml::table* inner = found->as_table();
+  if (inner == nullptr) node_->reject(key, found, fmt::format("a table [{}]", path(key)));
+  auto node = std::make_shared<Node>(Node{node_->document, inner, path(key) + ".", line_of(*found), {}, {}, {}});
+  node_->document->nodes.push_back(node);
+  node_->children.emplace(key, node);
+  return TomlTable(node);
+}
+
+TomlTable TomlTable::table(std::string_view key) const {
+  if (const std::optional<TomlTable> found = maybe_table(key)) return *found;
+  node_->reject(key, nullptr, fmt::format("a table [{}]", path(key)));
+  // What is asked of a missing table is missing too, but one message is enough: a document that nobody reads takes the
+  // rest.
+  static const toml::table kEmpty;
+  auto orphanage = std::make_shared<TomlFile::Document>();
+  auto node = std::shared_ptr<Node>(new Node{orphanage.get(), &kEmpty, path(key) + ".", node_->line, {}, {}, {}},
+                                    [orphanage](Node* orphan) { delete orphan; });
+  return TomlTable(node);
+}
+
+std::vector<TomlTable> TomlTable::tables_or_none(std::string_view key) const {
+  const toml::node* found = node_->find(key);
+  if (found == nullptr) return {};
+  const toml::array* array = found->as_array();
+  if (array == nullptr || !array->is_homogeneous(toml::node_type::table)) {
+    node_->reject(key, found, fmt::format("tables [[{}]]", path(key)));
+    return {};
+  }
+  std::vector<TomlTable> tables;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const std::string child_key = fmt::format("{}[{}]", key, i + 1);
+    const auto child = node_->children.find(child_key);
+    if (child != node_->children.end()) {
+      tables.push_back(TomlTable(child->second));
+      continue;
+    }
+    const toml::node& element = *array->get(i);
+    auto node = std::make_shared<Node>(
+        Node{node_->document, element.as_table(), path(child_key) + ".", line_of(element), {}, {}, {}});
+    node_->document->nodes.push_back(node);
+    node_->children.emplace(child_key, node);
+    tables.push_back(TomlTable(node));
+  }
+  return tables;
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+  std::vector<TomlTable> found = tables_or_none(key);
+  if (found.empty() && !has(key)) node_->reject(key, nullptr, fmt::format("one or more tables [[{}]]", path(key)));
+  return found;
+}
+
+void TomlTable::ignore(std::string_view key) const {
+  node_->known.emplace(key);
+  node_->ignored.emplace(key);
+}
+
+void TomlTable::reject(std::string_view key, std::string found, std::string expected) const {
+  node_->reject(key, line(key), std::move(found), std::move(expected));
+}
+
+TomlFile::TomlFile(std::shared_ptr<Document> document) : document_(std::move(document)) {}
+TomlFile::~TomlFile() = default;
+TomlFile::TomlFile(TomlFile&&) noexcept = default;
+TomlFile& TomlFile::operator=(TomlFile&&) noexcept = default;
+
+TomlFile TomlFile::load(const std::filesystem::path& path) {
+  return parse(read_file(path), path.string());
+}
+
+TomlFile TomlFile::parse(std::string_view text, std::string shown_as) {
+  auto document = std::make_shared<Document>();
+  document->name = std::move(shown_as);
+  try {
+    document->tree = toml::parse(text, document->name);
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw InputError(Issue{document->name, static_cast<int>(at.line), fmt::format("column {}", at.column),
+                           fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
+  }
+  document->nodes.push_back(
+      std::make_shared<TomlTable::Node>(TomlTable::Node{document.get(), &document->tree, "", 1, {}, {}, {}}));
+  return TomlFile(std::move(document));
+}
+
+TomlTable TomlFile::root() const {
+  return TomlTable(document_->nodes.front());
+}
+const std::string& TomlFile::name() const {
+  return document_->name;
+}
+
+void TomlFile::finish() const {
+  std::vector<Issue> issues = document_->issues;
+  for (const auto& node : document_->nodes) {
+    if (node->table == nullptr) continue;
+    for (const auto& [key, value] : *node->table) {
+      if (node->known.contains(key.str())) continue;
+      issues.push_back({document_->name, line_of(value), node->prefix + std::string(key.str()), "an unknown key",
+                        list_of_known(key.str(), node->known)});
+    }
+  }
+  std::stable_sort(issues.begin(), issues.end(), [](const Issue& a, const Issue& b) { return a.line < b.line; });
+  if (!issues.empty()) throw InputError(std::move(issues));
+}
+
+}  // namespace glidelab::base

@@ -1,0 +1,45 @@
+# What every room shares: the language, the warnings, ccache, and one function that makes a library of a folder.
+include_guard(GLOBAL)
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+option(GLIDELAB_WERROR "Treat warnings as errors" OFF)
+option(GLIDELAB_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+get_filename_component(GLIDELAB_ROOT ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
+
+if(GLIDELAB_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+function(glidelab_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                           -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual)
+  if(GLIDELAB_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# glidelab_room(NAME LINK <public libraries…>): all sources of the folder make glidelab::NAME, included as "NAME/header.h".
+function(glidelab_room name)
+  cmake_parse_arguments(ROOM "" "" "LINK" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  add_library(glidelab_${name} STATIC ${sources})
+  add_library(glidelab::${name} ALIAS glidelab_${name})
+  target_include_directories(glidelab_${name} PUBLIC ${GLIDELAB_ROOT})
+  target_link_libraries(glidelab_${name} PUBLIC ${ROOM_LINK})
+  glidelab_warnings(glidelab_${name})
+endfunction()

@@ -1,0 +1,28 @@
+/// The whole analysis: experiment folders in, K/m, mu, alpha and v_lim out.
+///
+///     clips  ─ frame_source ─ marker ─ marker_track ─ restitution ─ motion_axis ─┐
+///     tracks ─ track_csv ───────────────────────────────────────────────────────┴─ local_cubic ─ free_motion ─
+///     line_fit ─ configuration
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "base/progress.h"
+#include "core/experiment.h"
+#include "core/results.h"
+
+namespace glidelab::core {
+
+struct AnalysisOptions {
+  std::optional<double> bandwidth_s;  ///< given; otherwise chosen for each clip by the documented rule (bandwidth.h)
+  int jobs = 1;                       ///< clips analysed at the same time
+};
+
+/// Reads and analyses all folders together: they share the glider and the track, and nothing of the camera.
+/// InputError for what is wrong with a folder; the progress tells frames.
+AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
+                        const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::core

@@ -1,0 +1,24 @@
+/// From x(t) to the friction law: smoothing, the free parts of the motion, lines in a(v), and equation (13).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment.h"
+#include "core/results.h"
+#include "core/track_data.h"
+
+namespace glidelab::core {
+
+/// Smooths one clip's x(t) with the local cubic (10)-(12), decides which points count, and fits a line for v < 0 and v
+/// > 0. A given bandwidth is used as it is; otherwise choose_bandwidth() decides.
+ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s,
+                          double gravity_m_s2);
+
+/// Joins clips of one mass, stated inclination and group: lines through the points of all of them, alpha and mu by
+/// (13).
+std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
+                                                     const std::vector<ClipResult>& clips, double gravity_m_s2);
+
+}  // namespace glidelab::core

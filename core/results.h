@@ -1,0 +1,148 @@
+/// What an analysis finds, as plain data. report/ writes it as results.json, CSV and pages.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidelab::core {
+
+/// A number with its standard deviation and its 95 % interval.
+struct Estimate {
+  double value = 0.0;
+  double sd = 0.0;
+  double low95 = 0.0;
+  double high95 = 0.0;
+};
+
+/// A quantity that the data determine, or the reason why they do not.
+struct Quantity {
+  std::optional<Estimate> estimate;
+  std::string why;  ///< empty where there is an estimate
+};
+
+/// Why a point of the motion is not in a fit.
+enum class LeftOut {
+  used,             ///< it is in the fit
+  before_start,     ///< before start_s
+  after_end,        ///< after end_s
+  hand,             ///< the glider is not free yet (or held)
+  rest,             ///< it does not move
+  stop,             ///< it bumps into something: the end of the track, a bumper
+  kernel_end,       ///< the kernel reaches over the start or the end of the free motion
+  kernel_reversal,  ///< the kernel reaches over a reversal
+  kernel_gap,       ///< too few frames with a marker within the kernel
+  no_marker,        ///< no marker was found in this frame
+  outlier,          ///< the centre lies off the motion by more than its noise allows
+};
+/// A word for tables ("used", "hand", "kernel over a reversal", …).
+std::string describe(LeftOut reason);
+
+/// One frame of a clip: as measured, and as smoothed by the local cubic (equations 10 to 12).
+struct MotionPoint {
+  double t_s = 0.0;                  ///< middle of the exposure, from the first frame
+  std::optional<double> measured_m;  ///< nothing where no marker was found
+  double x_m = 0.0;
+  double v_m_s = 0.0;
+  double a_m_s2 = 0.0;
+  double sd_x_m = 0.0;
+  double sd_v_m_s = 0.0;
+  double sd_a_m_s2 = 0.0;
+  double force_n = 0.0;   ///< the applied force smoothed like x; 0 where there is none
+  bool smoothed = false;  ///< x, v, a hold values
+  LeftOut left_out = LeftOut::used;
+};
+
+/// The line a = a0 - (K/m) v through the points of one direction of motion.
+struct LineFit {
+  int direction = 0;  ///< sign of v
+  std::size_t points = 0;
+  Estimate k_over_m_1_s;
+  Estimate a0_m_s2;
+  double covariance = 0.0;  ///< of (K/m, a0)
+  double r2 = 0.0;
+  double from_v_m_s = 0.0;  ///< the range of v that it rests on
+  double to_v_m_s = 0.0;
+};
+
+/// A stretch of free motion in one direction.
+struct Stretch {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  int direction = 0;
+  std::size_t points = 0;
+};
+
+struct LeftOutInterval {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  std::size_t frames = 0;
+  LeftOut reason = LeftOut::used;
+};
+
+/// Where the marker was seen in one frame; pixels, the centre of the first pixel is (0, 0).
+struct MarkerSighting {
+  std::size_t frame = 0;
+  double u_px = 0.0;
+  double v_px = 0.0;
+  double sd_px = 0.0;  ///< of one coordinate, from the fit
+  double radius_px = 0.0;
+};
+
+struct ClipResult {
+  std::string name;
+  std::string experiment;  ///< name of the folder it comes from
+  std::size_t frames = 0;
+  std::size_t detected = 0;
+  double frame_rate_hz = 0.0;  ///< nominal; of a track, the median
+  double bandwidth_s = 0.0;
+  std::string bandwidth_method;
+  double position_noise_m = 0.0;
+  std::vector<LineFit> segments;  ///< at most one for each direction
+  Quantity v_lim_m_s;
+  std::vector<Stretch> stretches;
+  std::vector<LeftOutInterval> left_out;
+  std::vector<std::string> notes;  ///< what a reader should know: a container's other rate, gaps, …
+  std::vector<MotionPoint> motion;
+  std::vector<MarkerSighting> sightings;  ///< empty for a track
+};
+
+/// All clips of one mass, one stated inclination and one group.
+struct ConfigurationResult {
+  double mass_kg = 0.0;
+  double incline_deg = 0.0;
+  std::string group;
+  std::vector<std::string> clips;
+  std::vector<LineFit> lines;  ///< at most one for each direction, through the points of all its clips
+  Quantity k_over_m_1_s;
+  Quantity mu;
+  Quantity alpha_deg;
+  Quantity v_lim_m_s;
+};
+
+struct CalibrationResult {
+  std::string experiment;
+  double rms_px = 0.0;
+  std::vector<double> camera_matrix;  ///< 9 numbers, row by row
+  std::vector<double> distortion;     ///< k1, k2, p1, p2, k3
+  double restitution_rms_m = 0.0;     ///< of the plane views' corners, restituted, against the pattern
+  std::size_t views_used = 0;
+  std::vector<std::string> notes;  ///< views without a visible pattern, …
+};
+
+struct PlumbResult {
+  std::string group;
+  Quantity plumb_deg;  ///< inclination of the line of motion against the plumb line
+};
+
+struct AnalysisResults {
+  std::vector<ClipResult> clips;
+  std::vector<ConfigurationResult> configurations;
+  std::vector<CalibrationResult> calibrations;  ///< one for each folder that has a pattern
+  std::vector<PlumbResult> plumbs;              ///< one for each group that has a plumb line
+  std::string estimator = "phase-diagram";
+};
+
+}  // namespace glidelab::core

@@ -1,0 +1,27 @@
+/// x(t) of one clip, as it enters the smoothing: from a video by tracking and restitution, or from a CSV.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/results.h"
+
+namespace glidelab::core {
+
+/// Positions along the line of motion, positive downhill. All vectors have one length; times rise strictly.
+struct TrackData {
+  std::vector<double> t_s;  ///< frames in which the marker was found, middle of exposure
+  std::vector<double> x_m;
+  std::vector<double> force_n;     ///< known applied force along x; empty where there is none
+  std::vector<std::size_t> frame;  ///< the frame that each point comes from
+  std::vector<double> frame_t_s;   ///< times of all frames, with and without marker
+  double frame_rate_hz = 0.0;
+  double scale_sd_relative = 0.0;         ///< relative uncertainty of the scale (one px_per_m, calibration)
+  std::vector<MarkerSighting> sightings;  ///< empty for a track from a file
+  std::vector<std::string> notes;
+};
+
+}  // namespace glidelab::core

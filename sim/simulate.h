@@ -1,0 +1,54 @@
+/// Equation (8) as a hybrid system: slide up, slide down, stick.
+///
+///     m dv/dt = m g sin(alpha) + sum of forces(v, sign v)     while sliding;     v = 0     while sticking.
+///
+/// v = 0 is a root of the sliding modes. At a root the glider sticks where |m g sin(alpha) + smooth forces at rest|
+/// does not exceed what static friction holds, else it slides on with the sign of the net force; the solver is
+/// reinitialised there. sign(v) is never smoothed. Method: CVODES, BDF or Adams with Newton and the analytic slope,
+/// tolerances in SolverOptions.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/force_law.h"
+
+namespace glidelab::sim {
+
+enum class Mode { slide_up = -1, stick = 0, slide_down = 1 };
+
+struct State {
+  double t_s = 0.0;
+  double x_m = 0.0;
+  double v_m_s = 0.0;
+  double a_m_s2 = 0.0;
+  Mode mode = Mode::stick;
+};
+
+/// A change of mode.
+struct ModeChange {
+  double t_s = 0.0;
+  double x_m = 0.0;
+  Mode from = Mode::stick;
+  Mode to = Mode::stick;
+};
+
+struct Trajectory {
+  std::vector<State> states;  ///< one for each requested time
+  std::vector<ModeChange> changes;
+  double dissipated_j = 0.0;  ///< work done against all forces but gravity, up to the last requested time
+  long solver_steps = 0;
+};
+
+struct SolverOptions {
+  double relative_tolerance = 1e-12;
+  double absolute_tolerance = 1e-13;  ///< of x in m and v in m/s
+};
+
+/// Moves the body from (x0, v0) at t = 0 and returns its state at each of `times_s` (rising, not negative). At a
+/// requested time that is the instant of a reversal, the mode is the one after it. NumericalError with time and step
+/// where CVODES fails.
+Trajectory simulate(const Body& body, double x0_m, double v0_m_s, std::span<const double> times_s,
+                    const SolverOptions& options = {});
+
+}  // namespace glidelab::sim
