@@ -217,6 +217,13 @@ std::string TomlTable::word(std::string_view key, const std::vector<std::string>
   return allowed.front();
 }
 
+std::optional<std::string> TomlTable::one_of(std::string_view key, const std::vector<std::string>& allowed) const {
+  const std::size_t issues_before = node_->document->issues.size();
+  std::string word_found = word(key, allowed);
+  if (node_->document->issues.size() > issues_before) return std::nullopt;
+  return word_found;
+}
+
 std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count, Range range) const {
   const toml::node* found = node_->find(key);
   const std::string expected =

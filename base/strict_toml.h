@@ -57,6 +57,9 @@ class TomlTable {
   /// One of the words given; `otherwise`, where it is not empty, stands for a missing key.
   std::string word(std::string_view key, const std::vector<std::string>& allowed,
                    std::string_view otherwise = {}) const;
+  /// One of the words given, required; nothing where it is missing or another, which is recorded. For a word on which
+  /// depends what else is asked.
+  std::optional<std::string> one_of(std::string_view key, const std::vector<std::string>& allowed) const;
   /// An array of exactly `count` numbers (any length where count is 0).
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range = {}) const;
   std::optional<std::vector<double>> maybe_numbers(std::string_view key, std::size_t count, Range range = {}) const;

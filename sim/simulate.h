@@ -9,6 +9,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "sim/force_law.h"
@@ -16,6 +17,13 @@
 namespace glidelab::sim {
 
 enum class Mode { slide_up = -1, stick = 0, slide_down = 1 };
+
+/// "slide_up", "stick", "slide_down".
+std::string_view name_of(Mode mode);
+
+/// What a body at v = 0 does: it sticks where |load at rest| <= what static friction holds (equality within rounding),
+/// else it slides with the sign of the load.
+Mode mode_at_rest(const Body& body);
 
 struct State {
   double t_s = 0.0;

@@ -1,0 +1,177 @@
+#include "sim/cvodes_solver.h"
+
+#include <cvodes/cvodes.h>
+#include <fmt/format.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "base/errors.h"
+
+namespace glidelab::sim {
+
+namespace {
+
+// Between two requested times; a motion of an hour takes some thousand steps.
+constexpr long kMaxSteps = 1'000'000;
+
+Eigen::Vector3d read(N_Vector vector) {
+  return Eigen::Map<const Eigen::Vector3d>(N_VGetArrayPointer(vector));
+}
+
+void write(const Eigen::Vector3d& values, N_Vector vector) {
+  Eigen::Map<Eigen::Vector3d>(N_VGetArrayPointer(vector)) = values;
+}
+
+}  // namespace
+
+struct CvodesSolver::Memory {
+  OdeSystem system;
+  SUNContext context = nullptr;
+  N_Vector y = nullptr;
+  N_Vector tolerance = nullptr;
+  SUNMatrix matrix = nullptr;
+  SUNLinearSolver linear_solver = nullptr;
+  void* cvodes = nullptr;
+  double t_s = 0.0;
+  long steps_before = 0;
+  std::string message;           // what CVODES reported last
+  std::exception_ptr exception;  // thrown by the system, on its way through C
+
+  Memory() = default;
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+  ~Memory() {
+    if (cvodes != nullptr) CVodeFree(&cvodes);
+    if (linear_solver != nullptr) SUNLinSolFree(linear_solver);
+    if (matrix != nullptr) SUNMatDestroy(matrix);
+    if (tolerance != nullptr) N_VDestroy(tolerance);
+    if (y != nullptr) N_VDestroy(y);
+    if (context != nullptr) SUNContext_Free(&context);
+  }
+
+  // Runs a call-back: 0 done, 1 not finite (CVODES tries a smaller step), -1 thrown (rethrown behind CVODES).
+  template <class Call>
+  int guarded(Call&& call) {
+    try {
+      return call() ? 0 : 1;
+    } catch (...) {
+      exception = std::current_exception();
+      return -1;
+    }
+  }
+
+  static int rate(realtype, N_Vector y, N_Vector dydt, void* self) {
+    auto& memory = *static_cast<Memory*>(self);
+    return memory.guarded([&] {
+      const Eigen::Vector3d rate = memory.system.rate(read(y));
+      write(rate, dydt);
+      return rate.allFinite();
+    });
+  }
+
+  static int jacobian(realtype, N_Vector y, N_Vector, SUNMatrix matrix, void* self, N_Vector, N_Vector, N_Vector) {
+    auto& memory = *static_cast<Memory*>(self);
+    return memory.guarded([&] {
+      const Eigen::Matrix3d jacobian = memory.system.jacobian(read(y));
+      Eigen::Map<Eigen::Matrix3d>(SM_DATA_D(matrix)) = jacobian;  // both column by column
+      return jacobian.allFinite();
+    });
+  }
+
+  static int event(realtype, N_Vector y, realtype* value, void* self) {
+    auto& memory = *static_cast<Memory*>(self);
+    return memory.guarded([&] {
+      *value = memory.system.event(read(y));
+      return true;
+    });
+  }
+
+  static void report(int, const char*, const char*, char* text, void* self) {
+    static_cast<Memory*>(self)->message = text;
+  }
+
+  void check(bool good, const char* what) {
+    if (exception) std::rethrow_exception(std::exchange(exception, nullptr));
+    if (good) return;
+    double step_s = 0.0;
+    if (cvodes != nullptr) CVodeGetCurrentStep(cvodes, &step_s);
+    throw base::NumericalError(
+        fmt::format("CVODES failed in {} at t = {} s (step {} s, relative tolerance {}, absolute tolerance {}): {}",
+                    what, t_s, step_s, system.relative_tolerance, system.absolute_tolerance[1],
+                    message.empty() ? "no reason given" : message));
+  }
+
+  void use(OdeSystem new_system, double start_s, const Eigen::Vector3d& start) {
+    system = std::move(new_system);
+    t_s = start_s;
+    write(start, y);
+    write(system.absolute_tolerance, tolerance);
+  }
+
+  void set_event_and_tolerances() {
+    check(CVodeSVtolerances(cvodes, system.relative_tolerance, tolerance) == CV_SUCCESS, "CVodeSVtolerances");
+    check(CVodeRootInit(cvodes, system.event ? 1 : 0, event) == CV_SUCCESS, "CVodeRootInit");
+    if (!system.event) return;
+    int crossing = system.event_crossing;
+    check(CVodeSetRootDirection(cvodes, &crossing) == CV_SUCCESS, "CVodeSetRootDirection");
+    check(CVodeSetNoInactiveRootWarn(cvodes) == CV_SUCCESS, "CVodeSetNoInactiveRootWarn");
+  }
+
+  long steps_now() const {
+    long steps = 0;
+    CVodeGetNumSteps(cvodes, &steps);
+    return steps;
+  }
+};
+
+CvodesSolver::CvodesSolver(OdeSystem system, double t_s, const Eigen::Vector3d& y)
+    : memory_(std::make_unique<Memory>()) {
+  Memory& m = *memory_;
+  m.check(SUNContext_Create(nullptr, &m.context) == 0, "SUNContext_Create");
+  m.y = N_VNew_Serial(3, m.context);
+  m.tolerance = N_VNew_Serial(3, m.context);
+  m.matrix = SUNDenseMatrix(3, 3, m.context);
+  m.check(m.y != nullptr && m.tolerance != nullptr && m.matrix != nullptr, "N_VNew_Serial");
+  m.linear_solver = SUNLinSol_Dense(m.y, m.matrix, m.context);
+  m.cvodes = CVodeCreate(CV_BDF, m.context);
+  m.check(m.linear_solver != nullptr && m.cvodes != nullptr, "CVodeCreate");
+  m.check(CVodeSetErrHandlerFn(m.cvodes, Memory::report, &m) == CV_SUCCESS, "CVodeSetErrHandlerFn");
+  m.use(std::move(system), t_s, y);
+  m.check(CVodeInit(m.cvodes, Memory::rate, t_s, m.y) == CV_SUCCESS, "CVodeInit");
+  m.check(CVodeSetUserData(m.cvodes, &m) == CV_SUCCESS, "CVodeSetUserData");
+  m.set_event_and_tolerances();
+  m.check(CVodeSetLinearSolver(m.cvodes, m.linear_solver, m.matrix) == CVLS_SUCCESS, "CVodeSetLinearSolver");
+  m.check(CVodeSetJacFn(m.cvodes, Memory::jacobian) == CVLS_SUCCESS, "CVodeSetJacFn");
+  m.check(CVodeSetMaxNumSteps(m.cvodes, kMaxSteps) == CV_SUCCESS, "CVodeSetMaxNumSteps");
+}
+
+CvodesSolver::~CvodesSolver() = default;
+CvodesSolver::CvodesSolver(CvodesSolver&&) noexcept = default;
+CvodesSolver& CvodesSolver::operator=(CvodesSolver&&) noexcept = default;
+
+OdeState CvodesSolver::advance(double t_s) {
+  Memory& m = *memory_;
+  const int flag = CVode(m.cvodes, t_s, m.y, &m.t_s, CV_NORMAL);
+  m.check(flag >= 0, "CVode");
+  return {.t_s = m.t_s, .y = read(m.y), .at_event = flag == CV_ROOT_RETURN};
+}
+
+void CvodesSolver::restart(OdeSystem system, double t_s, const Eigen::Vector3d& y) {
+  Memory& m = *memory_;
+  m.steps_before += m.steps_now();
+  m.use(std::move(system), t_s, y);
+  m.check(CVodeReInit(m.cvodes, t_s, m.y) == CV_SUCCESS, "CVodeReInit");
+  m.set_event_and_tolerances();
+}
+
+long CvodesSolver::steps() const {
+  return memory_->steps_before + memory_->steps_now();
+}
+
+}  // namespace glidelab::sim
