@@ -55,6 +55,20 @@ struct MotionPoint {
   LeftOut left_out = LeftOut::used;
 };
 
+/// What the uncertainty of a line (K/m, a0) is made of; the standard deviations in LineFit hold all of it. Parts that
+/// two lines share (the kernel's bias, the mass, the scale) are signed, so that they add up as they should.
+struct LineUncertainty {
+  double var_k = 0.0;  ///< random: the noise of the positions, and what the points scatter beyond it
+  double var_a0 = 0.0;
+  double cov = 0.0;
+  double degrees = 0.0;      ///< of freedom that the random part rests on; infinite where it is as good as known
+  double smoothing_k = 0.0;  ///< estimated bias by the kernel; not subtracted
+  double smoothing_a0 = 0.0;
+  double mass_k = 0.0;  ///< change by one standard deviation of the mass (with a known force only)
+  double mass_a0 = 0.0;
+  double scale_relative = 0.0;  ///< standard deviation of the scale: of a0 and v_lim, not of K/m
+};
+
 /// The line a = a0 - (K/m) v through the points of one direction of motion.
 struct LineFit {
   int direction = 0;  ///< sign of v
@@ -65,6 +79,7 @@ struct LineFit {
   double r2 = 0.0;
   double from_v_m_s = 0.0;  ///< the range of v that it rests on
   double to_v_m_s = 0.0;
+  LineUncertainty parts;
 };
 
 /// A stretch of free motion in one direction.

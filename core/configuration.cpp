@@ -1,0 +1,241 @@
+// Clips of one configuration joined: one line for each direction through the points of all of them, and equation (13).
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/estimate.h"
+#include "core/line_fit.h"
+#include "core/phase_diagram.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kSameIncline = 1e-9;  // rad: the same number written in two files
+
+struct Member {
+  const ClipSetup* setup;
+  const ClipResult* clip;
+};
+
+double degrees_of(double rad) {
+  const double degrees = rad * 180.0 / std::numbers::pi;
+  return std::round(degrees * 1e9) / 1e9 + 0.0;  // 4, not 4.000000000000001; + 0.0: no -0
+}
+
+Eigen::Matrix2d random_part(const LineUncertainty& parts) {
+  Eigen::Matrix2d covariance;
+  covariance << parts.var_k, parts.cov, parts.cov, parts.var_a0;
+  return covariance;
+}
+
+/// One direction of one clip: the moments of its points, and its own line.
+struct Part {
+  const LineFit* line = nullptr;
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  std::vector<double> v, a;
+};
+
+std::vector<Part> parts_of(const std::vector<Member>& members, int direction) {
+  std::vector<Part> parts;
+  for (const Member& member : members) {
+    for (const LineFit& line : member.clip->segments) {
+      if (line.direction != direction) continue;
+      Part part;
+      part.line = &line;
+      for (const MotionPoint& point : member.clip->motion) {
+        if (point.left_out != LeftOut::used || (point.v_m_s > 0.0 ? 1 : -1) != direction) continue;
+        part.v.push_back(point.v_m_s);
+        part.a.push_back(point.a_m_s2 - point.force_n / member.setup->mass_kg);
+        const Eigen::Vector2d design(-point.v_m_s, 1.0);
+        part.normal += design * design.transpose();
+      }
+      parts.push_back(std::move(part));
+    }
+  }
+  return parts;
+}
+
+/// How much more the clips' own lines scatter about the joint one than their uncertainty allows: chi^2 per degree of
+/// freedom, at least 1.
+double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
+  if (parts.size() < 2) return 1.0;
+  double chi2 = 0.0;
+  for (const Part& part : parts) {
+    Eigen::Matrix2d covariance = random_part(part.line->parts);
+    const Eigen::Vector2d bias(part.line->parts.smoothing_k, part.line->parts.smoothing_a0);
+    covariance += bias * bias.transpose();
+    if (!(covariance.determinant() > 0.0)) return 1.0;
+    const Eigen::Vector2d off = Eigen::Vector2d(part.line->k_over_m_1_s.value, part.line->a0_m_s2.value) - joint;
+    chi2 += off.dot(covariance.inverse() * off);
+  }
+  return std::max(1.0, chi2 / (2.0 * static_cast<double>(parts.size() - 1)));
+}
+
+double squared_correlation(const std::vector<Part>& parts) {
+  double n = 0.0, mean_v = 0.0, mean_a = 0.0, vv = 0.0, va = 0.0, aa = 0.0;
+  for (const Part& part : parts) {
+    for (std::size_t i = 0; i < part.v.size(); ++i) {  // Welford's update: no cancellation
+      n += 1.0;
+      const double dv = part.v[i] - mean_v, da = part.a[i] - mean_a;
+      mean_v += dv / n;
+      mean_a += da / n;
+      vv += dv * (part.v[i] - mean_v);
+      va += dv * (part.a[i] - mean_a);
+      aa += da * (part.a[i] - mean_a);
+    }
+  }
+  return vv > 0.0 && aa > 0.0 ? va * va / (vv * aa) : 0.0;
+}
+
+/// Ordinary least squares through the points of all parts, every point with the same weight. The parts' noise is
+/// independent: cov = N^-1 (sum N_c cov_c N_c) N^-1 with the normal matrices N_c of the parts.
+LineFit join(const std::vector<Part>& parts, int direction) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero(), random = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d line = Eigen::Vector2d::Zero(), smoothing = line, mass = line;
+  double var_a0 = 0.0, var2_per_degree = 0.0;
+  LineFit joint;
+  joint.direction = direction;
+  joint.from_v_m_s = parts.front().line->from_v_m_s;
+  joint.to_v_m_s = parts.front().line->to_v_m_s;
+  for (const Part& part : parts) {
+    const LineUncertainty& of = part.line->parts;
+    normal += part.normal;
+    line += part.normal * Eigen::Vector2d(part.line->k_over_m_1_s.value, part.line->a0_m_s2.value);
+    random += part.normal * random_part(of) * part.normal;
+    smoothing += part.normal * Eigen::Vector2d(of.smoothing_k, of.smoothing_a0);
+    mass += part.normal * Eigen::Vector2d(of.mass_k, of.mass_a0);
+    const double share = part.normal(1, 1) * part.normal(1, 1) * of.var_a0;
+    var_a0 += share;
+    var2_per_degree += share * share / of.degrees;
+    joint.points += part.line->points;
+    joint.from_v_m_s = std::min(joint.from_v_m_s, part.line->from_v_m_s);
+    joint.to_v_m_s = std::max(joint.to_v_m_s, part.line->to_v_m_s);
+    joint.parts.scale_relative = std::max(joint.parts.scale_relative, of.scale_relative);
+  }
+  const Eigen::Matrix2d inverse = normal.inverse();
+  const Eigen::Vector2d solution = inverse * line;
+  const Eigen::Matrix2d covariance = inverse * random * inverse * excess_scatter(parts, solution);
+  joint.k_over_m_1_s.value = solution[0];
+  joint.a0_m_s2.value = solution[1];
+  joint.parts.var_k = covariance(0, 0);
+  joint.parts.var_a0 = covariance(1, 1);
+  joint.parts.cov = covariance(0, 1);
+  // Welch and Satterthwaite: degrees of freedom of a sum of variances.
+  joint.parts.degrees = var2_per_degree > 0.0 ? std::max(1.0, var_a0 * var_a0 / var2_per_degree)
+                                              : std::numeric_limits<double>::infinity();
+  joint.parts.smoothing_k = (inverse * smoothing)[0];
+  joint.parts.smoothing_a0 = (inverse * smoothing)[1];
+  joint.parts.mass_k = (inverse * mass)[0];
+  joint.parts.mass_a0 = (inverse * mass)[1];
+  joint.r2 = squared_correlation(parts);
+  complete_line(joint);
+  return joint;
+}
+
+/// The mean of the directions' K/m, each weighted by one over its random variance. Where the two lie further apart
+/// than their uncertainty explains, the standard deviation grows with the spread (chi^2 of one degree of freedom).
+Quantity mean_k(const std::vector<LineFit>& lines) {
+  if (lines.empty()) return undetermined("no line: no direction has enough points that count");
+  double weights = 0.0, value = 0.0, smoothing = 0.0, mass = 0.0, degrees = std::numeric_limits<double>::infinity();
+  const bool known = std::all_of(lines.begin(), lines.end(), [](const LineFit& l) { return l.parts.var_k > 0.0; });
+  for (const LineFit& line : lines) {
+    const double weight = known ? 1.0 / line.parts.var_k : 1.0;
+    weights += weight;
+    value += weight * line.k_over_m_1_s.value;
+    smoothing += weight * line.parts.smoothing_k;
+    mass += weight * line.parts.mass_k;
+    degrees = std::min(degrees, line.parts.degrees);
+  }
+  value /= weights;
+  double variance = known ? 1.0 / weights : 0.0;
+  if (lines.size() == 2) {
+    const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
+    const double allowed = std::pow(lines[0].k_over_m_1_s.sd, 2) + std::pow(lines[1].k_over_m_1_s.sd, 2);
+    if (apart * apart > allowed) variance = allowed > 0.0 ? variance * apart * apart / allowed : 0.25 * apart * apart;
+  }
+  smoothing /= weights;
+  mass /= weights;
+  return determined(estimate(value, std::sqrt(variance + smoothing * smoothing + mass * mass), degrees));
+}
+
+/// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+).
+Estimate of_intercepts(double value, double by_minus, double by_plus, const LineFit& minus, const LineFit& plus) {
+  const double random = by_minus * by_minus * minus.parts.var_a0 + by_plus * by_plus * plus.parts.var_a0;
+  const double smoothing = by_minus * minus.parts.smoothing_a0 + by_plus * plus.parts.smoothing_a0;
+  const double mass = by_minus * minus.parts.mass_a0 + by_plus * plus.parts.mass_a0;
+  const double scale = by_minus * minus.a0_m_s2.value * minus.parts.scale_relative +
+                       by_plus * plus.a0_m_s2.value * plus.parts.scale_relative;
+  return estimate(value, std::sqrt(random + smoothing * smoothing + mass * mass + scale * scale),
+                  std::min(minus.parts.degrees, plus.parts.degrees));
+}
+
+/// Equation (13): (a0- + a0+)/2 = g sin(alpha), (a0- - a0+)/2 = mu g cos(alpha).
+void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2, ConfigurationResult& result) {
+  const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
+  const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);
+  if (std::abs(mean) >= gravity_m_s2) {
+    const std::string why = fmt::format("the mean of a0 is {:.4g} m/s^2, no less than gravity", mean);
+    result.alpha_deg = result.mu = undetermined(why);
+    return;
+  }
+  const double alpha = std::asin(mean / gravity_m_s2);
+  const double g_cos = gravity_m_s2 * std::cos(alpha);
+  const double degrees = 180.0 / std::numbers::pi;
+  const double by_mean = degrees / g_cos;
+  result.alpha_deg = determined(of_intercepts(alpha * degrees, 0.5 * by_mean, 0.5 * by_mean, minus, plus));
+  // mu = half_jump / sqrt(g^2 - mean^2)
+  const double by_jump = 1.0 / g_cos, mu_by_mean = half_jump * mean / std::pow(g_cos, 3);
+  result.mu = determined(
+      of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus));
+}
+
+ConfigurationResult join_members(const std::vector<Member>& members, double gravity_m_s2) {
+  ConfigurationResult result;
+  result.mass_kg = members.front().setup->mass_kg;
+  result.incline_deg = degrees_of(members.front().setup->incline_rad);
+  result.group = members.front().setup->group;
+  for (const Member& member : members) result.clips.push_back(member.clip->name);
+  for (const int direction : {-1, 1}) {
+    const std::vector<Part> parts = parts_of(members, direction);
+    if (!parts.empty()) result.lines.push_back(join(parts, direction));
+  }
+  result.k_over_m_1_s = mean_k(result.lines);
+  result.v_lim_m_s = limit_velocity(result.lines);
+  if (result.lines.size() == 2) {
+    split_intercepts(result.lines[0], result.lines[1], gravity_m_s2, result);
+    return result;
+  }
+  const std::string missing = result.lines.empty()                  ? "v < 0 and none for v > 0"
+                              : result.lines.front().direction == 1 ? "v < 0"
+                                                                    : "v > 0";
+  result.alpha_deg = result.mu =
+      undetermined("no line for " + missing + ": equation (13) needs both directions to tell friction from slope");
+  return result;
+}
+
+}  // namespace
+
+std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
+                                                     const std::vector<ClipResult>& clips, double gravity_m_s2) {
+  std::vector<std::vector<Member>> configurations;
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    const auto same = [&](const std::vector<Member>& members) {
+      const ClipSetup& first = *members.front().setup;
+      return first.mass_kg == setups[i].mass_kg && first.group == setups[i].group &&
+             std::abs(first.incline_rad - setups[i].incline_rad) < kSameIncline;
+    };
+    const auto found = std::find_if(configurations.begin(), configurations.end(), same);
+    std::vector<Member>& members = found != configurations.end() ? *found : configurations.emplace_back();
+    members.push_back({&setups[i], &clips[i]});
+  }
+  std::vector<ConfigurationResult> results;
+  for (const std::vector<Member>& members : configurations) results.push_back(join_members(members, gravity_m_s2));
+  return results;
+}
+
+}  // namespace glidelab::core

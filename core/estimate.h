@@ -1,0 +1,21 @@
+/// Numbers with their uncertainty.
+#pragma once
+
+#include <string>
+
+#include "core/results.h"
+
+namespace glidelab::core {
+
+/// The value with its 95 % interval: Student's t of `degrees` degrees of freedom, the normal distribution where they
+/// are infinite.
+Estimate estimate(double value, double sd, double degrees);
+
+/// The 97.5 % quantile of Student's t for any degrees >= 1 (Cornish-Fisher series in 1/degrees, exact to 1 % for
+/// degrees >= 3 and to 1e-4 for degrees >= 10; closed forms below 3).
+double student_t975(double degrees);
+
+Quantity determined(const Estimate& estimate);
+Quantity undetermined(std::string why);
+
+}  // namespace glidelab::core

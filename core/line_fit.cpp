@@ -1,0 +1,133 @@
+#include "core/line_fit.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/estimate.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kSignificant = 1.959963984540054;  // two-sided 95 %
+
+Eigen::Matrix2d normal_matrix(const std::vector<double>& v_m_s) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  for (const double v : v_m_s) {
+    const Eigen::Vector2d design(-v, 1.0);
+    normal += design * design.transpose();
+  }
+  return normal;
+}
+
+/// (A'A)^-1 A' y
+Eigen::Vector2d coefficients(const Eigen::Matrix2d& inverse, const std::vector<double>& v_m_s,
+                             const std::vector<double>& y) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t j = 0; j < y.size(); ++j) sum += Eigen::Vector2d(-v_m_s[j], 1.0) * y[j];
+  return inverse * sum;
+}
+
+double squared_correlation(const std::vector<double>& x, const std::vector<double>& y) {
+  double mean_x = 0.0, mean_y = 0.0;
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    mean_x += x[j] / static_cast<double>(x.size());
+    mean_y += y[j] / static_cast<double>(x.size());
+  }
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    xx += (x[j] - mean_x) * (x[j] - mean_x);
+    xy += (x[j] - mean_x) * (y[j] - mean_y);
+    yy += (y[j] - mean_y) * (y[j] - mean_y);
+  }
+  return xx > 0.0 && yy > 0.0 ? xy * xy / (xx * yy) : 0.0;
+}
+
+/// L Sigma L' for the rows L_k, L_a0 over all positions.
+void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, double k,
+                     const std::vector<double>& autocovariance, LineUncertainty& parts) {
+  std::vector<double> weight_k(input.track_points, 0.0), weight_a0(input.track_points, 0.0);
+  for (std::size_t j = 0; j < input.rows.size(); ++j) {
+    const Eigen::Vector2d gain = inverse * Eigen::Vector2d(-input.v_m_s[j], 1.0);
+    const KernelWeights& weights = *input.rows[j].weights;
+    for (std::size_t i = 0; i < weights.a.size(); ++i) {
+      const double of_residual = weights.a[i] + k * weights.v[i];
+      weight_k[input.rows[j].first + i] += gain[0] * of_residual;
+      weight_a0[input.rows[j].first + i] += gain[1] * of_residual;
+    }
+  }
+  parts.var_k = noise_variance(weight_k, autocovariance);
+  parts.var_a0 = noise_variance(weight_a0, autocovariance);
+  std::vector<double> sum(weight_k.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = weight_k[i] + weight_a0[i];
+  parts.cov = 0.5 * (noise_variance(sum, autocovariance) - parts.var_k - parts.var_a0);
+}
+
+}  // namespace
+
+std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
+                                double scale_sd_relative) {
+  assert(input.v_m_s.size() == input.a_m_s2.size() && input.rows.size() == input.v_m_s.size());
+  if (input.v_m_s.size() < kFewestLinePoints) return {};
+  const Eigen::Matrix2d normal = normal_matrix(input.v_m_s);
+  if (!(normal.determinant() > 1e-12 * normal(0, 0) * normal(1, 1))) return {};
+  const Eigen::Matrix2d inverse = normal.inverse();
+  const Eigen::Vector2d line = coefficients(inverse, input.v_m_s, input.a_m_s2);
+  LineFit fit;
+  fit.direction = direction;
+  fit.points = input.v_m_s.size();
+  fit.k_over_m_1_s.value = line[0];
+  fit.a0_m_s2.value = line[1];
+  fit.r2 = squared_correlation(input.v_m_s, input.a_m_s2);
+  const auto [low, high] = std::minmax_element(input.v_m_s.begin(), input.v_m_s.end());
+  fit.from_v_m_s = *low;
+  fit.to_v_m_s = *high;
+  fit.parts.degrees = std::numeric_limits<double>::infinity();
+  propagate_noise(input, inverse, line[0], autocovariance, fit.parts);
+  const Eigen::Vector2d bias = coefficients(inverse, input.v_m_s, input.bias_a_m_s2);
+  fit.parts.smoothing_k = bias[0];
+  fit.parts.smoothing_a0 = bias[1];
+  const Eigen::Vector2d mass = coefficients(inverse, input.v_m_s, input.mass_part_m_s2);
+  fit.parts.mass_k = mass[0];
+  fit.parts.mass_a0 = mass[1];
+  fit.parts.scale_relative = scale_sd_relative;
+  complete_line(fit);
+  return fit;
+}
+
+void complete_line(LineFit& line) {
+  const LineUncertainty& parts = line.parts;
+  const double k = line.k_over_m_1_s.value, a0 = line.a0_m_s2.value;
+  const double var_k = parts.var_k + parts.smoothing_k * parts.smoothing_k + parts.mass_k * parts.mass_k;
+  const double of_scale = parts.scale_relative * a0;
+  const double var_a0 =
+      parts.var_a0 + parts.smoothing_a0 * parts.smoothing_a0 + parts.mass_a0 * parts.mass_a0 + of_scale * of_scale;
+  line.k_over_m_1_s = estimate(k, std::sqrt(var_k), parts.degrees);
+  line.a0_m_s2 = estimate(a0, std::sqrt(var_a0), parts.degrees);
+  line.covariance = parts.cov + parts.smoothing_k * parts.smoothing_a0 + parts.mass_k * parts.mass_a0;
+}
+
+Quantity limit_velocity(const std::vector<LineFit>& lines) {
+  const auto found = std::find_if(lines.begin(), lines.end(), [](const LineFit& line) { return line.direction > 0; });
+  if (found == lines.end()) return undetermined("no line for v > 0");
+  const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
+  if (k - kSignificant * found->k_over_m_1_s.sd <= 0.0) {
+    return undetermined("K/m for v > 0 is not above zero by more than its uncertainty");
+  }
+  if (a0 - kSignificant * found->a0_m_s2.sd <= 0.0) {
+    return undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
+  }
+  const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
+  const LineUncertainty& parts = found->parts;
+  const double random = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
+  const double smoothing = by_k * parts.smoothing_k + by_a0 * parts.smoothing_a0;
+  const double mass = by_k * parts.mass_k + by_a0 * parts.mass_a0;
+  const double scale = parts.scale_relative * a0 / k;
+  const double variance = random + smoothing * smoothing + mass * mass + scale * scale;
+  return determined(estimate(a0 / k, std::sqrt(variance), parts.degrees));
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,44 @@
+/// The line a = a0 - (K/m) v by ordinary least squares through smoothed points, as the paper fits it, with what the
+/// noise of the positions makes of its coefficients.
+///
+/// Smoothed points are correlated over the kernel, so the textbook formula for independent points is wrong here. But v
+/// and a are linear in the measured positions, and so, to first order in the noise n, are the coefficients:
+///
+///     d(K/m, a0) = (A'A)^-1 A' (da + (K/m) dv) = L n,     A_j = (-v_j, 1),     covariance = L Sigma L'
+///
+/// with Sigma the estimated autocovariance of the noise. The term that is left out, (dA)'(residual), is of second
+/// order: it shrinks K/m by var(v noise) / var(v), which is below 1e-3 wherever the lines are worth fitting.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/local_cubic.h"
+#include "core/results.h"
+
+namespace glidelab::core {
+
+/// The points of one direction, and how they follow from the `track_points` measured positions.
+struct LineInput {
+  std::size_t track_points = 0;
+  std::vector<double> v_m_s;
+  std::vector<double> a_m_s2;          ///< with the known force's part F/m taken off
+  std::vector<KernelRow> rows;         ///< over the measured positions
+  std::vector<double> bias_a_m_s2;     ///< estimated smoothing bias of a
+  std::vector<double> mass_part_m_s2;  ///< change of a by one standard deviation of the mass
+};
+
+/// Nothing where there are fewer than kFewestLinePoints points or all v are one.
+inline constexpr std::size_t kFewestLinePoints = 5;
+std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
+                                double scale_sd_relative);
+
+/// Fills in the standard deviations and intervals of K/m and a0 from line.parts.
+void complete_line(LineFit& line);
+
+/// Where the line of v > 0 meets a = 0. Null with the reason where there is no such line, where a0 is not above zero
+/// by 1.96 standard deviations (a level track: no equilibrium at v > 0), or where K/m is not.
+Quantity limit_velocity(const std::vector<LineFit>& lines);
+
+}  // namespace glidelab::core

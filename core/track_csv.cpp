@@ -1,0 +1,61 @@
+#include "core/track_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+#include "base/csv.h"
+#include "base/errors.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kMaxIssues = 10;  // unsorted times are wrong on many lines
+
+void check_times(const base::CsvTable& table, const std::vector<double>& t_s) {
+  std::vector<base::Issue> issues;
+  for (std::size_t i = 1; i < t_s.size() && issues.size() < kMaxIssues; ++i) {
+    if (t_s[i] > t_s[i - 1]) continue;
+    issues.push_back({table.file, table.line[i], "column \"t_s\"",
+                      fmt::format("{}{}", t_s[i], t_s[i] == t_s[i - 1] ? " twice" : ""),
+                      fmt::format("a time above {} (line {})", t_s[i - 1], table.line[i - 1])});
+  }
+  if (!issues.empty()) throw base::InputError(std::move(issues));
+  if (t_s.size() < kFewestTrackPoints) {
+    throw base::InputError(base::Issue{table.file, 0, "", fmt::format("{} points", t_s.size()),
+                                       fmt::format("at least {}", kFewestTrackPoints)});
+  }
+}
+
+double median_step(const std::vector<double>& t_s) {
+  std::vector<double> steps(t_s.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = t_s[i + 1] - t_s[i];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+}  // namespace
+
+TrackData read_track_csv(const std::filesystem::path& file, int downhill) {
+  assert(downhill == 1 || downhill == -1);
+  const base::CsvTable table = base::read_csv(file, {"t_s", "x_m"}, {"force_n"});
+  TrackData track;
+  track.t_s = table.column("t_s");
+  check_times(table, track.t_s);
+  track.x_m = table.column("x_m");
+  for (double& x : track.x_m) x *= downhill;
+  if (table.has("force_n")) {
+    track.force_n = table.column("force_n");
+    for (double& force : track.force_n) force *= downhill;
+  }
+  track.frame.resize(track.t_s.size());
+  std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
+  track.frame_t_s = track.t_s;
+  track.frame_rate_hz = 1.0 / median_step(track.t_s);
+  return track;
+}
+
+}  // namespace glidelab::core

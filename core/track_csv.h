@@ -1,0 +1,20 @@
+/// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "core/track_data.h"
+
+namespace glidelab::core {
+
+/// Fewer points than this say nothing about an acceleration: a local cubic has four coefficients, and as many points
+/// again are left for their noise.
+inline constexpr std::size_t kFewestTrackPoints = 8;
+
+/// Reads `file`; x and the force are multiplied by `downhill` (+1 or -1), so that both are positive downhill. Times
+/// stay those of the file; every row is a frame in which the object was seen. The frame rate is one over the median
+/// time step. InputError, up to ten issues named by line: no number, a time that does not rise, too few points.
+TrackData read_track_csv(const std::filesystem::path& file, int downhill);
+
+}  // namespace glidelab::core
