@@ -17,8 +17,8 @@ namespace glidelab::sim {
 
 namespace {
 
-// Between two requested times; a motion of an hour takes some thousand steps.
-constexpr long kMaxSteps = 1'000'000;
+// Between two requested times. A motion of any length takes some thousand; more means that a force is not what it says.
+constexpr long kMaxSteps = 100'000;
 
 Eigen::Vector3d read(N_Vector vector) {
   return Eigen::Map<const Eigen::Vector3d>(N_VGetArrayPointer(vector));

@@ -1,5 +1,7 @@
 #include "sim/read_force.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -31,7 +33,7 @@ std::shared_ptr<const ForceTerm> read_coulomb(const TomlTable& table) {
   const double mu = table.number("mu", base::between(0.0, 10.0));
   const double mu_static = table.number_or("mu_static", mu, base::between(0.0, 10.0));
   if (mu_static < mu) {
-    table.reject("mu_static", std::to_string(mu_static), "not less than mu = " + std::to_string(mu));
+    table.reject("mu_static", fmt::format("{}", mu_static), fmt::format("a number not less than mu = {}", mu));
   }
   return std::make_shared<CoulombForce>(mu, mu_static);
 }

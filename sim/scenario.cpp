@@ -1,5 +1,7 @@
 #include "sim/scenario.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -45,7 +47,7 @@ std::string read_unique_name(const TomlTable& table, Names& names) {
   if (name.empty()) return name;
   const auto [first, is_new] = names.emplace(name, table.line("name"));
   if (!is_new) {
-    table.reject("name", quoted(name), "another name than in line " + std::to_string(first->second));
+    table.reject("name", quoted(name), "another name than in line " + fmt::format("{}", first->second));
   }
   return name;
 }
@@ -57,7 +59,7 @@ Launched read_launched(const TomlTable& table, double v0_m_s) {
   const bool down = *word == "down";
   const bool agree = up ? v0_m_s < 0.0 : down ? v0_m_s > 0.0 : v0_m_s == 0.0;
   if (!agree && !std::isnan(v0_m_s)) {
-    table.reject("v0_m_s", std::to_string(v0_m_s),
+    table.reject("v0_m_s", fmt::format("{}", v0_m_s),
                  std::string(up     ? "a number below 0"
                              : down ? "a number above 0"
                                     : "0") +
@@ -103,10 +105,9 @@ void check_groups(const std::vector<TomlTable>& tables, const std::vector<Config
     const ConfigurationSetup& first = setups[entry->second];
     const auto compare = [&](const char* key, double value, double first_value) {
       if (std::isnan(value) || std::isnan(first_value) || value == first_value) return;
-      tables[i].reject(key, std::to_string(value / kRadPerDeg),
-                       std::to_string(first_value / kRadPerDeg) + " as in line " +
-                           std::to_string(tables[entry->second].line(key)) + ", for group \"" + first.group +
-                           "\" is one set-up of the track");
+      tables[i].reject(key, fmt::format("{:.10g}", value / kRadPerDeg),
+                       fmt::format("{:.10g} as in line {}, for group \"{}\" is one set-up of the track",
+                                   first_value / kRadPerDeg, tables[entry->second].line(key), first.group));
     };
     compare("incline_deg", setups[i].body.incline_rad, first.body.incline_rad);
     compare("stated_incline_deg", setups[i].stated_incline_rad, first.stated_incline_rad);

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/errors.h"
 #include "sim/cvodes_solver.h"
@@ -15,6 +17,8 @@ namespace glidelab::sim {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+// Shorter than this, nothing changes that a double could show, and products in CVODES would underflow.
+constexpr double kShortestStep = 1e-100;  // s
 
 void require(bool good, const std::string& key, double found, const std::string& expected) {
   if (!good) throw base::InputError(base::Issue{"", 0, key, fmt::format("{}", found), expected});
@@ -43,6 +47,106 @@ Mode sliding(double sign) {
   return sign < 0.0 ? Mode::slide_up : Mode::slide_down;
 }
 
+// One motion on its way through its modes.
+class Motion {
+ public:
+  Motion(const Body& body, double x0_m, double v0_m_s, std::span<const double> times_s, const SolverOptions& options)
+      : body_(body),
+        times_s_(times_s),
+        options_(options),
+        mode_(v0_m_s != 0.0 ? sliding(v0_m_s) : mode_at_rest(body)),
+        start_(x0_m, v0_m_s, 0.0) {}
+
+  Trajectory run() {
+    while (!done()) {
+      if (mode_ == Mode::stick) {
+        stay();
+      } else {
+        slide();
+      }
+    }
+    if (solver_) trajectory_.solver_steps = solver_->steps();
+    return std::move(trajectory_);
+  }
+
+ private:
+  bool done() const { return trajectory_.states.size() == times_s_.size(); }
+  double next_s() const { return times_s_[trajectory_.states.size()]; }
+
+  void record(double x_m, double v_m_s, double a_m_s2, double dissipated_j) {
+    trajectory_.states.push_back({next_s(), x_m, v_m_s, a_m_s2, mode_});
+    trajectory_.dissipated_j = dissipated_j;
+  }
+
+  // No force here depends on time, so what sticks stays.
+  void stay() {
+    while (!done()) record(start_[0], 0.0, 0.0, start_[2]);
+  }
+
+  void come_to_rest(double t_s, double x_m, double dissipated_j) {
+    const Mode before = mode_;
+    mode_ = mode_at_rest(body_);
+    if (mode_ == before) {
+      throw base::NumericalError(
+          fmt::format("at t = {} s the forces stop the glider and set it off again in the same direction: a term holds "
+                      "less at rest "
+                      "than it opposes to sliding",
+                      t_s));
+    }
+    start_s_ = t_s;
+    start_ = {x_m, 0.0, dissipated_j};
+    trajectory_.changes.push_back({t_s, x_m, before, mode_});
+  }
+
+  // To v = 0, or to the last time.
+  void slide() {
+    const Slide slide(body_, static_cast<int>(mode_));
+    const double start_a = slide.acceleration_m_s2(start_[1]);
+    if (slide.stops() && std::abs(start_[1]) <= kShortestStep * std::abs(start_a)) {
+      come_to_rest(start_s_, start_[0], start_[2]);
+      return;
+    }
+    // CVODES refuses a first step that is lost in rounding.
+    while (!done() && next_s() - start_s_ <= std::max(8.0 * kEpsilon * next_s(), kShortestStep)) {
+      record(start_[0], start_[1], start_a, start_[2]);
+    }
+    if (done()) return;
+    restart(slide);
+    while (!done()) {
+      const double t_s = next_s();
+      const OdeState reached = solver_->advance(t_s);
+      const double v = slide.speed_m_s(reached.y[1]);
+      const double a = slide.acceleration_m_s2(v);
+      // A root that rounding put a little behind the requested time is at that time.
+      const bool at_rest = slide.stops() && std::abs(v) <= 100.0 * kEpsilon * t_s * std::abs(a);
+      if (reached.at_event || at_rest) {
+        come_to_rest(reached.t_s, reached.y[0], reached.y[2]);
+        return;
+      }
+      record(reached.y[0], v, a, reached.y[2]);
+    }
+  }
+
+  void restart(const Slide& slide) {
+    OdeSystem system = slide.system(options_.relative_tolerance, options_.absolute_tolerance);
+    const Eigen::Vector3d y(start_[0], slide.variable(start_[1]), start_[2]);
+    if (solver_) {
+      solver_->restart(std::move(system), start_s_, y);
+    } else {
+      solver_.emplace(std::move(system), start_s_, y);
+    }
+  }
+
+  const Body& body_;
+  std::span<const double> times_s_;
+  SolverOptions options_;
+  Mode mode_;
+  double start_s_ = 0.0;
+  Eigen::Vector3d start_;  // x, v, dissipated energy where this mode began
+  std::optional<CvodesSolver> solver_;
+  Trajectory trajectory_;
+};
+
 }  // namespace
 
 std::string_view name_of(Mode mode) {
@@ -67,61 +171,7 @@ Mode mode_at_rest(const Body& body) {
 Trajectory simulate(const Body& body, double x0_m, double v0_m_s, std::span<const double> times_s,
                     const SolverOptions& options) {
   check(body, x0_m, v0_m_s, times_s, options);
-  Trajectory trajectory;
-  Mode mode = v0_m_s != 0.0 ? sliding(v0_m_s) : mode_at_rest(body);
-  double start_s = 0.0;
-  Eigen::Vector3d start(x0_m, v0_m_s, 0.0);  // x, v, dissipated
-  std::optional<CvodesSolver> solver;
-
-  std::size_t next = 0;
-  while (next < times_s.size()) {
-    if (mode == Mode::stick) {  // no force here depends on time, so it stays
-      for (; next < times_s.size(); ++next) {
-        trajectory.states.push_back({times_s[next], start[0], 0.0, 0.0, Mode::stick});
-      }
-      trajectory.dissipated_j = start[2];
-      break;
-    }
-    const Slide slide(body, static_cast<int>(mode));
-    OdeSystem system = slide.system(options.relative_tolerance, options.absolute_tolerance);
-    const Eigen::Vector3d y0(start[0], slide.variable(start[1]), start[2]);
-    if (solver) {
-      solver->restart(std::move(system), start_s, y0);
-    } else {
-      solver.emplace(std::move(system), start_s, y0);
-    }
-    const Mode sliding_mode = mode;
-    while (next < times_s.size() && mode == sliding_mode) {
-      const double t = times_s[next];
-      // CVODES refuses a first step that is lost in the rounding of t; the state has not changed then.
-      if (t - start_s <= 8.0 * kEpsilon * t) {
-        trajectory.states.push_back({t, start[0], start[1], slide.acceleration_m_s2(start[1]), mode});
-        trajectory.dissipated_j = start[2];
-        ++next;
-        continue;
-      }
-      const OdeState reached = solver->advance(t);
-      if (reached.at_event) {
-        start_s = reached.t_s;
-        start = {reached.y[0], 0.0, reached.y[2]};
-        mode = mode_at_rest(body);
-        if (mode == sliding_mode) {
-          throw base::NumericalError(fmt::format(
-              "at t = {} s the forces stop the glider and set it off again in the same direction: a term holds less at "
-              "rest than it opposes to sliding",
-              start_s));
-        }
-        trajectory.changes.push_back({start_s, start[0], sliding_mode, mode});
-      } else {
-        const double v = slide.speed_m_s(reached.y[1]);
-        trajectory.states.push_back({t, reached.y[0], v, slide.acceleration_m_s2(v), mode});
-        trajectory.dissipated_j = reached.y[2];
-        ++next;
-      }
-    }
-  }
-  if (solver) trajectory.solver_steps = solver->steps();
-  return trajectory;
+  return Motion(body, x0_m, v0_m_s, times_s, options).run();
 }
 
 }  // namespace glidelab::sim
