@@ -1,0 +1,326 @@
+#include "core/chessboard.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/least_squares.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kLargestForDetection = 1600;  // px; larger pictures are halved for finding, not for refining
+constexpr double kWindowShare = 0.7;        // of the distance to the next edge
+constexpr double kLargestWindowPx = 14.0;
+constexpr double kSmallestWindowPx = 2.5;
+
+/// 8 bits for the detectors, the darkest and brightest half per cent clipped.
+cv::Mat to_8_bits(const cv::Mat& grey) {
+  if (grey.depth() == CV_8U) return grey;
+  cv::Mat flat = grey.reshape(1, 1).clone();
+  std::vector<std::uint16_t> values;
+  for (int i = 0; i < flat.cols; i += 7) values.push_back(flat.at<std::uint16_t>(0, i));
+  const auto quantile = [&](double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return static_cast<double>(*at);
+  };
+  const double low = quantile(0.005);
+  const double high = std::max(quantile(0.995), low + 1.0);
+  cv::Mat eight;
+  grey.convertTo(eight, CV_8U, 255.0 / (high - low), -low * 255.0 / (high - low));
+  return eight;
+}
+
+std::vector<cv::Point2f> detect(const cv::Mat& eight, cv::Size inner_corners, BoardDetector detector) {
+  std::vector<cv::Point2f> corners;
+  bool found = false;
+  if (detector != BoardDetector::sector_based) {
+    found = cv::findChessboardCorners(eight, inner_corners, corners,
+                                      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+  }
+  if (!found && detector != BoardDetector::classic) {
+    found = cv::findChessboardCornersSB(eight, inner_corners, corners,
+                                        cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
+  }
+  const bool whole = found && corners.size() == static_cast<std::size_t>(inner_corners.area());
+  return whole ? corners : std::vector<cv::Point2f>{};
+}
+
+template <class Pixel>
+double mean_around(const cv::Mat& grey, cv::Point2d centre, double radius) {
+  double sum = 0.0;
+  int count = 0;
+  for (int v = static_cast<int>(std::ceil(centre.y - radius)); v <= centre.y + radius; ++v) {
+    for (int u = static_cast<int>(std::ceil(centre.x - radius)); u <= centre.x + radius; ++u) {
+      if (u < 0 || v < 0 || u >= grey.cols || v >= grey.rows) continue;
+      sum += static_cast<double>(grey.at<Pixel>(v, u));
+      ++count;
+    }
+  }
+  return count == 0 ? 0.0 : sum / count;
+}
+
+double mean_around(const cv::Mat& grey, cv::Point2d centre, double radius) {
+  return grey.depth() == CV_8U ? mean_around<std::uint8_t>(grey, centre, radius)
+                               : mean_around<std::uint16_t>(grey, centre, radius);
+}
+
+/// How much brighter the squares (i + j even) between inner corners are than the others; each square is compared with
+/// its neighbours, so that uneven light does not matter.
+double even_minus_odd(const cv::Mat& grey, const BoardCorners& board) {
+  const auto square = [&](int i, int j) {
+    const cv::Point2d a = board.at(i, j);
+    const cv::Point2d b = board.at(i + 1, j + 1);
+    const cv::Point2d c = board.at(i + 1, j);
+    const cv::Point2d d = board.at(i, j + 1);
+    const double side = std::min({cv::norm(c - a), cv::norm(d - a), cv::norm(b - c), cv::norm(b - d)});
+    return mean_around(grey, 0.25 * (a + b + c + d), std::max(0.51, 0.2 * side));
+  };
+  double sum = 0.0;
+  for (int j = 0; j + 1 < board.grid.height; ++j) {
+    for (int i = 0; i + 1 < board.grid.width; ++i) {
+      const double sign = (i + j) % 2 == 0 ? 1.0 : -1.0;
+      const double here = square(i, j);
+      if (i + 2 < board.grid.width) sum += sign * (here - square(i + 1, j));
+      if (j + 2 < board.grid.height) sum += sign * (here - square(i, j + 1));
+    }
+  }
+  return sum;
+}
+
+BoardCorners transposed(const BoardCorners& board) {
+  BoardCorners other;
+  other.grid = cv::Size(board.grid.height, board.grid.width);
+  for (int j = 0; j < other.grid.height; ++j) {
+    for (int i = 0; i < other.grid.width; ++i) other.points.push_back(board.at(j, i));
+  }
+  return other;
+}
+
+BoardCorners flipped(const BoardCorners& board, bool in_x, bool in_y) {
+  BoardCorners other;
+  other.grid = board.grid;
+  for (int j = 0; j < board.grid.height; ++j) {
+    for (int i = 0; i < board.grid.width; ++i) {
+      other.points.push_back(board.at(in_x ? board.grid.width - 1 - i : i, in_y ? board.grid.height - 1 - j : j));
+    }
+  }
+  return other;
+}
+
+/// From the first to the last corner of the rows (the columns), on average.
+cv::Point2d along_x(const BoardCorners& board) {
+  cv::Point2d sum;
+  for (int j = 0; j < board.grid.height; ++j) sum += board.at(board.grid.width - 1, j) - board.at(0, j);
+  return sum;
+}
+cv::Point2d along_y(const BoardCorners& board) {
+  cv::Point2d sum;
+  for (int i = 0; i < board.grid.width; ++i) sum += board.at(i, board.grid.height - 1) - board.at(i, 0);
+  return sum;
+}
+
+/// The distance from corner (i, j) to the nearest edge that is not its own, and its edges' directions.
+struct Surroundings {
+  double window_px = 0.0;
+  double angle_x = 0.0;
+  double angle_y = 0.0;
+};
+
+Surroundings surroundings_of(const BoardCorners& board, int i, int j) {
+  const cv::Point2d here = board.at(i, j);
+  const int left = std::max(i - 1, 0);
+  const int right = std::min(i + 1, board.grid.width - 1);
+  const int up = std::max(j - 1, 0);
+  const int down = std::min(j + 1, board.grid.height - 1);
+  const cv::Point2d x = board.at(right, j) - board.at(left, j);
+  const cv::Point2d y = board.at(i, down) - board.at(i, up);
+  // Perpendicular distance of a neighbour from the edge through this corner.
+  const auto distance = [&](cv::Point2d neighbour, cv::Point2d edge) {
+    return std::abs((neighbour - here).cross(edge)) / cv::norm(edge);
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const int n : {left, right}) {
+    if (n != i) nearest = std::min(nearest, distance(board.at(n, j), y));
+  }
+  for (const int n : {up, down}) {
+    if (n != j) nearest = std::min(nearest, distance(board.at(i, n), x));
+  }
+  return {std::min(kWindowShare * nearest, kLargestWindowPx), std::atan2(x.y, x.x), std::atan2(y.y, y.x)};
+}
+
+enum Parameter { kU, kV, kAngleX, kAngleY, kBlur, kMean, kAmplitude, kSlopeU, kSlopeV, kParameters };
+using Vector = Eigen::Matrix<double, kParameters, 1>;
+
+struct RefinedCorner {
+  cv::Point2d point;
+  double sd_px = 0.0;
+};
+
+/// The pixels around a corner, tapered towards the rim so that a pixel more or less there does not matter.
+struct Window {
+  std::vector<cv::Point2d> at;
+  std::vector<double> value;
+  std::vector<double> weight;
+};
+
+template <class Pixel>
+Window cut_window(const cv::Mat& grey, cv::Point2d centre, double radius) {
+  Window window;
+  for (int v = static_cast<int>(std::ceil(centre.y - radius)); v <= centre.y + radius; ++v) {
+    for (int u = static_cast<int>(std::ceil(centre.x - radius)); u <= centre.x + radius; ++u) {
+      if (u < 0 || v < 0 || u >= grey.cols || v >= grey.rows) continue;
+      const double share = std::hypot(u - centre.x, v - centre.y) / radius;
+      if (share >= 1.0) continue;
+      window.at.emplace_back(u, v);
+      window.value.push_back(static_cast<double>(grey.at<Pixel>(v, u)));
+      window.weight.push_back(share < 0.75 ? 1.0 : 0.5 * (1.0 + std::cos(std::numbers::pi * (share - 0.75) / 0.25)));
+    }
+  }
+  return window;
+}
+
+std::optional<NormalEquations<kParameters>> evaluate(const Window& window, double contrast, const Vector& p) {
+  if (p[kBlur] < 0.05 || p[kBlur] > 10.0) return std::nullopt;
+  NormalEquations<kParameters> equations;
+  const double cx = std::cos(p[kAngleX]), sx = std::sin(p[kAngleX]);
+  const double cy = std::cos(p[kAngleY]), sy = std::sin(p[kAngleY]);
+  const double scale = 1.0 / (std::numbers::sqrt2 * p[kBlur]);
+  const double slope_of_erf = 2.0 / std::sqrt(std::numbers::pi) * scale;
+  for (std::size_t i = 0; i < window.at.size(); ++i) {
+    const double du = window.at[i].x - p[kU];
+    const double dv = window.at[i].y - p[kV];
+    // Signed distances from the edge along x (its normal is (-sx, cx)) and from the edge along y.
+    const double d1 = -sx * du + cx * dv;
+    const double d2 = -sy * du + cy * dv;
+    const double e1 = std::erf(d1 * scale), e2 = std::erf(d2 * scale);
+    const double g1 = slope_of_erf * std::exp(-d1 * d1 * scale * scale);  // d e1 / d d1
+    const double g2 = slope_of_erf * std::exp(-d2 * d2 * scale * scale);
+    const double light = 1.0 + p[kSlopeU] * du + p[kSlopeV] * dv;
+    const double pattern = p[kMean] + p[kAmplitude] * e1 * e2;
+    const double to_d1 = light * p[kAmplitude] * g1 * e2;
+    const double to_d2 = light * p[kAmplitude] * e1 * g2;
+    Vector jacobian;
+    jacobian[kU] = to_d1 * sx + to_d2 * sy - p[kSlopeU] * pattern;
+    jacobian[kV] = -to_d1 * cx - to_d2 * cy - p[kSlopeV] * pattern;
+    jacobian[kAngleX] = to_d1 * (-cx * du - sx * dv);
+    jacobian[kAngleY] = to_d2 * (-cy * du - sy * dv);
+    jacobian[kBlur] = -(to_d1 * d1 + to_d2 * d2) / p[kBlur];
+    jacobian[kMean] = light;
+    jacobian[kAmplitude] = light * e1 * e2;
+    jacobian[kSlopeU] = pattern * du;
+    jacobian[kSlopeV] = pattern * dv;
+    equations.add(jacobian, light * pattern - window.value[i], window.weight[i]);
+  }
+  // An edge that runs along a pixel's border has no width to be seen; one further datum, worth 2 % of the contrast in
+  // one pixel, keeps the blur at a camera's usual half pixel there.
+  Vector jacobian = Vector::Zero();
+  const double strength = 0.04 * contrast;
+  jacobian[kBlur] = strength;
+  equations.add(jacobian, strength * (p[kBlur] - 0.5), 1.0);
+  return equations;
+}
+
+std::optional<RefinedCorner> refine_corner(const cv::Mat& grey, cv::Point2d start, const Surroundings& around) {
+  if (around.window_px < kSmallestWindowPx) return std::nullopt;
+  RefinedCorner refined{start, 0.0};
+  Vector parameters = Vector::Zero();
+  // Twice: the second time the window is centred on the first result.
+  for (int pass = 0; pass < 2; ++pass) {
+    const Window window = grey.depth() == CV_8U ? cut_window<std::uint8_t>(grey, refined.point, around.window_px)
+                                                : cut_window<std::uint16_t>(grey, refined.point, around.window_px);
+    if (window.at.size() < 2 * kParameters) return std::nullopt;
+    if (pass == 0) {
+      const auto [low, high] = std::minmax_element(window.value.begin(), window.value.end());
+      parameters << start.x, start.y, around.angle_x, around.angle_y, 0.8, 0.5 * (*low + *high), 0.5 * (*high - *low),
+          0.0, 0.0;
+      double agreement = 0.0;  // the sign of the amplitude: which two of the four squares are bright
+      const auto at_start = evaluate(window, 0.0, parameters);
+      if (at_start)
+        agreement = -at_start->jtr[kAmplitude] + parameters[kAmplitude] * at_start->jtj(kAmplitude, kAmplitude);
+      if (agreement < 0.0) parameters[kAmplitude] = -parameters[kAmplitude];
+    }
+    Vector step;
+    const double level = 1e-4 * std::abs(parameters[kAmplitude]) + 1e-9;
+    step << 1e-4, 1e-4, 1e-4, 1e-4, 1e-3, level, level, 1e-5, 1e-5;
+    const double contrast = std::abs(parameters[kAmplitude]);
+    const auto model = [&](const Vector& p) { return evaluate(window, contrast, p); };
+    const auto fit = fit_least_squares<kParameters>(model, parameters, step, 50);
+    if (fit.stop != FitStop::converged) return std::nullopt;
+    const cv::Point2d point(fit.parameters[kU], fit.parameters[kV]);
+    const bool stayed = cv::norm(point - start) < std::min(0.5 * around.window_px, 3.0);
+    // A crossing of two edges leaves a small residual; a quarter of the contrast is something else.
+    if (!stayed || fit.rms > 0.25 * std::abs(fit.parameters[kAmplitude])) return std::nullopt;
+    parameters = fit.parameters;
+    refined.point = point;
+    refined.sd_px = std::sqrt(0.5 * (fit.covariance(kU, kU) + fit.covariance(kV, kV)));
+  }
+  return refined;
+}
+
+}  // namespace
+
+BoardCorners orient_board(const cv::Mat& grey, cv::Size inner_corners, const std::vector<cv::Point2f>& corners) {
+  BoardCorners board;
+  board.grid = inner_corners;
+  for (const cv::Point2f& corner : corners) board.points.emplace_back(corner.x, corner.y);
+  const bool square = board.grid.width == board.grid.height;
+  if (board.grid.width < board.grid.height || (square && std::abs(along_y(board).x) > std::abs(along_x(board).x))) {
+    board = transposed(board);
+  }
+  // A corner square has the colour of the square between inner corners that touches it at its corner, so the squares
+  // between inner corners tell. The ends differ where the board has an odd number of columns and an even one of rows.
+  const bool ends_differ = board.grid.width % 2 == 1 && board.grid.height % 2 == 0;
+  const cv::Point2d x = along_x(board);
+  const bool turn_x = ends_differ ? even_minus_odd(grey, board) > 0.0 : x.x < 0.0 || (x.x == 0.0 && x.y < 0.0);
+  if (turn_x) board = flipped(board, true, false);
+  if (along_x(board).cross(along_y(board)) < 0.0) board = flipped(board, false, true);
+  board.sd_px.assign(board.points.size(), 0.0);
+  board.unrefined = board.points.size();
+  return board;
+}
+
+BoardCorners refine_board(const cv::Mat& grey, BoardCorners board) {
+  const BoardCorners start = board;
+  board.unrefined = 0;
+  for (int j = 0; j < board.grid.height; ++j) {
+    for (int i = 0; i < board.grid.width; ++i) {
+      const auto index = static_cast<std::size_t>(j * board.grid.width + i);
+      const auto refined = refine_corner(grey, start.points[index], surroundings_of(start, i, j));
+      if (!refined) {
+        ++board.unrefined;
+        continue;
+      }
+      board.points[index] = refined->point;
+      board.sd_px[index] = refined->sd_px;
+    }
+  }
+  return board;
+}
+
+std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corners, BoardDetector detector) {
+  const cv::Mat eight = to_8_bits(grey);
+  const int largest = std::max(eight.cols, eight.rows);
+  const double shrink = largest > kLargestForDetection ? static_cast<double>(kLargestForDetection) / largest : 1.0;
+  cv::Mat small = eight;
+  if (shrink < 1.0) cv::resize(eight, small, cv::Size(), shrink, shrink, cv::INTER_AREA);
+  std::vector<cv::Point2f> corners = detect(small, inner_corners, detector);
+  if (corners.empty() && shrink < 1.0) {  // small squares may have got lost
+    small = eight;
+    corners = detect(small, inner_corners, detector);
+  }
+  if (corners.empty()) return std::nullopt;
+  const cv::Size2d factor(static_cast<double>(eight.cols) / small.cols, static_cast<double>(eight.rows) / small.rows);
+  for (cv::Point2f& corner : corners) {
+    corner.x = static_cast<float>((corner.x + 0.5) * factor.width - 0.5);
+    corner.y = static_cast<float>((corner.y + 0.5) * factor.height - 0.5);
+  }
+  return refine_board(grey, orient_board(grey, inner_corners, corners));
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,51 @@
+/// The frames of a clip, one after the other: from a video file or from a folder of pictures.
+///
+/// A frame's time is the middle of its exposure, counted from the first frame's: k / frame_rate_hz, or the container's
+/// time stamps where the experiment says so.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment.h"
+
+namespace glidelab::core {
+
+struct Frame {
+  cv::Mat grey;   ///< one channel, 8 or 16 bits; a grey clip comes out bit by bit as it is stored
+  cv::Mat color;  ///< BGR, 8 bits, where it was asked for; else empty
+  std::size_t index = 0;
+  double t_s = 0.0;
+};
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  /// The next frame, or nothing at the end. InputError (file and frame) for a frame that cannot be decoded or is of
+  /// another size, for stamps that do not rise where they count, and at the end of a clip that is shorter than its
+  /// container says by more than max(2, 1 %), or empty.
+  virtual std::optional<Frame> next() = 0;
+
+  /// How many frames the container says there are; 0 where it does not.
+  virtual std::size_t stated_frames() const = 0;
+
+  /// What a reader should know, once the end is reached: a container with another rate, irregular stamps.
+  virtual std::vector<std::string> notes() const = 0;
+};
+
+/// Opens a video or a folder of frames. `size`, where given, is what the frames must measure (the calibration's
+/// pictures). InputError where it is neither a video nor a folder with pictures.
+std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& file, const CameraSettings& camera,
+                                         bool with_color, std::optional<cv::Size> size);
+
+/// Orders names as people number files: "2.png" before "10.png".
+bool natural_less(const std::string& a, const std::string& b);
+
+}  // namespace glidelab::core

@@ -1,0 +1,100 @@
+/// Levenberg-Marquardt for small dense problems: minimise sum_i w_i r_i(p)^2 over N parameters.
+///
+/// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
+/// nothing of the size of the data is stored. Units are the caller's. Stops when a step changes every parameter by less
+/// than its `step` (an absolute measure, one for each parameter).
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <optional>
+
+namespace glidelab::core {
+
+template <int N>
+struct NormalEquations {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  Matrix jtj = Matrix::Zero();
+  Vector jtr = Vector::Zero();
+  double cost = 0.0;    ///< sum of w r^2
+  double weight = 0.0;  ///< sum of w
+
+  void add(const Vector& jacobian, double residual, double w) {
+    const Vector weighted = w * jacobian;
+    jtj.noalias() += weighted * jacobian.transpose();
+    jtr += residual * weighted;
+    cost += w * residual * residual;
+    weight += w;
+  }
+};
+
+enum class FitStop { converged, iterations, singular, out_of_range };
+
+template <int N>
+struct LeastSquaresFit {
+  Eigen::Matrix<double, N, 1> parameters;
+  Eigen::Matrix<double, N, N> covariance;  ///< (J^T W J)^-1 times the residual variance
+  double rms = 0.0;                        ///< sqrt(cost / (weight - N)): the residual standard deviation
+  int iterations = 0;
+  FitStop stop = FitStop::iterations;
+};
+
+/// `evaluate(p)` gives the NormalEquations at p, or nothing where p is outside the model's range (the step is then
+/// shortened). A residual is model minus datum.
+template <int N, class Evaluate>
+LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matrix<double, N, 1>& start,
+                                     const Eigen::Matrix<double, N, 1>& step, int max_iterations) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  LeastSquaresFit<N> fit;
+  fit.parameters = start;
+  fit.covariance.setZero();
+  std::optional<NormalEquations<N>> here = evaluate(start);
+  if (!here) {
+    fit.stop = FitStop::out_of_range;
+    return fit;
+  }
+  double damping = 1e-3;
+  for (; fit.iterations < max_iterations; ++fit.iterations) {
+    Eigen::Matrix<double, N, N> damped = here->jtj;
+    damped.diagonal() *= 1.0 + damping;
+    damped.diagonal().array() += 1e-12 * here->jtj.diagonal().maxCoeff();
+    const Vector delta = -damped.ldlt().solve(here->jtr);
+    if (!delta.allFinite()) {
+      fit.stop = FitStop::singular;
+      return fit;
+    }
+    const Vector trial = fit.parameters + delta;
+    const std::optional<NormalEquations<N>> there = evaluate(trial);
+    const bool small = (delta.array().abs() < step.array()).all();
+    if (there && there->cost <= here->cost) {
+      fit.parameters = trial;
+      here = there;
+      damping = std::max(damping * 0.2, 1e-9);
+    } else {
+      damping *= 8.0;
+      if (damping > 1e8 && !small) break;
+    }
+    if (small) {
+      fit.stop = FitStop::converged;
+      break;
+    }
+  }
+  const double freedom = here->weight - N;
+  if (freedom <= 0.0) {
+    fit.stop = FitStop::singular;
+    return fit;
+  }
+  fit.rms = std::sqrt(here->cost / freedom);
+  const Eigen::FullPivLU<Eigen::Matrix<double, N, N>> lu(here->jtj);
+  if (!lu.isInvertible()) {
+    fit.stop = FitStop::singular;
+    return fit;
+  }
+  fit.covariance = lu.inverse() * (fit.rms * fit.rms);
+  return fit;
+}
+
+}  // namespace glidelab::core
