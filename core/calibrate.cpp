@@ -1,0 +1,224 @@
+#include "core/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "base/errors.h"
+#include "core/parallel.h"
+#include "core/picture.h"
+
+namespace glidelab::core {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kSignificant = 3.0;     // standard deviations
+constexpr std::size_t kFewestViews = 3;  // two give no more than the focal length
+constexpr double kOutlierPx = 0.2;
+constexpr double kOutlierRatio = 5.0;
+
+std::vector<cv::Point3f> pattern_points(cv::Size grid, double square_m) {
+  std::vector<cv::Point3f> points;
+  for (int j = 0; j < grid.height; ++j) {
+    for (int i = 0; i < grid.width; ++i) {
+      points.emplace_back(static_cast<float>(i * square_m), static_cast<float>(j * square_m), 0.0F);
+    }
+  }
+  return points;
+}
+
+struct OpenCvCalibration {
+  cv::Mat matrix;
+  cv::Mat distortion;
+  cv::Mat sd;          // fx fy cx cy k1 k2 p1 p2 k3 …
+  cv::Mat view_error;  // rms of the distances
+  std::vector<cv::Mat> turns;
+  std::vector<cv::Mat> shifts;
+  double rms_px = 0.0;
+};
+
+OpenCvCalibration run_opencv(const std::vector<const BoardView*>& views, cv::Size size, double square_m, int flags) {
+  std::vector<std::vector<cv::Point3f>> objects;
+  std::vector<std::vector<cv::Point2f>> images;
+  for (const BoardView* view : views) {
+    objects.push_back(pattern_points(view->corners.grid, square_m));
+    images.emplace_back(view->corners.points.begin(), view->corners.points.end());
+  }
+  OpenCvCalibration found;
+  const cv::TermCriteria thorough(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12);
+  try {
+    found.rms_px = cv::calibrateCamera(objects, images, size, found.matrix, found.distortion, found.turns, found.shifts,
+                                       found.sd, cv::noArray(), found.view_error, flags, thorough);
+  } catch (const cv::Exception& exception) {
+    throw base::InputError(base::Issue{views.front()->file.parent_path().string(), 0, "",
+                                       fmt::format("views that give no camera ({})", exception.err),
+                                       "views of the pattern from different sides"});
+  }
+  return found;
+}
+
+/// The views in which the board was seen, with the terms that they determine.
+OpenCvCalibration fit_supported_terms(const std::vector<const BoardView*>& views, cv::Size size, double square_m,
+                                      std::vector<std::string>& notes) {
+  OpenCvCalibration found = run_opencv(views, size, square_m, 0);
+  const auto is_significant = [&](int distortion_index, int sd_index) {
+    return std::abs(found.distortion.at<double>(distortion_index)) > kSignificant * found.sd.at<double>(sd_index);
+  };
+  int flags = 0;
+  if (!is_significant(4, 8)) flags |= cv::CALIB_FIX_K3;
+  if (!is_significant(2, 6) && !is_significant(3, 7)) flags |= cv::CALIB_ZERO_TANGENT_DIST;
+  if (flags == 0) return found;
+  if ((flags & cv::CALIB_FIX_K3) != 0) notes.push_back("k3 is below three standard deviations and fixed to 0");
+  if ((flags & cv::CALIB_ZERO_TANGENT_DIST) != 0) {
+    notes.push_back("p1 and p2 are below three standard deviations and fixed to 0");
+  }
+  return run_opencv(views, size, square_m, flags);
+}
+
+/// (J^T J)^-1 of the camera's terms with the poses eliminated (Schur complement), times the residual variance of a
+/// coordinate.
+Eigen::Matrix<double, 9, 9> covariance_of(const OpenCvCalibration& found, const std::vector<const BoardView*>& views,
+                                          double square_m) {
+  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 15, Eigen::RowMajor>;
+  Matrix9 information = Matrix9::Zero();
+  double coordinates = 0.0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    std::vector<cv::Point3d> points;
+    for (const cv::Point3f& point : pattern_points(views[i]->corners.grid, square_m)) points.emplace_back(point);
+    std::vector<cv::Point2d> projected;
+    cv::Mat derivative;  // rows u, v of each point; columns turn, shift, f, c, k1, k2, p1, p2, k3
+    cv::projectPoints(points, found.turns[i], found.shifts[i], found.matrix, found.distortion, projected, derivative);
+    const Eigen::Map<const Jacobian, 0, Eigen::OuterStride<>> jacobian(
+        derivative.ptr<double>(), derivative.rows, 15,
+        Eigen::OuterStride<>(static_cast<Eigen::Index>(derivative.step1())));
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> pose = jacobian.leftCols<6>();
+    const Eigen::Matrix<double, Eigen::Dynamic, 9> terms = jacobian.rightCols<9>();
+    const Eigen::Matrix<double, 6, 9> mixed = pose.transpose() * terms;
+    const Eigen::Matrix<double, 6, 6> of_pose = pose.transpose() * pose;
+    information += terms.transpose() * terms - mixed.transpose() * of_pose.ldlt().solve(mixed);
+    coordinates += 2.0 * static_cast<double>(points.size());
+  }
+  std::vector<int> free;
+  for (int k = 0; k < 9; ++k) {
+    if (found.sd.at<double>(k) > 0.0) free.push_back(k);  // OpenCV says 0 of a fixed term
+  }
+  const Eigen::MatrixXd part = information(free, free);
+  const Eigen::MatrixXd inverse = part.ldlt().solve(Eigen::MatrixXd::Identity(part.rows(), part.cols()));
+  const double freedom = coordinates - 6.0 * static_cast<double>(views.size()) - static_cast<double>(free.size());
+  const double variance = 0.5 * found.rms_px * found.rms_px * coordinates / std::max(freedom, 1.0);
+  Matrix9 covariance = Matrix9::Zero();
+  covariance(free, free) = inverse * variance;
+  return covariance;
+}
+
+std::string names_of(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_corners, int jobs) {
+  std::vector<fs::path> unique;
+  for (const fs::path& file : files) {
+    if (std::find(unique.begin(), unique.end(), file) == unique.end()) unique.push_back(file);
+  }
+  std::vector<std::optional<BoardCorners>> corners(unique.size());
+  std::vector<cv::Size> sizes(unique.size());
+  for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
+    const cv::Mat grey = read_grey_picture(unique[i]);
+    sizes[i] = grey.size();
+    corners[i] = find_board(grey, inner_corners);
+  });
+  BoardViews found;
+  for (std::size_t i = 0; i < unique.size(); ++i) {
+    if (i == 0) found.picture_size = sizes[0];
+    if (sizes[i] != found.picture_size) {
+      throw base::InputError(base::Issue{unique[i].string(), 0, "",
+                                         fmt::format("{} x {} pixels", sizes[i].width, sizes[i].height),
+                                         fmt::format("{} x {} pixels, as {}", found.picture_size.width,
+                                                     found.picture_size.height, unique[0].filename().string())});
+    }
+    if (corners[i]) {
+      found.views.push_back({unique[i], std::move(*corners[i])});
+    } else {
+      found.without.push_back(unique[i]);
+    }
+  }
+  return found;
+}
+
+Calibration calibrate_camera(const BoardViews& boards, double square_m) {
+  Calibration calibration;
+  if (boards.views.size() < kFewestViews) {
+    const fs::path any =
+        boards.views.empty() ? boards.without.empty() ? fs::path() : boards.without.front() : boards.views.front().file;
+    throw base::InputError(
+        base::Issue{any.parent_path().string(), 0, "calibration.views",
+                    fmt::format("{} pictures with a visible pattern{}", boards.views.size(),
+                                boards.without.empty() ? "" : fmt::format(" (none in {})", names_of(boards.without))),
+                    "at least 3, with all inner corners in sight"});
+  }
+  std::vector<const BoardView*> used;
+  for (const BoardView& view : boards.views) used.push_back(&view);
+  std::vector<std::string> term_notes;
+  OpenCvCalibration found = fit_supported_terms(used, boards.picture_size, square_m, term_notes);
+
+  // One view that is off (the board moved, a corner mistaken) pulls all parameters.
+  std::vector<double> errors(found.view_error.begin<double>(), found.view_error.end<double>());
+  std::vector<double> sorted = errors;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  const double limit_px = std::max(kOutlierPx, kOutlierRatio * sorted[sorted.size() / 2]);
+  std::vector<const BoardView*> kept;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (errors[i] <= limit_px) {
+      kept.push_back(used[i]);
+    } else {
+      calibration.notes.push_back(fmt::format("{} is off the fit of the camera by {:.3g} px and left out",
+                                              used[i]->file.filename().string(), errors[i]));
+    }
+  }
+  if (kept.size() < used.size() && kept.size() >= kFewestViews) {
+    used = kept;
+    term_notes.clear();
+    found = fit_supported_terms(used, boards.picture_size, square_m, term_notes);
+  }
+
+  CameraModel& camera = calibration.camera;
+  camera.size = boards.picture_size;
+  camera.fx = found.matrix.at<double>(0, 0);
+  camera.fy = found.matrix.at<double>(1, 1);
+  camera.cx = found.matrix.at<double>(0, 2);
+  camera.cy = found.matrix.at<double>(1, 2);
+  for (int i = 0; i < 5; ++i) camera.distortion[static_cast<std::size_t>(i)] = found.distortion.at<double>(i);
+  calibration.covariance = covariance_of(found, used, square_m);
+  calibration.rms_px = found.rms_px;
+  calibration.views_used = used.size();
+
+  if (!boards.without.empty()) {
+    calibration.notes.push_back("no pattern in sight in " + names_of(boards.without));
+  }
+  std::size_t unrefined = 0;
+  for (const BoardView* view : used) unrefined += view->corners.unrefined;
+  if (unrefined > 0) {
+    calibration.notes.push_back(
+        fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
+  }
+  calibration.notes.insert(calibration.notes.end(), term_notes.begin(), term_notes.end());
+  const double sd_fx = std::sqrt(calibration.covariance(0, 0));
+  if (sd_fx > 0.02 * camera.fx) {
+    calibration.notes.push_back(
+        fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
+                    camera.fx, sd_fx));
+  }
+  return calibration;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,62 @@
+#include "core/camera_model.h"
+
+#include <cmath>
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kMaxIterations = 40;
+constexpr double kTolerancePx = 1e-10;  // a double carries 1e-13 px at 1000 px
+
+struct Distorted {
+  cv::Point2d at;
+  cv::Matx22d jacobian;  // d(x', y') / d(x, y)
+};
+
+Distorted distort(const std::array<double, 5>& d, cv::Point2d n) {
+  const auto [k1, k2, p1, p2, k3] = d;
+  const double r2 = n.x * n.x + n.y * n.y;
+  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double radial_slope = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);  // d radial / d r2
+  Distorted out;
+  out.at.x = n.x * radial + 2.0 * p1 * n.x * n.y + p2 * (r2 + 2.0 * n.x * n.x);
+  out.at.y = n.y * radial + p1 * (r2 + 2.0 * n.y * n.y) + 2.0 * p2 * n.x * n.y;
+  const double mixed = 2.0 * n.x * n.y * radial_slope + 2.0 * p1 * n.x + 2.0 * p2 * n.y;
+  out.jacobian(0, 0) = radial + 2.0 * n.x * n.x * radial_slope + 2.0 * p1 * n.y + 6.0 * p2 * n.x;
+  out.jacobian(0, 1) = mixed;
+  out.jacobian(1, 0) = mixed;
+  out.jacobian(1, 1) = radial + 2.0 * n.y * n.y * radial_slope + 6.0 * p1 * n.y + 2.0 * p2 * n.x;
+  return out;
+}
+
+}  // namespace
+
+cv::Point2d CameraModel::to_pixel(cv::Point2d normalised) const {
+  const Distorted distorted = distort(distortion, normalised);
+  return {fx * distorted.at.x + cx, fy * distorted.at.y + cy};
+}
+
+std::optional<cv::Point2d> CameraModel::to_normalised(cv::Point2d pixel) const {
+  const cv::Point2d wanted((pixel.x - cx) / fx, (pixel.y - cy) / fy);
+  const double tolerance = kTolerancePx / std::max(fx, fy);
+  cv::Point2d here = wanted;
+  double error = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const Distorted distorted = distort(distortion, here);
+    const cv::Point2d off = distorted.at - wanted;
+    error = std::hypot(off.x, off.y);
+    // The branch that holds the axis: there the distortion keeps its orientation.
+    const double determinant = cv::determinant(distorted.jacobian);
+    if (!(determinant > 0.0) || !std::isfinite(error)) return std::nullopt;
+    if (error < tolerance) return here;
+    const cv::Vec2d step = distorted.jacobian.inv() * cv::Vec2d(off.x, off.y);
+    // A long step is shortened, so that the iteration does not jump over the fold.
+    const double length = std::hypot(step[0], step[1]);
+    const double share = std::min(1.0, 0.3 / length);
+    here -= cv::Point2d(share * step[0], share * step[1]);
+  }
+  if (error < 1e3 * tolerance) return here;
+  return std::nullopt;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,36 @@
+/// A camera as the analysis fits it: pinhole, then radial and tangential distortion (Brown 1966, as OpenCV writes it).
+///
+/// A point (X, Y, Z) in the camera's frame C (x right, y down, z forward) has the normalised coordinates x = X/Z,
+/// y = Y/Z; with r2 = x^2 + y^2
+///
+///     x' = x (1 + k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 x y + p2 (r2 + 2 x^2)
+///     y' = y (1 + k1 r2 + k2 r2^2 + k3 r2^3) + p1 (r2 + 2 y^2) + 2 p2 x y
+///     u = fx x' + cx,   v = fy y' + cy
+///
+/// Pixels; the centre of the first pixel is (0, 0).
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <array>
+#include <optional>
+
+namespace glidelab::core {
+
+struct CameraModel {
+  double fx = 0.0;
+  double fy = 0.0;
+  double cx = 0.0;
+  double cy = 0.0;
+  std::array<double, 5> distortion{};  ///< k1, k2, p1, p2, k3
+  cv::Size size;                       ///< of the pictures
+
+  /// From normalised coordinates to pixels.
+  cv::Point2d to_pixel(cv::Point2d normalised) const;
+
+  /// From a pixel to normalised coordinates, by Newton's method to 1e-10 px; nothing where the distortion folds over
+  /// and no ray belongs to the pixel.
+  std::optional<cv::Point2d> to_normalised(cv::Point2d pixel) const;
+};
+
+}  // namespace glidelab::core
