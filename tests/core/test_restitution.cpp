@@ -83,9 +83,9 @@ TEST_CASE("the centre of a sphere's image is put right to a few micrometres") {
     }
   }
   const cv::Point2d seen = sum / count;
-  // The grid's rim: perimeter 2 pi 15 / 0.02 cells, each wrong by half a cell at random: 1e-5 px, 2e-8 m. Allowed: 1
-  // um.
-  CHECK(std::hypot(corrected.to_plane(seen)->x - place.x, corrected.to_plane(seen)->y - place.y) < 1e-6);
+  // The correction is 0.4 mm here, of which the outline's 48 points miss 0.3 % = 1.3 um; the grid's rim (2 pi 15 / 0.02
+  // cells, each wrong by half a cell at random) adds 0.02 um.
+  CHECK(std::hypot(corrected.to_plane(seen)->x - place.x, corrected.to_plane(seen)->y - place.y) < 2e-6);
   CHECK(plain.to_plane(seen)->x - place.x > 3e-4);
   CHECK(cv::norm(corrected.to_pixel(place) - seen) < 1e-3);
   // The image's axes are R f / D / cos(angle) and that over cos again, roughly; here R f / Z and 1.17 times that.
