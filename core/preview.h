@@ -1,0 +1,39 @@
+/// A look at a clip for a report: a few frames with the marker that was found, and a small video of the whole.
+///
+/// The clip is read again, frame by frame, after the analysis; nothing of it enters a result.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace glidelab::core {
+
+struct Experiment;
+struct ClipSetup;
+struct ClipResult;
+
+struct PreviewFrame {
+  std::size_t frame = 0;
+  double t_s = 0.0;
+  std::string jpeg;  ///< the file's bytes
+};
+
+struct Preview {
+  std::vector<PreviewFrame> frames;  ///< the marker circled, its path dotted
+  std::string mp4;                   ///< H.264, playable in a browser; empty where there is none
+  double slow_motion = 1.0;          ///< how many times longer the video takes than the motion
+  std::string why_no_video;          ///< empty where there is one, or none was wanted
+};
+
+struct PreviewOptions {
+  int frames = 3;     ///< spread from the first sighting of the marker to the last
+  bool video = true;  ///< at most about 12 s and 1 MB
+  int width_px = 400;
+};
+
+/// Reads the clip of `setup` again. A clip that is a track has no pictures: an empty preview. An encoder that is
+/// missing is no error; `why_no_video` says so. InputError where the clip cannot be read (any more).
+Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const ClipResult& result,
+                     const PreviewOptions& options = {});
+
+}  // namespace glidelab::core

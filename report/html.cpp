@@ -1,0 +1,153 @@
+#include "report/html.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cstdint>
+
+namespace glidelab::report {
+namespace {
+
+constexpr std::string_view kStyle = R"css(
+:root { color-scheme: light dark; --ink: #1c2126; --soft: #5a6570; --paper: #ffffff; --line: #d7dde3; --tint: #f3f6f8;
+        --accent: #005a8f; --good: #1c6e3d; --bad: #a8321a; }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e6e9ec; --soft: #a3adb7; --paper: #15191d; --line: #39424b; --tint: #1f252b; --accent: #79bdec;
+          --good: #7fd29c; --bad: #ff9d85; }
+}
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--paper); color: var(--ink); line-height: 1.5;
+       font-family: system-ui, "Segoe UI", "DejaVu Sans", Helvetica, Arial, sans-serif; font-size: 16px; }
+main { max-width: 1240px; margin: 0 auto; padding: 1.2rem 1rem 3rem; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: 0.4rem 0 0.2rem; overflow-wrap: anywhere; }
+h2 { font-size: 1.3rem; margin: 2.2rem 0 0.5rem; padding-bottom: 0.2rem; border-bottom: 2px solid var(--line); }
+h3 { font-size: 1.08rem; margin: 1.6rem 0 0.4rem; overflow-wrap: anywhere; }
+p, li { max-width: 78ch; overflow-wrap: anywhere; }
+.soft, figcaption { color: var(--soft); font-size: 0.92rem; }
+a { color: var(--accent); }
+code { overflow-wrap: anywhere; }
+.scroll { overflow-x: auto; margin: 0.6rem 0; }
+table { border-collapse: collapse; font-size: 0.94rem; font-variant-numeric: tabular-nums; }
+th, td { padding: 0.3rem 0.75rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
+th { background: var(--tint); font-weight: 600; white-space: nowrap; }
+td.n, th.n { text-align: right; white-space: nowrap; }
+tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }
+td.why { white-space: normal; color: var(--soft); }
+.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 0.6rem; margin: 1rem 0; padding: 0; }
+.tile { background: var(--tint); border: 1px solid var(--line); border-radius: 8px; padding: 0.55rem 0.8rem; }
+.tile b { display: block; font-size: 1.25rem; font-variant-numeric: tabular-nums; }
+.tile span { color: var(--soft); font-size: 0.88rem; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(340px, 100%), 1fr)); gap: 0.8rem;
+           align-items: start; margin: 0.8rem 0; }
+.figures.large { grid-template-columns: repeat(auto-fit, minmax(min(480px, 100%), 1fr)); }
+figure { margin: 0; border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--tint); max-width: 620px; }
+figure img, figure video { display: block; width: 100%; height: auto; background: #ffffff; }
+figcaption { padding: 0.4rem 0.7rem 0.5rem; }
+nav ul { columns: 16rem; padding-left: 1.2rem; }
+.note { border-left: 4px solid var(--accent); background: var(--tint); padding: 0.5rem 0.9rem; margin: 0.8rem 0; }
+.good { color: var(--good); } .bad { color: var(--bad); }
+@media (max-width: 600px) { th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } main { padding: 0.8rem 0.8rem 2rem; } }
+@media print {
+  :root { color-scheme: light; --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --tint: #f4f4f4;
+          --accent: #000000; --good: #000000; --bad: #000000; }
+  body { font-size: 10.5pt; }
+  figure, tr, .tile { break-inside: avoid; }
+  h2, h3 { break-after: avoid; }
+  video, nav { display: none; }
+  .scroll { overflow: visible; }
+  .figures, .figures.large { grid-template-columns: repeat(2, 1fr); }
+}
+)css";
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t block = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      block = block << 8 | (k < count ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k])) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[block >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+std::string data_uri(std::string_view media_type, std::string_view bytes) {
+  return fmt::format("data:{};base64,{}", media_type, base64(bytes));
+}
+
+HtmlTable::HtmlTable(std::vector<std::string> header, std::size_t first_number)
+    : first_number_(first_number), header_(std::move(header)) {}
+
+void HtmlTable::row(const std::vector<std::string>& cells) {
+  assert(cells.size() == header_.size());
+  rows_ += "<tr>";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    rows_ += fmt::format("<td{}>{}</td>", i >= first_number_ ? " class=\"n\"" : "", cells[i]);
+  }
+  rows_ += "</tr>\n";
+}
+
+void HtmlTable::heading(const std::string& cell) {
+  rows_ += fmt::format("<tr class=\"heading\"><td colspan=\"{}\">{}</td></tr>\n", header_.size(), cell);
+}
+
+std::string HtmlTable::str() const {
+  std::string text = "<div class=\"scroll\"><table><thead><tr>";
+  for (std::size_t i = 0; i < header_.size(); ++i) {
+    text += fmt::format("<th{}>{}</th>", i >= first_number_ ? " class=\"n\"" : "", header_[i]);
+  }
+  return text + "</tr></thead><tbody>\n" + rows_ + "</tbody></table></div>\n";
+}
+
+std::string figures(const std::vector<Plot>& plots) {
+  if (plots.empty()) return {};
+  std::string text = plots.size() % 3 == 0 ? "<div class=\"figures\">\n" : "<div class=\"figures large\">\n";
+  for (const Plot& plot : plots) {
+    // As an image of its own: gnuplot gives every plot the same ids, which would clash within one page.
+    text += fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption>{}</figcaption></figure>\n",
+                        escape(plot.description), data_uri("image/svg+xml", plot.svg), escape(plot.caption));
+  }
+  return text + "</div>\n";
+}
+
+std::string page(std::string_view title, std::string_view body) {
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
+      "<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
+      escape(title), kStyle, body);
+}
+
+}  // namespace glidelab::report

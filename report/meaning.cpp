@@ -1,0 +1,148 @@
+#include "report/meaning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "report/html.h"
+#include "report/number_text.h"
+#include "report/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
+
+/// "0.335 kg at 4°"
+std::string name_of(const core::ConfigurationResult& configuration) {
+  return fmt::format("{:.4g} kg at {:.4g}°", configuration.mass_kg, configuration.incline_deg);
+}
+
+std::string sentence_of(const core::ConfigurationResult& c) {
+  std::string text;
+  if (c.k_over_m_1_s.estimate) {
+    const double rate = c.k_over_m_1_s.estimate->value;
+    const double sd = c.k_over_m_1_s.estimate->sd;
+    if (std::abs(rate) > 2.0 * sd) {
+      text += fmt::format("the drag that grows with speed slows it at {} 1/s times v", value_and_sd_text(rate, sd));
+      if (rate > 0.0) {
+        text += fmt::format(", so that it comes 63 % closer to its final speed in {} s", number_text(1.0 / rate, 3));
+      }
+    } else {
+      text += fmt::format("no drag that grows with speed can be told from zero ({} 1/s)", value_and_sd_text(rate, sd));
+    }
+  }
+  if (c.mu.estimate) {
+    text += fmt::format("{}Coulomb friction is µ = {}", text.empty() ? "" : "; ",
+                        value_and_sd_text(c.mu.estimate->value, c.mu.estimate->sd));
+  }
+  if (c.v_lim_m_s.estimate) {
+    text += fmt::format("{}its limit velocity is {} m/s", text.empty() ? "" : "; ",
+                        value_and_sd_text(c.v_lim_m_s.estimate->value, c.v_lim_m_s.estimate->sd));
+  }
+  if (text.empty()) text = "the data determine neither drag nor friction; the table says why";
+  return fmt::format("<li><b>{}:</b> {}.</li>\n", escape(name_of(c)), text);
+}
+
+/// The K of each mass, where it is the same for all within its errors, says that the drag does not depend on the load.
+std::string damping_sentence(const core::AnalysisResults& results) {
+  double weight = 0.0;
+  double weighted = 0.0;
+  std::size_t count = 0;
+  std::optional<double> first_mass;
+  bool masses_differ = false;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    if (!c.k_over_m_1_s.estimate || !(c.k_over_m_1_s.estimate->sd > 0.0) || !(c.mass_kg > 0.0)) continue;
+    const double sd = c.k_over_m_1_s.estimate->sd * c.mass_kg;
+    weight += 1.0 / (sd * sd);
+    weighted += c.k_over_m_1_s.estimate->value * c.mass_kg / (sd * sd);
+    ++count;
+    if (first_mass && *first_mass != c.mass_kg) masses_differ = true;
+    first_mass = c.mass_kg;
+  }
+  if (count < 2 || !masses_differ) return {};
+  const double mean = weighted / weight;
+  double chi2 = 0.0;
+  double widest = 0.0;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    if (!c.k_over_m_1_s.estimate || !(c.k_over_m_1_s.estimate->sd > 0.0) || !(c.mass_kg > 0.0)) continue;
+    const double k = c.k_over_m_1_s.estimate->value * c.mass_kg;
+    chi2 += std::pow((k - mean) / (c.k_over_m_1_s.estimate->sd * c.mass_kg), 2);
+    widest = std::max(widest, std::abs(k / mean - 1.0));
+  }
+  const double expected = static_cast<double>(count - 1);
+  // The upper 1 % point of chi² by Wilson and Hilferty's cube; z = 2.326.
+  const double limit = expected * std::pow(1.0 - 2.0 / (9.0 * expected) + 2.326 * std::sqrt(2.0 / (9.0 * expected)), 3);
+  const std::string k_text = value_and_sd_text(mean, 1.0 / std::sqrt(weight));
+  if (chi2 <= limit) {
+    return fmt::format("<p>Over all masses the damping constant is K = {} N s/m, the same within its errors.</p>\n",
+                       k_text);
+  }
+  return fmt::format(
+      "<p>The damping constant K = m (K/m) is {} N s/m on average and differs between configurations by up to {} %, "
+      "more than its errors alone allow.</p>\n",
+      number_text(mean, 4), number_text(100.0 * widest, 2));
+}
+
+}  // namespace
+
+std::string meaning_of(const core::AnalysisResults& results) {
+  std::string text = "<h2 id=\"meaning\">What this means</h2>\n<ul>\n";
+  for (const core::ConfigurationResult& configuration : results.configurations) text += sentence_of(configuration);
+  text += "</ul>\n" + damping_sentence(results);
+  double worst = 1.0;
+  for (const core::ConfigurationResult& configuration : results.configurations) {
+    for (const core::LineFit& line : configuration.lines) worst = std::min(worst, line.r2);
+  }
+  if (worst < kStraight) {
+    text += fmt::format(
+        "<p>Not every a(v) is a straight line or stands clear of its noise: the lowest R² is {}. Where the residuals "
+        "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
+        r2_text(worst));
+  }
+  return text;
+}
+
+std::string meaning_of(const validate::Comparison& comparison) {
+  std::size_t compared = 0;
+  std::size_t within = 0;
+  double worst = 0.0;
+  const validate::QuantityComparison* worst_quantity = nullptr;
+  for (const validate::QuantityComparison& quantity : comparison.quantities) {
+    if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
+    ++compared;
+    const double in_sd = std::abs(*quantity.error) / *quantity.sd;
+    if (in_sd <= 2.0) ++within;
+    if (in_sd > worst) {
+      worst = in_sd;
+      worst_quantity = &quantity;
+    }
+  }
+  std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
+  if (compared > 0) {
+    text += fmt::format("<p>{} of {} recovered values lie within two of their standard deviations of the truth", within,
+                        compared);
+    if (worst_quantity != nullptr) {
+      text += fmt::format("; the farthest off is {} of {}, by {} standard deviations",
+                          escape(symbol_of(worst_quantity->quantity)), escape(worst_quantity->configuration),
+                          number_text(worst, 2));
+    }
+    text += ".</p>\n";
+  } else {
+    text += "<p>No recovered value could be compared with a truth.</p>\n";
+  }
+  const validate::RestitutionComparison& restitution = comparison.restitution;
+  if (!restitution.points.empty() && restitution.field_m > 0.0) {
+    text += fmt::format(
+        "<p>The marker was found in {} of {} frames; its measured position is off by {} mm (rms), at most {} mm, which "
+        "is {} % and {} % of the {} m that the motion covers.</p>\n",
+        comparison.detected, comparison.frames, number_text(restitution.rms_m * 1e3, 2),
+        number_text(restitution.max_m * 1e3, 2), number_text(100.0 * restitution.rms_m / restitution.field_m, 2),
+        number_text(100.0 * restitution.max_m / restitution.field_m, 2), number_text(restitution.field_m, 3));
+  }
+  return text;
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,61 @@
+#include "report/number_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidelab::report {
+namespace {
+
+constexpr int kMostDecimals = 9;  // beyond that a power of ten reads better
+
+/// Decimals that show two significant digits of `sd` (after rounding: 0.0996 becomes 0.10).
+int decimals_of(double sd) {
+  const int exponent = static_cast<int>(std::floor(std::log10(sd * (1.0 + 0.5e-2))));
+  return std::max(0, 1 - exponent);
+}
+
+bool usable(double sd) {
+  return std::isfinite(sd) && sd > 0.0 && decimals_of(sd) <= kMostDecimals;
+}
+
+}  // namespace
+
+std::string number_text(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0.0) return "0";
+  return fmt::format("{:.{}g}", value, digits);
+}
+
+std::string value_text(double value, double sd) {
+  if (!std::isfinite(value) || !usable(sd)) return number_text(value, 6);
+  return fmt::format("{:.{}f}", value, decimals_of(sd));
+}
+
+std::string sd_text(double sd) {
+  if (!usable(sd)) return number_text(sd, 2);
+  return fmt::format("{:.{}f}", sd, decimals_of(sd));
+}
+
+std::string value_and_sd_text(double value, double sd) {
+  return fmt::format("{} ± {}", value_text(value, sd), sd_text(sd));
+}
+
+std::string error_text(double error, double sd) {
+  if (!std::isfinite(error)) return number_text(error);
+  if (!usable(sd)) return fmt::format("{:+.3g}", error);
+  return fmt::format("{:+.{}f}", error, decimals_of(sd));
+}
+
+std::string r2_text(double r2) {
+  if (!std::isfinite(r2)) return "–";
+  // Never rounded up to 1: 0.99999996 keeps its digits.
+  for (int decimals = 5; decimals < kMostDecimals; ++decimals) {
+    std::string text = fmt::format("{:.{}f}", r2, decimals);
+    if (r2 >= 1.0 || !text.starts_with("1.")) return text;
+  }
+  return fmt::format("{:.{}f}", r2, kMostDecimals);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,28 @@
+/// a(v) diagrams as the paper's figures 6 to 9: points of all masses on one stated inclination, their lines, and the
+/// gap at v = 0.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/results.h"
+#include "report/plot_style.h"
+
+namespace glidelab::report {
+
+/// The configurations of one stated inclination: what one diagram shows.
+struct PhaseGroup {
+  double incline_deg = 0.0;
+  std::vector<std::size_t> configurations;  ///< indices into the results
+};
+std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results);
+
+/// "335 g", with the name of its group where another configuration of the diagram has the same mass.
+std::string configuration_label(const core::AnalysisResults& results, const PhaseGroup& group,
+                                std::size_t configuration);
+
+/// The diagram, its detail near v = 0, and the residuals of the lines; none where no point is used. Where a known force
+/// was applied, a - F/m stands for a.
+std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group);
+
+}  // namespace glidelab::report

@@ -1,0 +1,37 @@
+/// What all plots share: colours that differ for everybody's eyes and in grey print, and the frame of a plot.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace glidelab::report {
+
+/// Okabe and Ito, "Color universal design" (2008), without the yellow that white paper swallows.
+inline constexpr std::array<std::string_view, 7> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                            "#56b4e9", "#e69f00", "#000000"};
+inline constexpr std::string_view kGrey = "#9a9a9a";
+inline constexpr std::string_view kShade = "#ececec";
+
+inline std::string color(std::size_t index) {
+  return std::string(kColors[index % kColors.size()]);
+}
+
+/// A plot as it stands on a page: the SVG, and a text for who cannot see it.
+struct Plot {
+  std::string svg;
+  std::string caption;      ///< HTML-free text under the plot
+  std::string description;  ///< for the alt attribute
+};
+
+/// Light grid, thin frame, zero lines, tics that do not crowd.
+inline constexpr std::string_view kFrame =
+    "set border 3 lw 1 lc rgb '#555555'\n"
+    "set tics nomirror out scale 0.6\n"
+    "set grid xtics ytics back lw 0.6 lc rgb '#dddddd'\n"
+    "set key outside top center horizontal samplen 1.2 font ',14'\n"
+    "set xtics autofreq\nset ytics autofreq\n"
+    "set offsets graph 0.02, graph 0.02, graph 0.06, graph 0.06\n";
+
+}  // namespace glidelab::report

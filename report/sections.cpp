@@ -1,0 +1,223 @@
+#include "report/sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/file_names.h"
+#include "report/html.h"
+#include "report/motion_plots.h"
+#include "report/number_text.h"
+#include "report/phase_plots.h"
+#include "report/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string unit_suffix(std::string_view unit) {
+  if (unit.empty()) return {};
+  return unit == "°" ? "°" : fmt::format(" {}", unit);
+}
+
+std::string notes_html(const std::vector<std::string>& notes) {
+  if (notes.empty()) return {};
+  std::string text = "<div class=\"note\"><ul>";
+  for (const std::string& note : notes) text += fmt::format("<li>{}</li>", escape(note));
+  return text + "</ul></div>\n";
+}
+
+const core::LineFit* line_of(const std::vector<core::LineFit>& lines, int direction) {
+  const auto found =
+      std::find_if(lines.begin(), lines.end(), [&](const core::LineFit& line) { return line.direction == direction; });
+  return found == lines.end() ? nullptr : &*found;
+}
+
+std::string r2_of(const std::vector<core::LineFit>& lines, int direction) {
+  const core::LineFit* line = line_of(lines, direction);
+  return line == nullptr ? "–" : r2_text(line->r2);
+}
+
+std::string clip_anchor(std::size_t index) {
+  return fmt::format("clip-{}", index + 1);
+}
+
+std::string left_out_table(const core::ClipResult& clip) {
+  constexpr std::size_t kMostRows = 40;  // a recording of many bounces; results.json has all of them
+  if (clip.left_out.empty()) return {};
+  HtmlTable table({"left out because", "from (s)", "to (s)", "frames"});
+  for (std::size_t i = 0; i < std::min(kMostRows, clip.left_out.size()); ++i) {
+    const core::LeftOutInterval& interval = clip.left_out[i];
+    table.row({escape(core::describe(interval.reason)), fmt::format("{:.3f}", interval.from_s),
+               fmt::format("{:.3f}", interval.to_s), fmt::format("{}", interval.frames)});
+  }
+  std::string text = table.str();
+  if (clip.left_out.size() > kMostRows) {
+    text += fmt::format("<p class=\"soft\">… and {} more; results.json lists them all.</p>\n",
+                        clip.left_out.size() - kMostRows);
+  }
+  return text;
+}
+
+std::string pictures(const core::ClipResult& clip, const core::Preview& preview) {
+  std::string text;
+  if (!preview.mp4.empty()) {
+    const std::string caption =
+        preview.slow_motion > 1.05 ? fmt::format("The clip, {:.3g} times slower than it was", preview.slow_motion)
+        : preview.slow_motion < 0.95
+            ? fmt::format("The clip, {:.3g} times faster than it was", 1.0 / preview.slow_motion)
+            : std::string("The clip");
+    text += fmt::format(
+        "<figure><video controls muted loop playsinline preload=\"metadata\" src=\"{}\"></video>"
+        "<figcaption>{}, with the marker as it was found</figcaption></figure>\n",
+        data_uri("video/mp4", preview.mp4), caption);
+  }
+  for (const core::PreviewFrame& frame : preview.frames) {
+    text += fmt::format(
+        "<figure><img alt=\"frame {0} of clip {1}\" src=\"{2}\"><figcaption>Frame {0}, t = {3:.3f} s</figcaption>"
+        "</figure>\n",
+        frame.frame, escape(clip.name), data_uri("image/jpeg", frame.jpeg), frame.t_s);
+  }
+  if (!text.empty()) text = fmt::format("<div class=\"figures\">\n{}</div>\n", text);
+  if (!preview.why_no_video.empty()) {
+    text += fmt::format("<p class=\"soft\">There is no video here: {}.</p>\n", escape(preview.why_no_video));
+  }
+  return text;
+}
+
+std::string clip_html(const core::ClipResult& clip, std::size_t index, const std::string& phase_file,
+                      const core::Preview* preview) {
+  std::string text = fmt::format("<h3 id=\"{}\">{}</h3>\n", clip_anchor(index), escape(clip.name));
+  std::size_t used = 0;
+  for (const core::MotionPoint& point : clip.motion) {
+    if (point.smoothed && point.left_out == core::LeftOut::used) ++used;
+  }
+  text += fmt::format(
+      "<p>{} at {} Hz, {} points used. Position noise {} mm. Bandwidth {} ms{}{}. "
+      "Numbers: <code>{}</code>.</p>\n",
+      clip.sightings.empty() ? fmt::format("{} positions", clip.frames)
+                             : fmt::format("{} frames, the marker found in {},", clip.frames, clip.detected),
+      number_text(clip.frame_rate_hz, 5), used, number_text(clip.position_noise_m * 1e3, 3),
+      number_text(clip.bandwidth_s * 1e3, 3), clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method),
+      escape(phase_file));
+  text += notes_html(clip.notes);
+  if (preview != nullptr) text += pictures(clip, *preview);
+  text += figures(motion_plots(clip));
+  text += left_out_table(clip);
+  return text;
+}
+
+}  // namespace
+
+std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
+  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
+  return value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
+}
+
+std::string recovered_section(const core::AnalysisResults& results) {
+  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
+                   "R² (v&gt;0)"});
+  std::string reasons;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
+               quantity_html(c.k_over_m_1_s, ""), quantity_html(c.mu, ""), quantity_html(c.alpha_deg, ""),
+               quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1)});
+    for (const auto& [name, quantity] :
+         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
+          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
+      if (quantity->estimate) continue;
+      reasons += fmt::format("<li>{:.6g} kg, {:.4g}°: {} is not determined: {}</li>\n", c.mass_kg, c.incline_deg, name,
+                             escape(quantity->why));
+    }
+  }
+  std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();
+  text += "<p class=\"soft\">± is one standard deviation. α is the inclination that the motion itself shows.</p>\n";
+  if (!reasons.empty()) text += "<ul class=\"soft\">\n" + reasons + "</ul>\n";
+  return text;
+}
+
+std::string phase_section(const core::AnalysisResults& results) {
+  std::string text = "<h2 id=\"phase\">Phase diagrams</h2>\n";
+  const std::vector<PhaseGroup> groups = phase_groups(results);
+  for (const PhaseGroup& group : groups) {
+    const std::vector<Plot> plots = phase_plots(results, group);
+    text += fmt::format("<h3>Track inclined {:.4g}° (as stated)</h3>\n", group.incline_deg);
+    text += plots.empty() ? "<p>No point of these clips could be used.</p>\n" : figures(plots);
+  }
+  return text;
+}
+
+std::string lines_section(const core::AnalysisResults& results) {
+  HtmlTable table({"clip", "v", "points", "K/m (1/s)", "a<sub>0</sub> (m/s²)", "R²", "speeds (m/s)"}, 2);
+  for (const core::ClipResult& clip : results.clips) {
+    for (const core::LineFit& line : clip.segments) {
+      table.row({escape(clip.name), line.direction < 0 ? "v &lt; 0" : "v &gt; 0", fmt::format("{}", line.points),
+                 value_and_sd_text(line.k_over_m_1_s.value, line.k_over_m_1_s.sd),
+                 value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd), r2_text(line.r2),
+                 fmt::format("{:.3f} … {:.3f}", line.from_v_m_s, line.to_v_m_s)});
+    }
+  }
+  std::string text = "<h2 id=\"lines\">Fitted lines, a = a<sub>0</sub> − (K/m) v</h2>\n";
+  return text + (table.empty() ? "<p>No line could be fitted.</p>\n" : table.str());
+}
+
+std::string clips_section(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
+                          const base::Progress& progress) {
+  const std::vector<std::string> files = phase_file_names(results);
+  std::string text = "<h2 id=\"clips\">Clips</h2>\n<nav><ul>\n";
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    text += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", clip_anchor(c), escape(results.clips[c].name));
+  }
+  text += "</ul></nav>\n<p class=\"soft\">In the plots, blue is what the fits use; grey was left out.</p>\n";
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    progress("writing the report", static_cast<double>(c) / static_cast<double>(results.clips.size()));
+    text += clip_html(results.clips[c], c, files[c], previews.empty() ? nullptr : &previews[c]);
+  }
+  return text;
+}
+
+std::string camera_section(const core::AnalysisResults& results) {
+  if (results.calibrations.empty() && results.plumbs.empty()) return {};
+  std::string text = "<h2 id=\"camera\">Camera and plumb line</h2>\n";
+  for (const core::CalibrationResult& calibration : results.calibrations) {
+    text += fmt::format(
+        "<p>{}: calibrated from {} views, corners reprojected to {} px (rms). In the plane of motion the pattern's "
+        "corners are restituted to {} mm (rms).</p>\n",
+        escape(calibration.experiment), calibration.views_used, number_text(calibration.rms_px, 2),
+        number_text(calibration.restitution_rms_m * 1e3, 2));
+    HtmlTable table({"parameter", "value"});
+    const std::vector<double>& m = calibration.camera_matrix;
+    if (m.size() == 9) {
+      table.row({"focal length f<sub>x</sub>, f<sub>y</sub> (px)", fmt::format("{:.2f}, {:.2f}", m[0], m[4])});
+      table.row({"principal point c<sub>x</sub>, c<sub>y</sub> (px)", fmt::format("{:.2f}, {:.2f}", m[2], m[5])});
+    }
+    constexpr std::array<const char*, 5> kNames = {"k<sub>1</sub>", "k<sub>2</sub>", "p<sub>1</sub>", "p<sub>2</sub>",
+                                                   "k<sub>3</sub>"};
+    for (std::size_t i = 0; i < std::min(kNames.size(), calibration.distortion.size()); ++i) {
+      table.row({kNames[i], number_text(calibration.distortion[i], 4)});
+    }
+    if (!table.empty()) text += table.str();
+    text += notes_html(calibration.notes);
+  }
+  if (!results.plumbs.empty()) {
+    HtmlTable table({"group", "inclination against the plumb line"});
+    for (const core::PlumbResult& plumb : results.plumbs) {
+      std::string cell = quantity_html(plumb.plumb_deg, "°");
+      if (!plumb.plumb_deg.estimate) cell += fmt::format(" {}", escape(plumb.plumb_deg.why));
+      table.row({escape(plumb.group), cell});
+    }
+    text += table.str();
+  }
+  return text;
+}
+
+std::string method_section() {
+  return "<h2 id=\"method\">How these numbers come about</h2>\n"
+         "<p>The marker's positions x(t) are smoothed by a cubic that is fitted around every instant with a Gaussian "
+         "weight (its width is the bandwidth); the cubic's coefficients are x, v and a there. For a glider under "
+         "gravity, a linear viscous drag K v and Coulomb friction, a(v) is one line for v &lt; 0 and another for "
+         "v &gt; 0, both of slope −K/m. Half the sum of their values at v = 0 is g sin α, half their difference is "
+         "µ g cos α, and the line for v &gt; 0 meets a = 0 at the limit velocity. Points where the kernel would "
+         "reach over a reversal or over an end of the free motion are left out.</p>\n";
+}
+
+}  // namespace glidelab::report

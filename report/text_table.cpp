@@ -1,0 +1,133 @@
+#include "report/text_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/number_text.h"
+#include "report/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+/// The text without control characters: a clip's name must not steer the terminal.
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+/// Code points of UTF-8: every byte that does not continue one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string with_unit(std::string_view symbol, std::string_view unit) {
+  return unit.empty() ? std::string(symbol) : fmt::format("{} ({})", symbol, unit);
+}
+
+std::string quantity_text(const core::Quantity& quantity) {
+  return quantity.estimate ? value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) : "–";
+}
+
+std::string r2_of(const core::ConfigurationResult& configuration, int direction) {
+  for (const core::LineFit& line : configuration.lines) {
+    if (line.direction == direction) return r2_text(line.r2);
+  }
+  return "–";
+}
+
+}  // namespace
+
+std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - width_of(row[i]), ' ');
+      if (i > 0) line += "  ";
+      line += i >= first_number ? padding + printable(row[i]) : printable(row[i]) + padding;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string analysis_text(const core::AnalysisResults& results) {
+  std::vector<std::vector<std::string>> rows = {
+      {"mass (kg)", "incline (°)", "group", "K/m (1/s)", "µ", "α (°)", "v_lim (m/s)", "R² v<0", "R² v>0"}};
+  std::string reasons;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), c.group,
+                    quantity_text(c.k_over_m_1_s), quantity_text(c.mu), quantity_text(c.alpha_deg),
+                    quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
+    for (const auto& [name, quantity] :
+         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
+          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
+      if (!quantity->estimate) {
+        reasons +=
+            fmt::format("{:.6g} kg, {:.4g}°: no {}: {}\n", c.mass_kg, c.incline_deg, name, printable(quantity->why));
+      }
+    }
+  }
+  std::string text = text_table(rows, 3);
+  if (!reasons.empty()) text += fmt::format("\n{}", reasons);
+  return text;
+}
+
+std::string comparison_text(const validate::Comparison& comparison) {
+  std::vector<std::vector<std::string>> rows = {
+      {"configuration", "quantity", "truth", "recovered", "sd", "error", "error/sd"}};
+  std::string previous;
+  for (const validate::QuantityComparison& q : comparison.quantities) {
+    const double sd = q.sd.value_or(0.0);
+    const bool first = q.configuration != previous;
+    previous = q.configuration;
+    rows.push_back({first ? fmt::format("{} ({:.6g} kg, {:.4g}°)", q.configuration, q.mass_kg, q.incline_deg) : "",
+                    with_unit(symbol_of(q.quantity), unit_of(q.quantity)), q.truth ? value_text(*q.truth, sd) : "–",
+                    q.value ? value_text(*q.value, sd) : "–", q.sd ? sd_text(*q.sd) : "–",
+                    q.error ? error_text(*q.error, sd) : "–",
+                    q.error && sd > 0.0 ? fmt::format("{:+.2f}", *q.error / sd) : "–"});
+  }
+  std::string text = text_table(rows, 2);
+  std::string reasons;
+  for (const validate::QuantityComparison& q : comparison.quantities) {
+    if (!q.value && q.truth) {
+      reasons += fmt::format("{}: no {}: {}\n", q.configuration, symbol_of(q.quantity), printable(q.why));
+    }
+  }
+  if (!reasons.empty()) text += fmt::format("\n{}", reasons);
+
+  rows = {{"clip", "line", "R²"}};
+  for (const validate::LineComparison& line : comparison.lines) {
+    rows.push_back({line.clip, line.direction < 0 ? "v < 0" : "v > 0", r2_text(line.r2)});
+  }
+  text += '\n';
+  text += text_table(rows, 2);
+  const validate::RestitutionComparison& restitution = comparison.restitution;
+  if (restitution.points.empty()) {
+    text += "\nposition error: no marker was found\n";
+  } else {
+    text += fmt::format("\nposition error: {} mm rms, {} mm at most", number_text(restitution.rms_m * 1e3, 3),
+                        number_text(restitution.max_m * 1e3, 3));
+    if (restitution.field_m > 0.0) {
+      text += fmt::format(" ({} % and {} % of the {} m that the motion covers)",
+                          number_text(100.0 * restitution.rms_m / restitution.field_m, 2),
+                          number_text(100.0 * restitution.max_m / restitution.field_m, 2),
+                          number_text(restitution.field_m, 3));
+    }
+    text += "\n";
+  }
+  text += fmt::format("frames: {}, marker found in {}\ntime: {:.1f} s to render and analyse\n", comparison.frames,
+                      comparison.detected, comparison.wall_s);
+  return text;
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,95 @@
+#include "report/validation_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "report/decimate.h"
+#include "report/gnuplot.h"
+#include "report/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr std::size_t kRestitutionPoints = 2000;
+
+/// One row a quantity, one colour a kind of quantity; the page's reader looks for points beyond the band of ±2.
+std::vector<Plot> error_plot(const validate::Comparison& comparison) {
+  std::map<std::string, PlotData> by_quantity;
+  std::vector<std::string> order;
+  std::string tics;
+  double row = 0.0;
+  double widest = 3.0;
+  for (const validate::QuantityComparison& quantity : comparison.quantities) {
+    if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
+    if (!by_quantity.contains(quantity.quantity)) {
+      order.push_back(quantity.quantity);
+      by_quantity[quantity.quantity].name = fmt::format("q{}", order.size());
+    }
+    row += 1.0;
+    const double in_sd = *quantity.error / *quantity.sd;
+    widest = std::max(widest, 1.1 * std::abs(in_sd));
+    by_quantity[quantity.quantity].rows.push_back({in_sd, row});
+    tics +=
+        fmt::format("{}{} {}", tics.empty() ? "" : ", ",
+                    gnuplot_quoted(fmt::format("{}  {}", quantity.configuration, symbol_of(quantity.quantity))), row);
+  }
+  if (order.empty()) return {};
+  std::string script(kFrame);
+  script += fmt::format(
+      "unset offsets\nset xrange [{0:.4g}:{1:.4g}]\nset yrange [{2:.4g}:0.3]\nset ytics ({3})\n"
+      "set xlabel 'error / standard deviation'\nunset key\n"
+      "set object rectangle from -2, graph 0 to 2, graph 1 behind fillcolor rgb '#e3eef6' fillstyle solid noborder\n"
+      "set arrow from 0, graph 0 to 0, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
+      -widest, widest, row + 0.7, tics);
+  std::vector<PlotData> data;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    data.push_back(by_quantity[order[n]]);
+    script += fmt::format("{}${} using 1:2 with points pt 7 ps 0.9 lc rgb '{}'", n == 0 ? "" : ", ", data.back().name,
+                          color(n));
+  }
+  const int height = std::max(330, 80 + static_cast<int>(row) * 22);
+  return {{gnuplot_svg(script, data, {480, height}),
+           "Error of each recovered value in units of its own standard deviation; about 95 % belong within the band",
+           "Errors in units of their standard deviation"}};
+}
+
+std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
+                                   const validate::RestitutionComparison& restitution) {
+  if (restitution.points.empty()) return {};
+  const bool micrometres = restitution.max_m < 2e-4;
+  const double scale = micrometres ? 1e6 : 1e3;
+  std::vector<PlotData> data;
+  std::string script(kFrame);
+  script += fmt::format("set xlabel 'true x  (m)'\nset ylabel 'measured − true  ({})'\nunset key\nplot ",
+                        micrometres ? "µm" : "mm");
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    std::vector<const validate::RestitutionPoint*> own;
+    for (const validate::RestitutionPoint& point : restitution.points) {
+      if (point.clip == c) own.push_back(&point);
+    }
+    if (own.empty()) continue;
+    PlotData block{fmt::format("clip{}", c), {}};
+    for (const std::size_t i :
+         every_nth(own.size(), std::max<std::size_t>(50, kRestitutionPoints / results.clips.size()))) {
+      block.rows.push_back({own[i]->x_m, own[i]->error_m * scale});
+    }
+    script += fmt::format("{}${} using 1:2 with points pt 7 ps 0.25 lc rgb '{}'", data.empty() ? "" : ", ", block.name,
+                          color(c));
+    data.push_back(std::move(block));
+  }
+  return {{gnuplot_svg(script, data), "Error of the measured position over the field, one colour a clip",
+           "Restitution error over the true position"}};
+}
+
+}  // namespace
+
+std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison) {
+  std::vector<Plot> plots = error_plot(comparison);
+  for (Plot& plot : restitution_plot(results, comparison.restitution)) plots.push_back(std::move(plot));
+  return plots;
+}
+
+}  // namespace glidelab::report

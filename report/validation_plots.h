@@ -1,0 +1,14 @@
+/// Truth against estimate as pictures: errors in units of their standard deviation, and restitution over the field.
+#pragma once
+
+#include <vector>
+
+#include "core/results.h"
+#include "report/plot_style.h"
+#include "validate/comparison.h"
+
+namespace glidelab::report {
+
+std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison);
+
+}  // namespace glidelab::report

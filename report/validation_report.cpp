@@ -1,0 +1,81 @@
+#include "report/validation_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/html.h"
+#include "report/meaning.h"
+#include "report/number_text.h"
+#include "report/quantity_names.h"
+#include "report/sections.h"
+#include "report/validation_plots.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string cell(const std::optional<double>& value, std::string (*text)(double, double), double sd) {
+  return value ? text(*value, sd) : "–";
+}
+
+std::string comparison_table(const validate::Comparison& comparison) {
+  HtmlTable table({"quantity", "truth", "recovered", "sd", "error", "error / sd", "relative"});
+  std::string previous;
+  for (const validate::QuantityComparison& q : comparison.quantities) {
+    const double sd = q.sd.value_or(0.0);
+    if (q.configuration != previous) {
+      table.heading(fmt::format("{}: {:.6g} kg, stated {:.4g}°", escape(q.configuration), q.mass_kg, q.incline_deg));
+    }
+    previous = q.configuration;
+    const std::string unit = unit_of(q.quantity);
+    std::string in_sd = "–";
+    if (q.error && sd > 0.0) {
+      const double ratio = *q.error / sd;
+      // Three standard deviations happen once in 370 times; a reader should look at more.
+      in_sd = fmt::format("<span class=\"{}\">{:+.2f}</span>", std::abs(ratio) <= 3.0 ? "good" : "bad", ratio);
+    }
+    const bool relative = q.error && q.truth && *q.truth != 0.0 && q.quantity != "alpha_deg" && q.quantity != "mu";
+    table.row({escape(symbol_of(q.quantity)) + (unit.empty() ? "" : fmt::format(" ({})", unit)),
+               cell(q.truth, value_text, sd),
+               q.value ? value_text(*q.value, sd) : fmt::format("<span title=\"{}\">–</span>", escape(q.why)),
+               q.sd ? sd_text(*q.sd) : "–", cell(q.error, error_text, sd), in_sd,
+               relative ? fmt::format("{:+.3f} %", 100.0 * *q.error / *q.truth) : ""});
+  }
+  return table.str();
+}
+
+}  // namespace
+
+std::string validation_report(const std::string& title, const core::AnalysisResults& results,
+                              const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
+                              const base::Progress& progress) {
+  double lowest_r2 = 1.0;
+  for (const validate::LineComparison& line : comparison.lines) lowest_r2 = std::min(lowest_r2, line.r2);
+  const validate::RestitutionComparison& restitution = comparison.restitution;
+  std::string body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the pictures alone "
+      "(estimator {}), and compared with the truth.</p>\n",
+      escape(title), escape(results.estimator));
+  body += fmt::format(
+      "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>frames with the marker found</span></div>"
+      "<div class=\"tile\"><b>{} mm</b><span>position error (rms)</span></div>"
+      "<div class=\"tile\"><b>{}</b><span>lowest R² of a line</span></div>"
+      "<div class=\"tile\"><b>{:.1f} s</b><span>to render and analyse</span></div></div>\n",
+      comparison.detected, comparison.frames,
+      restitution.points.empty() ? "–" : number_text(restitution.rms_m * 1e3, 2),
+      comparison.lines.empty() ? "–" : r2_text(lowest_r2), comparison.wall_s);
+  body += "<h2 id=\"comparison\">Truth and recovered values</h2>\n" + comparison_table(comparison);
+  body += "<p class=\"soft\">sd is the standard deviation that the analysis itself states.</p>\n";
+  body += meaning_of(comparison);
+  body += figures(validation_plots(results, comparison));
+  body += phase_section(results);
+  body += recovered_section(results);
+  body += lines_section(results);
+  body += camera_section(results);
+  body += clips_section(results, previews, progress);
+  body += method_section();
+  return page(title, body);
+}
+
+}  // namespace glidelab::report

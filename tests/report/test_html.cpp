@@ -1,0 +1,73 @@
+#include "report/html.h"
+
+#include "catch.h"
+#include "made_results.h"
+#include "report/analysis_report.h"
+#include "report/validation_report.h"
+
+using namespace glidelab;
+
+TEST_CASE("text cannot become markup") {
+  CHECK(report::escape("<script>alert('x') & \"y\"</script>") ==
+        "&lt;script&gt;alert(&#39;x&#39;) &amp; &quot;y&quot;&lt;/script&gt;");
+}
+
+TEST_CASE("base64 gives RFC 4648's test vectors") {
+  CHECK(report::base64("") == "");
+  CHECK(report::base64("f") == "Zg==");
+  CHECK(report::base64("fo") == "Zm8=");
+  CHECK(report::base64("foo") == "Zm9v");
+  CHECK(report::base64("foob") == "Zm9vYg==");
+  CHECK(report::base64("fooba") == "Zm9vYmE=");
+  CHECK(report::base64("foobar") == "Zm9vYmFy");
+  CHECK(report::base64("\xff\xff\xfe") == "///+");
+}
+
+TEST_CASE("no name from a file reaches the page as markup") {
+  core::AnalysisResults results = tests::made_results();
+  const std::string evil = "<script>alert(1)</script>";
+  for (core::ClipResult& clip : results.clips) {
+    clip.name = clip.experiment = clip.bandwidth_method = evil;
+    clip.notes = {evil};
+  }
+  for (core::ConfigurationResult& configuration : results.configurations) {
+    configuration.group = evil;
+    configuration.clips = {evil};
+    configuration.mu = {std::nullopt, evil};
+  }
+  results.calibrations[0].experiment = evil;
+  results.calibrations[0].notes = {evil};
+  results.plumbs = {{evil, {std::nullopt, evil}}};
+  results.estimator = evil;
+  validate::Comparison comparison;
+  comparison.quantities = {{evil, 0.335, 4.0, evil, evil, 1.0, 1.1, 0.1, 0.1, evil}};
+  comparison.lines = {{evil, -1, 0.9999}};
+  CHECK(report::analysis_report(evil, results, {}).find("<script") == std::string::npos);
+  CHECK(report::validation_report(evil, results, comparison, {}).find("<script") == std::string::npos);
+}
+
+TEST_CASE("a page needs nothing but itself, says its values, and stays small for long tracks") {
+  core::AnalysisResults results = tests::made_results();
+  results.clips[0] = tests::made_clip("m1-up", 2.768, 0.8063, 0.667, 25000);
+  const std::string page = report::analysis_report("a long track", results, {});
+  CHECK(page.find("2.7680 ± 0.0060") != std::string::npos);
+  CHECK(page.find("src=\"http") == std::string::npos);
+  CHECK(page.find("href=\"http") == std::string::npos);
+  CHECK(page.find("src=\"data:image/svg+xml;base64,") != std::string::npos);
+  CHECK(page.size() < 3'000'000);  // 10 MB allow twelve clips of a quarter of this each
+}
+
+TEST_CASE("results without any usable point still make a page that says so") {
+  core::AnalysisResults results = tests::made_results();
+  for (core::ClipResult& clip : results.clips) {
+    clip.motion.clear();
+    clip.segments.clear();
+  }
+  for (core::ConfigurationResult& configuration : results.configurations) {
+    configuration.lines.clear();
+    configuration.k_over_m_1_s = configuration.mu = configuration.alpha_deg =
+        configuration.v_lim_m_s = {std::nullopt, "no free motion was found"};
+  }
+  const std::string page = report::analysis_report("nothing", results, {});
+  CHECK(page.find("no free motion was found") != std::string::npos);
+}

@@ -1,0 +1,30 @@
+#include "report/number_text.h"
+
+#include "catch.h"
+
+using namespace glidelab::report;
+
+TEST_CASE("a value has the decimals of two significant digits of its sd") {
+  CHECK(value_and_sd_text(2.77913, 0.0062) == "2.7791 ± 0.0062");
+  CHECK(value_and_sd_text(4.3, 0.25) == "4.30 ± 0.25");
+  CHECK(value_and_sd_text(1234.5, 12.3) == "1234 ± 12");
+  CHECK(value_and_sd_text(0.0071234, 0.00009961) == "0.00712 ± 0.00010");  // the sd itself rounds up a digit
+}
+
+TEST_CASE("without a usable sd a value keeps six significant digits") {
+  CHECK(value_text(2.768, 0.0) == "2.768");
+  CHECK(value_text(1.0 / 3.0, -1.0) == "0.333333");
+  CHECK(value_text(std::nan(""), 0.1) == "–");
+}
+
+TEST_CASE("an error shows its sign") {
+  CHECK(error_text(0.00312, 0.0041) == "+0.0031");
+  CHECK(error_text(-0.00312, 0.0041) == "-0.0031");
+}
+
+TEST_CASE("R² is never rounded up to 1") {
+  CHECK(r2_text(0.99993) == "0.99993");
+  CHECK(r2_text(0.9999999) == "0.9999999");
+  CHECK(r2_text(1.0) == "1.00000");
+  CHECK(r2_text(0.5) == "0.50000");
+}
