@@ -1,0 +1,168 @@
+#include "render/folders.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "render/clip_motion.h"
+#include "render/scene.h"
+#include "sim/truth.h"
+
+namespace glidelab::render {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+/// A float of TOML, with a point; 12 digits hide what a conversion from degrees and back leaves.
+std::string number(double value) {
+  std::string text = fmt::format("{:.12g}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<int>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+const char* word_of(sim::Launched launched) {
+  return launched == sim::Launched::up ? "up" : launched == sim::Launched::down ? "down" : "released";
+}
+
+nlohmann::ordered_json maybe(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json camera_json(const Scenario& scenario) {
+  const Camera& camera = scenario.camera;
+  nlohmann::ordered_json rotation = nlohmann::ordered_json::array();
+  for (int row = 0; row < 3; ++row) {
+    rotation.push_back({camera.X_WC.linear()(row, 0), camera.X_WC.linear()(row, 1), camera.X_WC.linear()(row, 2)});
+  }
+  const Eigen::Vector3d eye = camera.X_WC.translation();
+  return {{"width_px", camera.width_px},
+          {"height_px", camera.height_px},
+          {"focal_px", {camera.focal_px.x(), camera.focal_px.y()}},
+          {"center_px", {camera.center_px.x(), camera.center_px.y()}},
+          {"distortion",
+           {{"k1", camera.lens.k1},
+            {"k2", camera.lens.k2},
+            {"k3", camera.lens.k3},
+            {"p1", camera.lens.p1},
+            {"p2", camera.lens.p2}}},
+          {"rotation_WC", rotation},
+          {"position_m", {eye.x(), eye.y(), eye.z()}},
+          {"frame_rate_hz", scenario.recording.frame_rate_hz},
+          {"exposure_s", scenario.recording.exposure_s},
+          {"sensor",
+           {{"bit_depth", scenario.sensor.bit_depth},
+            {"full_well_e", scenario.sensor.full_well_e},
+            {"read_noise_e", scenario.sensor.read_noise_e},
+            {"gain_dn_per_e", scenario.sensor.gain_dn_per_e},
+            {"offset_dn", scenario.sensor.offset_dn},
+            {"white_e", electrons_of_white(scenario)}}}};
+}
+
+}  // namespace
+
+std::string view_name(std::size_t i) {
+  return fmt::format("calibration/view-{:02d}.png", i);
+}
+
+std::string plane_name(std::size_t i, std::size_t count) {
+  return count == 1 ? "calibration/plane.png" : fmt::format("calibration/plane-{:02d}.png", i);
+}
+
+std::string experiment_toml(const Scenario& scenario) {
+  std::string text;
+  const auto line = [&](std::string_view key, const std::string& value) {
+    text += fmt::format("{} = {}\n", key, value);
+  };
+  const auto table = [&](std::string_view name) { text += fmt::format("\n{}\n", name); };
+  line("format", "1");
+  line("name", quoted(scenario.motion.name));
+  line("gravity_m_s2", number(scenario.motion.gravity_m_s2));
+  table("[camera]");
+  line("frame_rate_hz", number(scenario.recording.frame_rate_hz));
+  line("exposure_s", number(scenario.recording.exposure_s));
+  line("shutter", "\"global\"");
+  line("bit_depth", fmt::format("{}", scenario.sensor.bit_depth));
+  table("[calibration]");
+  line("pattern", "\"chessboard\"");
+  line("inner_corners", fmt::format("[{}, {}]", scenario.pattern.inner_columns, scenario.pattern.inner_rows));
+  line("square_m", number(scenario.pattern.square_m));
+  line("views", "\"calibration/view-*.png\"");
+  line("plane", scenario.pattern.plane_x_m.size() == 1 ? "\"calibration/plane.png\"" : "\"calibration/plane-*.png\"");
+  if (const auto region = plumb_region(scenario)) {
+    table("[plumb]");
+    line("view", "\"plumb.png\"");
+    line("region", fmt::format("[{}, {}, {}, {}]", region->x, region->y, region->width, region->height));
+  }
+  table("[marker]");
+  line("diameter_m", number(scenario.marker.diameter_m));
+  line("height_m", number(scenario.marker.height_m));
+  table("[track]");
+  line("downhill", scenario.track.downhill > 0 ? "\"+X\"" : "\"-X\"");
+  line("length_m", number(scenario.track.length_m));
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      table("[[clip]]");
+      line("name", quoted(motion.name));
+      line("file", quoted("clips/" + file_name_of(scenario.codec, motion.name)));
+      line("mass_kg", number(configuration.body.mass_kg));
+      line("incline_deg", number(configuration.stated_incline_rad * kDegPerRad));
+      if (configuration.stated_incline_sd_rad > 0.0) {
+        line("incline_sd_deg", number(configuration.stated_incline_sd_rad * kDegPerRad));
+      }
+      line("launched", quoted(word_of(motion.launched)));
+      line("group", quoted(configuration.group));
+    }
+  }
+  return text;
+}
+
+double x_origin_m(const Scenario& scenario, double incline_rad) {
+  return plane_board(scenario, 0).X_WP.translation().dot(track_direction_W(scenario.track, incline_rad));
+}
+
+std::string truth_json(const Scenario& scenario, std::uint64_t seed) {
+  nlohmann::ordered_json configurations = nlohmann::ordered_json::array();
+  nlohmann::ordered_json clips = nlohmann::ordered_json::array();
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    const std::optional<sim::LinearLaw> law = sim::linear_law(configuration.body);
+    nlohmann::ordered_json names = nlohmann::ordered_json::array();
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      names.push_back(motion.name);
+      clips.push_back({{"name", motion.name},
+                       {"configuration", configuration.name},
+                       {"frames", frame_count(scenario.recording, motion)},
+                       {"x_origin_m", x_origin_m(scenario, configuration.body.incline_rad)},
+                       {"trajectory", "trajectory-" + motion.name + ".csv"}});
+    }
+    configurations.push_back(
+        {{"name", configuration.name},
+         {"mass_kg", configuration.body.mass_kg},
+         {"stated_incline_deg", configuration.stated_incline_rad * kDegPerRad},
+         {"group", configuration.group},
+         {"k_over_m_1_s", law ? nlohmann::ordered_json(law->k_over_m_1_s) : nlohmann::ordered_json(nullptr)},
+         {"mu", law ? nlohmann::ordered_json(law->mu) : nlohmann::ordered_json(nullptr)},
+         {"alpha_deg", configuration.body.incline_rad * kDegPerRad},
+         {"v_lim_m_s", maybe(sim::limit_speed_m_s(configuration.body))},
+         {"clips", names}});
+  }
+  const nlohmann::ordered_json truth = {{"format", 1},    {"name", scenario.motion.name},
+                                        {"seed", seed},   {"configurations", configurations},
+                                        {"clips", clips}, {"camera", camera_json(scenario)}};
+  return truth.dump(2) + "\n";
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,371 @@
+#include "render/moving_painter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "base/errors.h"
+#include "render/coverage.h"
+
+namespace glidelab::render {
+namespace {
+
+/// Grows a rectangle of pixels by points of the picture.
+class Bounds {
+ public:
+  void add(const Camera& camera, const Eigen::Vector3d& p_C) {
+    if (!(p_C.z() > 0.0)) throw base::NumericalError("the glider reaches behind the camera");
+    const std::optional<Eigen::Vector2d> pixel = pixel_of(camera, p_C.head<2>() / p_C.z());
+    if (!pixel) {
+      beyond_the_lens_ = true;
+      return;
+    }
+    low_ = low_.cwiseMin(*pixel);
+    high_ = high_.cwiseMax(*pixel);
+  }
+
+  /// The whole picture where a part has no picture of its own and another part is seen.
+  PixelRect pixels(const Camera& camera) const {
+    const PixelRect all{0, 0, camera.width_px, camera.height_px};
+    if (!(high_.x() >= low_.x())) return {};
+    constexpr double kMargin = 2.0;  // half a pixel, and what the lens bends an edge between the points that were added
+    const double widest = 4.0 * (camera.width_px + camera.height_px);  // keeps the conversion to int defined
+    const auto pixel = [&](double value) { return static_cast<int>(std::floor(std::clamp(value, -widest, widest))); };
+    const int left = pixel(low_.x() - kMargin);
+    const int top = pixel(low_.y() - kMargin);
+    const PixelRect seen =
+        intersection(all, {left, top, pixel(high_.x() + kMargin) + 1 - left, pixel(high_.y() + kMargin) + 1 - top});
+    return beyond_the_lens_ && !seen.empty() ? all : seen;
+  }
+
+ private:
+  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high_ = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity());
+  bool beyond_the_lens_ = false;
+};
+
+/// A line in undistorted coordinates, a x + b y + c, positive inside. It moves linearly with the body's shift s along
+/// the track, fixed + s moving: (p + s d) x (q + s d) has no square of s.
+struct Edge {
+  Eigen::Vector3d fixed;
+  Eigen::Vector3d moving;
+};
+
+/// A convex polygon that either starts a box (its outline) or lies on the box that was started last.
+struct Polygon {
+  std::vector<Edge> edges;
+  double radiance = 0.0;
+  bool starts_box = false;
+  PixelRect rect;
+};
+
+struct Sphere {
+  Eigen::Vector3d center_C;
+  double radius_m = 0.0;
+  double radiance = 0.0;
+  PixelRect rect;
+};
+
+using Corners = std::vector<Eigen::Vector3d>;  // camera frame, in order around
+
+/// The six faces of a box, anticlockwise from outside; bit i of a corner's number says +half along axis i.
+constexpr std::array<std::array<int, 4>, 6> kFaces = {
+    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+
+Eigen::Vector3d corner_sign(int number) {
+  return {(number & 1) != 0 ? 1.0 : -1.0, (number & 2) != 0 ? 1.0 : -1.0, (number & 4) != 0 ? 1.0 : -1.0};
+}
+
+int face_with_edge(int from, int to) {
+  for (int f = 0; f < 6; ++f) {
+    for (int k = 0; k < 4; ++k) {
+      if (kFaces[f][k] == from && kFaces[f][(k + 1) % 4] == to) return f;
+    }
+  }
+  throw std::logic_error("no such edge of a box");
+}
+
+/// All shapes of the body in the camera frame, for shifts from `first` to `last` about where it stands.
+class Shapes {
+ public:
+  Shapes(const Camera& camera, const MovingBody& body, double middle, double first, double last)
+      : camera_(camera),
+        X_CW_(camera.X_WC.inverse()),
+        shift_W_(middle * body.direction_W),
+        direction_C_(X_CW_.linear() * body.direction_W),
+        first_(first),
+        last_(last) {
+    for (const MovingBox& box : body.boxes) add_box(box);
+    if (body.marker) add_sphere(*body.marker);
+  }
+
+  const std::vector<Polygon>& polygons() const { return polygons_; }
+  const std::optional<Sphere>& sphere() const { return sphere_; }
+  const Eigen::Vector3d& direction_C() const { return direction_C_; }
+
+ private:
+  void bound(Bounds& bounds, const Eigen::Vector3d& p_C) const {
+    bounds.add(camera_, p_C + first_ * direction_C_);
+    bounds.add(camera_, p_C + last_ * direction_C_);
+  }
+
+  Edge edge_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& inside) const {
+    const Eigen::Vector3d fixed = from.cross(to);
+    const double scale = (fixed.dot(inside) > 0.0 ? 1.0 : -1.0) / fixed.head<2>().norm();
+    return {scale * fixed, scale * (from - to).cross(direction_C_)};
+  }
+
+  void add_polygon(const Corners& corners, bool starts_box, double radiance) {
+    Polygon polygon;
+    polygon.radiance = radiance;
+    polygon.starts_box = starts_box;
+    Eigen::Vector3d inside = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& c : corners) inside += c / c.z();
+    Bounds bounds;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Eigen::Vector3d& next = corners[(i + 1) % corners.size()];
+      polygon.edges.push_back(edge_between(corners[i], next, inside));
+      constexpr int kSteps = 4;  // the lens bends long edges
+      for (int k = 0; k < kSteps; ++k) bound(bounds, corners[i] + (next - corners[i]) * k / kSteps);
+    }
+    polygon.rect = bounds.pixels(camera_);
+    polygons_.push_back(std::move(polygon));
+  }
+
+  void add_box(const MovingBox& box) {
+    std::array<Eigen::Vector3d, 8> corner;
+    for (int i = 0; i < 8; ++i) {
+      corner[i] = X_CW_ * (box.center_W + shift_W_ + box.axes_W * corner_sign(i).cwiseProduct(box.half_m));
+    }
+    // A face is seen where its outward normal points against the line of sight.
+    std::array<bool, 6> seen{};
+    for (int f = 0; f < 6; ++f) {
+      const auto& c = kFaces[f];
+      const Eigen::Vector3d normal = (corner[c[1]] - corner[c[0]]).cross(corner[c[2]] - corner[c[1]]);
+      seen[f] = normal.dot(corner[c[0]]) < 0.0;
+    }
+    // The outline: edges of seen faces whose other side is not seen, chained.
+    std::array<int, 8> next;
+    next.fill(-1);
+    int start = -1;
+    for (int f = 0; f < 6; ++f) {
+      for (int k = 0; k < 4 && seen[f]; ++k) {
+        const int from = kFaces[f][k];
+        const int to = kFaces[f][(k + 1) % 4];
+        if (!seen[face_with_edge(to, from)]) {
+          next[from] = to;
+          start = from;
+        }
+      }
+    }
+    if (start < 0) throw base::NumericalError("the camera is inside the glider");
+    Corners outline{corner[start]};
+    for (int at = next[start]; at != start && outline.size() < 8; at = next[at]) outline.push_back(corner[at]);
+    const auto first_seen = static_cast<int>(std::find(seen.begin(), seen.end(), true) - seen.begin());
+    add_polygon(outline, true, box.radiance[first_seen]);
+    // Every further face is cut out of the outline by the edges that it shares with other seen faces.
+    const PixelRect rect = polygons_.back().rect;
+    for (int f = first_seen + 1; f < 6; ++f) {
+      if (!seen[f]) continue;
+      Polygon face;
+      face.radiance = box.radiance[f];
+      face.rect = rect;
+      Eigen::Vector3d inside = Eigen::Vector3d::Zero();
+      for (const int c : kFaces[f]) inside += corner[c] / corner[c].z();
+      for (int k = 0; k < 4; ++k) {
+        const int from = kFaces[f][k];
+        const int to = kFaces[f][(k + 1) % 4];
+        if (seen[face_with_edge(to, from)]) face.edges.push_back(edge_between(corner[from], corner[to], inside));
+      }
+      polygons_.push_back(std::move(face));
+    }
+    for (const Patch& patch : box.patches) {
+      Corners around;
+      for (const Eigen::Vector3d& c : patch.corners_W) around.push_back(X_CW_ * (c + shift_W_));
+      add_polygon(around, false, patch.radiance);
+    }
+  }
+
+  void add_sphere(const MarkerSphere& marker) {
+    Sphere sphere{X_CW_ * (marker.center_W + shift_W_), marker.radius_m, marker.radiance, {}};
+    Bounds bounds;
+    for (int i = 0; i < 8; ++i) bound(bounds, sphere.center_C + marker.radius_m * corner_sign(i));
+    sphere.rect = bounds.pixels(camera_);
+    sphere_ = sphere;
+  }
+
+  const Camera& camera_;
+  Eigen::Isometry3d X_CW_;
+  Eigen::Vector3d shift_W_;
+  Eigen::Vector3d direction_C_;
+  double first_, last_;
+  std::vector<Polygon> polygons_;
+  std::optional<Sphere> sphere_;
+};
+
+/// Coverage of a row of pixels by a half-plane, from the rays of the row.
+struct RowRays {
+  const float* x_y_dxdu_dxdv;
+  const float* dydu_dydv;
+};
+
+void half_plane_row(const Eigen::Vector3d& line, const RowRays& rays, int count, double* coverage) {
+  const double a = line.x();
+  const double b = line.y();
+  const double c = line.z();
+  for (int i = 0; i < count; ++i) {
+    const float* ray = rays.x_y_dxdu_dxdv + 4 * i;
+    const float* slope = rays.dydu_dydv + 2 * i;
+    coverage[i] = half_plane_coverage(a * static_cast<double>(ray[0]) + b * static_cast<double>(ray[1]) + c,
+                                      a * static_cast<double>(ray[2]) + b * static_cast<double>(slope[0]),
+                                      a * static_cast<double>(ray[3]) + b * static_cast<double>(slope[1]));
+  }
+}
+
+/// Opposite edges add (a thin strip is as wide as it is), neighbouring ones multiply.
+void polygon_row(const Polygon& polygon, double shift, const RowRays& rays, int count, double* coverage,
+                 double* scratch) {
+  const std::size_t edges = polygon.edges.size();
+  const std::size_t pairs = edges >= 4 && edges % 2 == 0 ? edges / 2 : edges;
+  std::fill_n(coverage, count, 1.0);
+  for (std::size_t e = 0; e < pairs; ++e) {
+    const auto line = [&](std::size_t k) {
+      return Eigen::Vector3d(polygon.edges[k].fixed + shift * polygon.edges[k].moving);
+    };
+    half_plane_row(line(e), rays, count, scratch);
+    if (pairs < edges) {
+      half_plane_row(line(e + pairs), rays, count, scratch + count);
+      for (int i = 0; i < count; ++i) scratch[i] = std::max(scratch[i] + scratch[count + i] - 1.0, 0.0);
+    }
+    for (int i = 0; i < count; ++i) coverage[i] *= scratch[i];
+  }
+}
+
+double sphere_coverage(const Sphere& sphere, const Eigen::Vector3d& c, const float* ray, const float* slope) {
+  const Eigen::Vector2d du(ray[2], slope[0]);
+  const Eigen::Vector2d dv(ray[3], slope[1]);
+  const Eigen::Vector2d center = c.head<2>() / c.z();
+  double coverage = 0.0;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Eigen::Vector2d p = Eigen::Vector2d(ray[0], ray[1]) + ((quarter & 1) == 0 ? -0.25 : 0.25) * du +
+                              ((quarter & 2) == 0 ? -0.25 : 0.25) * dv;
+    // Distance of the ray (x, y, 1) from the centre c = Z (x_c, y_c, 1): |(e, 0) x c| / |(x, y, 1)|, with
+    // e = (x, y) - (x_c, y_c); its gradient in the picture makes it a distance in pixels.
+    const Eigen::Vector2d e = p - center;
+    const double ray2 = 1.0 + p.squaredNorm();
+    const double turn = e.x() * c.y() - e.y() * c.x();
+    const double distance2 = (c.z() * c.z() * e.squaredNorm() + turn * turn) / ray2;
+    const double distance = std::max(std::sqrt(distance2), 1e-3 * sphere.radius_m);
+    const Eigen::Vector2d rise =
+        (c.z() * c.z() * e + turn * Eigen::Vector2d(c.y(), -c.x()) - distance2 * p) / (ray2 * distance);
+    const double gu = 0.5 * rise.dot(du);
+    const double gv = 0.5 * rise.dot(dv);
+    // The arc lies inside its tangent: on average over a square's side by 1/(24 R) of it.
+    const double bulge = (gu * gu + gv * gv) / (24.0 * sphere.radius_m);
+    coverage += 0.25 * half_plane_coverage(sphere.radius_m - distance - bulge, gu, gv);
+  }
+  return coverage;
+}
+
+}  // namespace
+
+MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, std::span<const double> x_m) {
+  if (x_m.empty()) throw std::logic_error("no instant to paint");
+  const double first = *std::min_element(x_m.begin(), x_m.end());
+  const double last = *std::max_element(x_m.begin(), x_m.end());
+  const double middle = 0.5 * (first + last);
+  const Shapes shapes(camera, body, middle, first - middle, last - middle);
+
+  MovingLayer layer;
+  const auto include = [&](const PixelRect& rect) {
+    if (rect.empty()) return;
+    if (layer.rect.empty()) {
+      layer.rect = rect;
+      return;
+    }
+    const int left = std::min(layer.rect.x, rect.x);
+    const int top = std::min(layer.rect.y, rect.y);
+    layer.rect = {left, top, std::max(layer.rect.x + layer.rect.width, rect.x + rect.width) - left,
+                  std::max(layer.rect.y + layer.rect.height, rect.y + rect.height) - top};
+  };
+  for (const Polygon& polygon : shapes.polygons()) include(polygon.rect);
+  if (shapes.sphere()) include(shapes.sphere()->rect);
+  if (layer.rect.empty()) return layer;
+
+  const int width = layer.rect.width;
+  const auto size = static_cast<std::size_t>(width) * layer.rect.height;
+  layer.radiance.assign(size, 0.0f);
+  layer.coverage.assign(size, 0.0f);
+  std::vector<double> buffer(static_cast<std::size_t>(width) * 7);
+  double* const seen_radiance = buffer.data();
+  double* const seen_coverage = seen_radiance + width;
+  double* const box_radiance = seen_coverage + width;
+  double* const box_coverage = box_radiance + width;
+  double* const coverage = box_coverage + width;
+  double* const scratch = coverage + width;  // two rows
+  const double share = 1.0 / static_cast<double>(x_m.size());
+  for (int y = layer.rect.y; y < layer.rect.y + layer.rect.height; ++y) {
+    const auto rays_from = [&](int x) {
+      const std::size_t at = static_cast<std::size_t>(y) * rays.width + x;
+      return RowRays{rays.x_y_dxdu_dxdv.data() + 4 * at, rays.dydu_dydv.data() + 2 * at};
+    };
+    const auto row_of = [&](const PixelRect& rect) { return y >= rect.y && y < rect.y + rect.height; };
+    float* const out_radiance = layer.radiance.data() + static_cast<std::size_t>(y - layer.rect.y) * width;
+    float* const out_coverage = layer.coverage.data() + static_cast<std::size_t>(y - layer.rect.y) * width;
+    for (const double x : x_m) {
+      const double shift = x - middle;
+      std::fill_n(seen_radiance, 2 * width, 0.0);
+      for (std::size_t k = 0; k < shapes.polygons().size();) {
+        // One box: its outline, then what lies on it, then the whole over what was there.
+        const Polygon& outline = shapes.polygons()[k];
+        const int left = outline.rect.x - layer.rect.x;
+        const bool here = row_of(outline.rect);
+        if (here) {
+          polygon_row(outline, shift, rays_from(outline.rect.x), outline.rect.width, box_coverage, scratch);
+          std::fill_n(box_radiance, outline.rect.width, outline.radiance);
+        }
+        for (++k; k < shapes.polygons().size() && !shapes.polygons()[k].starts_box; ++k) {
+          const Polygon& on_it = shapes.polygons()[k];
+          const PixelRect rect = intersection(on_it.rect, outline.rect);
+          if (!here || rect.empty() || !row_of(rect)) continue;
+          polygon_row(on_it, shift, rays_from(rect.x), rect.width, coverage, scratch);
+          double* const under = box_radiance + (rect.x - outline.rect.x);
+          for (int i = 0; i < rect.width; ++i) under[i] += coverage[i] * (on_it.radiance - under[i]);
+        }
+        for (int i = 0; here && i < outline.rect.width; ++i) {
+          seen_radiance[left + i] += box_coverage[i] * (box_radiance[i] - seen_radiance[left + i]);
+          seen_coverage[left + i] += box_coverage[i] * (1.0 - seen_coverage[left + i]);
+        }
+      }
+      if (const auto& sphere = shapes.sphere(); sphere && row_of(sphere->rect)) {
+        const Eigen::Vector3d c = sphere->center_C + shift * shapes.direction_C();
+        const RowRays row = rays_from(sphere->rect.x);
+        for (int i = 0; i < sphere->rect.width; ++i) {
+          const double covered = sphere_coverage(*sphere, c, row.x_y_dxdu_dxdv + 4 * i, row.dydu_dydv + 2 * i);
+          const int at = sphere->rect.x - layer.rect.x + i;
+          seen_radiance[at] += covered * (sphere->radiance - seen_radiance[at]);
+          seen_coverage[at] += covered * (1.0 - seen_coverage[at]);
+        }
+      }
+      for (int i = 0; i < width; ++i) {
+        out_radiance[i] += static_cast<float>(share * seen_radiance[i]);
+        out_coverage[i] += static_cast<float>(share * seen_coverage[i]);
+      }
+    }
+  }
+  return layer;
+}
+
+void put_over(const MovingLayer& layer, float scale, FloatPicture& picture) {
+  for (int y = 0; y < layer.rect.height; ++y) {
+    const std::span<float> row = picture.row(layer.rect.y + y, layer.rect.x, layer.rect.width);
+    const std::size_t start = static_cast<std::size_t>(y) * layer.rect.width;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      row[i] = scale * layer.radiance[start + i] + (1.0f - layer.coverage[start + i]) * row[i];
+    }
+  }
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,33 @@
+#include "render/ray_table.h"
+
+#include <fmt/format.h>
+
+#include "base/errors.h"
+
+namespace glidelab::render {
+
+RayTable make_ray_table(const Camera& camera) {
+  RayTable table;
+  table.width = camera.width_px;
+  table.height = camera.height_px;
+  const auto pixels = static_cast<std::size_t>(camera.width_px) * camera.height_px;
+  table.x_y_dxdu_dxdv.reserve(pixels * 4);
+  table.dydu_dydv.reserve(pixels * 2);
+  const Eigen::Matrix2d per_pixel = camera.focal_px.cwiseInverse().asDiagonal();
+  const double largest_radius = fold_radius(camera.lens);
+  for (int v = 0; v < camera.height_px; ++v) {
+    for (int u = 0; u < camera.width_px; ++u) {
+      const std::optional<Eigen::Vector2d> ray = undistort(
+          camera.lens, (Eigen::Vector2d(u, v) - camera.center_px).cwiseQuotient(camera.focal_px), largest_radius);
+      if (!ray) throw base::NumericalError(fmt::format("lens: no ray leads to the pixel ({}, {})", u, v));
+      const Eigen::Matrix2d slope = distortion_jacobian(camera.lens, *ray).inverse() * per_pixel;
+      for (const double value : {ray->x(), ray->y(), slope(0, 0), slope(0, 1)}) {
+        table.x_y_dxdu_dxdv.push_back(static_cast<float>(value));
+      }
+      for (const double value : {slope(1, 0), slope(1, 1)}) table.dydu_dydv.push_back(static_cast<float>(value));
+    }
+  }
+  return table;
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,183 @@
+#include "render/render_experiment.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <opencv2/core.hpp>
+
+#include "base/csv.h"
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "render/clip_renderer.h"
+#include "render/folders.h"
+#include "render/parallel.h"
+#include "render/static_painter.h"
+#include "render/video_writer.h"
+
+namespace glidelab::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A still picture that has to be taken.
+struct Still {
+  std::string name;  ///< within the experiment folder
+  StaticScene scene;
+};
+
+/// What stands still while the clips of one set-up of the track are recorded.
+struct SetUp {
+  StaticScene scene;
+  FloatPicture background_e;
+};
+
+struct Clip {
+  const sim::ConfigurationSetup* configuration = nullptr;
+  const sim::MotionSetup* motion = nullptr;
+  const SetUp* set_up = nullptr;
+  std::uint32_t stream = 0;
+};
+
+// Noise streams: clips count from 0, stills from here.
+constexpr std::uint32_t kFirstStill = 0x40000000u;
+// How long a still takes beside a frame, for the progress.
+constexpr double kStillWork = 30.0;
+
+std::vector<Still> stills_of(const Scenario& scenario, std::uint64_t seed) {
+  const StaticScene track = empty_track(scenario, scenario.motion.configurations.front().body.incline_rad);
+  std::vector<Still> stills;
+  for (const Chessboard& board : calibration_boards(scenario, seed)) {
+    stills.push_back({view_name(stills.size()), track});
+    stills.back().scene.board = board;
+  }
+  const std::size_t planes = scenario.pattern.plane_x_m.size();
+  for (std::size_t i = 0; i < planes; ++i) {
+    stills.push_back({plane_name(i, planes), track});
+    stills.back().scene.board = plane_board(scenario, i);
+  }
+  if (scenario.plumb) {
+    stills.push_back({"plumb.png", track});
+    stills.back().scene.plumb = plumb_line(*scenario.plumb, scenario.camera);
+  }
+  return stills;
+}
+
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) base::throw_system_error(path.string(), "cannot be made", error.value());
+}
+
+FloatPicture scaled(FloatPicture picture, double factor) {
+  for (float& value : picture.values) value = static_cast<float>(static_cast<double>(value) * factor);
+  return picture;
+}
+
+/// Stills are kept with 8 bits, as a viewer program saves them.
+Sensor with_8_bits(const Sensor& sensor) {
+  Sensor shallow = sensor;
+  const double share = 255.0 / sensor.largest_code();
+  shallow.bit_depth = 8;
+  shallow.gain_dn_per_e *= share;
+  shallow.offset_dn *= share;
+  return shallow;
+}
+
+template <typename Code>
+void render_frames(const Scenario& scenario, const Clip& clip, ClipRenderer& renderer, VideoWriter& writer,
+                   base::CsvWriter& truth, const std::function<void()>& frame_done) {
+  const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
+  std::vector<Code> codes(static_cast<std::size_t>(all.width) * all.height);
+  for_each_frame(clip.configuration->body, *clip.motion, scenario.recording, renderer.longest_step_m(),
+                 [&](const FrameMotion& frame) {
+                   renderer.read(frame, all, std::span<Code>(codes));
+                   writer.write(std::span<const Code>(codes));
+                   const sim::State& state = frame.middle;
+                   truth.number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
+                   truth.text(sim::name_of(state.mode));
+                   truth.end_row();
+                   frame_done();
+                 });
+}
+
+}  // namespace
+
+RenderSummary render_experiment(const Scenario& scenario, const fs::path& experiment_dir, const fs::path& truth_dir,
+                                const RenderOptions& options, const base::Progress& progress) {
+  make_folder(experiment_dir / "clips");
+  make_folder(experiment_dir / "calibration");
+  make_folder(truth_dir);
+
+  const RayTable rays = make_ray_table(scenario.camera);
+  const double white_e = electrons_of_white(scenario);
+  const std::vector<Still> stills = stills_of(scenario, options.seed);
+  std::map<std::string, SetUp> set_ups;
+  std::vector<Clip> clips;
+  RenderSummary summary;
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    SetUp& set_up = set_ups[configuration.group];
+    if (set_up.scene.boxes.empty()) set_up.scene = empty_track(scenario, configuration.body.incline_rad);
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      clips.push_back({&configuration, &motion, &set_up, static_cast<std::uint32_t>(clips.size())});
+      summary.frames += frame_count(scenario.recording, motion);
+    }
+  }
+  summary.clips = clips.size();
+  std::vector<SetUp*> backgrounds;
+  for (auto& [name, set_up] : set_ups) backgrounds.push_back(&set_up);
+
+  const double all_work =
+      kStillWork * static_cast<double>(stills.size() + backgrounds.size()) + static_cast<double>(summary.frames);
+  std::atomic<double> done{0.0};
+  const auto advance = [&](double work) {
+    double before = done.load();
+    while (!done.compare_exchange_weak(before, before + work)) {
+    }
+    progress("rendering", std::min(1.0, (before + work) / all_work));
+  };
+
+  in_parallel(options.jobs, stills.size() + backgrounds.size(), [&](const auto& next) {
+    StaticPainter painter(scenario.camera, rays);
+    const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
+    std::vector<std::uint8_t> codes(static_cast<std::size_t>(all.width) * all.height);
+    for (std::size_t i = next(); i < stills.size() + backgrounds.size(); i = next()) {
+      if (i < backgrounds.size()) {
+        backgrounds[i]->background_e = scaled(painter.paint(backgrounds[i]->scene), white_e);
+      } else {
+        const std::size_t number = i - backgrounds.size();
+        const FloatPicture expected_e = scaled(painter.paint(stills[number].scene), white_e);
+        const NoiseKey key{options.seed, kFirstStill + static_cast<std::uint32_t>(number), 0};
+        read_out(with_8_bits(scenario.sensor), expected_e, key, all, std::span<std::uint8_t>(codes));
+        write_png(experiment_dir / stills[number].name, cv::Mat(all.height, all.width, CV_8U, codes.data()));
+      }
+      advance(kStillWork);
+    }
+  });
+
+  in_parallel(options.jobs, clips.size(), [&](const auto& next) {
+    for (std::size_t i = next(); i < clips.size(); i = next()) {
+      const Clip& clip = clips[i];
+      ClipRenderer renderer(scenario, *clip.configuration, clip.set_up->scene, rays, clip.set_up->background_e,
+                            options.seed, clip.stream);
+      const VideoFormat format{scenario.codec, scenario.camera.width_px, scenario.camera.height_px,
+                               scenario.recording.frame_rate_hz, 1};
+      const auto writer =
+          open_video(experiment_dir / "clips" / file_name_of(scenario.codec, clip.motion->name), format);
+      base::CsvWriter truth("t_s,x_m,v_m_s,a_m_s2,mode");
+      const auto frame_done = [&] { advance(1.0); };
+      if (scenario.sensor.bit_depth > 8) {
+        render_frames<std::uint16_t>(scenario, clip, renderer, *writer, truth, frame_done);
+      } else {
+        render_frames<std::uint8_t>(scenario, clip, renderer, *writer, truth, frame_done);
+      }
+      writer->finish();
+      base::write_file(truth_dir / fmt::format("trajectory-{}.csv", clip.motion->name), truth.str());
+    }
+  });
+
+  base::write_file(experiment_dir / "experiment.toml", experiment_toml(scenario));
+  base::write_file(truth_dir / "truth.json", truth_json(scenario, options.seed));
+  return summary;
+}
+
+}  // namespace glidelab::render

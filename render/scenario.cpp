@@ -1,0 +1,243 @@
+#include "render/scenario.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/errors.h"
+#include "base/strict_toml.h"
+#include "render/clip_motion.h"
+#include "render/scene.h"
+
+namespace glidelab::render {
+namespace {
+
+using base::TomlTable;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// An optional section: absent, it is as good as empty.
+template <typename Read>
+void section(const TomlTable& root, std::string_view key, const Read& read) {
+  if (const std::optional<TomlTable> table = root.maybe_table(key)) read(*table);
+}
+
+Eigen::Vector3d vector_or(const TomlTable& table, std::string_view key, const Eigen::Vector3d& otherwise) {
+  const auto values = table.maybe_numbers(key, 3, base::between(-1000.0, 1000.0));
+  return values ? Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]) : otherwise;
+}
+
+struct Pose {
+  Eigen::Vector3d position = {0.0, 0.1, 2.4};
+  Eigen::Vector3d target = {0.0, 0.0, 0.0};
+  double roll_rad = 0.0;
+};
+
+void read_camera(const TomlTable& root, Scenario& scenario) {
+  Camera& camera = scenario.camera;
+  Recording& recording = scenario.recording;
+  Pose pose;
+  std::optional<std::vector<double>> center;
+  section(root, "camera", [&](const TomlTable& table) {
+    camera.width_px = static_cast<int>(table.integer_or("width_px", camera.width_px, 64, 8192));
+    camera.height_px = static_cast<int>(table.integer_or("height_px", camera.height_px, 64, 8192));
+    recording.frame_rate_hz = table.number_or("frame_rate_hz", recording.frame_rate_hz, {1e-3, 1e5, false, false});
+    recording.exposure_s =
+        table.number_or("exposure_s", std::min(recording.exposure_s, 1.0 / recording.frame_rate_hz), base::above(0.0));
+    if (recording.exposure_s > 1.0 / recording.frame_rate_hz * (1.0 + 1e-9)) {
+      table.reject("exposure_s", fmt::format("{}", recording.exposure_s),
+                   fmt::format("at most the frame time, {} s", 1.0 / recording.frame_rate_hz));
+    }
+    if (const auto focal = table.maybe_numbers("focal_px", 2, {1.0, 1e6, false, false})) {
+      camera.focal_px = {(*focal)[0], (*focal)[1]};
+    }
+    center = table.maybe_numbers("center_px", 2, base::between(-1e5, 1e5));
+    pose.position = vector_or(table, "position_m", pose.position);
+    pose.target = vector_or(table, "target_m", pose.target);
+    pose.roll_rad = table.number_or("roll_deg", 0.0, base::between(-180.0, 180.0)) * kRadPerDeg;
+    section(table, "distortion", [&](const TomlTable& lens) {
+      camera.lens.k1 = lens.number_or("k1", 0.0, base::between(-10.0, 10.0));
+      camera.lens.k2 = lens.number_or("k2", 0.0, base::between(-100.0, 100.0));
+      camera.lens.k3 = lens.number_or("k3", 0.0, base::between(-1000.0, 1000.0));
+      camera.lens.p1 = lens.number_or("p1", 0.0, base::between(-1.0, 1.0));
+      camera.lens.p2 = lens.number_or("p2", 0.0, base::between(-1.0, 1.0));
+    });
+    if (!(pose.position.z() > 0.05)) {
+      table.reject("position_m", fmt::format("z = {}", pose.position.z()),
+                   "a camera before the plane of motion, z above 0.05");
+    } else if (!(pose.target.z() < pose.position.z() - 0.05)) {
+      table.reject("target_m", fmt::format("z = {}", pose.target.z()),
+                   "a point that is farther from the camera's side");
+    }
+  });
+  camera.center_px = center ? Eigen::Vector2d((*center)[0], (*center)[1])
+                            : Eigen::Vector2d(0.5 * (camera.width_px - 1), 0.5 * (camera.height_px - 1));
+  camera.X_WC = look_at(pose.position, pose.target, pose.roll_rad);
+}
+
+void read_sensor(const TomlTable& root, Scenario& scenario) {
+  Sensor& sensor = scenario.sensor;
+  const auto read = [&](const TomlTable* table) {
+    const auto number = [&](std::string_view key, double otherwise, base::Range range) {
+      return table == nullptr ? otherwise : table->number_or(key, otherwise, range);
+    };
+    if (table != nullptr) sensor.bit_depth = static_cast<int>(table->integer_or("bit_depth", 8, 8, 16));
+    const double codes = sensor.largest_code();
+    sensor.full_well_e = number("full_well_e", sensor.full_well_e, {10.0, 1e7, false, false});
+    sensor.read_noise_e = number("read_noise_e", sensor.read_noise_e, base::between(0.0, 1e5));
+    sensor.offset_dn = number("offset_dn", std::round(codes / 128.0), base::between(0.0, 0.5 * codes));
+    sensor.gain_dn_per_e =
+        number("gain_dn_per_e", (codes - sensor.offset_dn) / sensor.full_well_e, {0.0, 1e5, true, false});
+    scenario.exposure.white_level = number("white_level", scenario.exposure.white_level, {0.01, 10.0, false, false});
+    if (table != nullptr && !(electrons_of_white(scenario) > 0.0)) {
+      table->reject("white_level", fmt::format("{}", scenario.exposure.white_level), "a white above the offset");
+    }
+  };
+  const std::optional<TomlTable> table = root.maybe_table("sensor");
+  read(table ? &*table : nullptr);
+}
+
+void read_codec(const TomlTable& root, Scenario& scenario) {
+  const bool deep = scenario.sensor.bit_depth > 8;
+  scenario.codec = deep ? Codec::png : Codec::ffv1;
+  section(root, "codec", [&](const TomlTable& table) {
+    const std::string name = table.word("name", {"ffv1", "raw", "png"});
+    scenario.codec = name == "ffv1" ? Codec::ffv1 : name == "raw" ? Codec::raw : Codec::png;
+    if (deep && scenario.codec != Codec::png) {
+      table.reject("name", fmt::format("text \"{}\"", name),
+                   fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));
+    }
+  });
+}
+
+void read_pattern(const TomlTable& root, PatternSetup& pattern) {
+  section(root, "calibration", [&](const TomlTable& table) {
+    if (const auto corners = table.maybe_numbers("inner_corners", 2, base::between(3.0, 100.0))) {
+      pattern.inner_columns = static_cast<int>((*corners)[0]);
+      pattern.inner_rows = static_cast<int>((*corners)[1]);
+      if (pattern.inner_columns != (*corners)[0] || pattern.inner_rows != (*corners)[1] ||
+          pattern.inner_columns < pattern.inner_rows) {
+        table.reject("inner_corners", fmt::format("[{}, {}]", (*corners)[0], (*corners)[1]),
+                     "two whole numbers, the larger one first");
+      }
+    }
+    pattern.square_m = table.number_or("square_m", pattern.square_m, {1e-4, 10.0, false, false});
+    pattern.views = static_cast<int>(table.integer_or("views", pattern.views, 3, 99));
+    if (const auto places = table.maybe_numbers("plane_x_m", 0, base::between(-1000.0, 1000.0))) {
+      pattern.plane_x_m = *places;
+      if (places->empty() || places->size() > 99) {
+        table.reject("plane_x_m", fmt::format("an array of {}", places->size()), "1 to 99 places");
+      }
+    }
+    pattern.plane_y_m = table.number_or("plane_y_m", pattern.plane_y_m, base::between(-1000.0, 1000.0));
+    pattern.plane_rotation_rad =
+        table.number_or("plane_rotation_deg", pattern.plane_rotation_rad / kRadPerDeg, base::between(-10.0, 10.0)) *
+        kRadPerDeg;
+  });
+}
+
+void read_laboratory(const TomlTable& root, Scenario& scenario) {
+  const base::Range albedo = base::between(0.0, 1.0);
+  section(root, "marker", [&](const TomlTable& table) {
+    MarkerSetup& marker = scenario.marker;
+    marker.diameter_m = table.number_or("diameter_m", marker.diameter_m, {1e-4, 1.0, false, false});
+    marker.height_m = table.number_or("height_m", marker.height_m, base::between(-0.2, 0.2));
+    marker.reflectance = table.number_or("reflectance", marker.reflectance, base::between(0.0, 20.0));
+  });
+  section(root, "track", [&](const TomlTable& table) {
+    scenario.track.downhill = table.word("downhill", {"+X", "-X"}, "+X") == "+X" ? 1 : -1;
+    scenario.track.length_m = table.number_or("length_m", scenario.track.length_m, {0.1, 100.0, false, false});
+  });
+  section(root, "scene", [&](const TomlTable& table) {
+    SceneSetup& scene = scenario.scene;
+    scene.wall_albedo = table.number_or("wall_albedo", scene.wall_albedo, albedo);
+    scene.wall_distance_m = table.number_or("wall_distance_m", scene.wall_distance_m, base::between(0.25, 100.0));
+    scene.track_albedo = table.number_or("track_albedo", scene.track_albedo, albedo);
+    scene.glider_albedo = table.number_or("glider_albedo", scene.glider_albedo, albedo);
+    scene.glider_mass_kg = table.number_or("glider_mass_kg", scene.glider_mass_kg, base::at_least(0.0));
+    scene.light_falloff = table.number_or("light_falloff", scene.light_falloff, base::between(0.0, 10.0));
+  });
+  section(root, "plumb", [&](const TomlTable& table) {
+    PlumbSetup plumb;
+    plumb.x_m = table.number_or("x_m", plumb.x_m, base::between(-1000.0, 1000.0));
+    plumb.z_m = table.number_or("z_m", plumb.z_m, base::between(-10.0, 10.0));
+    plumb.diameter_m = table.number_or("diameter_m", plumb.diameter_m, {1e-5, 0.1, false, false});
+    scenario.plumb = plumb;
+  });
+}
+
+/// The checks that need the whole scenario; asked only of one without other errors.
+void check_pictures(const TomlTable& root, const Scenario& scenario) {
+  const Camera& camera = scenario.camera;
+  if (const auto why = why_not_one_to_one(camera)) {
+    root.reject("camera", *why, "a lens that maps one to one over the picture");
+    return;
+  }
+  for (std::size_t view = 0; view < scenario.pattern.plane_x_m.size(); ++view) {
+    for (const Eigen::Vector3d& corner : outline_of(plane_board(scenario, view))) {
+      const auto pixel = project(camera, corner);
+      if (pixel && in_picture(camera, *pixel)) continue;
+      root.reject("calibration",
+                  fmt::format("a pattern of which a part is not in the picture, at plane_x_m = {}",
+                              scenario.pattern.plane_x_m[view]),
+                  "a pattern in the plane of motion that is wholly in the picture, with a white border of one square");
+      break;
+    }
+  }
+  if (scenario.plumb && !plumb_region(scenario)) {
+    root.reject("plumb", fmt::format("a plumb line at x = {} m", scenario.plumb->x_m), "one that the camera sees");
+  }
+  constexpr double kNearest = 0.1;  // m before the camera
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      bool seen = false;
+      bool behind = false;
+      // A step of frame time, or a thousandth of a long clip.
+      const std::size_t frames = frame_count(scenario.recording, motion);
+      std::vector<double> times;
+      for (std::size_t i = 0; i < frames; i += 1 + frames / 1000) {
+        times.push_back(static_cast<double>(i) / scenario.recording.frame_rate_hz +
+                        0.5 * scenario.recording.exposure_s);
+      }
+      for (const sim::State& state : sim::simulate(configuration.body, motion.x0_m, motion.v0_m_s, times).states) {
+        const Eigen::Vector3d marker = marker_position_W(scenario, configuration.body.incline_rad, state.x_m);
+        behind = behind || !((camera.X_WC.inverse() * marker).z() > kNearest + scenario.marker.diameter_m);
+        const auto pixel = project(camera, marker);
+        seen = seen || (pixel && in_picture(camera, *pixel));
+      }
+      const std::string clip = fmt::format("clip \"{}\"", motion.name);
+      if (behind) {
+        root.reject("configuration", clip + " with a marker that gets behind the camera", "a motion before the camera");
+      } else if (!seen) {
+        root.reject("configuration", clip + " with a marker that is never in the picture",
+                    "a motion of which the camera sees at least a part");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Scenario read_scenario(const std::filesystem::path& path) {
+  const base::TomlFile file = base::TomlFile::load(path);
+  const TomlTable root = file.root();
+  Scenario scenario;
+  scenario.file = path;
+  scenario.motion = sim::read_motions(root);
+  scenario.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
+  scenario.camera.width_px = 800;
+  scenario.camera.height_px = 600;
+  scenario.camera.focal_px = {1200.0, 1200.0};
+  read_camera(root, scenario);
+  read_sensor(root, scenario);
+  read_codec(root, scenario);
+  read_pattern(root, scenario.pattern);
+  read_laboratory(root, scenario);
+  file.finish();
+  check_pictures(root, scenario);
+  file.finish();
+  return scenario;
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,29 @@
+/// Renders what stands still, once for each set-up, by ray casting in a fragment shader.
+///
+/// A pixel is the mean of the radiance over its square: 64 rays through the exact inverse of the lens where anything
+/// changes within the pixel or its neighbours, 4 where all is even (found by a first pass). The 64 are a Hammersley
+/// set, so that an edge along rows or columns has 64 levels too; the chessboard is moreover filtered over each ray's
+/// own share of the pixel, so that its edges are exact to about 1e-3 of their contrast.
+#pragma once
+
+#include "render/float_canvas.h"
+#include "render/ray_table.h"
+#include "render/static_scene.h"
+
+namespace glidelab::render {
+
+class StaticPainter {
+ public:
+  /// `rays` belongs to `camera`. One painter a thread.
+  StaticPainter(const Camera& camera, const RayTable& rays);
+
+  /// Relative radiance, in the size of the picture.
+  FloatPicture paint(const StaticScene& scene);
+
+ private:
+  Camera camera_;
+  FloatCanvas canvas_;
+  int wanted_unit_ = 0;  ///< the texture that says which pixels get all rays
+};
+
+}  // namespace glidelab::render
