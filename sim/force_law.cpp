@@ -19,13 +19,6 @@ double net_force_n(const Body& body, double v_m_s, int direction) {
   return sum;
 }
 
-double net_slope_n_s_m(const Body& body, double v_m_s, int direction) {
-  const Contact contact = contact_of(body);
-  double sum = 0.0;
-  for (const auto& term : body.forces) sum += term->slope_n_s_m(v_m_s, direction, contact);
-  return sum;
-}
-
 double load_at_rest_n(const Body& body) {
   const Contact contact = contact_of(body);
   double sum = weight_along_track_n(body);

@@ -51,9 +51,6 @@ double weight_along_track_n(const Body& body);
 /// Gravity and all terms, while sliding in `direction` at speed v; at v = 0 the limit from that side.
 double net_force_n(const Body& body, double v_m_s, int direction);
 
-/// d net_force / dv; may be infinite at v = 0.
-double net_slope_n_s_m(const Body& body, double v_m_s, int direction);
-
 /// Gravity and the terms that do not hold, at v = 0: what static friction has to balance.
 double load_at_rest_n(const Body& body);
 

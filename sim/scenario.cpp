@@ -18,7 +18,7 @@ using base::TomlTable;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-std::string quoted(const std::string& text) {
+std::string as_text(const std::string& text) {
   return "text \"" + text + "\"";
 }
 
@@ -35,19 +35,19 @@ bool is_name(const std::string& text) {
 using Names = std::map<std::string, int>;
 
 std::string read_name(const TomlTable& table, std::string_view key) {
-  const std::string name = table.text(key);
+  std::string name = table.text(key);
   if (!name.empty() && !is_name(name)) {
-    table.reject(key, quoted(name), "letters, digits, '-', '_' and '.', not starting with '.'");
+    table.reject(key, as_text(name), "letters, digits, '-', '_' and '.', not starting with '.'");
   }
   return name;
 }
 
 std::string read_unique_name(const TomlTable& table, Names& names) {
-  const std::string name = read_name(table, "name");
+  std::string name = read_name(table, "name");
   if (name.empty()) return name;
   const auto [first, is_new] = names.emplace(name, table.line("name"));
   if (!is_new) {
-    table.reject("name", quoted(name), "another name than in line " + fmt::format("{}", first->second));
+    table.reject("name", as_text(name), fmt::format("another name than in line {}", first->second));
   }
   return name;
 }
@@ -100,14 +100,14 @@ ConfigurationSetup read_configuration(const TomlTable& table, double gravity_m_s
 void check_groups(const std::vector<TomlTable>& tables, const std::vector<ConfigurationSetup>& setups) {
   std::map<std::string, std::size_t> first_of;
   for (std::size_t i = 0; i < setups.size(); ++i) {
-    const auto [entry, is_new] = first_of.emplace(setups[i].group, i);
-    if (is_new) continue;
-    const ConfigurationSetup& first = setups[entry->second];
+    const std::size_t first_index = first_of.emplace(setups[i].group, i).first->second;
+    if (first_index == i) continue;
+    const ConfigurationSetup& first = setups[first_index];
     const auto compare = [&](const char* key, double value, double first_value) {
       if (std::isnan(value) || std::isnan(first_value) || value == first_value) return;
       tables[i].reject(key, fmt::format("{:.10g}", value / kRadPerDeg),
                        fmt::format("{:.10g} as in line {}, for group \"{}\" is one set-up of the track",
-                                   first_value / kRadPerDeg, tables[entry->second].line(key), first.group));
+                                   first_value / kRadPerDeg, tables[first_index].line(key), first.group));
     };
     compare("incline_deg", setups[i].body.incline_rad, first.body.incline_rad);
     compare("stated_incline_deg", setups[i].stated_incline_rad, first.stated_incline_rad);

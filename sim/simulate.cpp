@@ -19,6 +19,9 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Shorter than this, nothing changes that a double could show, and products in CVODES would underflow.
 constexpr double kShortestStep = 1e-100;  // s
+// Times the absolute tolerance: the speed below which a slope that is infinite at rest is straightened. At 1 Newton's
+// method was seen to stall in some of 10000 random motions, at 100 in none of 24000.
+constexpr double kLeastSpeed = 100.0;
 
 void require(bool good, const std::string& key, double found, const std::string& expected) {
   if (!good) throw base::InputError(base::Issue{"", 0, key, fmt::format("{}", found), expected});
@@ -100,7 +103,7 @@ class Motion {
 
   // To v = 0, or to the last time.
   void slide() {
-    const Slide slide(body_, static_cast<int>(mode_));
+    const Slide slide(body_, static_cast<int>(mode_), kLeastSpeed * options_.absolute_tolerance);
     const double start_a = slide.acceleration_m_s2(start_[1]);
     if (slide.stops() && std::abs(start_[1]) <= kShortestStep * std::abs(start_a)) {
       come_to_rest(start_s_, start_[0], start_[2]);

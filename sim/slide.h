@@ -10,6 +10,9 @@
 ///   then
 ///     w = |v|^(1-p), which goes through 0 at a finite rate. Else |v| falls for ever, and w = ln |v| keeps it accurate
 ///     and its sign sure, so that rounding never makes a false root.
+/// Where w = v, a term with an infinite slope at rest is a straight line between 0 and `least_speed_m_s`, a little
+/// above the absolute tolerance of v: no solver resolves it there. It changes v by less than that speed (1e-12 m/s as
+/// simulate() has it, which is 1e-11 m over 10 s).
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +24,8 @@ namespace glidelab::sim {
 
 class Slide {
  public:
-  /// `direction` is +1 or -1; the body must outlive the slide and what system() gives.
-  Slide(const Body& body, int direction);
+  /// `direction` is +1 or -1.
+  Slide(const Body& body, int direction, double least_speed_m_s);
 
   /// Whether v comes to 0 in finite time.
   bool stops() const { return stops_; }
@@ -37,9 +40,16 @@ class Slide {
 
  private:
   enum class Variable { speed, power, logarithm };
+  struct Force {
+    double n;            ///< of all terms, without gravity
+    double slope_n_s_m;  ///< d n / dv
+  };
+  Force force_at(double v_m_s) const;
 
-  const Body* body_;
+  Body body_;
   int direction_;
+  double least_speed_m_s_;
+  Contact contact_;
   double weight_n_;
   Variable variable_ = Variable::speed;
   double exponent_ = 1.0;  ///< least of the terms' exponents at rest and 1

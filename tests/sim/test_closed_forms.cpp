@@ -29,7 +29,8 @@ TEST_CASE("phi1 and phi2 are exact at 0, near 0 and across every change of formu
   CHECK(phi1(0.0) == 1.0);
   CHECK(phi2(0.0) == 0.5);
   for (const double z : {1e-300, 1e-16, -1e-9, 1e-4}) {
-    // Two terms more of the series: z²/6 and z²/24 relative to 1, below 1e-15 only for |z| < 1e-7, hence they are kept.
+    // Two terms more of the series: z²/6 and z²/24 relative to 1, kept because they are below 1e-15 only for |z| <
+    // 1e-7.
     CHECK(std::abs(phi1(z) - (1.0 + z / 2.0 + z * z / 6.0 + z * z * z / 24.0)) < 1e-15);
     CHECK(std::abs(phi2(z) - (0.5 + z / 6.0 + z * z / 24.0 + z * z * z / 120.0)) < 1e-15);
   }

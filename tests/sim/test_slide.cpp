@@ -11,6 +11,8 @@ using tests::body;
 
 namespace {
 
+constexpr double kLeast = 1e-12;  // m/s, as simulate() has it
+
 // Central differences against the analytic Jacobian, with steps of 1e-6 of each variable: truncation of order 1e-12 and
 // rounding of order 1e-16 / 1e-6 of the rates, which are below 100 here.
 void check_jacobian(const Slide& slide, double v) {
@@ -45,8 +47,8 @@ TEST_CASE("the Jacobian meets finite differences for every law, variable and dir
   };
   for (const Body& glider : bodies) {
     for (const double v : {0.02, 0.3, 1.7}) {
-      check_jacobian(Slide(glider, +1), v);
-      check_jacobian(Slide(glider, -1), -v);
+      check_jacobian(Slide(glider, +1, kLeast), v);
+      check_jacobian(Slide(glider, -1, kLeast), -v);
     }
   }
 }
@@ -55,7 +57,7 @@ TEST_CASE("the variable is a speed both ways") {
   for (const Body& glider : {body(0.3, 0.05, ViscousForce(0.9)), body(0.3, 0.0, PowerLawForce(0.4, 0.5)),
                              body(0.3, 0.0, ViscousForce(0.9))}) {
     for (const int direction : {-1, +1}) {
-      const Slide slide(glider, direction);
+      const Slide slide(glider, direction, kLeast);
       for (const double speed : {1e-12, 0.3, 2.0}) {
         // exp(ln v): the rounding of ln v, up to 28, times v.
         CHECK(std::abs(slide.speed_m_s(slide.variable(direction * speed)) / (direction * speed) - 1.0) < 1e-14);
@@ -65,12 +67,20 @@ TEST_CASE("the variable is a speed both ways") {
 }
 
 TEST_CASE("whether a slide stops follows from the force at v -> 0") {
-  CHECK(Slide(body(0.3, 0.05, ViscousForce(0.9)), -1).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.05, ViscousForce(0.9)), +1).stops());
-  CHECK(Slide(body(0.3, 0.05, CoulombForce(0.2)), +1).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.0, ViscousForce(0.9)), +1).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.0, QuadraticForce(0.9)), -1).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.0), +1).stops());
-  CHECK(Slide(body(0.3, 0.0, PowerLawForce(0.9, 0.7)), +1).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.0, PowerLawForce(0.0, 0.7), ViscousForce(1.0)), +1).stops());
+  CHECK(Slide(body(0.3, 0.05, ViscousForce(0.9)), -1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.05, ViscousForce(0.9)), +1, kLeast).stops());
+  CHECK(Slide(body(0.3, 0.05, CoulombForce(0.2)), +1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.0, ViscousForce(0.9)), +1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.0, QuadraticForce(0.9)), -1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.0), +1, kLeast).stops());
+  CHECK(Slide(body(0.3, 0.0, PowerLawForce(0.9, 0.7)), +1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.0, PowerLawForce(0.0, 0.7), ViscousForce(1.0)), +1, kLeast).stops());
+}
+
+TEST_CASE("below the least speed an infinite slope becomes a finite one, and the force has no jump") {
+  const Slide slide(body(0.3, 0.05, PowerLawForce(0.4, 0.5)), -1, 1e-6);
+  const double gap = slide.acceleration_m_s2(-1e-6) - slide.acceleration_m_s2(-1e-6 * (1.0 - 1e-9));
+  CHECK(std::abs(gap) < 1e-11);  // 1e-9 of 0.4 N sqrt(1e-6) / 0.3 kg
+  const Eigen::Matrix3d at_rest = slide.jacobian({0.0, 0.0, 0.0});
+  CHECK(std::abs(at_rest(1, 1) + 0.4 / 0.3 * 1e-3 / 1e-6) < 1e-9);
 }
