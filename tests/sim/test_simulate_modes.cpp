@@ -84,14 +84,23 @@ TEST_CASE("static friction above sliding friction holds a glider that sliding fr
 }
 
 TEST_CASE("a time that is the instant of a reversal shows the mode after it") {
-  // v = 1 m/s - 1 m/s² t, exactly 0 at t = 1 s; then it turns, for nothing holds it.
-  const Body glider = body(1.0, 0.0, ConstantForce(-1.0));
-  const Trajectory trajectory = simulate(glider, 0.0, 1.0, std::vector<double>{0.5, 1.0, 1.5});
-  REQUIRE(trajectory.changes.size() == 1);
-  CHECK(std::abs(trajectory.changes[0].t_s - 1.0) < 1e-12);
-  CHECK(trajectory.states[1].mode == Mode::slide_up);
-  CHECK(trajectory.states[1].v_m_s == 0.0);
-  CHECK(std::abs(trajectory.states[2].v_m_s + 0.5) < 1e-12);
+  // v = v0 - a t with nothing that holds: 0 at v0 / a, where it turns. Most of these instants are not the double that
+  // the solver finds, but one a few roundings away.
+  for (const double a : {1.0, 0.3, 7.7}) {
+    for (int i = 1; i <= 40; ++i) {
+      const double v0 = 0.1 * i;
+      INFO("a " << a << " v0 " << v0);
+      const double turn_s = v0 / a;
+      const Trajectory trajectory =
+          simulate(body(1.0, 0.0, ConstantForce(-a)), 0.0, v0, std::vector<double>{0.5 * turn_s, turn_s, 1.5 * turn_s});
+      REQUIRE(trajectory.changes.size() == 1);
+      CHECK(std::abs(trajectory.changes[0].t_s - turn_s) < 1e-12);
+      CHECK(trajectory.states[0].mode == Mode::slide_down);
+      CHECK(trajectory.states[1].mode == Mode::slide_up);
+      CHECK(std::abs(trajectory.states[1].v_m_s) < 1e-13);  // 100 roundings of t, times a
+      CHECK(std::abs(trajectory.states[2].v_m_s + 0.5 * v0) < 1e-12);
+    }
+  }
 }
 
 TEST_CASE("extreme starts and times are simulated as they stand") {
