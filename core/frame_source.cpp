@@ -78,7 +78,17 @@ class VideoFrames final : public FrameSource {
     Frame frame = make_frame(picture, with_color_, count_);
     const double stamp_s = capture_.get(cv::CAP_PROP_POS_MSEC) * 1e-3;
     if (count_ == 0) first_stamp_s_ = stamp_s;
-    look_at_stamp(stamp_s - first_stamp_s_);
+    // OpenCV says 0 of a frame without a stamp: the last ones of a clip, which it gets by emptying the decoder.
+    if (count_ > 0 && stamp_s == 0.0) {
+      ++unstamped_;
+      if (camera_.time == TimeSource::container) {
+        ended_ = true;
+        check_length();
+        return std::nullopt;
+      }
+    } else {
+      look_at_stamp(stamp_s - first_stamp_s_);
+    }
     frame.t_s = camera_.time == TimeSource::container ? stamp_s - first_stamp_s_
                                                       : static_cast<double>(count_) / camera_.frame_rate_hz;
     ++count_;
@@ -96,11 +106,14 @@ class VideoFrames final : public FrameSource {
           camera_.frame_rate_hz,
           camera_.time == TimeSource::rate ? "the stated rate counts" : "the container's stamps count, as asked"));
     }
+    if (unstamped_ > 0 && camera_.time == TimeSource::container) {
+      notes.emplace_back("the last frames have no time stamp and are left out");
+    }
     if (irregular_ > 0) {
       notes.push_back(fmt::format(
           "the container's time stamps are irregular: {} of {} steps differ from the median step of {:.4g} ms, the "
           "longest is {:.4g} ms{}",
-          irregular_, count_ - 1, median_step_s_ * 1e3, longest_step_s_ * 1e3,
+          irregular_, stamps_s_.size() - 1, median_step_s_ * 1e3, longest_step_s_ * 1e3,
           camera_.time == TimeSource::rate ? " (frames may be missing; the stated rate counts)" : ""));
     }
     return notes;
@@ -118,7 +131,7 @@ class VideoFrames final : public FrameSource {
 
   void check_length() {
     if (count_ == 0) fail(file_, "", "no frame", "a clip with frames");
-    const double missing = static_cast<double>(stated_) - static_cast<double>(count_);
+    const double missing = static_cast<double>(stated_) - static_cast<double>(count_ + unstamped_);
     if (missing > std::max(2.0, 0.01 * static_cast<double>(stated_))) {
       fail(file_, fmt::format("frame {}", count_), fmt::format("the end of the clip after {} frames", count_),
            fmt::format("{} frames, as the container says (is the file truncated?)", stated_));
@@ -160,6 +173,7 @@ class VideoFrames final : public FrameSource {
   bool ended_ = false;
   double first_stamp_s_ = 0.0;
   std::vector<double> stamps_s_;
+  std::size_t unstamped_ = 0;
   std::size_t irregular_ = 0;
   double median_step_s_ = 0.0;
   double longest_step_s_ = 0.0;

@@ -17,18 +17,21 @@ template <int N>
 struct NormalEquations {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
-  Matrix jtj = Matrix::Zero();
+  Matrix jtj = Matrix::Zero();  ///< whole once complete() was called; its lower half until then
   Vector jtr = Vector::Zero();
   double cost = 0.0;    ///< sum of w r^2
   double weight = 0.0;  ///< sum of w
 
   void add(const Vector& jacobian, double residual, double w) {
-    const Vector weighted = w * jacobian;
-    jtj.noalias() += weighted * jacobian.transpose();
-    jtr += residual * weighted;
+    for (int column = 0; column < N; ++column) {
+      const double weighted = w * jacobian[column];
+      for (int row = column; row < N; ++row) jtj(row, column) += weighted * jacobian[row];
+    }
+    jtr += (w * residual) * jacobian;
     cost += w * residual * residual;
     weight += w;
   }
+  void complete() { jtj.template triangularView<Eigen::StrictlyUpper>() = jtj.transpose(); }
 };
 
 enum class FitStop { converged, iterations, singular, out_of_range };
@@ -56,6 +59,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     fit.stop = FitStop::out_of_range;
     return fit;
   }
+  here->complete();
   double damping = 1e-3;
   for (; fit.iterations < max_iterations; ++fit.iterations) {
     Eigen::Matrix<double, N, N> damped = here->jtj;
@@ -67,7 +71,8 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
       return fit;
     }
     const Vector trial = fit.parameters + delta;
-    const std::optional<NormalEquations<N>> there = evaluate(trial);
+    std::optional<NormalEquations<N>> there = evaluate(trial);
+    if (there) there->complete();
     const bool small = (delta.array().abs() < step.array()).all();
     if (there && there->cost <= here->cost) {
       fit.parameters = trial;

@@ -248,6 +248,14 @@ cv::Point2d Restitution::to_pixel(cv::Point2d plane) const {
   return radius_m_ == 0.0 ? centre : centre + outline_offset(plane);
 }
 
+std::optional<cv::Point2d> Restitution::undistorted(cv::Point2d pixel) const {
+  if (scale_) return pixel;
+  const CameraModel& camera = calibration_.camera;
+  const auto normalised = camera.to_normalised(pixel);
+  if (!normalised) return std::nullopt;
+  return cv::Point2d(camera.fx * normalised->x + camera.cx, camera.fy * normalised->y + camera.cy);
+}
+
 std::optional<double> Restitution::marker_radius_px(cv::Point2d pixel) const {
   if (scale_) return radius_m_ * scale_->px_per_m;
   const auto plane = intersect(calibration_.camera, plane_->pose, pixel);

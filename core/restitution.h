@@ -48,6 +48,9 @@ class Restitution {
   /// The pixel on which a marker at this place is seen centred; the inverse of to_plane.
   cv::Point2d to_pixel(cv::Point2d plane) const;
 
+  /// The pixel with the lens's distortion undone (as a camera without it would show it); the pixel itself with a scale.
+  std::optional<cv::Point2d> undistorted(cv::Point2d pixel) const;
+
   /// Radius of the marker's image there, in pixels; nothing where to_plane gives nothing.
   std::optional<double> marker_radius_px(cv::Point2d pixel) const;
 

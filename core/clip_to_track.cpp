@@ -1,0 +1,286 @@
+#include "core/clip_to_track.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "base/errors.h"
+#include "core/calibrate.h"
+#include "core/frame_source.h"
+#include "core/marker_track.h"
+#include "core/motion_axis.h"
+#include "core/parallel.h"
+#include "core/plumb.h"
+#include "core/restitution.h"
+#include "core/track_csv.h"
+
+namespace glidelab::core {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track up to a few degrees"
+
+const GroupSetup* group_of(const Experiment& experiment, const std::string& name) {
+  for (const GroupSetup& group : experiment.groups) {
+    if (group.name == name) return &group;
+  }
+  return nullptr;
+}
+
+int downhill_of(const Experiment& experiment, const std::string& name) {
+  const GroupSetup* group = group_of(experiment, name);
+  return group != nullptr && group->downhill ? *group->downhill : experiment.track.downhill;
+}
+
+std::vector<fs::path> planes_of(const Experiment& experiment, const std::string& name) {
+  const GroupSetup* group = group_of(experiment, name);
+  return group != nullptr && !group->planes.empty() ? group->planes : experiment.calibration->planes;
+}
+
+/// The camera and, for each group that has clips made of pictures, the way from pixels to its plane.
+struct Setting {
+  std::optional<cv::Size> size;
+  std::optional<CalibrationResult> calibration;
+  std::map<std::string, Restitution> restitutions;
+};
+
+std::set<std::string> groups_with_pictures(const Experiment& experiment) {
+  std::set<std::string> names;
+  for (const ClipSetup& clip : experiment.clips) {
+    if (!clip.file.empty()) names.insert(clip.group);
+  }
+  return names;
+}
+
+Setting calibrated(const Experiment& experiment, int jobs) {
+  const CalibrationSetup& setup = *experiment.calibration;
+  std::vector<fs::path> files = setup.views;
+  files.insert(files.end(), setup.planes.begin(), setup.planes.end());
+  for (const std::string& name : groups_with_pictures(experiment)) {
+    const std::vector<fs::path> planes = planes_of(experiment, name);
+    files.insert(files.end(), planes.begin(), planes.end());
+  }
+  const BoardViews boards = find_board_views(files, setup.inner_corners, jobs);
+  const auto corners_in = [&](const fs::path& file) -> const BoardCorners& {
+    for (const BoardView& view : boards.views) {
+      if (view.file == file) return view.corners;
+    }
+    throw base::InputError(base::Issue{
+        file.string(), 0, "calibration.plane", "no pattern in sight",
+        fmt::format("all {} x {} inner corners in sight", setup.inner_corners.width, setup.inner_corners.height)});
+  };
+
+  Setting setting;
+  std::vector<std::pair<std::string, std::vector<BoardCorners>>> planes;
+  for (const std::string& name : groups_with_pictures(experiment)) {
+    planes.emplace_back(name, std::vector<BoardCorners>{});
+    for (const fs::path& file : planes_of(experiment, name)) planes.back().second.push_back(corners_in(file));
+  }
+  const Calibration calibration = calibrate_camera(boards, setup.square_m);
+  setting.size = calibration.camera.size;
+  CalibrationResult result;
+  result.experiment = experiment.name;
+  result.rms_px = calibration.rms_px;
+  const CameraModel& camera = calibration.camera;
+  result.camera_matrix = {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+  result.distortion.assign(camera.distortion.begin(), camera.distortion.end());
+  result.views_used = calibration.views_used;
+  result.notes = calibration.notes;
+  double sum = 0.0, count = 0.0;
+  for (const auto& [name, corners] : planes) {
+    const auto [place, is_new] = setting.restitutions.emplace(
+        name, Restitution::from_pattern(calibration, corners, setup.square_m, experiment.marker->height_m,
+                                        experiment.marker->diameter_m));
+    const PlaneFit& fit = *place->second.plane();
+    const auto views = static_cast<double>(corners.size());
+    sum += views * fit.rms_m * fit.rms_m;
+    count += views;
+    // Corners are found to hundredths of a pixel; what is far above the camera's own residuals is no common plane.
+    if (fit.rms_px > std::max(0.3, 3.0 * calibration.rms_px)) {
+      result.notes.push_back(
+          fmt::format("the plane views of group \"{}\" do not lie in one plane: {:.2g} px off", name, fit.rms_px));
+    }
+  }
+  result.restitution_rms_m = std::sqrt(sum / count);
+  setting.calibration = std::move(result);
+  return setting;
+}
+
+Setting setting_of(const Experiment& experiment, int jobs) {
+  if (experiment.calibration) return calibrated(experiment, jobs);
+  Setting setting;
+  for (const std::string& name : groups_with_pictures(experiment)) {
+    setting.restitutions.emplace(name, Restitution::from_scale(*experiment.scale, experiment.marker->diameter_m));
+  }
+  return setting;
+}
+
+/// What one clip's pictures say, in pixels.
+struct SeenClip {
+  TrackedMarker marker;
+  std::vector<double> frame_t_s;
+  cv::Size size;
+  std::vector<std::string> notes;
+};
+
+/// Counts frames over all clips for the progress.
+class FrameCounter {
+ public:
+  FrameCounter(const base::Progress& progress, std::size_t clips) : progress_(progress), clips_(clips) {}
+  /// Tells how far all clips are, this clip's share having grown by `share`.
+  void add(double share) {
+    double now = done_.load();
+    while (!done_.compare_exchange_weak(now, now + share)) {
+    }
+    progress_("frames", std::min(1.0, (now + share) / static_cast<double>(clips_)));
+  }
+
+ private:
+  const base::Progress& progress_;
+  std::size_t clips_;
+  std::atomic<double> done_ = 0.0;
+};
+
+SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Setting& setting, FrameCounter& counter) {
+  const bool with_color = signal_kind(*experiment.marker) == SignalKind::colored;
+  const auto source = open_frames(clip.file, *experiment.camera, with_color, setting.size);
+  const Restitution& restitution = setting.restitutions.at(clip.group);
+  // Where no ray belongs to a pixel (far outside the calibrated field) the marker is as large as elsewhere.
+  double usual_px = 0.0;
+  const auto radius_at = [&](cv::Point2d pixel) {
+    const auto radius = restitution.marker_radius_px(pixel);
+    if (radius) usual_px = usual_px == 0.0 ? *radius : usual_px;
+    return radius.value_or(usual_px == 0.0 ? 5.0 : usual_px);
+  };
+  MarkerTracker tracker(clip.file, *experiment.marker, radius_at);
+  SeenClip seen;
+  const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
+  constexpr std::size_t kTellEvery = 10;
+  while (const auto frame = source->next()) {
+    seen.size = frame->grey.size();
+    seen.frame_t_s.push_back(frame->t_s);
+    tracker.add(*frame);
+    if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
+  }
+  seen.marker = tracker.finish();
+  seen.notes = source->notes();
+  seen.notes.insert(seen.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
+  return seen;
+}
+
+struct PlanePoint {
+  MarkerSighting sighting;
+  cv::Point2d place;
+};
+
+std::vector<PlanePoint> restituted(const SeenClip& seen, const Restitution& restitution) {
+  std::vector<PlanePoint> points;
+  for (const MarkerSighting& sighting : seen.marker.sightings) {
+    const auto place = restitution.to_plane({sighting.u_px, sighting.v_px});
+    if (place) points.push_back({sighting, *place});
+  }
+  return points;
+}
+
+TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points, const MotionAxis& axis,
+                     const CameraSettings& camera, const Restitution& restitution) {
+  TrackData track;
+  track.frame_rate_hz = camera.frame_rate_hz;
+  track.frame_t_s = seen.frame_t_s;
+  track.notes = seen.notes;
+  for (const PlanePoint& point : points) {
+    track.frame.push_back(point.sighting.frame);
+    // A rolling shutter exposes the marker's row later than the picture's middle row, to which the frame's time
+    // belongs.
+    const double row = point.sighting.v_px - 0.5 * (seen.size.height - 1);
+    track.t_s.push_back(seen.frame_t_s[point.sighting.frame] + camera.line_readout_s * row);
+    track.x_m.push_back(axis.x_of(point.place));
+    track.sightings.push_back(point.sighting);
+  }
+  const std::size_t lost = seen.marker.sightings.size() - points.size();
+  if (lost > 0) {
+    track.notes.push_back(fmt::format("{} sightings lie where the lens model has no ray and are left out", lost));
+  }
+  if (points.size() > 1) {
+    const auto [low, high] = std::minmax_element(track.x_m.begin(), track.x_m.end());
+    const auto pixel = [&](const double* x) {
+      const MarkerSighting& sighting = track.sightings[static_cast<std::size_t>(x - track.x_m.data())];
+      return cv::Point2d(sighting.u_px, sighting.v_px);
+    };
+    track.scale_sd_relative = restitution.relative_scale_sd(pixel(&*low), pixel(&*high));
+  }
+  return track;
+}
+
+void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string>& notes) {
+  if (has_pattern && std::abs(axis.angle_to_x_rad()) > kSlantedRad) {
+    notes.push_back(fmt::format("the line of motion makes {:.0f} degrees with the pattern's X axis",
+                                axis.angle_to_x_rad() * 180.0 / std::numbers::pi));
+  }
+}
+
+}  // namespace
+
+PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress) {
+  PictureResults results;
+  results.tracks.resize(experiment.clips.size());
+  std::vector<std::size_t> pictures;
+  for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
+    const ClipSetup& clip = experiment.clips[i];
+    if (clip.file.empty()) {
+      results.tracks[i] = read_track_csv(clip.track, downhill_of(experiment, clip.group));
+    } else {
+      pictures.push_back(i);
+    }
+  }
+  if (pictures.empty()) return results;
+
+  progress("calibration", 0.0);
+  const Setting setting = setting_of(experiment, jobs);
+  progress("calibration", 1.0);
+  std::vector<SeenClip> seen(experiment.clips.size());
+  FrameCounter counter(progress, pictures.size());
+  for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
+    seen[pictures[k]] = look_at(experiment, experiment.clips[pictures[k]], setting, counter);
+  });
+
+  for (const auto& [name, restitution] : setting.restitutions) {
+    std::vector<std::vector<PlanePoint>> points(experiment.clips.size());
+    std::vector<cv::Point2d> all;
+    for (const std::size_t i : pictures) {
+      if (experiment.clips[i].group != name) continue;
+      points[i] = restituted(seen[i], restitution);
+      for (const PlanePoint& point : points[i]) all.push_back(point.place);
+    }
+    const int downhill = downhill_of(experiment, name);
+    // A marker that rests leaves noise only, which has no direction.
+    cv::Point2d low(1e300, 1e300), high(-1e300, -1e300);
+    for (const cv::Point2d& place : all) {
+      low = {std::min(low.x, place.x), std::min(low.y, place.y)};
+      high = {std::max(high.x, place.x), std::max(high.y, place.y)};
+    }
+    const bool moves = !all.empty() && cv::norm(high - low) > 0.5 * experiment.marker->diameter_m;
+    const MotionAxis axis = moves ? MotionAxis::through(all, downhill) : MotionAxis::along_x(downhill);
+    for (const std::size_t i : pictures) {
+      if (experiment.clips[i].group != name) continue;
+      results.tracks[i] = track_from(seen[i], points[i], axis, *experiment.camera, restitution);
+      note_axis(axis, experiment.calibration.has_value(), results.tracks[i].notes);
+      if (experiment.scale && experiment.scale->px_per_m_sd == 0.0) {
+        results.tracks[i].notes.emplace_back("the scale is taken as exact (px_per_m_sd is 0 or not given)");
+      }
+    }
+    const GroupSetup* group = group_of(experiment, name);
+    const std::optional<PlumbSetup>& plumb = group != nullptr && group->plumb ? group->plumb : experiment.plumb;
+    if (plumb) results.plumbs.push_back({name, plumb_angle(*plumb, restitution, axis, setting.size)});
+  }
+  results.calibration = setting.calibration;
+  return results;
+}
+
+}  // namespace glidelab::core

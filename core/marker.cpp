@@ -1,0 +1,297 @@
+#include "core/marker.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <queue>
+#include <vector>
+
+#include "core/least_squares.h"
+#include "core/median.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kLargestRatio = 2.0;           // of the fitted radius and the expected one
+constexpr double kLargestResidual = 1.0 / 3.0;  // of the amplitude; a disc leaves noise only
+constexpr int kMaxIterations = 30;
+
+struct Window {
+  std::vector<double> u, v, value, weight;
+  std::size_t size() const { return u.size(); }
+};
+
+/// All pixels within `radius`, tapered towards the rim so that a pixel more or less there does not move the centre.
+std::optional<Window> cut_window(const Signal& signal, cv::Point2d centre, double radius) {
+  const int left = static_cast<int>(std::ceil(centre.x - radius));
+  const int right = static_cast<int>(std::floor(centre.x + radius));
+  const int top = static_cast<int>(std::ceil(centre.y - radius));
+  const int bottom = static_cast<int>(std::floor(centre.y + radius));
+  if (left < 0 || top < 0 || right >= signal.values.cols || bottom >= signal.values.rows) return std::nullopt;
+  Window window;
+  const double taper_from = radius - std::min(2.0, 0.25 * radius);
+  for (int v = top; v <= bottom; ++v) {
+    for (int u = left; u <= right; ++u) {
+      const double distance = std::hypot(u - centre.x, v - centre.y);
+      if (distance >= radius) continue;
+      window.u.push_back(u);
+      window.v.push_back(v);
+      window.value.push_back(signal.at(u, v));
+      const double into_taper = (distance - taper_from) / (radius - taper_from);
+      window.weight.push_back(into_taper <= 0.0 ? 1.0 : 0.5 * (1.0 + std::cos(std::numbers::pi * into_taper)));
+    }
+  }
+  return window;
+}
+
+enum Parameter { kU, kV, kMuu, kMuv, kMvv, kBlur, kBright, kLevel, kSlopeU, kSlopeV, kShadeU, kShadeV, kShadeR };
+constexpr int kUniformParameters = kShadeU;
+constexpr int kShadedParameters = kShadeR + 1;
+
+/// Weak knowledge that keeps small markers' size and blur apart; worth `strength` of the amplitude in one pixel.
+struct Prior {
+  double radius_px;
+  double amplitude;
+};
+constexpr double kPriorStrength = 0.05;
+constexpr double kUsualBlurPx = 0.6;
+
+constexpr double kFarSigmas = 5.0;  // from the edge: Phi(-5) = 3e-7
+
+/// One pixel of background: its Jacobian is (-g, 0 …, 1, d), in the order centre, level, slopes.
+template <int N>
+void add_background(NormalEquations<N>& equations, double residual, double du, double dv, double slope_u,
+                    double slope_v, double w) {
+  constexpr std::array<int, 5> kTerms{kU, kV, kLevel, kSlopeU, kSlopeV};
+  const std::array<double, 5> jacobian{-slope_u, -slope_v, 1.0, du, dv};
+  for (std::size_t column = 0; column < 5; ++column) {
+    const double weighted = w * jacobian[column];
+    for (std::size_t row = column; row < 5; ++row)
+      equations.jtj(kTerms[row], kTerms[column]) += weighted * jacobian[row];
+    equations.jtr[kTerms[column]] += weighted * residual;
+  }
+  equations.cost += w * residual * residual;
+  equations.weight += w;
+}
+
+template <int N>
+std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& prior,
+                                           const Eigen::Matrix<double, N, 1>& p) {
+  const double a = p[kMuu], b = p[kMuv], c = p[kMvv];
+  const double determinant = a * c - b * b;
+  if (!(p[kBlur] > 0.05) || p[kBlur] > 20.0 || !(determinant > 1e-6) || !(a > 0.0)) return std::nullopt;
+  const double radius = 1.0 / std::sqrt(determinant);
+  const double inverse_blur = 1.0 / p[kBlur];
+  const double pixel_kurtosis = 1.0 / (2880.0 * std::pow(std::max(p[kBlur], 0.27), 4));
+  const double to_phi = 1.0 / std::numbers::sqrt2;
+  const double density_scale = 1.0 / std::sqrt(2.0 * std::numbers::pi);
+  NormalEquations<N> equations;
+  Eigen::Matrix<double, N, 1> jacobian;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double du = window.u[i] - p[kU], dv = window.v[i] - p[kV];
+    const double mu = a * du + b * dv, mv = b * du + c * dv;  // M d
+    const double nu = a * mu + b * mv, nv = b * mu + c * mv;  // M^2 d
+    const double rho = std::sqrt(mu * mu + mv * mv);
+    const double steep = std::max(std::sqrt(nu * nu + nv * nv), 1e-12);
+    const double s = rho * (1.0 - rho) / steep;
+    const double z = s * inverse_blur;
+    if (z < -kFarSigmas) {  // background alone: most of the other terms are zero
+      const double residual = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv - window.value[i];
+      add_background(equations, residual, du, dv, p[kSlopeU], p[kSlopeV], window.weight[i]);
+      continue;
+    }
+    const bool far = z > kFarSigmas;
+    const double normal = far ? 0.0 : density_scale * std::exp(-0.5 * z * z);
+    // The pixel's square is no Gaussian: its fourth cumulant along the edge's normal n, -(n_u^4 + n_v^4) / 120, enters
+    // by one term of Edgeworth's series (it matters where the picture is sharp).
+    const double square = pixel_kurtosis * (nu * nu * nu * nu + nv * nv * nv * nv) / (steep * steep * steep * steep);
+    const double edge = (far ? 1.0 : 0.5 * std::erfc(-z * to_phi)) + square * (z * z - 3.0) * z * normal;
+    const double density = inverse_blur * normal * (1.0 - square * ((z * z - 6.0) * z * z + 3.0));  // d edge / d s
+    double surface = p[kBright];
+    if constexpr (N == kShadedParameters) {
+      surface += (p[kShadeU] * du + p[kShadeV] * dv) / radius + p[kShadeR] * (1.0 - rho * rho);
+    }
+    const double behind = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv;
+    // A slope that ends at an edge keeps, once blurred, a remainder beyond it.
+    const double remainder = p[kBlur] * normal / steep;
+    const double model = behind * (1.0 - edge) + surface * edge + (p[kSlopeU] * nu + p[kSlopeV] * nv) * remainder;
+    const double to_s = (surface - behind) * density;
+    // ds = -d rho rho / |M^2 d| at fixed steepness; d rho = ((M d) . dM d) / rho, and the centre moves by -d.
+    const double to_m = -to_s / steep;
+    jacobian[kU] = to_s * nu / steep - (1.0 - edge) * p[kSlopeU];
+    jacobian[kV] = to_s * nv / steep - (1.0 - edge) * p[kSlopeV];
+    jacobian[kMuu] = to_m * mu * du;
+    jacobian[kMuv] = to_m * (mu * dv + mv * du);
+    jacobian[kMvv] = to_m * mv * dv;
+    jacobian[kBlur] = -to_s * z;
+    jacobian[kBright] = edge;
+    jacobian[kLevel] = 1.0 - edge;
+    jacobian[kSlopeU] = (1.0 - edge) * du + nu * remainder;
+    jacobian[kSlopeV] = (1.0 - edge) * dv + nv * remainder;
+    if constexpr (N == kShadedParameters) {
+      jacobian[kU] -= edge * (p[kShadeU] / radius - 2.0 * p[kShadeR] * nu);
+      jacobian[kV] -= edge * (p[kShadeV] / radius - 2.0 * p[kShadeR] * nv);
+      jacobian[kShadeU] = edge * du / radius;
+      jacobian[kShadeV] = edge * dv / radius;
+      jacobian[kShadeR] = edge * (1.0 - rho * rho);
+    }
+    equations.add(jacobian, model - window.value[i], window.weight[i]);
+  }
+  const double strength = kPriorStrength * prior.amplitude;
+  jacobian.setZero();
+  jacobian[kBlur] = strength;
+  equations.add(jacobian, strength * (p[kBlur] - kUsualBlurPx), 1.0);
+  // ln(radius / expected) = -ln(determinant) / 2 - ln(expected).
+  const double along = 2.0 * strength;
+  jacobian.setZero();
+  jacobian[kMuu] = -0.5 * along * c / determinant;
+  jacobian[kMvv] = -0.5 * along * a / determinant;
+  jacobian[kMuv] = along * b / determinant;
+  equations.add(jacobian, along * (-0.5 * std::log(determinant) - std::log(prior.radius_px)), 1.0);
+  if constexpr (N == kShadedParameters) {
+    jacobian.setZero();
+    jacobian[kShadeR] = kPriorStrength;
+    equations.add(jacobian, kPriorStrength * p[kShadeR], 1.0);
+  }
+  return equations;
+}
+
+template <int N>
+std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
+  std::vector<double> inside, around;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double share = std::hypot(window.u[i] - guess.centre.x, window.v[i] - guess.centre.y) / guess.radius_px;
+    if (share < 0.7) inside.push_back(window.value[i]);
+    if (share > 1.0) around.push_back(window.value[i]);
+  }
+  if (inside.empty() || around.empty() || window.size() < 2 * static_cast<std::size_t>(N)) return std::nullopt;
+  const double level = median_of(around);
+  const double amplitude = median_of(inside) - level;
+  if (!(amplitude > 0.0)) return std::nullopt;
+
+  Eigen::Matrix<double, N, 1> start = Eigen::Matrix<double, N, 1>::Zero();
+  Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Constant(3e-3 * amplitude);
+  start[kU] = guess.centre.x;
+  start[kV] = guess.centre.y;
+  start[kMuu] = start[kMvv] = 1.0 / guess.radius_px;
+  start[kBlur] = guess.blur_px;
+  start[kBright] = level + amplitude;
+  start[kLevel] = level;
+  step[kU] = step[kV] = 1e-3;
+  step[kMuu] = step[kMuv] = step[kMvv] = 3e-3 / guess.radius_px;
+  step[kBlur] = 1e-2;
+  const Prior prior{guess.radius_px, amplitude};
+  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(window, prior, p); };
+  const LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations);
+  if (found.stop != FitStop::converged) return std::nullopt;
+
+  const auto& p = found.parameters;
+  MarkerFit marker;
+  marker.centre = {p[kU], p[kV]};
+  marker.sd_px = std::sqrt(0.5 * (found.covariance(kU, kU) + found.covariance(kV, kV)));
+  const double determinant = p[kMuu] * p[kMvv] - p[kMuv] * p[kMuv];
+  marker.radius_px = 1.0 / std::sqrt(determinant);
+  const double mean = 0.5 * (p[kMuu] + p[kMvv]);
+  const double spread = std::hypot(0.5 * (p[kMuu] - p[kMvv]), p[kMuv]);
+  marker.elongation = (mean + spread) / std::max(mean - spread, 1e-9);
+  marker.amplitude = p[kBright] - p[kLevel];
+  marker.background = p[kLevel];
+  marker.blur_px = p[kBlur];
+  marker.rms = found.rms;
+  double weight = 0.0;
+  for (const double w : window.weight) weight += w;
+  marker.bic = weight * std::log(std::max(found.rms * found.rms * (weight - N) / weight, 1e-12)) + N * std::log(weight);
+  const double moved = cv::norm(marker.centre - guess.centre);
+  const double ratio = marker.radius_px / guess.radius_px;
+  const bool plausible = moved < std::max(guess.radius_px, 1.5) && ratio < kLargestRatio &&
+                         ratio > 1.0 / kLargestRatio && marker.amplitude > 0.0 &&
+                         marker.rms < kLargestResidual * marker.amplitude;
+  if (!plausible) return std::nullopt;
+  return marker;
+}
+
+}  // namespace
+
+std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& guess, Surface surface) {
+  const auto window = cut_window(signal, guess.centre, 1.25 * guess.radius_px + 2.5);
+  if (!window) return std::nullopt;
+  return surface == Surface::uniform ? fit<kUniformParameters>(*window, guess) : fit<kShadedParameters>(*window, guess);
+}
+
+std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGuess& guess) {
+  const double reach = 2.2 * guess.radius_px + 2.0;
+  const cv::Rect picture(0, 0, signal.values.cols, signal.values.rows);
+  const cv::Point corner(static_cast<int>(std::floor(guess.centre.x - reach)),
+                         static_cast<int>(std::floor(guess.centre.y - reach)));
+  const int side = 2 * static_cast<int>(std::ceil(reach)) + 1;
+  const cv::Rect box = cv::Rect(corner.x, corner.y, side, side) & picture;
+  if (box.width < 3 || box.height < 3) return std::nullopt;
+
+  // The background from the rim of the box, the peak from the brightest tenth near the guess.
+  std::vector<double> rim, near;
+  for (int v = box.y; v < box.br().y; ++v) {
+    for (int u = box.x; u < box.br().x; ++u) {
+      const double distance = std::hypot(u - guess.centre.x, v - guess.centre.y);
+      if (distance > 1.6 * guess.radius_px) rim.push_back(signal.at(u, v));
+      if (distance < std::max(guess.radius_px, 1.5)) near.push_back(signal.at(u, v));
+    }
+  }
+  if (rim.size() < 8 || near.empty()) return std::nullopt;
+  const double level = median_of(rim);
+  const auto high = near.begin() + static_cast<std::ptrdiff_t>(9 * near.size() / 10);
+  std::nth_element(near.begin(), high, near.end());
+  const double amplitude = *high - level;
+  if (!(amplitude > 0.0)) return std::nullopt;
+
+  // From the brightest pixel near the guess, everything that hangs together above a fifth of the peak.
+  const double floor = level + 0.2 * amplitude;
+  cv::Point seed(-1, -1);
+  double best = floor;
+  for (int v = box.y; v < box.br().y; ++v) {
+    for (int u = box.x; u < box.br().x; ++u) {
+      if (std::hypot(u - guess.centre.x, v - guess.centre.y) > std::max(guess.radius_px, 1.5)) continue;
+      if (signal.at(u, v) <= best) continue;
+      best = signal.at(u, v);
+      seed = {u, v};
+    }
+  }
+  if (seed.x < 0) return std::nullopt;
+  cv::Mat taken = cv::Mat::zeros(box.size(), CV_8U);
+  std::queue<cv::Point> open;
+  open.push(seed);
+  taken.at<unsigned char>(seed.y - box.y, seed.x - box.x) = 1;
+  double sum = 0.0, sum_u = 0.0, sum_v = 0.0, area = 0.0, inner = 0.0;
+  while (!open.empty()) {
+    const cv::Point here = open.front();
+    open.pop();
+    // Rises linearly from nothing at the floor, so that a pixel that comes or goes there does not matter.
+    const double weight = std::min((signal.at(here.x, here.y) - floor) / (0.8 * amplitude), 1.0);
+    sum += weight;
+    sum_u += weight * here.x;
+    sum_v += weight * here.y;
+    area += std::min(weight * 2.0, 1.0);
+    inner += 1.0;
+    for (const cv::Point off : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
+      const cv::Point next = here + off;
+      if (!box.contains(next) || signal.at(next.x, next.y) <= floor) continue;
+      unsigned char& mark = taken.at<unsigned char>(next.y - box.y, next.x - box.x);
+      if (mark != 0) continue;
+      mark = 1;
+      open.push(next);
+    }
+  }
+  if (!(sum > 0.0)) return std::nullopt;
+  MarkerFit marker;
+  marker.centre = {sum_u / sum, sum_v / sum};
+  marker.radius_px = std::sqrt(area / std::numbers::pi);
+  marker.amplitude = amplitude;
+  marker.background = level;
+  const double ratio = marker.radius_px / guess.radius_px;
+  if (ratio > kLargestRatio || ratio < 1.0 / kLargestRatio) return std::nullopt;
+  return marker;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,207 @@
+#include "core/marker_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kColorful = 30.0;        // of 255: largest minus smallest channel; less is a grey with a tinge
+constexpr double kDark = 64.0;            // of 255
+constexpr double kOwnColor = 200.0;       // of 255: the likeness of the marker's own colour
+constexpr double kWorkingRadiusPx = 3.0;  // the picture is shrunk until the marker has this radius
+constexpr double kNoiseSigmas = 5.0;
+constexpr double kShareOfBest = 0.04;  // of the highest contrast in the region
+
+cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
+  const double grey = (color[0] + color[1] + color[2]) / 3.0;
+  const cv::Vec3d target(color[0] - grey, color[1] - grey, color[2] - grey);
+  const double strength = cv::norm(target);
+  const auto tb = static_cast<float>(target[0] / strength);
+  const auto tg = static_cast<float>(target[1] / strength);
+  const auto tr = static_cast<float>(target[2] / strength);
+  const auto scale = static_cast<float>(kOwnColor / strength);
+  cv::Mat values(bgr.size(), CV_8U);
+  for (int v = 0; v < bgr.rows; ++v) {
+    const auto* from = bgr.ptr<cv::Vec3b>(v);
+    auto* to = values.ptr<unsigned char>(v);
+    for (int u = 0; u < bgr.cols; ++u) {
+      const float b = from[u][0], g = from[u][1], r = from[u][2];
+      const float mean = (b + g + r) * (1.0F / 3.0F);
+      const float cb = b - mean, cg = g - mean, cr = r - mean;
+      const float along = cb * tb + cg * tg + cr * tr;
+      if (along <= 0.0F) {
+        to[u] = 0;
+        continue;
+      }
+      const float across = std::sqrt(std::max(cb * cb + cg * cg + cr * cr - along * along, 0.0F));
+      to[u] = cv::saturate_cast<unsigned char>(scale * (along - 0.5F * across));
+    }
+  }
+  return values;
+}
+
+/// Standard deviation of the noise from second differences along the rows (their median is not moved by edges).
+double noise_of(const cv::Mat& values) {
+  std::vector<float> differences;
+  const int step = std::max(1, values.rows / 60);
+  for (int v = 0; v < values.rows; v += step) {
+    const auto* row = values.ptr<float>(v);
+    for (int u = 1; u + 1 < values.cols; ++u) differences.push_back(std::abs(row[u - 1] - 2.0F * row[u] + row[u + 1]));
+  }
+  if (differences.empty()) return 0.0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
+}
+
+/// Means of boxes from an integral picture.
+class Boxes {
+ public:
+  explicit Boxes(const cv::Mat& values) { cv::integral(values, sums_, CV_64F); }
+  /// The box's part inside the picture; nothing where that is empty.
+  std::optional<double> mean(int u, int v, int half) const {
+    const int left = std::max(u - half, 0), right = std::min(u + half + 1, sums_.cols - 1);
+    const int top = std::max(v - half, 0), bottom = std::min(v + half + 1, sums_.rows - 1);
+    if (left >= right || top >= bottom) return std::nullopt;
+    const double sum = sums_.at<double>(bottom, right) - sums_.at<double>(top, right) - sums_.at<double>(bottom, left) +
+                       sums_.at<double>(top, left);
+    return sum / static_cast<double>((right - left) * (bottom - top));
+  }
+
+ private:
+  cv::Mat sums_;
+};
+
+}  // namespace
+
+SignalKind signal_kind(const MarkerSetup& marker) {
+  if (!marker.color_bgr) return SignalKind::bright;
+  const cv::Vec3b& c = *marker.color_bgr;
+  const int high = std::max({c[0], c[1], c[2]}), low = std::min({c[0], c[1], c[2]});
+  if (high - low >= kColorful) return SignalKind::colored;
+  return (c[0] + c[1] + c[2]) / 3.0 < kDark ? SignalKind::dark : SignalKind::bright;
+}
+
+double least_contrast(SignalKind kind) {
+  return kind == SignalKind::colored ? kOwnColor / 6.0 : 0.0;
+}
+
+std::optional<Signal> signal_of(const Frame& frame, const MarkerSetup& marker, SignalKind kind) {
+  if (kind == SignalKind::colored) {
+    if (frame.color.empty()) return std::nullopt;
+    return Signal{likeness(frame.color, *marker.color_bgr)};
+  }
+  if (kind == SignalKind::bright) return Signal{frame.grey};
+  cv::Mat inverse;
+  cv::bitwise_not(frame.grey, inverse);
+  return Signal{inverse};
+}
+
+std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
+  const double shrink = std::max(1.0, search.radius_px / kWorkingRadiusPx);
+  const double radius = search.radius_px / shrink;
+  // What lies around a centre in the region belongs to the picture that is looked at.
+  const int reach = static_cast<int>(std::ceil(3.0 * search.radius_px + 3.0));
+  const cv::Rect whole(0, 0, signal.values.cols, signal.values.rows);
+  const cv::Rect region = search.region & whole;
+  const cv::Rect taken =
+      cv::Rect(region.x - reach, region.y - reach, region.width + 2 * reach, region.height + 2 * reach) & whole;
+  if (region.empty() || taken.empty()) return {};
+
+  cv::Mat small;
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(taken.width / shrink))),
+                      std::max(1, static_cast<int>(std::lround(taken.height / shrink))));
+  signal.values(taken).convertTo(small, CV_32F);
+  if (shrink > 1.0) cv::resize(small, small, size, 0, 0, cv::INTER_AREA);
+  const double fu = static_cast<double>(taken.width) / small.cols;
+  const double fv = static_cast<double>(taken.height) / small.rows;
+  const auto to_picture = [&](double u, double v) {
+    return cv::Point2d((u + 0.5) * fu - 0.5 + taken.x, (v + 0.5) * fv - 0.5 + taken.y);
+  };
+
+  const int inner = std::max(0, static_cast<int>(std::lround(0.6 * radius - 0.3)));
+  const int outer = std::max(0, static_cast<int>(std::lround(0.4 * radius - 0.3)));
+  const int away = static_cast<int>(std::lround(radius + 1.0 + outer + 0.3 * radius));
+  const int diagonal = static_cast<int>(std::lround(away * 0.75));
+  const std::array<cv::Point, 8> around{
+      cv::Point(away, 0),  cv::Point(diagonal, diagonal),   cv::Point(0, away),  cv::Point(-diagonal, diagonal),
+      cv::Point(-away, 0), cv::Point(-diagonal, -diagonal), cv::Point(0, -away), cv::Point(diagonal, -diagonal)};
+  const Boxes boxes(small);
+  cv::Mat response(small.size(), CV_32F, cv::Scalar(0.0F));
+  const auto rank = static_cast<std::ptrdiff_t>(search.bright_neighbours);
+  for (int v = 0; v < small.rows; ++v) {
+    for (int u = 0; u < small.cols; ++u) {
+      const cv::Point2d place = to_picture(u, v);
+      if (place.x < region.x - 0.5 || place.y < region.y - 0.5 || place.x >= region.br().x ||
+          place.y >= region.br().y) {
+        continue;
+      }
+      const double inside = *boxes.mean(u, v, inner);
+      std::array<double, 8> means{};
+      std::size_t count = 0;
+      int brighter = 0;
+      for (const cv::Point off : around) {
+        const auto mean = boxes.mean(u + off.x, v + off.y, outer);
+        if (!mean) continue;
+        if (*mean >= inside && ++brighter > search.bright_neighbours) break;
+        means[count++] = *mean;
+      }
+      if (brighter > search.bright_neighbours || static_cast<int>(count) <= search.bright_neighbours) continue;
+      std::nth_element(means.begin(), means.begin() + rank, means.begin() + static_cast<std::ptrdiff_t>(count),
+                       std::greater<>());
+      response.at<float>(v, u) = static_cast<float>(inside - means[static_cast<std::size_t>(rank)]);
+    }
+  }
+  double best = 0.0;
+  cv::minMaxLoc(response, nullptr, &best);
+  const double noise = noise_of(small) / (2.0 * std::min(inner, outer) + 1.0);
+  const double least =
+      std::max({kNoiseSigmas * std::sqrt(2.0) * noise, kShareOfBest * best, search.least_contrast, 1e-6});
+
+  std::vector<Blob> blobs;
+  for (int v = 0; v < small.rows; ++v) {
+    for (int u = 0; u < small.cols; ++u) {
+      const float here = response.at<float>(v, u);
+      if (static_cast<double>(here) < least) continue;
+      bool highest = true;
+      for (int dv = -1; dv <= 1 && highest; ++dv) {
+        for (int du = -1; du <= 1; ++du) {
+          if ((du == 0 && dv == 0) || u + du < 0 || v + dv < 0 || u + du >= small.cols || v + dv >= small.rows)
+            continue;
+          const float other = response.at<float>(v + dv, u + du);
+          // Of equal neighbours the first one counts.
+          if (other > here || (other == here && (dv < 0 || (dv == 0 && du < 0)))) highest = false;
+        }
+      }
+      if (!highest) continue;
+      // Centroid of the response around its maximum.
+      double sum = 0.0, su = 0.0, sv = 0.0;
+      for (int dv = -2; dv <= 2; ++dv) {
+        for (int du = -2; du <= 2; ++du) {
+          if (u + du < 0 || v + dv < 0 || u + du >= small.cols || v + dv >= small.rows) continue;
+          const auto w = static_cast<double>(response.at<float>(v + dv, u + du));
+          sum += w;
+          su += w * du;
+          sv += w * dv;
+        }
+      }
+      blobs.push_back({to_picture(u + su / sum, v + sv / sum), static_cast<double>(here)});
+    }
+  }
+  std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) { return a.contrast > b.contrast; });
+  std::vector<Blob> apart;
+  for (const Blob& blob : blobs) {
+    const bool near = std::any_of(apart.begin(), apart.end(), [&](const Blob& other) {
+      return cv::norm(blob.centre - other.centre) < 1.2 * search.radius_px;
+    });
+    if (near) continue;
+    apart.push_back(blob);
+    if (apart.size() == search.most) break;
+  }
+  return apart;
+}
+
+}  // namespace glidelab::core

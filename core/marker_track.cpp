@@ -1,0 +1,287 @@
+#include "core/marker_track.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kSearchPeriod = 10;    // frames from one search of the whole picture to the next
+constexpr std::size_t kSamples = 24;         // windows that decide how a path is measured
+constexpr std::size_t kAwake = 10;           // resting paths that are followed nonetheless
+constexpr std::size_t kLostAfter = 25;       // frames without a sighting
+constexpr std::size_t kRestFrames = 12;      // after which a path that has not moved may sleep
+constexpr std::size_t kFewestSightings = 5;  // fewer in a row are noise
+constexpr double kSmallestRadiusPx = 1.2;
+constexpr double kLargestElongation = 4.0;  // a streak of motion may be long
+
+double frames_between(std::size_t from, std::size_t to) {
+  return static_cast<double>(to) - static_cast<double>(from);
+}
+
+/// How far from its first place a path must get to count as moving.
+double least_travel(double radius_px) {
+  return std::max(1.5 * radius_px, 5.0);
+}
+
+/// The same thing, as far as size and brightness go.
+bool is_like(double radius_px, double amplitude, const MarkerFit& fit) {
+  const double size = fit.radius_px / radius_px;
+  const double brightness = fit.amplitude / amplitude;
+  return size > 0.7 && size < 1.4 && brightness > 0.5 && brightness < 2.0 && fit.elongation < kLargestElongation;
+}
+
+bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
+  return std::any_of(places.begin(), places.end(),
+                     [&](cv::Point2d other) { return cv::norm(other - here) < distance; });
+}
+
+}  // namespace
+
+cv::Point2d MarkerTracker::Path::velocity() const {
+  if (seen.size() < 2) return {0.0, 0.0};
+  const Seen& last = seen.back();
+  const Seen& before = seen[seen.size() - std::min<std::size_t>(seen.size(), 4)];
+  return (last.fit.centre - before.fit.centre) / frames_between(before.frame, last.frame);
+}
+
+cv::Point2d MarkerTracker::Path::predict(std::size_t frame) const {
+  return seen.back().fit.centre + velocity() * frames_between(seen.back().frame, frame);
+}
+
+void MarkerTracker::Path::push(const Seen& sighting) {
+  // Perspective changes size and brightness slowly; a single frame counts little.
+  const double weight = 1.0 / static_cast<double>(std::min<std::size_t>(seen.size() + 1, 20));
+  radius_px += weight * (sighting.fit.radius_px - radius_px);
+  amplitude += weight * (sighting.fit.amplitude - amplitude);
+  seen.push_back(sighting);
+  travel_px = std::max(travel_px, cv::norm(sighting.fit.centre - seen.front().fit.centre));
+}
+
+MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at)
+    : clip_(std::move(clip)),
+      marker_(std::move(marker)),
+      kind_(signal_kind(marker_)),
+      radius_at_(std::move(radius_at)) {}
+
+void MarkerTracker::fail(std::string found, std::string expected) const {
+  throw base::InputError(base::Issue{clip_.string(), 0, "marker", std::move(found), std::move(expected)});
+}
+
+std::optional<MarkerFit> MarkerTracker::measure(const Signal& signal, const MarkerGuess& guess, Method method) const {
+  std::optional<MarkerFit> fit;
+  if (method == Method::uniform || method == Method::undecided) fit = fit_marker(signal, guess, Surface::uniform);
+  if (method == Method::shaded) fit = fit_marker(signal, guess, Surface::shaded);
+  // A thing that is known by its hue may have any shape.
+  if (method == Method::centroid || (!fit && method == Method::undecided && kind_ == SignalKind::colored)) {
+    fit = centroid_of_marker(signal, guess);
+  }
+  if (fit && fit->amplitude < least_contrast(kind_)) return std::nullopt;
+  return fit;
+}
+
+/// Where a path's thing is in the next frame: fitted where it should be, or looked for around there.
+std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                                              const std::vector<cv::Point2d>& taken) const {
+  const cv::Point2d expected = path.predict(frame);
+  const bool is_new = path.seen.size() < 2;
+  MarkerGuess guess;
+  guess.centre = expected;
+  guess.radius_px = path.radius_px;
+  if (path.seen.back().fit.blur_px > 0.0) guess.blur_px = path.seen.back().fit.blur_px;
+  if (!is_new && !is_near_any(taken, expected, 0.5 * path.radius_px)) {
+    const auto fit = measure(signal, guess, path.method);
+    if (fit && is_like(path.radius_px, path.amplitude, *fit)) return Found{guess, *fit};
+  }
+  // Nothing is known of a new path's speed; a known one changes little from frame to frame, but may bounce.
+  const double lost = std::abs(frames_between(path.seen.back().frame, frame)) - 1.0;
+  const double speed = cv::norm(path.velocity());
+  const double gate = is_new ? (6.0 + lost) * path.radius_px + 10.0
+                             : (2.0 + 0.1 * lost) * path.radius_px + (1.5 + 0.1 * lost) * speed + 2.0;
+  const int half = static_cast<int>(std::ceil(gate));
+  BlobSearch search;
+  search.radius_px = path.radius_px;
+  search.bright_neighbours = 3;
+  search.least_contrast = least_contrast(kind_);
+  search.most = 6;
+  search.region = cv::Rect(static_cast<int>(std::lround(expected.x)) - half,
+                           static_cast<int>(std::lround(expected.y)) - half, 2 * half + 1, 2 * half + 1);
+  std::vector<Blob> blobs = find_blobs(signal, search);
+  std::stable_sort(blobs.begin(), blobs.end(), [&](const Blob& a, const Blob& b) {
+    return cv::norm(a.centre - expected) < cv::norm(b.centre - expected);
+  });
+  for (const Blob& blob : blobs) {
+    if (is_near_any(taken, blob.centre, 0.7 * path.radius_px)) continue;
+    guess.centre = blob.centre;
+    const auto fit = measure(signal, guess, path.method);
+    if (!fit || !is_like(path.radius_px, path.amplitude, *fit)) continue;
+    if (is_near_any(taken, fit->centre, 0.7 * path.radius_px)) continue;
+    return Found{guess, *fit};
+  }
+  return std::nullopt;
+}
+
+void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const {
+  path.push({frame, found.fit});
+  if (path.method != Method::undecided) return;
+  const int reach = static_cast<int>(std::ceil(2.2 * found.guess.radius_px + 6.0));
+  const cv::Rect box =
+      cv::Rect(static_cast<int>(std::lround(found.fit.centre.x)) - reach,
+               static_cast<int>(std::lround(found.fit.centre.y)) - reach, 2 * reach + 1, 2 * reach + 1) &
+      cv::Rect(0, 0, signal.values.cols, signal.values.rows);
+  MarkerGuess guess = found.guess;
+  guess.centre = found.fit.centre - cv::Point2d(box.x, box.y);
+  path.samples.push_back({frame, Signal{signal.values(box).clone()}, box.tl(), guess});
+  if (path.samples.size() >= kSamples) choose_method(path);
+}
+
+std::vector<cv::Point2d> MarkerTracker::places_at(std::size_t frame) const {
+  std::vector<cv::Point2d> places;
+  for (const Path& path : paths_) {
+    const auto at = std::lower_bound(path.seen.begin(), path.seen.end(), frame,
+                                     [](const Seen& seen, std::size_t wanted) { return seen.frame < wanted; });
+    if (at != path.seen.end() && at->frame == frame) places.push_back(at->fit.centre);
+  }
+  return places;
+}
+
+void MarkerTracker::follow(const Signal& signal, std::size_t frame) {
+  std::vector<Path*> order;
+  for (Path& path : paths_) {
+    if (!path.ended && !path.asleep) order.push_back(&path);
+  }
+  // What moves and is not lost has the first claim, then what has been seen longest; what is lost may not take what
+  // belongs to another.
+  const auto is_lost = [&](const Path* path) { return path->seen.back().frame + 1 < frame; };
+  const auto claim = [&](const Path* path) {
+    return is_lost(path) ? 2 : path->travel_px > least_travel(path->radius_px) ? 0 : 1;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](const Path* a, const Path* b) {
+    return claim(a) != claim(b) ? claim(a) < claim(b) : a->seen.size() > b->seen.size();
+  });
+  std::vector<cv::Point2d> taken;
+  std::vector<cv::Point2d> sleeping;
+  for (const Path& path : paths_) {
+    if (path.asleep) sleeping.push_back(path.seen.back().fit.centre);
+  }
+  for (Path* path : order) {
+    std::vector<cv::Point2d> not_here = taken;
+    // A new or a lost path does not jump to something that rests; one with a known speed may pass in front of it.
+    if (path->seen.size() < 3 || is_lost(path)) not_here.insert(not_here.end(), sleeping.begin(), sleeping.end());
+    const auto found = find_again(signal, frame, *path, not_here);
+    if (!found) continue;
+    taken.push_back(found->fit.centre);
+    accept(*path, signal, frame, *found);
+  }
+}
+
+/// A path that was just begun, followed back through the frames since the last search.
+void MarkerTracker::follow_back(Path& path) const {
+  Path back = path;
+  std::size_t missed = 0;
+  for (auto past = past_.rbegin(); past != past_.rend() && missed < 3; ++past) {
+    const auto found = find_again(past->signal, past->frame, back, places_at(past->frame));
+    if (found) {
+      back.push({past->frame, found->fit});
+      missed = 0;
+    } else {
+      ++missed;
+    }
+  }
+  std::reverse(back.seen.begin(), back.seen.end());
+  const std::vector<Seen> seen = back.seen;
+  path.seen.clear();
+  for (const Seen& sighting : seen) path.push(sighting);
+}
+
+void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
+  BlobSearch search;
+  search.radius_px = radius_px_;
+  search.least_contrast = least_contrast(kind_);
+  search.region = cv::Rect(0, 0, signal.values.cols, signal.values.rows);
+  std::vector<cv::Point2d> known = places_at(frame);
+  for (const Blob& blob : find_blobs(signal, search)) {
+    MarkerGuess guess;
+    guess.centre = blob.centre;
+    guess.radius_px = std::max(radius_at_(blob.centre), kSmallestRadiusPx);
+    if (is_near_any(known, blob.centre, 0.7 * guess.radius_px)) continue;
+    const auto fit = measure(signal, guess, Method::undecided);
+    if (!fit || fit->elongation > kLargestElongation || is_near_any(known, fit->centre, 0.7 * guess.radius_px))
+      continue;
+    known.push_back(fit->centre);
+    const auto sleeper = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
+      return path.asleep && cv::norm(path.seen.back().fit.centre - fit->centre) < 0.7 * path.radius_px;
+    });
+    if (sleeper != paths_.end()) {
+      sleeper->push({frame, *fit});
+      continue;
+    }
+    // A path that has just lost its thing takes up what is found near where that should be.
+    const auto loser = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
+      return !path.ended && !path.asleep && path.seen.back().frame < frame && path.seen.size() >= kFewestSightings &&
+             is_like(path.radius_px, path.amplitude, *fit) &&
+             cv::norm(path.predict(frame) - fit->centre) < 4.0 * path.radius_px + 2.0 * cv::norm(path.velocity());
+    });
+    if (loser != paths_.end()) {
+      accept(*loser, signal, frame, {guess, *fit});
+      continue;
+    }
+    Path path;
+    accept(path, signal, frame, {guess, *fit});
+    follow_back(path);
+    paths_.push_back(std::move(path));
+  }
+}
+
+/// What rests is not followed in every frame: nothing of it where something of the right size moves already, else the
+/// ones most like a marker.
+void MarkerTracker::put_to_sleep(std::size_t frame) {
+  std::vector<Path*> resting;
+  bool something_moves = false;
+  for (Path& path : paths_) {
+    if (path.ended || path.asleep || path.seen.size() < kRestFrames) continue;
+    if (path.travel_px < 0.5 * least_travel(path.radius_px)) {
+      resting.push_back(&path);
+    } else if (path.travel_px > 5.0 * path.radius_px && path.seen.back().frame == frame &&
+               std::abs(std::log(size_ratio(path))) < 0.3) {
+      something_moves = true;
+    }
+  }
+  const auto rank = [&](const Path* path) {
+    return std::abs(std::log(size_ratio(*path))) - 0.2 * std::log(path->amplitude);
+  };
+  std::stable_sort(resting.begin(), resting.end(), [&](const Path* a, const Path* b) { return rank(a) < rank(b); });
+  for (std::size_t i = something_moves ? 0 : kAwake; i < resting.size(); ++i) resting[i]->asleep = true;
+}
+
+void MarkerTracker::tidy(std::size_t frame) {
+  for (Path& path : paths_) {
+    const auto lost = static_cast<std::size_t>(frames_between(path.seen.back().frame, frame));
+    if (!path.asleep && lost > (path.seen.size() < kFewestSightings ? 3 : kLostAfter)) path.ended = true;
+  }
+  std::erase_if(paths_, [](const Path& path) { return path.ended && path.seen.size() < kFewestSightings; });
+}
+
+void MarkerTracker::add(const Frame& frame) {
+  const auto signal = signal_of(frame, marker_, kind_);
+  if (!signal) fail("a clip without colours", "a clip in colour, as [marker] color asks for");
+  if (frames_ == 0) {
+    const cv::Point2d middle(0.5 * (signal->values.cols - 1), 0.5 * (signal->values.rows - 1));
+    radius_px_ = std::max(radius_at_(middle), kSmallestRadiusPx);
+  }
+  follow(*signal, frame.index);
+  if (frame.index % kSearchPeriod == 0) {
+    search_whole(*signal, frame.index);
+    put_to_sleep(frame.index);
+    tidy(frame.index);
+  }
+  past_.push_back({frame.index, *signal});
+  if (past_.size() >= kSearchPeriod) past_.pop_front();
+  frames_ = frame.index + 1;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,114 @@
+/// Which of the things in a clip is the marker, and where it is in every frame.
+///
+/// Frames stream through once. Every blob of about the marker's size begins a path; a path is followed by fitting the
+/// marker's model around where it should be (constant velocity), or by searching a window where that fails. The whole
+/// picture is searched in the first frame and every tenth one after it, and a path that begins there is followed back
+/// through the frames between. At the end the marker is the path that moves and has the right size and brightness, not
+/// the brightest one; what rests all the time is part of the scene. Frames in which it is not seen stay without.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment.h"
+#include "core/frame_source.h"
+#include "core/marker.h"
+#include "core/marker_search.h"
+#include "core/results.h"
+
+namespace glidelab::core {
+
+/// Expected radius of the marker's image at a pixel.
+using RadiusAt = std::function<double(cv::Point2d)>;
+
+struct TrackedMarker {
+  std::vector<MarkerSighting> sightings;  ///< frames rise
+  std::vector<std::string> notes;
+};
+
+class MarkerTracker {
+ public:
+  MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at);
+
+  /// Takes the next frame. InputError where a hue is to be looked for in a grey clip.
+  void add(const Frame& frame);
+
+  /// The marker's track. InputError where nothing of its size moves (and not exactly one such thing rests), where two
+  /// equal ones move alike and start_px does not say which, or where there is nothing at start_px.
+  TrackedMarker finish();
+
+ private:
+  enum class Method { undecided, uniform, shaded, centroid };
+
+  struct Seen {
+    std::size_t frame = 0;
+    MarkerFit fit;
+  };
+  /// A window around a sighting, kept until the method is chosen.
+  struct Sample {
+    std::size_t frame = 0;
+    Signal window;
+    cv::Point corner;
+    MarkerGuess guess;
+  };
+  struct Path {
+    std::vector<Seen> seen;
+    std::vector<Sample> samples;
+    Method method = Method::undecided;
+    bool ended = false;
+    bool asleep = false;  ///< rests, and is looked at only when the whole picture is searched
+    double radius_px = 0.0;
+    double amplitude = 0.0;
+    double travel_px = 0.0;  ///< largest distance from the first place
+
+    cv::Point2d velocity() const;  ///< pixels a frame, over the last few sightings
+    cv::Point2d predict(std::size_t frame) const;
+    void push(const Seen& sighting);
+  };
+  struct Found {
+    MarkerGuess guess;
+    MarkerFit fit;
+  };
+  struct Past {
+    std::size_t frame;
+    Signal signal;
+  };
+
+  std::optional<MarkerFit> measure(const Signal& signal, const MarkerGuess& guess, Method method) const;
+  std::optional<Found> find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                  const std::vector<cv::Point2d>& taken) const;
+  void accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const;
+  void follow(const Signal& signal, std::size_t frame);
+  void search_whole(const Signal& signal, std::size_t frame);
+  void follow_back(Path& path) const;
+  void put_to_sleep(std::size_t frame);
+  void tidy(std::size_t frame);
+  std::vector<cv::Point2d> places_at(std::size_t frame) const;
+
+  void choose_method(Path& path) const;
+  void join_pieces();
+  double size_ratio(const Path& path) const;  ///< of the radii seen and expected
+  bool is_place_of_another(const Path& path, const Seen& sighting) const;
+  std::size_t choose_path(std::vector<std::string>& notes) const;
+  std::size_t path_at_start() const;
+  std::size_t resting_path(std::vector<std::string>& notes) const;
+  [[noreturn]] void fail(std::string found, std::string expected) const;
+
+  std::filesystem::path clip_;
+  MarkerSetup marker_;
+  SignalKind kind_;
+  RadiusAt radius_at_;
+  double radius_px_ = 0.0;  ///< in the middle of the picture
+  std::vector<Path> paths_;
+  std::deque<Past> past_;
+  std::size_t frames_ = 0;
+};
+
+}  // namespace glidelab::core

@@ -1,0 +1,44 @@
+/// The line along which something lies or moves, by total least squares; and x as the distance along it.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <vector>
+
+namespace glidelab::core {
+
+/// A straight line in a plane; `direction` has length 1.
+struct PlaneLine {
+  cv::Point2d through;  ///< the points' mean
+  cv::Point2d direction;
+  double rms_across = 0.0;    ///< distance of the points from the line, those left out not counted
+  double sd_angle_rad = 0.0;  ///< of the direction, from that
+  std::size_t used = 0;       ///< points with a weight above one half
+  double along(cv::Point2d point) const { return (point - through).dot(direction); }
+  double across(cv::Point2d point) const { return direction.cross(point - through); }
+};
+
+/// Robust total least squares: the principal axis of the points, weighted by Tukey's biweight of their distance (6
+/// scaled median deviations, of at least `least_scale`), iterated. Points' unit is the line's unit. Needs two different
+/// points; NumericalError otherwise.
+PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_scale);
+
+/// The line in which a marker moves, directed downhill.
+class MotionAxis {
+ public:
+  /// `downhill`: +1 or -1, which way along X is down. NumericalError where the marker does not move.
+  static MotionAxis through(const std::vector<cv::Point2d>& points, int downhill);
+  /// Along X itself, for a marker that does not move.
+  static MotionAxis along_x(int downhill);
+
+  /// Distance along the line from the projection of the plane's origin, positive downhill.
+  double x_of(cv::Point2d point) const { return point.dot(line_.direction); }
+  const PlaneLine& line() const { return line_; }
+  /// Angle from the X axis to the undirected line, in (-pi/2, pi/2].
+  double angle_to_x_rad() const;
+
+ private:
+  PlaneLine line_;
+};
+
+}  // namespace glidelab::core

@@ -1,0 +1,228 @@
+#include "core/plumb.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "base/errors.h"
+#include "core/estimate.h"
+#include "core/picture.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kWidest = 9;            // pixels; a thread is thinner
+constexpr double kNear = 1.5;         // pixels from a straight line, for a row's place to lie on it
+constexpr double kShareOfRows = 0.3;  // in which a thread must be seen
+constexpr int kPlacesARow = 4;
+
+struct Place {
+  double along;   // row
+  double at;      // column
+  double excess;  // how far it stands out, signed: bright above zero
+  cv::Point2d straight;
+};
+
+/// One row of the region (or column, where turned), as numbers.
+std::vector<double> profile_of(const cv::Mat& grey, cv::Rect region, int row, bool turned) {
+  std::vector<double> values;
+  const int count = turned ? region.height : region.width;
+  for (int i = 0; i < count; ++i) {
+    const int u = turned ? region.x + row : region.x + i;
+    const int v = turned ? region.y + i : region.y + row;
+    values.push_back(grey.depth() == CV_8U ? static_cast<double>(grey.at<unsigned char>(v, u))
+                                           : static_cast<double>(grey.at<unsigned short>(v, u)));
+  }
+  return values;
+}
+
+/// How far a value stands out from both sides: the smaller of the two differences to the means beside it, of one sign.
+double excess_at(const std::vector<double>& values, int i, int width) {
+  const auto mean = [&](int from, int to) {
+    double sum = 0.0;
+    for (int k = from; k < to; ++k) sum += values[static_cast<std::size_t>(k)];
+    return sum / (to - from);
+  };
+  const int half = width / 2;
+  const int side = width + 2;
+  const int left = i - half - 2, right = i + half + 2;
+  if (left - side < 0 || right + side >= static_cast<int>(values.size())) return 0.0;
+  const double here = mean(i - half, i + half + 1);
+  const double a = here - mean(left - side, left);
+  const double b = here - mean(right + 1, right + side + 1);
+  if (a > 0.0 && b > 0.0) return std::min(a, b);
+  if (a < 0.0 && b < 0.0) return std::max(a, b);
+  return 0.0;
+}
+
+struct Thread {
+  std::vector<cv::Point2d> points;
+  double strength = 0.0;
+};
+
+/// Gauss-Newton on b + g d + a exp(-d^2 / (2 s^2)) around the expected column; nothing where it does not settle there.
+std::optional<double> centre_of(const std::vector<double>& values, double expected, double width) {
+  const int reach = static_cast<int>(std::ceil(2.0 * width + 4.0));
+  const int from = std::max(0, static_cast<int>(std::lround(expected)) - reach);
+  const int to = std::min(static_cast<int>(values.size()) - 1, static_cast<int>(std::lround(expected)) + reach);
+  if (to - from < 6) return std::nullopt;
+  double centre = expected;
+  double sigma = std::max(0.5, 0.4 * width);
+  double level = 0.5 * (values[static_cast<std::size_t>(from)] + values[static_cast<std::size_t>(to)]);
+  double slope = 0.0;
+  double height = values[static_cast<std::size_t>(std::lround(expected))] - level;
+  for (int iteration = 0; iteration < 25; ++iteration) {
+    cv::Matx<double, 5, 5> normal = cv::Matx<double, 5, 5>::zeros();
+    cv::Vec<double, 5> right = cv::Vec<double, 5>::all(0.0);
+    for (int i = from; i <= to; ++i) {
+      const double d = i - centre;
+      const double bell = std::exp(-0.5 * d * d / (sigma * sigma));
+      const double residual = values[static_cast<std::size_t>(i)] - (level + slope * d + height * bell);
+      const cv::Vec<double, 5> jacobian(height * bell * d / (sigma * sigma) - slope,
+                                        height * bell * d * d / std::pow(sigma, 3), 1.0, d, bell);
+      normal += jacobian * jacobian.t();
+      right += residual * jacobian;
+    }
+    for (int k = 0; k < 5; ++k) normal(k, k) *= 1.0 + 1e-4;
+    cv::Vec<double, 5> step;
+    if (!cv::solve(normal, right, step, cv::DECOMP_CHOLESKY)) return std::nullopt;
+    centre += std::clamp(step[0], -1.0, 1.0);
+    sigma = std::clamp(sigma + step[1], 0.3, static_cast<double>(kWidest));
+    level += step[2];
+    slope += step[3];
+    height += step[4];
+    if (std::abs(centre - expected) > 3.0) return std::nullopt;
+    if (std::abs(step[0]) < 1e-4 && std::abs(step[1]) < 1e-3) return centre;
+  }
+  return std::nullopt;
+}
+
+Thread find_along(const cv::Mat& grey, cv::Rect region, bool turned,
+                  const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight) {
+  const int rows = turned ? region.width : region.height;
+  const int columns = turned ? region.height : region.width;
+  const auto pixel = [&](double row, double column) {
+    return turned ? cv::Point2d(region.x + row, region.y + column) : cv::Point2d(region.x + column, region.y + row);
+  };
+  Thread best;
+  for (const int width : {1, 3, 5, 9}) {
+    // The places of each row that stand out most, of either sign.
+    std::vector<Place> places;
+    for (int row = 0; row < rows; ++row) {
+      const std::vector<double> values = profile_of(grey, region, row, turned);
+      std::vector<double> excess(values.size(), 0.0);
+      for (int i = 0; i < columns; ++i) excess[static_cast<std::size_t>(i)] = excess_at(values, i, width);
+      std::vector<Place> found;
+      for (int i = 1; i + 1 < columns; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double here = std::abs(excess[k]);
+        if (here == 0.0 || here < std::abs(excess[k - 1]) || here <= std::abs(excess[k + 1])) continue;
+        found.push_back({static_cast<double>(row), static_cast<double>(i), excess[k], {}});
+      }
+      std::stable_sort(found.begin(), found.end(),
+                       [](const Place& a, const Place& b) { return std::abs(a.excess) > std::abs(b.excess); });
+      if (found.size() > kPlacesARow) found.resize(kPlacesARow);
+      for (Place& place : found) {
+        const auto undone = straight(pixel(place.along, place.at));
+        if (!undone) continue;
+        place.straight = *undone;
+        places.push_back(place);
+      }
+    }
+    if (places.size() < 6) continue;
+    // Every pair of far rows proposes a line; the one on which most stands out wins. All pairs of a coarse grid of
+    // rows.
+    const double least_gap = 0.25 * rows;
+    const std::size_t stride = std::max<std::size_t>(1, places.size() / 160);
+    for (std::size_t a = 0; a < places.size(); a += stride) {
+      for (std::size_t b = a + 1; b < places.size(); b += stride) {
+        if (places[b].along - places[a].along < least_gap || places[a].excess * places[b].excess < 0.0) continue;
+        const cv::Point2d direction = places[b].straight - places[a].straight;
+        const double length = cv::norm(direction);
+        double strength = 0.0;
+        double last_row = -1.0;
+        std::size_t seen = 0;
+        for (const Place& place : places) {
+          if (place.excess * places[a].excess < 0.0 || place.along == last_row) continue;
+          if (std::abs(direction.cross(place.straight - places[a].straight)) > kNear * length) continue;
+          strength += std::sqrt(std::abs(place.excess));  // a few strong places do not outweigh many
+          last_row = place.along;
+          ++seen;
+        }
+        if (static_cast<double>(seen) < std::max(6.0, kShareOfRows * rows) || strength <= 1.05 * best.strength)
+          continue;
+        best.strength = strength;
+        best.points.clear();
+        last_row = -1.0;
+        for (const Place& place : places) {
+          if (place.excess * places[a].excess < 0.0 || place.along == last_row) continue;
+          if (std::abs(direction.cross(place.straight - places[a].straight)) > kNear * length) continue;
+          last_row = place.along;
+          const auto centre =
+              centre_of(profile_of(grey, region, static_cast<int>(place.along), turned), place.at, width);
+          if (centre) best.points.push_back(pixel(place.along, *centre));
+        }
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<cv::Point2d> find_thread(const cv::Mat& grey, cv::Rect region,
+                                     const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight) {
+  const Thread upright = find_along(grey, region, false, straight);
+  const Thread lying = find_along(grey, region, true, straight);
+  // A line is followed best across: in as many rows (columns) as it spans.
+  return lying.points.size() > upright.points.size() ? lying.points : upright.points;
+}
+
+Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
+                     std::optional<cv::Size> picture_size) {
+  const cv::Mat grey = read_grey_picture(setup.view);
+  const auto fail = [&](std::string found, std::string expected) {
+    throw base::InputError(base::Issue{setup.view.string(), 0, "plumb", std::move(found), std::move(expected)});
+  };
+  if (picture_size && grey.size() != *picture_size) {
+    fail(fmt::format("{} x {} pixels", grey.cols, grey.rows),
+         fmt::format("{} x {} pixels, as the pattern's views", picture_size->width, picture_size->height));
+  }
+  if ((setup.region & cv::Rect(0, 0, grey.cols, grey.rows)) != setup.region) {
+    fail(fmt::format("the region [{}, {}, {}, {}]", setup.region.x, setup.region.y, setup.region.width,
+                     setup.region.height),
+         fmt::format("a region inside the picture of {} x {} pixels", grey.cols, grey.rows));
+  }
+  const auto straight = [&](cv::Point2d pixel) { return restitution.undistorted(pixel); };
+  const std::vector<cv::Point2d> thread = find_thread(grey, setup.region, straight);
+  std::vector<cv::Point2d> places;
+  cv::Point2d first, last;  // in the picture, by row
+  double top = std::numeric_limits<double>::infinity(), bottom = -top;
+  for (const cv::Point2d& pixel : thread) {
+    const auto place = restitution.to_plane(pixel);
+    if (!place) continue;
+    places.push_back(*place);
+    if (pixel.y < top) {
+      top = pixel.y;
+      first = *place;
+    }
+    if (pixel.y > bottom) {
+      bottom = pixel.y;
+      last = *place;
+    }
+  }
+  if (places.size() < 6) fail("no thin straight line in the region", "a dark or bright thread");
+  PlaneLine line = fit_plane_line(places, 1e-7);
+  if (line.direction.dot(last - first) < 0.0) line.direction = -line.direction;
+  if (!std::isfinite(axis.line().sd_angle_rad)) return undetermined("the marker does not move, so its line is unknown");
+  const double alpha = std::asin(std::clamp(axis.line().direction.dot(line.direction), -1.0, 1.0));
+  const double sd = std::hypot(line.sd_angle_rad, axis.line().sd_angle_rad);
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  return determined(estimate(alpha * kDegrees, sd * kDegrees, static_cast<double>(line.used) - 2.0));
+}
+
+}  // namespace glidelab::core

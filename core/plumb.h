@@ -1,0 +1,34 @@
+/// The plumb line in a picture, and the inclination of the line of motion against it.
+///
+/// A thread is a thin dark or bright line in the region given. Row by row (column by column where it runs more along
+/// the picture's rows) its places are found as what stands out from both sides; the straight line (after the lens's
+/// distortion is undone) that most of them lie on is the thread. Along it each row's centre is fitted below a pixel,
+/// with a sloping background. A plumb line is parallel to the plane of motion, so that its direction, restituted to
+/// that plane, does not depend on how far before or behind the plane it hangs.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/experiment.h"
+#include "core/motion_axis.h"
+#include "core/restitution.h"
+#include "core/results.h"
+
+namespace glidelab::core {
+
+/// Places of the thread's middle, in pixels, one for each row (or column) in which it was found; empty where there is
+/// no thread. `straight` undoes the lens.
+std::vector<cv::Point2d> find_thread(const cv::Mat& grey, cv::Rect region,
+                                     const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight);
+
+/// alpha = asin(axis . down), positive downhill, down being the thread's direction towards the picture's lower edge.
+/// Its standard deviation joins the thread's and the axis's. InputError where the region leaves the picture or holds no
+/// thread; undetermined where the marker does not move.
+Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
+                     std::optional<cv::Size> picture_size);
+
+}  // namespace glidelab::core
