@@ -151,13 +151,13 @@ std::vector<std::optional<SmoothedPoint>> LocalCubic::smooth(std::span<const dou
       j = to;
       continue;
     }
-    if (const auto row = general_row(t_s_[j])) out[j] = apply(*row, values);
+    if (const auto row = general_row(t_s_[j])) out[j] = weighted_sums(*row, values);
     ++j;
   }
   return out;
 }
 
-SmoothedPoint apply(const KernelRow& row, std::span<const double> values) {
+SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values) {
   const KernelWeights& weights = *row.weights;
   assert(row.first + weights.x.size() <= values.size());
   // About the first value, so that a far origin costs no digits.

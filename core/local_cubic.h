@@ -75,7 +75,7 @@ class LocalCubic {
 };
 
 /// The sums of a row over `values`, which are those of all points.
-SmoothedPoint apply(const KernelRow& row, std::span<const double> values);
+SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values);
 
 /// Variance of sum_i w_i n_i for noise n with the autocovariance gamma[0], gamma[1], … at lags of 0, 1, … points.
 double noise_variance(std::span<const double> weights, std::span<const double> autocovariance);
