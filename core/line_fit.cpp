@@ -66,6 +66,65 @@ void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, dou
   parts.cov = 0.5 * (noise_variance(sum, autocovariance) - parts.var_k - parts.var_a0);
 }
 
+constexpr std::size_t kFewestBlocks = 8;
+
+/// How many of `count` residuals are worth an independent one: their noise is correlated over the kernel.
+double independent(const std::vector<double>& weights, std::size_t count) {
+  double sum = 0.0, variance = 0.0;
+  for (std::size_t lag = 0; lag < weights.size(); ++lag) {
+    double product = 0.0;
+    for (std::size_t i = 0; i + lag < weights.size(); ++i) product += weights[i] * weights[i + lag];
+    if (lag == 0) variance = product;
+    sum += (lag == 0 ? 1.0 : 2.0) * product * product / (variance * variance);
+  }
+  return std::max(1.0, static_cast<double>(count) / sum);
+}
+
+/// Sets parts.scatter, and widens the covariance where it is above what noise leaves.
+void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& line,
+                const std::vector<double>& autocovariance, LineUncertainty& parts) {
+  const std::size_t n = input.v_m_s.size();
+  std::vector<double> residual(n), weights;
+  double squares = 0.0, expected = 0.0, variance = 0.0;
+  const KernelWeights* known = nullptr;
+  for (std::size_t j = 0; j < n; ++j) {
+    residual[j] = input.a_m_s2[j] - (line[1] - line[0] * input.v_m_s[j]);
+    squares += residual[j] * residual[j];
+    if (input.rows[j].weights.get() != known) {
+      known = input.rows[j].weights.get();
+      weights = known->a;
+      for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += line[0] * known->v[i];
+      variance = noise_variance(weights, autocovariance);
+    }
+    expected += variance;
+  }
+  if (!(expected > 0.0)) return;
+  const double ratio = squares / expected;
+  parts.scatter = std::sqrt(ratio);
+  if (ratio < 1.0 + 3.0 * std::sqrt(2.0 / independent(weights, n))) return;
+  const std::size_t length = std::max<std::size_t>(1, n / kFewestBlocks);
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  double blocks = 0.0;
+  for (std::size_t from = 0; from < n;) {
+    Eigen::Vector2d score = Eigen::Vector2d::Zero();
+    std::size_t to = from;
+    for (; to < n && to < from + length && input.stretch[to] == input.stretch[from]; ++to) {
+      score += Eigen::Vector2d(-input.v_m_s[to], 1.0) * residual[to];
+    }
+    sum += score * score.transpose();
+    blocks += 1.0;
+    from = to;
+  }
+  if (blocks < 3.0) return;
+  const Eigen::Matrix2d wider = inverse * sum * inverse * ((1.0 - 1.0 / ratio) * blocks / (blocks - 2.0));
+  const double total = parts.var_a0 + wider(1, 1);
+  // Welch and Satterthwaite: the part from the blocks has blocks - 2 degrees of freedom.
+  parts.degrees = std::max(1.0, (blocks - 2.0) * total * total / (wider(1, 1) * wider(1, 1)));
+  parts.var_k += wider(0, 0);
+  parts.cov += wider(0, 1);
+  parts.var_a0 = total;
+}
+
 }  // namespace
 
 std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
@@ -87,6 +146,7 @@ std::optional<LineFit> fit_line(int direction, const LineInput& input, const std
   fit.to_v_m_s = *high;
   fit.parts.degrees = std::numeric_limits<double>::infinity();
   propagate_noise(input, inverse, line[0], autocovariance, fit.parts);
+  add_misfit(input, inverse, line, autocovariance, fit.parts);
   const Eigen::Vector2d bias = coefficients(inverse, input.v_m_s, input.bias_a_m_s2);
   fit.parts.smoothing_k = bias[0];
   fit.parts.smoothing_a0 = bias[1];

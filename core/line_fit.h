@@ -8,6 +8,14 @@
 ///
 /// with Sigma the estimated autocovariance of the noise. The term that is left out, (dA)'(residual), is of second
 /// order: it shrinks K/m by var(v noise) / var(v), which is below 1e-3 wherever the lines are worth fitting.
+///
+/// Where the points lie off the line by more than the noise explains (the law is no line, the track is not straight)
+/// the covariance grows by that part of their scatter: the residuals are cut into eight or more blocks in time, never
+/// across stretches, and
+///
+///     covariance += (1 - 1/X) (A'A)^-1 [ sum over blocks of s s' ] (A'A)^-1  n_b / (n_b - 2),   s = sum of A_j' e_j,
+///
+/// with X the mean square residual over that expected of the noise, where X is above 1 by three standard deviations.
 #pragma once
 
 #include <cstddef>
@@ -25,6 +33,7 @@ struct LineInput {
   std::vector<double> v_m_s;
   std::vector<double> a_m_s2;          ///< with the known force's part F/m taken off
   std::vector<KernelRow> rows;         ///< over the measured positions
+  std::vector<std::size_t> stretch;    ///< that each point belongs to; they follow each other
   std::vector<double> bias_a_m_s2;     ///< estimated smoothing bias of a
   std::vector<double> mass_part_m_s2;  ///< change of a by one standard deviation of the mass
 };

@@ -183,4 +183,13 @@ double noise_variance(std::span<const double> weights, std::span<const double> a
   return variance;
 }
 
+const RowVariance::Variances& RowVariance::of(const KernelRow& row) {
+  if (row.weights != known_) {
+    known_ = row.weights;
+    variances_ = {noise_variance(known_->x, autocovariance_), noise_variance(known_->v, autocovariance_),
+                  noise_variance(known_->a, autocovariance_)};
+  }
+  return variances_;
+}
+
 }  // namespace glidelab::core

@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glidelab::core {
@@ -79,5 +80,23 @@ SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values
 
 /// Variance of sum_i w_i n_i for noise n with the autocovariance gamma[0], gamma[1], … at lags of 0, 1, … points.
 double noise_variance(std::span<const double> weights, std::span<const double> autocovariance);
+
+/// The variances of rows by one noise; points that share a filter share the work.
+class RowVariance {
+ public:
+  explicit RowVariance(std::vector<double> autocovariance) : autocovariance_(std::move(autocovariance)) {}
+  double of_x(const KernelRow& row) { return of(row).x; }
+  double of_v(const KernelRow& row) { return of(row).v; }
+  double of_a(const KernelRow& row) { return of(row).a; }
+
+ private:
+  struct Variances {
+    double x = 0.0, v = 0.0, a = 0.0;
+  };
+  const Variances& of(const KernelRow& row);
+  std::vector<double> autocovariance_;
+  std::shared_ptr<const KernelWeights> known_;
+  Variances variances_;
+};
 
 }  // namespace glidelab::core

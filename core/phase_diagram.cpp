@@ -1,15 +1,143 @@
 #include "core/phase_diagram.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/bandwidth.h"
+#include "core/free_motion.h"
 #include "core/line_fit.h"
-#include "core/local_cubic.h"
+#include "core/line_input.h"
+#include "core/motion.h"
+#include "core/noise.h"
+#include "core/outliers.h"
+#include "core/stretch_points.h"
 
 namespace glidelab::core {
+namespace {
 
-// THIN: one stretch, fixed bandwidth, white noise from second differences; deepened next.
-ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s, double) {
+/// Points that follow each other and are smoothed together: a stretch, or what lies between two of them.
+struct Piece {
+  std::size_t first = 0, count = 0;
+};
+
+std::vector<Piece> pieces_of(const std::vector<FreeStretch>& stretches, std::size_t points) {
+  std::vector<Piece> pieces;
+  std::size_t next = 0;
+  for (const FreeStretch& stretch : stretches) {
+    if (stretch.first > next) pieces.push_back({next, stretch.first - next});
+    pieces.push_back({stretch.first, stretch.count});
+    next = stretch.first + stretch.count;
+  }
+  if (points > next) pieces.push_back({next, points - next});
+  return pieces;
+}
+
+PositionNoise noise_at(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s) {
+  std::vector<LocalCubic> cubics;
+  std::vector<NoisePiece> pieces;
+  cubics.reserve(stretches.size());
+  for (const FreeStretch& stretch : stretches) {
+    cubics.emplace_back(std::span(motion.t_s).subspan(stretch.first, stretch.count), bandwidth_s);
+    pieces.push_back({&cubics.back(), std::span(motion.y_m).subspan(stretch.first, stretch.count)});
+  }
+  return estimate_noise(pieces, motion.noise_m);
+}
+
+/// Every frame of the clip, smoothed with the points of its own piece, `left_out` not yet set.
+std::vector<MotionPoint> smooth_frames(const TrackData& track, const Motion& motion,
+                                       const std::vector<FreeStretch>& stretches, const PositionNoise& noise,
+                                       double bandwidth_s, double mass_kg) {
+  std::vector<MotionPoint> frames(track.frame_t_s.size());
+  for (std::size_t f = 0; f < frames.size(); ++f) frames[f].t_s = track.frame_t_s[f];
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) frames[track.frame[i]].measured_m = track.x_m[i];
+  RowVariance variance(noise.autocovariance);
+  std::size_t f = 0;
+  for (const Piece& piece : pieces_of(stretches, motion.t_s.size())) {
+    const std::span t = std::span(motion.t_s).subspan(piece.first, piece.count);
+    const std::span x = std::span(motion.x_m).subspan(piece.first, piece.count);
+    const std::span y = std::span(motion.y_m).subspan(piece.first, piece.count);
+    const LocalCubic cubic(t, bandwidth_s);
+    while (f < frames.size() && frames[f].t_s < t.front()) ++f;
+    for (; f < frames.size() && frames[f].t_s <= t.back(); ++f) {
+      const auto row = cubic.row(frames[f].t_s);
+      if (!row) continue;
+      MotionPoint& frame = frames[f];
+      const SmoothedPoint of_x = weighted_sums(*row, x);
+      frame.smoothed = true;
+      frame.x_m = of_x.x_m;
+      frame.v_m_s = of_x.v_m_s;
+      frame.a_m_s2 = of_x.a_m_s2;
+      frame.sd_x_m = std::sqrt(variance.of_x(*row));
+      frame.sd_v_m_s = std::sqrt(variance.of_v(*row));
+      frame.sd_a_m_s2 = std::sqrt(variance.of_a(*row));
+      if (motion.forced) frame.force_n = mass_kg * (of_x.a_m_s2 - weighted_sums(*row, y).a_m_s2);
+    }
+  }
+  return frames;
+}
+
+void mark_frames(const TrackData& track, const Motion& motion, const FreeMotion& free,
+                 const std::vector<StretchPoint>& points, std::vector<MotionPoint>& frames) {
+  for (MotionPoint& frame : frames) frame.left_out = LeftOut::no_marker;
+  for (const std::size_t f : track.frame) frames[f].left_out = LeftOut::outlier;  // unless it is among the kept
+  for (std::size_t i = 0; i < motion.t_s.size(); ++i) {
+    frames[track.frame[motion.point[i]]].left_out = free.reason[i];
+  }
+  for (const StretchPoint& point : points) {
+    frames[track.frame[motion.point[point.point]]].left_out = point.left_out;
+  }
+}
+
+std::vector<LeftOutInterval> intervals_of(const std::vector<MotionPoint>& frames) {
+  std::vector<LeftOutInterval> intervals;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (frames[f].left_out == LeftOut::used) continue;
+    if (f == 0 || frames[f].left_out != frames[f - 1].left_out) {
+      intervals.push_back({frames[f].t_s, frames[f].t_s, 0, frames[f].left_out});
+    }
+    intervals.back().to_s = frames[f].t_s;
+    ++intervals.back().frames;
+  }
+  return intervals;
+}
+
+std::vector<Stretch> used_stretches(const Motion& motion, const std::vector<FreeStretch>& free,
+                                    const std::vector<StretchPoint>& points) {
+  std::vector<Stretch> stretches;
+  for (const FreeStretch& stretch : free) {
+    stretches.push_back(
+        {motion.t_s[stretch.first], motion.t_s[stretch.first + stretch.count - 1], stretch.direction, 0});
+  }
+  for (const StretchPoint& point : points) stretches[point.stretch].points += point.left_out == LeftOut::used;
+  std::erase_if(stretches, [](const Stretch& stretch) { return stretch.points == 0; });
+  return stretches;
+}
+
+void note_findings(const Motion& motion, std::size_t outliers, const PositionNoise& noise, ClipResult& clip) {
+  if (outliers > 0) {
+    clip.notes.push_back(
+        fmt::format("{} of {} positions lie off the motion and are left out", outliers, outliers + motion.t_s.size()));
+  }
+  if (noise.autocovariance.size() > 1) {
+    clip.notes.push_back(
+        fmt::format("the noise of neighbouring positions is correlated ({:.2f}); the intervals allow for it",
+                    noise.autocovariance[1] / noise.autocovariance[0]));
+  }
+  for (const LineFit& line : clip.segments) {
+    if (std::isinf(line.parts.degrees)) continue;
+    clip.notes.push_back(
+        fmt::format("v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; "
+                    "its intervals are widened",
+                    line.direction > 0 ? ">" : "<", line.parts.scatter));
+  }
+}
+
+}  // namespace
+
+ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s,
+                          double /*gravity_m_s2*/) {
   ClipResult clip;
   clip.name = setup.name;
   clip.frames = track.frame_t_s.size();
@@ -17,58 +145,38 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::o
   clip.frame_rate_hz = track.frame_rate_hz;
   clip.sightings = track.sightings;
   clip.notes = track.notes;
-  clip.bandwidth_s = bandwidth_s.value_or(0.03);
-  clip.bandwidth_method = bandwidth_s ? "given" : "fixed for now";
-  const LocalCubic cubic(track.t_s, clip.bandwidth_s);
-  double sum = 0.0;
-  for (std::size_t i = 2; i + 2 < track.x_m.size(); ++i) {
-    const double fourth =
-        track.x_m[i - 2] - 4 * track.x_m[i - 1] + 6 * track.x_m[i] - 4 * track.x_m[i + 1] + track.x_m[i + 2];
-    sum += fourth * fourth / 70.0;
+
+  const Motion measured = motion_of(track, setup.mass_kg);
+  const std::vector<std::size_t> outliers = find_outliers(measured);
+  const Motion motion = without(measured, outliers);
+  const FreeMotion free = find_free_motion(motion, setup);
+  clip.notes.insert(clip.notes.end(), free.notes.begin(), free.notes.end());
+  if (bandwidth_s) {
+    clip.bandwidth_s = *bandwidth_s;
+    clip.bandwidth_method = "given";
+  } else {
+    const PositionNoise first = noise_at(motion, free.stretches, free.pilot_bandwidth_s);
+    const BandwidthChoice choice = choose_bandwidth(motion, free.stretches, first, free.pilot_bandwidth_s);
+    clip.bandwidth_s = choice.bandwidth_s;
+    clip.bandwidth_method = choice.method;
   }
-  clip.position_noise_m = std::sqrt(sum / static_cast<double>(track.x_m.size()));
-  const std::vector<double> autocovariance{clip.position_noise_m * clip.position_noise_m};
-  const auto smoothed = cubic.smooth(track.x_m);
-  LineInput input[2];
-  for (std::size_t frame = 0, i = 0; frame < clip.frames; ++frame) {
-    MotionPoint point;
-    point.t_s = track.frame_t_s[frame];
-    point.left_out = LeftOut::no_marker;
-    if (i < track.t_s.size() && track.frame[i] == frame) {
-      point.measured_m = track.x_m[i];
-      point.left_out = LeftOut::kernel_gap;
-      if (smoothed[i]) {
-        point.smoothed = true;
-        point.x_m = smoothed[i]->x_m;
-        point.v_m_s = smoothed[i]->v_m_s;
-        point.a_m_s2 = smoothed[i]->a_m_s2;
-        const auto row = *cubic.row_of_point(i);
-        point.sd_x_m = std::sqrt(noise_variance(row.weights->x, autocovariance));
-        point.sd_v_m_s = std::sqrt(noise_variance(row.weights->v, autocovariance));
-        point.sd_a_m_s2 = std::sqrt(noise_variance(row.weights->a, autocovariance));
-        const double margin = 2.5 * clip.bandwidth_s;
-        const bool over_end = point.t_s < track.t_s.front() + margin || point.t_s > track.t_s.back() - margin;
-        const bool turning = std::abs(point.v_m_s) < std::abs(point.a_m_s2) * margin;
-        point.left_out = over_end ? LeftOut::kernel_end : turning ? LeftOut::kernel_reversal : LeftOut::used;
-        if (point.left_out == LeftOut::used) {
-          LineInput& of = input[point.v_m_s > 0.0];
-          of.track_points = track.t_s.size();
-          of.v_m_s.push_back(point.v_m_s);
-          of.a_m_s2.push_back(point.a_m_s2);
-          of.rows.push_back(row);
-          of.bias_a_m_s2.push_back(0.0);
-          of.mass_part_m_s2.push_back(0.0);
-        }
-      }
-      ++i;
-    }
-    clip.motion.push_back(point);
-  }
+  const PositionNoise noise = noise_at(motion, free.stretches, clip.bandwidth_s);
+  clip.position_noise_m = noise.sd_m;
+
+  const std::vector<StretchPoint> points = smooth_stretches(motion, free.stretches, clip.bandwidth_s);
+  const std::vector<double> law = pilot_law(motion, free.stretches, law_bandwidth(motion, free.pilot_bandwidth_s));
+  const std::vector<double> bias = smoothing_bias(motion, free.stretches, law, points);
   for (const int direction : {-1, 1}) {
-    const auto line = fit_line(direction, input[direction > 0], autocovariance, track.scale_sd_relative);
+    const LineInput input = line_input(motion, points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
+    const auto line = fit_line(direction, input, noise.autocovariance, track.scale_sd_relative);
     if (line) clip.segments.push_back(*line);
   }
   clip.v_lim_m_s = limit_velocity(clip.segments);
+  clip.motion = smooth_frames(track, motion, free.stretches, noise, clip.bandwidth_s, setup.mass_kg);
+  mark_frames(track, motion, free, points, clip.motion);
+  clip.left_out = intervals_of(clip.motion);
+  clip.stretches = used_stretches(motion, free.stretches, points);
+  note_findings(motion, outliers.size(), noise, clip);
   return clip;
 }
 

@@ -61,6 +61,7 @@ struct LineUncertainty {
   double var_k = 0.0;  ///< random: the noise of the positions, and what the points scatter beyond it
   double var_a0 = 0.0;
   double cov = 0.0;
+  double scatter = 0.0;      ///< root mean square residual over what the noise explains: 1 where the line is right
   double degrees = 0.0;      ///< of freedom that the random part rests on; infinite where it is as good as known
   double smoothing_k = 0.0;  ///< estimated bias by the kernel; not subtracted
   double smoothing_a0 = 0.0;

@@ -1,0 +1,17 @@
+/// From smoothed points to what a line is fitted to.
+#pragma once
+
+#include <vector>
+
+#include "core/line_fit.h"
+#include "core/motion.h"
+#include "core/stretch_points.h"
+
+namespace glidelab::core {
+
+/// The used points of one direction; `bias` is that of smoothing_bias() for the same points. With a known force a is
+/// y'', and one standard deviation of the mass changes it by F sd / m^2.
+LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& points, const std::vector<double>& bias,
+                     int direction, double mass_kg, double mass_sd_kg);
+
+}  // namespace glidelab::core
