@@ -1,23 +1,22 @@
 /// The default bandwidth of a clip: what its lines, and then its points, are best served by.
 ///
-/// The kernel's bias of a is h^2 x''''/2, its noise falls with h^(-5/2). Of the pointwise best (for x'''' the same
-/// everywhere h^9 = 1.058 s^2 dt / x''''^2) the lines would have too much bias: a line averages the noise of its
-/// points, but not their bias, which for a = a0 - k v is (k h)^2 / 2 of both K/m and a0. So for each h of a grid of
-/// ratio 1.1
+/// The kernel's bias of a is h^2 x''''/2, its noise falls with h^(-5/2). The pointwise best (for x'''' the same
+/// everywhere h^9 = 1.058 s^2 dt / x''''^2) would give the lines too much bias: a line averages the noise of its
+/// points, but not their bias, which for a = a0 - k v is (k h)^2 / 2 of both K/m and a0. And a wide kernel costs the
+/// points near every end and reversal. So for each h of a grid of ratio 1.1, from 1.2 time steps on,
 ///
-///     E_line(h)  = sum over directions of the mean over 0 <= v <= v_max of  var + bias^2  of the fitted line,
-///     E_point(h) = mean over the points that count of  var a + bias^2 a
+///     E(h) = sum over directions of the mean over 0 <= v <= v_max of  variance + bias^2  of the fitted line
 ///
-/// are estimated: the variances exactly from the weights and the noise (line_fit.h), the biases by smoothing the double
-/// integral of f(v(t)), f the parabola in v fitted to the points of a pilot. With h_line and h_point the minima, and
-/// h_quiet the least h at which the noise of a is 1.25 % of the standard deviation of a along every line (so that noise
-/// alone leaves R^2 at 0.9998, the paper's lines have 0.9996 to 1.0000),
+/// is estimated: the variance exactly from the weights and the noise (line_fit.h), the bias by smoothing the double
+/// integral of f(v(t)), f the law fitted to the points of a first smoothing. The h of least E is the lines' own.
 ///
-///     h = max(h_line, min(h_quiet, h_point)).
+/// At low noise that h leaves the points more ragged than need be. Then it is raised until the noise
+/// of a is 1.25 % of the standard deviation of a along every line (noise alone then leaves R^2 at 0.9998; the paper's
+/// lines have 0.9996 to 1.0000), but only while the bias of every line stays below 0.35 % of its size and the lines'
+/// variance below 1.25 times the least E's.
 ///
-/// That is: the line's optimum; raised, where the points would still be ragged, until they are as quiet as the paper's,
-/// but never beyond the pointwise optimum. Assumes that a depends on v alone within a direction, and stationary noise.
-/// The rule that the paper took from its reference [15] is not in its text; this is not claimed to be it.
+/// Assumes a law that is roughly a line within a direction, and stationary noise. The rule that the paper took from its
+/// reference [15] is not in its text; this is not claimed to be it.
 #pragma once
 
 #include <string>
@@ -31,14 +30,13 @@ namespace glidelab::core {
 
 struct BandwidthChoice {
   double bandwidth_s = 0.0;
-  std::string method;  ///< one line for a reader
-  double line_s = 0.0, point_s = 0.0, quiet_s = 0.0;
+  std::string method;   ///< one line for a reader
+  double line_s = 0.0;  ///< of least E
 };
 
-/// f(v) at every point of the stretches (0 elsewhere): per direction a line in v, a parabola where that is
-/// significantly better (F above 9), a constant where v hardly varies, through the points smoothed at `bandwidth_s`.
-/// The fit averages the noise of its points, so half the pilot's bandwidth, with a quarter of its bias, serves
-/// (law_bandwidth).
+/// f(v(t)) at every point of the stretches (0 elsewhere): f is the line of each direction, v(t) is smoothed at
+/// `bandwidth_s`. The fit averages the noise of its points, so half the pilot's bandwidth, with a quarter of its bias,
+/// serves (law_bandwidth). A law that is no line gets the bias that its mean slope makes of the true v(t).
 std::vector<double> pilot_law(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
 double law_bandwidth(const Motion& motion, double pilot_bandwidth_s);

@@ -137,30 +137,30 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   return joint;
 }
 
-/// The mean of the directions' K/m, each weighted by one over its random variance. Where the two lie further apart
-/// than their uncertainty explains, the standard deviation grows with the spread (chi^2 of one degree of freedom).
+/// The mean of the directions' K/m, each weighted by one over its variance. Where the two lie further apart than their
+/// uncertainty explains, half of what is unexplained is a variance of each direction's own (DerSimonian and Laird
+/// 1986): it evens out the weights, and the standard deviation grows with the spread.
 Quantity mean_k(const std::vector<LineFit>& lines) {
   if (lines.empty()) return undetermined("no line: no direction has enough points that count");
+  double between = 0.0;
+  if (lines.size() == 2) {
+    const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
+    const double allowed = std::pow(lines[0].k_over_m_1_s.sd, 2) + std::pow(lines[1].k_over_m_1_s.sd, 2);
+    between = std::max(0.0, 0.5 * (apart * apart - allowed));
+  }
   double weights = 0.0, value = 0.0, smoothing = 0.0, mass = 0.0, degrees = std::numeric_limits<double>::infinity();
-  const bool known = std::all_of(lines.begin(), lines.end(), [](const LineFit& l) { return l.parts.var_k > 0.0; });
   for (const LineFit& line : lines) {
-    const double weight = known ? 1.0 / line.parts.var_k : 1.0;
+    const double weight = 1.0 / std::max(line.parts.var_k + between, 1e-30);  // noise-free points weigh the same
     weights += weight;
     value += weight * line.k_over_m_1_s.value;
     smoothing += weight * line.parts.smoothing_k;
     mass += weight * line.parts.mass_k;
     degrees = std::min(degrees, line.parts.degrees);
   }
-  value /= weights;
-  double variance = known ? 1.0 / weights : 0.0;
-  if (lines.size() == 2) {
-    const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
-    const double allowed = std::pow(lines[0].k_over_m_1_s.sd, 2) + std::pow(lines[1].k_over_m_1_s.sd, 2);
-    if (apart * apart > allowed) variance = allowed > 0.0 ? variance * apart * apart / allowed : 0.25 * apart * apart;
-  }
   smoothing /= weights;
   mass /= weights;
-  return determined(estimate(value, std::sqrt(variance + smoothing * smoothing + mass * mass), degrees));
+  const double variance = 1.0 / weights + smoothing * smoothing + mass * mass;
+  return determined(estimate(value / weights, std::sqrt(variance), degrees));
 }
 
 /// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+).

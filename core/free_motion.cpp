@@ -13,13 +13,14 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLeastMotion = 6.0;     // standard deviations of a position that a run must cover to be motion
+constexpr double kLeastMotion = 20.0;    // standard deviations of a position that a run must cover to be motion
 constexpr double kRestBandwidths = 3.0;  // a reversal is still for less than one pilot bandwidth
 constexpr std::size_t kRestPoints = 6;
 constexpr double kRestGrowth = 3.0;      // standard deviations of a position
 constexpr double kNearEvent = 3.0;       // pilot bandwidths within which the pilot mixes both sides
 constexpr double kRealBandwidths = 4.0;  // a stretch shorter than this is no motion to fit
 constexpr std::size_t kRealPoints = 8;
+constexpr double kShortest = 0.574;  // of the longest: 4^(-2/5), see the header
 
 struct Range {
   std::size_t from = 0, to = 0;  // to is one past the last
@@ -76,7 +77,7 @@ class Finder {
     }
   }
 
-  /// Neither slope nor curvature of x in the middle part of the range, or next to none.
+  /// Next to no slope and curvature of x in the middle part of the range.
   bool is_rest(const Range& range) const {
     if (range.to - range.from < kRestPoints || span_s(range) < kRestBandwidths * pilot_.bandwidth_s) return false;
     const std::size_t cut = (range.to - range.from) / 5;
@@ -93,11 +94,10 @@ class Finder {
     }
     const Eigen::Matrix3d inverse = (design.transpose() * design).inverse();
     const Eigen::Vector3d fit = inverse * (design.transpose() * x);
-    // In units of the half range: v = slope / half at the centre and +- 2 curvature / half at its ends.
-    const double little = 0.2 * 0.005 * pilot_.top_speed_m_s * half_s;
-    const double noise = 5.0 * motion_.noise_m;
-    return std::abs(fit[1]) <= std::max(little, noise * std::sqrt(inverse(1, 1))) &&
-           std::abs(2.0 * fit[2]) <= std::max(little, 2.0 * noise * std::sqrt(inverse(2, 2)));
+    // fit[1] is the way over half the range, fit[2] how far its ends lie off: next to none is a fifth of the speed that
+    // counts as still, or what a position's noise covers.
+    const double little = std::max(0.2 * kStillShare * pilot_.top_speed_m_s * half_s, kRestGrowth * motion_.noise_m);
+    return std::abs(fit[1]) <= little && std::abs(fit[2]) <= little;
   }
 
   void find_rests() {
@@ -283,6 +283,13 @@ class Finder {
       if (range.from > 0 && across(range.from)) stretch.start = LeftOut::kernel_reversal;
       if (range.to < n_ && across(range.to)) stretch.end = LeftOut::kernel_reversal;
       found.push_back(stretch);
+    }
+    double longest_s[2] = {};
+    const auto time_of = [&](const FreeStretch& of) { return span_s({of.first, of.first + of.count}); };
+    for (const FreeStretch& of : found)
+      longest_s[of.direction > 0] = std::max(longest_s[of.direction > 0], time_of(of));
+    for (FreeStretch& of : found) {
+      if (time_of(of) < kShortest * longest_s[of.direction > 0]) of.whole = LeftOut::short_stretch;
     }
     return found;
   }

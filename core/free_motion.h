@@ -1,7 +1,7 @@
 /// Which parts of a measured motion are free: not in the hand, not at rest, not against a stop or a bumper, and each in
 /// one direction.
 ///
-/// A first smoothing (the pilot) takes the least bandwidth at which the noise of a is 5 % of the median |a| of the
+/// A first smoothing (the pilot) takes the least bandwidth at which the noise of a is 10 % of the median |a| of the
 /// moving glider. On it:
 ///  - Direction: the sign of v where |v| is above four standard deviations and above 0.5 % of the clip's largest speed.
 ///    Between two runs of opposite sign lies a reversal, at the time at which v crosses zero.
@@ -12,6 +12,10 @@
 ///    point is not free where its a is off that line by more than a quarter of the line's own size AND by more than the
 ///    noise and the common scatter of the points allow (five standard deviations). Before the first free stretch that
 ///    is the hand, later a stop. What deviates less is left in: it is physics, not handling.
+///  - A stretch of duration T determines its acceleration with a standard deviation that goes with T^(-5/2). One that
+///  is
+///    four times worse than the longest of its direction (T below 0.57 of it) is left out: least squares gives all
+///    points one weight, so its points would add noise and no information.
 ///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing.
 /// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter.
 /// Each stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an
@@ -35,6 +39,7 @@ struct FreeStretch {
   int direction = 0;
   LeftOut start = LeftOut::kernel_end;  ///< what lies before it: kernel_end or kernel_reversal
   LeftOut end = LeftOut::kernel_end;    ///< what lies behind it
+  LeftOut whole = LeftOut::used;        ///< short_stretch where none of it counts
 };
 
 struct FreeMotion {

@@ -42,8 +42,11 @@ bool agrees(const LawPoints& points, const ConsensusLine& line, std::size_t i) {
   return std::abs(points.a_m_s2[i] - line.at(points.v_m_s[i])) <= line.tolerance(points.sd_m_s2[i]);
 }
 
+/// Size and scatter over the points that agree with the line at a scatter of 1: taken over what a wider tolerance lets
+/// in, both would feed on themselves.
 void measure(const LawPoints& points, ConsensusLine& line) {
   std::vector<double> sizes, offs;
+  line.scatter = 1.0;
   for (std::size_t i = 0; i < points.v_m_s.size(); ++i) {
     if (!agrees(points, line, i)) continue;
     sizes.push_back(std::abs(line.at(points.v_m_s[i])));
@@ -99,7 +102,6 @@ std::optional<ConsensusLine> find_consensus(const LawPoints& all) {
     auto refit = fit(points, 0, n, [&](std::size_t i) { return agrees(points, before, i); });
     if (!refit) break;
     refit->size_m_s2 = before.size_m_s2;
-    refit->scatter = before.scatter;
     measure(points, *refit);
     best = refit;
   }

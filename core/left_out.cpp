@@ -28,6 +28,8 @@ std::string describe(LeftOut reason) {
       return "no marker";
     case LeftOut::outlier:
       return "outlier";
+    case LeftOut::short_stretch:
+      return "short stretch";
   }
   assert(false);
   return "";

@@ -125,10 +125,42 @@ void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Ei
   parts.var_a0 = total;
 }
 
+constexpr std::size_t kFewestStretches = 4;
+
+/// Delete-one-stretch jackknife: how far the line moves when one stretch is left out. It knows of no noise model, and
+/// replaces the covariance where it is the larger one.
+void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& normal, const Eigen::Vector2d& line,
+                            LineUncertainty& parts) {
+  std::vector<Eigen::Vector2d> without;
+  for (std::size_t from = 0; from < input.stretch.size();) {
+    Eigen::Matrix2d part = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d score = Eigen::Vector2d::Zero();
+    std::size_t to = from;
+    for (; to < input.stretch.size() && input.stretch[to] == input.stretch[from]; ++to) {
+      const Eigen::Vector2d design(-input.v_m_s[to], 1.0);
+      part += design * design.transpose();
+      score += design * (input.a_m_s2[to] - design.dot(line));
+    }
+    const Eigen::Matrix2d rest = normal - part;
+    if (!(rest.determinant() > 1e-9 * normal.determinant())) return;  // one stretch holds the line alone
+    without.push_back(-(rest.inverse() * score));
+    from = to;
+  }
+  if (without.size() < kFewestStretches) return;
+  const auto n = static_cast<double>(without.size());
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& moved : without) covariance += moved * moved.transpose() * ((n - 1.0) / n);
+  if (covariance(1, 1) <= parts.var_a0) return;
+  parts.var_k = std::max(covariance(0, 0), parts.var_k);
+  parts.cov = covariance(0, 1);
+  parts.var_a0 = covariance(1, 1);
+  parts.degrees = n - 2.0;
+}
+
 }  // namespace
 
 std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
-                                double scale_sd_relative) {
+                                double scale_sd_relative, Misfit misfit) {
   assert(input.v_m_s.size() == input.a_m_s2.size() && input.rows.size() == input.v_m_s.size());
   if (input.v_m_s.size() < kFewestLinePoints) return {};
   const Eigen::Matrix2d normal = normal_matrix(input.v_m_s);
@@ -146,7 +178,10 @@ std::optional<LineFit> fit_line(int direction, const LineInput& input, const std
   fit.to_v_m_s = *high;
   fit.parts.degrees = std::numeric_limits<double>::infinity();
   propagate_noise(input, inverse, line[0], autocovariance, fit.parts);
-  add_misfit(input, inverse, line, autocovariance, fit.parts);
+  if (misfit == Misfit::widens) {
+    add_misfit(input, inverse, line, autocovariance, fit.parts);
+    compare_with_jackknife(input, normal, line, fit.parts);
+  }
   const Eigen::Vector2d bias = coefficients(inverse, input.v_m_s, input.bias_a_m_s2);
   fit.parts.smoothing_k = bias[0];
   fit.parts.smoothing_a0 = bias[1];

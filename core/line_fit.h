@@ -16,6 +16,8 @@
 ///     covariance += (1 - 1/X) (A'A)^-1 [ sum over blocks of s s' ] (A'A)^-1  n_b / (n_b - 2),   s = sum of A_j' e_j,
 ///
 /// with X the mean square residual over that expected of the noise, where X is above 1 by three standard deviations.
+/// Where there are four stretches or more, leaving them out one at a time (the jackknife) gives a covariance that knows
+/// of no noise model; the larger one counts.
 #pragma once
 
 #include <cstddef>
@@ -38,10 +40,12 @@ struct LineInput {
   std::vector<double> mass_part_m_s2;  ///< change of a by one standard deviation of the mass
 };
 
+enum class Misfit { widens, ignored };
+
 /// Nothing where there are fewer than kFewestLinePoints points or all v are one.
 inline constexpr std::size_t kFewestLinePoints = 5;
 std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
-                                double scale_sd_relative);
+                                double scale_sd_relative, Misfit misfit = Misfit::widens);
 
 /// Fills in the standard deviations and intervals of K/m and a0 from line.parts.
 void complete_line(LineFit& line);

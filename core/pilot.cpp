@@ -9,11 +9,10 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kNoiseShare = 0.05;      // of the median |a| that its noise may be
+constexpr double kNoiseShare = 0.10;      // of the median |a| that its noise may be
 constexpr double kLongestPart = 12.0;     // of the moving time that the bandwidth may be
-constexpr double kGrowth = 1.25;          // from one bandwidth to the next
+constexpr double kGrowth = 1.15;          // from one bandwidth to the next
 constexpr double kStillDeviations = 5.0;  // of v: one point in 1e6 by chance
-constexpr double kStillShare = 0.005;     // of the top speed
 
 double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;

@@ -17,11 +17,13 @@ struct Pilot {
   double top_speed_m_s = 0.0;     ///< 95 % quantile of |v|
 };
 
+inline constexpr double kStillShare = 0.005;
+
 /// |v| below this is no motion: five standard deviations of v, or 0.5 % of the top speed.
 double still_below(const Pilot& pilot, std::size_t point);
 
-/// Takes the least bandwidth, from two time steps on, at which the standard deviation of a is at most 5 % of the median
-/// |a| of the moving points; at most a twelfth of the time that they span. Needs four points.
+/// Takes the least bandwidth, from two time steps on, at which the standard deviation of a is at most 10 % of the
+/// median |a| of the moving points; at most a twelfth of the time that they span. Needs four points.
 Pilot first_smoothing(const Motion& motion);
 
 }  // namespace glidelab::core

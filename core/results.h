@@ -36,6 +36,7 @@ enum class LeftOut {
   kernel_gap,       ///< too few frames with a marker within the kernel
   no_marker,        ///< no marker was found in this frame
   outlier,          ///< the centre lies off the motion by more than its noise allows
+  short_stretch,    ///< a stretch so short beside others of its direction that it adds noise and no information
 };
 /// A word for tables ("used", "hand", "kernel over a reversal", …).
 std::string describe(LeftOut reason);

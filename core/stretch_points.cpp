@@ -41,7 +41,9 @@ std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vect
         point.y = motion.forced ? weighted_sums(*point.row, y) : point.x;
         point.row->first += stretch.first;
       }
-      if (since < margin || until < margin) {
+      if (stretch.whole != LeftOut::used) {
+        point.left_out = stretch.whole;
+      } else if (since < margin || until < margin) {
         point.left_out = since < until ? stretch.start : stretch.end;
       } else if (!point.row || variance.of_a(*point.row) > allowed) {
         point.left_out = LeftOut::kernel_gap;
