@@ -1,0 +1,95 @@
+/// glidelab analyze EXPERIMENT…: experiment folders in, results.json, report.html and phase-<clip>.csv out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "app/analysis_files.h"
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/staged_output.h"
+#include "core/analyze.h"
+#include "core/experiment.h"
+#include "report/analysis_report.h"
+#include "report/gnuplot.h"
+#include "report/results_json.h"
+#include "report/text_table.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AnalyzeOptions {
+  CommonOptions common;
+  std::vector<std::string> experiments;
+  std::optional<double> bandwidth_s;
+  std::string estimator = "phase-diagram";
+};
+
+std::string title_of(const std::vector<fs::path>& folders) {
+  std::string title = core::read_experiment(folders.front()).name;
+  if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+  return title;
+}
+
+void analyze(const AnalyzeOptions& options) {
+  const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
+  const std::string title = title_of(folders);
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "analyze", folders.front());
+  check_writable(out);
+  base::StagedOutput staged(out);
+
+  ProgressDisplay display(options.common.quiet);
+  const base::Progress progress = display.callback();
+  const core::AnalysisResults results =
+      core::analyze(folders, {.bandwidth_s = options.bandwidth_s, .jobs = options.common.jobs}, progress);
+  write_analysis_files(results, staged.dir());
+  const std::vector<core::Preview> previews = previews_of(folders, results, progress);
+  base::write_file(staged.dir() / "report.html", report::analysis_report(title, results, previews, progress));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+
+  print_result(options.common.json ? report::results_json(results) : report::analysis_text(results));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+}
+
+std::string check_bandwidth(const std::string& text) {
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value) || !(value > 0.0)) {
+    return fmt::format("\"{}\" is not a number of seconds above 0", text);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_analyze(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<AnalyzeOptions>();
+  CLI::App* command = app.add_subcommand(
+      "analyze", "Analyse experiment folders: find the glider, smooth its motion, recover K/m, mu, alpha and v_lim");
+  command
+      ->add_option("EXPERIMENT", options->experiments,
+                   "Folders that hold an experiment.toml; several share the glider and the track")
+      ->type_name("DIR")
+      ->required();
+  command
+      ->add_option("--bandwidth", options->bandwidth_s,
+                   "Width of the smoothing kernel in seconds; default: chosen for each clip")
+      ->type_name("SECONDS")
+      ->check(check_bandwidth);
+  command->add_option("--estimator", options->estimator, "Method; \"phase-diagram\" fits lines in a(v)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"phase-diagram"}))
+      ->capture_default_str();
+  add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
+                     "Accepted as by every command; an analysis draws no random numbers");
+  command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,71 @@
+/// glidelab render SCENARIO.toml: an experiment folder, and the truth in the folder beside it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/staged_output.h"
+#include "render/render_experiment.h"
+#include "render/scenario.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderCommandOptions {
+  CommonOptions common;
+  std::string scenario;
+};
+
+void render_command(const RenderCommandOptions& options) {
+  const render::Scenario scenario = render::read_scenario(options.scenario);
+  const fs::path out = output_folder(options.common, "render", options.scenario);
+  const fs::path truth = truth_beside(out);
+  check_replaceable(out, truth);
+  check_writable(out);
+  check_writable(truth);
+  base::StagedOutput staged_experiment(out);
+  base::StagedOutput staged_truth(truth);
+
+  ProgressDisplay display(options.common.quiet);
+  const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
+  const render::RenderSummary summary =
+      render::render_experiment(scenario, staged_experiment.dir(), staged_truth.dir(),
+                                {.seed = seed, .jobs = options.common.jobs}, display.callback());
+  throw_if_interrupted();
+  // The truth first: where it stands, the folder beside it is known as one that may be replaced.
+  staged_truth.publish_whole();
+  staged_experiment.publish_whole();
+  display.clear();
+
+  if (options.common.json) {
+    const nlohmann::ordered_json document = {{"format", 1},  {"experiment", out.string()}, {"truth", truth.string()},
+                                             {"seed", seed}, {"clips", summary.clips},     {"frames", summary.frames}};
+    print_result(document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  } else {
+    print_result(fmt::format("{} clips, {} frames\nexperiment: {}\ntruth: {}\n", summary.clips, summary.frames,
+                             out.string(), truth.string()));
+  }
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<RenderCommandOptions>();
+  CLI::App* command = app.add_subcommand(
+      "render", "Film a scenario: write an experiment folder as a camera would, and the truth beside it (DIR.truth)");
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
+      ->type_name("FILE")
+      ->required();
+  add_common_options(*command, options->common, "glidelab-out/render-<name of the scenario file>",
+                     "Seed of the camera's noise; default: the scenario's");
+  command->callback([options, &chosen] { chosen = [options] { render_command(*options); }; });
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,86 @@
+/// glidelab validate SCENARIO.toml: the closed loop, from a scenario to recovered values beside their truth.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/analysis_files.h"
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/staged_output.h"
+#include "render/scenario.h"
+#include "report/comparison_json.h"
+#include "report/gnuplot.h"
+#include "report/text_table.h"
+#include "report/validation_report.h"
+#include "validate/run_validation.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ValidateOptions {
+  CommonOptions common;
+  std::string scenario;
+};
+
+/// The trajectories also stand beside the other results, as `simulate` writes them.
+void copy_trajectories(const fs::path& truth, const fs::path& dir) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(truth)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("trajectory-")) base::write_file(dir / name, base::read_file(entry.path()));
+  }
+}
+
+void validate_command(const ValidateOptions& options) {
+  const render::Scenario scenario = render::read_scenario(options.scenario);
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "validate", options.scenario);
+  check_writable(out);
+  check_replaceable(out / "experiment", out / "experiment.truth");
+  base::StagedOutput staged(out);
+  const fs::path experiment = staged.dir() / "experiment";
+  const fs::path truth = staged.dir() / "experiment.truth";
+  fs::create_directory(experiment);
+  fs::create_directory(truth);
+
+  ProgressDisplay display(options.common.quiet);
+  const base::Progress progress = display.callback();
+  validate::ValidationOptions run;
+  run.render = {.seed = options.common.seed.value_or(scenario.seed), .jobs = options.common.jobs};
+  run.analysis.jobs = options.common.jobs;
+  const validate::ValidationResult result = validate::run_validation(scenario, experiment, truth, run, progress);
+
+  write_analysis_files(result.results, staged.dir());
+  copy_trajectories(truth, staged.dir());
+  const std::string comparison = report::comparison_json(result.comparison);
+  base::write_file(staged.dir() / "comparison.json", comparison);
+  const std::vector<core::Preview> previews = previews_of({experiment}, result.results, progress);
+  base::write_file(staged.dir() / "report.html", report::validation_report(scenario.motion.name, result.results,
+                                                                           result.comparison, previews, progress));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+
+  print_result(options.common.json ? comparison : report::comparison_text(result.comparison));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<ValidateOptions>();
+  CLI::App* command = app.add_subcommand(
+      "validate", "Film a scenario, analyse the pictures, and compare what comes out with the truth");
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
+      ->type_name("FILE")
+      ->required();
+  add_common_options(*command, options->common, "glidelab-out/validate-<name of the scenario file>",
+                     "Seed of the camera's noise; default: the scenario's");
+  command->callback([options, &chosen] { chosen = [options] { validate_command(*options); }; });
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,17 @@
+/// The commands, one file each. add_…() declares a command's options; where the user chose it, `chosen` becomes the
+/// work.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace glidelab::app {
+
+using Command = std::function<void()>;
+
+void add_simulate(CLI::App& app, Command& chosen);
+void add_render(CLI::App& app, Command& chosen);
+void add_analyze(CLI::App& app, Command& chosen);
+void add_validate(CLI::App& app, Command& chosen);
+
+}  // namespace glidelab::app

@@ -1,0 +1,115 @@
+#include "app/common_options.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <limits>
+#include <thread>
+
+#include "base/errors.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostJobs = 1024;
+
+int number_of_cores() {
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, static_cast<unsigned>(kMostJobs)));
+}
+
+bool holds_files(const fs::path& folder) {
+  return fs::is_directory(folder) && !fs::is_empty(folder);
+}
+
+/// "scenarios/level.toml" gives "level", "data/run-1/" gives "run-1", "." the name of the working folder.
+std::string name_of(const fs::path& input) {
+  const fs::path whole = fs::absolute(input).lexically_normal();
+  const fs::path last = whole.has_filename() ? whole : whole.parent_path();
+  return (last.extension() == ".toml" ? last.stem() : last.filename()).string();
+}
+
+/// CLI11 takes -1 for the largest unsigned number.
+std::string check_seed(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return {};
+  return fmt::format("\"{}\" is not a whole number from 0 to {}", text, std::numeric_limits<std::uint64_t>::max());
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& command, CommonOptions& options, const std::string& default_out,
+                        const std::string& seed_help) {
+  options.jobs = number_of_cores();
+  command.set_help_flag("-h,--help", "Show this help");
+  command.add_option("-o,--out", options.out, "Folder for the results; default: " + default_out)
+      ->type_name("DIR")
+      ->check([](const std::string& text) { return text.empty() ? "the name is empty" : std::string(); });
+  command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_seed);
+  command
+      .add_option("--jobs", options.jobs,
+                  fmt::format("Threads to use; default: the number of cores ({})", options.jobs))
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostJobs));
+  command.add_flag("--json", options.json, "Print the result on standard output as one JSON object");
+  command.add_flag("-q,--quiet", options.quiet, "No progress and no messages but errors");
+}
+
+fs::path output_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
+  const fs::path wanted = options.out.empty() ? fs::path("glidelab-out") / fmt::format("{}-{}", command, name_of(input))
+                                              : fs::path(options.out);
+  std::error_code error;  // what cannot be resolved (a file in the way) shows where the folder is made
+  const fs::path resolved = fs::weakly_canonical(fs::absolute(wanted), error);
+  const fs::path folder = error ? fs::absolute(wanted).lexically_normal() : resolved;
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+fs::path truth_beside(const fs::path& experiment) {
+  return experiment.parent_path() / (experiment.filename().string() + ".truth");
+}
+
+void check_replaceable(const fs::path& experiment, const fs::path& truth) {
+  const bool has_truth = fs::exists(truth / "truth.json");
+  if (holds_files(experiment) && !(has_truth && fs::exists(experiment / "experiment.toml"))) {
+    throw base::InputError(base::Issue{experiment.string(), 0, "--out", "a folder with files that render did not make",
+                                       "a new folder, an empty one, or one that render has made"});
+  }
+  if (holds_files(truth) && !has_truth) {
+    throw base::InputError(base::Issue{truth.string(), 0, "--out", "a folder with files that render did not make",
+                                       "nothing there, or the truth of an earlier rendering"});
+  }
+}
+
+void check_writable(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder, error) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    base::throw_system_error(folder.string(), "output folder cannot be written", errno);
+  }
+  struct stat own = {};
+  struct stat parent = {};
+  if (::stat(folder.c_str(), &own) == 0 && ::stat(folder.parent_path().c_str(), &parent) == 0 &&
+      own.st_dev != parent.st_dev) {
+    throw base::EnvironmentError(fmt::format(
+        "{}: is a file system of its own, where results cannot be put in place at once; give a folder inside it",
+        folder.string()));
+  }
+}
+
+void print_result(std::string_view text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0) base::throw_system_error("standard output", "cannot be written", errno);
+}
+
+void say(const CommonOptions& options, std::string_view line) {
+  if (!options.quiet) fmt::print(stderr, "{}\n", line);
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,46 @@
+/// What every command takes, and how a command speaks: files, tables and JSON.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace glidelab::app {
+
+struct CommonOptions {
+  std::string out;  ///< empty: the default
+  std::optional<std::uint64_t> seed;
+  int jobs = 1;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// Adds --out, --seed, --jobs, --json and --quiet. `default_out` and `seed_help` complete their help.
+void add_common_options(CLI::App& command, CommonOptions& options, const std::string& default_out,
+                        const std::string& seed_help);
+
+/// --out, or glidelab-out/<command>-<name of input>; absolute, links resolved, no trailing slash.
+std::filesystem::path output_folder(const CommonOptions& options, std::string_view command,
+                                    const std::filesystem::path& input);
+
+/// "name.truth" beside "name".
+std::filesystem::path truth_beside(const std::filesystem::path& experiment);
+
+/// InputError where the experiment folder or its truth exist, are not empty, and were not made by `render`: those two
+/// are replaced as a whole, and nobody's own files may go with them.
+void check_replaceable(const std::filesystem::path& experiment, const std::filesystem::path& truth);
+
+/// EnvironmentError where the folder exists and nothing can be written into it, or where it is a mount point: results
+/// are made beside it and renamed, which works within one file system only.
+void check_writable(const std::filesystem::path& folder);
+
+/// Writes to standard output and flushes it; EnvironmentError where that fails.
+void print_result(std::string_view text);
+
+/// One line on standard error, unless --quiet.
+void say(const CommonOptions& options, std::string_view line);
+
+}  // namespace glidelab::app

@@ -1,0 +1,44 @@
+#include "app/interrupt.h"
+
+#include <signal.h>
+
+#include <atomic>
+
+#include "base/errors.h"
+
+namespace glidelab::app {
+namespace {
+
+std::atomic<bool> flag = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+void set_flag(int) {
+  flag = true;
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  struct sigaction action = {};
+  action.sa_handler = set_flag;
+  ::sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+  struct sigaction present = {};
+  ::sigaction(SIGHUP, nullptr, &present);
+  if (present.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);  // started by nohup: goes on
+  action.sa_handler = SIG_IGN;
+  ::sigaction(SIGPIPE, &action, nullptr);
+  ::sigaction(SIGXFSZ, &action, nullptr);
+}
+
+bool interrupted() {
+  return flag;
+}
+
+void throw_if_interrupted() {
+  if (flag) throw base::Interrupted();
+}
+
+}  // namespace glidelab::app

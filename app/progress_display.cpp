@@ -1,0 +1,101 @@
+#include "app/progress_display.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/interrupt.h"
+
+namespace glidelab::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kBarInterval = 100ms;
+constexpr auto kLineInterval = 1s;
+constexpr double kEnoughToGuess = 0.02;  // of a stage: before that, a time left is a wild guess
+
+/// ", 1:05 left", or nothing where there is too little to go by.
+std::string time_left(double elapsed_s, double fraction) {
+  if (fraction < kEnoughToGuess || elapsed_s < 0.5) return {};
+  const long seconds = std::lround(elapsed_s * (1.0 - fraction) / fraction);
+  return fmt::format(", {}:{:02} left", seconds / 60, seconds % 60);
+}
+
+int columns() {
+  winsize size = {};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  return 80;
+}
+
+}  // namespace
+
+ProgressDisplay::ProgressDisplay(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+ProgressDisplay::~ProgressDisplay() {
+  clear();
+}
+
+base::Progress ProgressDisplay::callback() {
+  return [this](std::string_view stage, double fraction) { update(stage, fraction); };
+}
+
+void ProgressDisplay::clear() {
+  const std::lock_guard lock(mutex_);
+  if (!bar_shown_) return;
+  fmt::print(stderr, "\r{:{}}\r", "", columns() - 1);
+  std::fflush(stderr);
+  bar_shown_ = false;
+}
+
+void ProgressDisplay::update(std::string_view stage, double fraction) {
+  throw_if_interrupted();
+  if (quiet_) return;
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  if (stage != stage_) {
+    stage_ = stage;
+    fraction_ = 0.0;
+    tenths_printed_ = -1;
+    stage_start_ = now;
+    last_shown_ = {};
+  }
+  // Threads report in any order; what is done stays done.
+  fraction_ = std::max(fraction_, std::isfinite(fraction) ? std::min(fraction, 1.0) : 0.0);
+  if (terminal_) {
+    draw_bar(now);
+  } else {
+    print_line(now);
+  }
+}
+
+void ProgressDisplay::draw_bar(Clock::time_point now) {
+  if (now - last_shown_ < kBarInterval && fraction_ < 1.0) return;
+  last_shown_ = now;
+  const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
+  constexpr int kWidth = 30;
+  const int full = static_cast<int>(std::lround(fraction_ * kWidth));
+  std::string line = fmt::format("{} [{}{}] {:3.0f} %{}", stage_, std::string(static_cast<std::size_t>(full), '#'),
+                                 std::string(static_cast<std::size_t>(kWidth - full), '.'), 100.0 * fraction_,
+                                 time_left(elapsed_s, fraction_));
+  const auto room = static_cast<std::size_t>(std::max(columns() - 1, 10));
+  line.resize(room, ' ');  // covers what stood there; cut where the terminal is narrow
+  fmt::print(stderr, "\r{}", line);
+  std::fflush(stderr);
+  bar_shown_ = true;
+}
+
+void ProgressDisplay::print_line(Clock::time_point now) {
+  const int tenths = static_cast<int>(std::floor(fraction_ * 10.0 + 1e-9));
+  if (tenths <= tenths_printed_ || (now - last_shown_ < kLineInterval && fraction_ < 1.0)) return;
+  last_shown_ = now;
+  tenths_printed_ = tenths;
+  const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
+  fmt::print(stderr, "{}: {} %{}\n", stage_, 10 * tenths, tenths < 10 ? time_left(elapsed_s, fraction_) : "");
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,45 @@
+/// How far the work is, on standard error: a bar on a terminal, a line now and then elsewhere, nothing with --quiet.
+///
+/// Also the place where an interrupt ends the work: every call looks at the flag first.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "base/progress.h"
+
+namespace glidelab::app {
+
+class ProgressDisplay {
+ public:
+  explicit ProgressDisplay(bool quiet);
+  ~ProgressDisplay();
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+  /// The function to hand to the work; refers to this object.
+  base::Progress callback();
+
+  /// Removes the bar, so that something else can be printed.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void update(std::string_view stage, double fraction);
+  void draw_bar(Clock::time_point now);
+  void print_line(Clock::time_point now);
+
+  bool quiet_;
+  bool terminal_;
+  std::mutex mutex_;
+  std::string stage_;
+  double fraction_ = 0.0;
+  int tenths_printed_ = -1;
+  bool bar_shown_ = false;
+  Clock::time_point stage_start_;
+  Clock::time_point last_shown_;
+};
+
+}  // namespace glidelab::app

@@ -1,0 +1,78 @@
+#include "run_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <stdexcept>
+
+#include "base/staged_output.h"
+
+namespace glidelab::tests {
+namespace fs = std::filesystem;
+
+Process::Process(std::vector<std::string> arguments, const fs::path& working_dir) {
+  std::string pattern = (fs::temp_directory_path() / "glidelab-process-XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  folder_ = pattern;
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  const std::string out = (folder_ / "out").string();
+  const std::string err = (folder_ / "err").string();
+  pid_ = ::fork();
+  if (pid_ < 0) throw std::runtime_error("fork failed");
+  if (pid_ == 0) {  // only async-signal-safe calls from here to exec
+    ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
+    ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+    ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+    ::signal(SIGINT, SIG_DFL);
+    ::signal(SIGTERM, SIG_DFL);
+    if (!working_dir.empty() && ::chdir(working_dir.c_str()) != 0) ::_exit(126);
+    ::execvp(pointers[0], pointers.data());
+    ::_exit(127);
+  }
+}
+
+Process::~Process() {
+  if (pid_ > 0) {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, &wait_status_, 0);
+  }
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+void Process::send(int signal) const {
+  if (pid_ > 0) ::kill(pid_, signal);
+}
+
+bool Process::running() {
+  if (pid_ <= 0) return false;
+  if (::waitpid(pid_, &wait_status_, WNOHANG) == 0) return true;
+  pid_ = -1;
+  return false;
+}
+
+ProcessResult Process::wait() {
+  if (pid_ > 0) ::waitpid(pid_, &wait_status_, 0);
+  pid_ = -1;
+  ProcessResult result;
+  result.status = WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 1000 + WTERMSIG(wait_status_);
+  result.out = base::read_file(folder_ / "out");
+  result.err = base::read_file(folder_ / "err");
+  return result;
+}
+
+ProcessResult run(std::vector<std::string> arguments, const fs::path& working_dir) {
+  return Process(std::move(arguments), working_dir).wait();
+}
+
+ProcessResult glidelab(std::vector<std::string> arguments, const fs::path& working_dir) {
+  arguments.insert(arguments.begin(), GLIDELAB_BINARY);
+  return run(std::move(arguments), working_dir);
+}
+
+}  // namespace glidelab::tests

@@ -1,0 +1,96 @@
+/// What every command has in common: help, version, and the exit status of a wrong command line.
+#include <regex>
+#include <set>
+
+#include "catch.h"
+#include "run_process.h"
+#include "temp_dir.h"
+
+using namespace glidelab;
+
+namespace {
+
+const std::vector<std::string> kCommands = {"simulate", "render", "analyze", "validate"};
+
+}  // namespace
+
+TEST_CASE("help lists the commands that exist and no others") {
+  const tests::ProcessResult result = tests::glidelab({"--help"});
+  CHECK(result.status == 0);
+  CHECK(result.err.empty());
+  const std::string list = result.out.substr(result.out.find("Subcommands:"));
+  static const std::regex kCommand(R"(^  ([a-z-]+) )", std::regex::multiline);
+  std::set<std::string> listed;
+  for (auto match = std::sregex_iterator(list.begin(), list.end(), kCommand); match != std::sregex_iterator();
+       ++match) {
+    listed.insert((*match)[1]);
+  }
+  CHECK(listed == std::set<std::string>(kCommands.begin(), kCommands.end()));
+}
+
+TEST_CASE("every command's help names the options that every command takes") {
+  for (const std::string& command : kCommands) {
+    const tests::ProcessResult result = tests::glidelab({command, "--help"});
+    INFO(command);
+    CHECK(result.status == 0);
+    for (const char* option : {"--help", "-o,--out DIR", "--seed N", "--jobs N", "--json", "-q,--quiet"}) {
+      INFO(option);
+      CHECK(result.out.find(option) != std::string::npos);
+    }
+    CHECK(result.out.find("glidelab-out/" + command) != std::string::npos);
+  }
+}
+
+TEST_CASE("the version is printed and nothing else is done") {
+  const tests::ProcessResult result = tests::glidelab({"--version"});
+  CHECK(result.status == 0);
+  CHECK(result.out.starts_with("glidelab "));
+}
+
+TEST_CASE("a wrong command line is status 2, one message, and nothing on standard output") {
+  const std::vector<std::vector<std::string>> wrong = {
+      {},
+      {"sweep", "x.toml"},
+      {"--no-such-option"},
+      {"analyze"},
+      {"render"},
+      {"validate", "a.toml", "b.toml"},
+      {"analyze", "folder", "--jobs", "0"},
+      {"analyze", "folder", "--jobs", "many"},
+      {"analyze", "folder", "--seed", "-1"},
+      {"analyze", "folder", "--bandwidth", "0"},
+      {"analyze", "folder", "--bandwidth", "nan"},
+      {"analyze", "folder", "--bandwidth", "inf"},
+      {"analyze", "folder", "--estimator", "trajectory"},
+      {"analyze", "folder", "--out", ""},
+      {"simulate", "a.toml", "--rate", "-200"},
+      {"render", "a.toml", "--no-such-option"},
+  };
+  for (const std::vector<std::string>& arguments : wrong) {
+    const tests::ProcessResult result = tests::glidelab(arguments);
+    INFO((arguments.empty() ? "no argument" : arguments.front() + " " + arguments.back()));
+    INFO(result.err);
+    CHECK(result.status == 2);
+    CHECK(result.out.empty());
+    CHECK(result.err.starts_with("glidelab: error: "));
+  }
+}
+
+TEST_CASE("an unknown command is named together with those that exist") {
+  const tests::ProcessResult result = tests::glidelab({"diagnose", "folder"});
+  CHECK(result.err.find("unknown command \"diagnose\"") != std::string::npos);
+  CHECK(result.err.find("simulate, render, analyze, validate") != std::string::npos);
+}
+
+TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {
+  const tests::TempDir temp;
+  for (const std::string& command : kCommands) {
+    const tests::ProcessResult result = tests::glidelab({command, (temp / "nothing.toml").string()}, temp.path());
+    INFO(command << ": " << result.err);
+    CHECK(result.status == 1);
+    CHECK(result.err.starts_with("glidelab: error: "));
+    CHECK(result.err.find("nothing.toml") != std::string::npos);
+    CHECK(result.out.empty());
+    CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
+  }
+}
