@@ -17,6 +17,7 @@ namespace {
 constexpr double kLeastSteps = 1.2;      // of the time step: a kernel narrower than that holds fewer than five points
 constexpr double kRatio = 1.1;           // from one bandwidth of the grid to the next
 constexpr double kQuiet = 0.0125;        // noise of a over its standard deviation along the line
+constexpr double kSteep = 3.0;           // standard deviations of K/m that make a line one to be seen
 constexpr double kBiasAllowed = 0.0035;  // of the lines' size, for the sake of quieter points
 constexpr double kNoiseAllowed = 1.25;   // growth of the lines' variance, for the sake of quieter points
 constexpr double kShareOfTime = 0.1;     // of the free time that a direction needs to have a say
@@ -66,7 +67,6 @@ class Scan {
         static_cast<std::size_t>(std::max(1.0, std::floor(bandwidth_s / (kPointsPerBandwidth * motion_.step_s))));
     const std::vector<StretchPoint> points = smooth_stretches(motion_, stretches_, bandwidth_s, stride);
     const std::vector<double> bias = smoothing_bias(motion_, stretches_, law_, points);
-    RowVariance variance(noise_.autocovariance);
     Errors errors;
     errors.bandwidth_s = bandwidth_s;
     for (const int direction : directions_) {
@@ -83,17 +83,24 @@ class Scan {
       errors.random += random;
       errors.square += random + biased;
       errors.bias_share = std::max(errors.bias_share, std::sqrt(biased / mean_square(k * k, k * a0, a0 * a0, v_top)));
-      double noise = 0.0, v = 0.0, vv = 0.0;
-      for (std::size_t j = 0; j < input.rows.size(); ++j) {
-        noise += variance.of_a(input.rows[j]);
-        v += input.v_m_s[j];
-        vv += input.v_m_s[j] * input.v_m_s[j];
-      }
-      const auto n = static_cast<double>(input.rows.size());
-      const double spread = std::abs(k) * std::sqrt(std::max(0.0, vv / n - v * v / (n * n)));
-      errors.noise_share = std::max(errors.noise_share, std::sqrt(noise / n) / std::max(spread, 1e-300));
+      errors.noise_share = std::max(errors.noise_share, noise_share(*line, input));
     }
     return errors;
+  }
+
+  /// Noise of a over the standard deviation of a along the line; none where the line is level for all that is known.
+  double noise_share(const LineFit& line, const LineInput& input) const {
+    if (std::abs(line.k_over_m_1_s.value) < kSteep * std::sqrt(line.parts.var_k)) return 0.0;
+    RowVariance variance(noise_.autocovariance);
+    double noise = 0.0, v = 0.0, vv = 0.0;
+    for (std::size_t j = 0; j < input.rows.size(); ++j) {
+      noise += variance.of_a(input.rows[j]);
+      v += input.v_m_s[j];
+      vv += input.v_m_s[j] * input.v_m_s[j];
+    }
+    const auto n = static_cast<double>(input.rows.size());
+    const double spread = std::sqrt(std::max(1e-300, vv / n - v * v / (n * n)));
+    return std::sqrt(noise / n) / (std::abs(line.k_over_m_1_s.value) * spread);
   }
 
   bool has_directions() const { return !directions_.empty(); }

@@ -11,9 +11,9 @@
 /// integral of f(v(t)), f the law fitted to the points of a first smoothing. The h of least E is the lines' own.
 ///
 /// At low noise that h leaves the points more ragged than need be. Then it is raised until the noise
-/// of a is 1.25 % of the standard deviation of a along every line (noise alone then leaves R^2 at 0.9998; the paper's
-/// lines have 0.9996 to 1.0000), but only while the bias of every line stays below 0.35 % of its size and the lines'
-/// variance below 1.25 times the least E's.
+/// of a is 1.25 % of the standard deviation of a along every line that is not level (noise alone then leaves R^2 at
+/// 0.9998; the paper's lines have 0.9996 to 1.0000), but only while the bias of every line stays below 0.35 % of its
+/// size and the lines' variance below 1.25 times the least E's.
 ///
 /// Assumes a law that is roughly a line within a direction, and stationary noise. The rule that the paper took from its
 /// reference [15] is not in its text; this is not claimed to be it.

@@ -105,8 +105,7 @@ class Finder {
     for (const Range& range : ranges_of(direction_)) {
       if (direction_[range.from] != 0) continue;
       if (range.from == 0 && range.to == n_) {
-        std::fill(resting_.begin(), resting_.end(), 1);
-        return;
+        return rest(range);
       }
       if (!is_rest(range)) continue;
       const std::size_t cut = (range.to - range.from) / 5;
@@ -120,35 +119,24 @@ class Finder {
       std::size_t from = range.from + cut, to = range.to - cut;
       while (from > 0 && (near(from - 1) || (from > 1 && near(from - 2)))) --from;
       while (to < n_ && (near(to) || (to + 1 < n_ && near(to + 1)))) ++to;
-      std::fill(resting_.begin() + static_cast<std::ptrdiff_t>(from),
-                resting_.begin() + static_cast<std::ptrdiff_t>(to), 1);
+      rest({from, to});
     }
   }
 
-  /// Points of no significant v that do not rest belong to the run before or after; v crosses zero between runs of
-  /// opposite sign.
+  /// Points of no significant v that do not rest belong to the run before or after, on the near side of the place where
+  /// x turns.
   void settle_between_runs() {
     for (std::size_t i = 0; i < n_; ++i) {
       if (resting_[i]) direction_[i] = 0;
     }
     for (const Range& range : ranges_of(direction_)) {
       if (direction_[range.from] != 0) continue;
-      // Parts of the range that do not rest; a rest between them keeps them apart.
-      for (std::size_t i = range.from; i < range.to;) {
-        if (resting_[i]) {
-          ++i;
-          continue;
-        }
-        std::size_t to = i;
-        while (to < range.to && !resting_[to]) ++to;
-        const int before = i > 0 && i == range.from ? direction_[i - 1] : 0;
-        const int after = to < n_ && to == range.to ? direction_[to] : 0;
-        std::size_t split = before == 0 ? i : after == 0 ? to : before == after ? to : crossing({i, to}, before);
-        std::fill(direction_.begin() + static_cast<std::ptrdiff_t>(i),
-                  direction_.begin() + static_cast<std::ptrdiff_t>(split), before);
-        std::fill(direction_.begin() + static_cast<std::ptrdiff_t>(split),
-                  direction_.begin() + static_cast<std::ptrdiff_t>(to), after);
-        i = to;
+      for (std::size_t i = range.from; i < range.to; ++i) {
+        if (resting_[i]) continue;
+        Range part{i, i};
+        while (part.to < range.to && !resting_[part.to]) ++part.to;
+        settle(part, i > 0 ? direction_[i - 1] : 0, part.to < n_ ? direction_[part.to] : 0);
+        i = part.to - 1;
       }
     }
     for (std::size_t i = 1; i < n_; ++i) {
@@ -157,17 +145,44 @@ class Finder {
     }
   }
 
-  /// The first point after v has crossed zero: the middle between the first and the last change of sign.
-  std::size_t crossing(const Range& range, int before) const {
-    std::size_t first = range.to, last = range.from;
-    for (std::size_t i = range.from; i < range.to; ++i) {
-      if (pilot_.v_m_s[i] * before < 0.0) {
-        first = std::min(first, i);
-      } else {
-        last = i + 1;
-      }
+  void settle(const Range& range, int before, int after) {
+    const auto fill = [&](std::size_t from, std::size_t to, int direction) {
+      std::fill(direction_.begin() + static_cast<std::ptrdiff_t>(from),
+                direction_.begin() + static_cast<std::ptrdiff_t>(to), direction);
+    };
+    if (before == after && before != 0) return fill(range.from, range.to, before);
+    const double way = pilot_.x_m[range.to - 1] - pilot_.x_m[range.from];
+    const double least = kLeastMotion * motion_.noise_m;
+    if (before == 0 && after == 0) {
+      if (std::abs(way) >= least) return fill(range.from, range.to, way > 0.0 ? 1 : -1);
+      return rest(range);
     }
-    return (std::min(first, last) + std::max(first, last) + 1) / 2;
+    // x is largest (smallest) where a motion towards +x (-x) turns, or where one towards -x (+x) begins.
+    const int outward = before != 0 ? before : -after;
+    std::size_t turn = range.from;
+    for (std::size_t i = range.from; i < range.to; ++i) {
+      if (outward * (pilot_.x_m[i] - pilot_.x_m[turn]) > 0.0) turn = i;
+    }
+    if (before != 0 && after != 0) {
+      fill(range.from, turn, before);
+      return fill(turn, range.to, after);
+    }
+    // One side is an end of the data or a rest. What goes too little way there to be motion is rest, unless it is
+    // short.
+    const Range inner = before != 0 ? Range{turn, range.to} : Range{range.from, turn};
+    const Range outer = before != 0 ? Range{range.from, turn} : Range{turn, range.to};
+    const int known = before != 0 ? before : after;
+    fill(outer.from, outer.to, known);
+    if (inner.from == inner.to) return;
+    const double back = std::abs(pilot_.x_m[inner.to - 1] - pilot_.x_m[inner.from]);
+    if (back >= least) return fill(inner.from, inner.to, -known);
+    if (span_s(inner) < kRestBandwidths * pilot_.bandwidth_s) return fill(inner.from, inner.to, known);
+    rest(inner);
+  }
+
+  void rest(const Range& range) {
+    std::fill(resting_.begin() + static_cast<std::ptrdiff_t>(range.from),
+              resting_.begin() + static_cast<std::ptrdiff_t>(range.to), 1);
   }
 
   bool near_time(const std::vector<double>& times, double t_s) const {

@@ -1,12 +1,15 @@
 #include "core/motion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/noise.h"
 
 namespace glidelab::core {
 namespace {
+
+constexpr double kRounding = 1e-12;  // of the largest position: some thousand epsilon
 
 double median_step(const std::vector<double>& t_s) {
   if (t_s.size() < 2) return 0.0;
@@ -34,6 +37,8 @@ Motion motion_of(const TrackData& track, double mass_kg) {
     }
   }
   motion.noise_m = pilot_noise(motion.t_s, motion.y_m);
+  // Not below what rounding makes of sums over a kernel: a constant must not look like a motion.
+  for (const double y : motion.y_m) motion.noise_m = std::max(motion.noise_m, kRounding * std::abs(y));
   return motion;
 }
 

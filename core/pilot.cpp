@@ -42,6 +42,7 @@ Pilot smooth_at(const Motion& motion, double bandwidth_s) {
   const double noise = std::max(motion.noise_m, residual_noise(motion, of_y, own));
   Pilot pilot;
   pilot.bandwidth_s = bandwidth_s;
+  pilot.x_m = motion.x_m;
   pilot.v_m_s.assign(n, 0.0);
   pilot.a_m_s2.assign(n, 0.0);
   pilot.sd_v_m_s.assign(n, std::numeric_limits<double>::infinity());
@@ -51,6 +52,7 @@ Pilot smooth_at(const Motion& motion, double bandwidth_s) {
   for (std::size_t j = 0; j < n; ++j) {
     if (!of_y[j]) continue;
     const auto row = cubic.row_of_point(j);
+    pilot.x_m[j] = of_x[j]->x_m;
     pilot.v_m_s[j] = of_x[j]->v_m_s;
     pilot.a_m_s2[j] = of_y[j]->a_m_s2;
     pilot.sd_v_m_s[j] = std::sqrt(variance.of_v(*row));

@@ -10,6 +10,7 @@ namespace glidelab::core {
 /// The sign of v, and the rest, of every point come from this.
 struct Pilot {
   double bandwidth_s = 0.0;
+  std::vector<double> x_m;     ///< as measured where it is not smoothed
   std::vector<double> v_m_s;   ///< of x
   std::vector<double> a_m_s2;  ///< of y: without the known force
   std::vector<double> sd_v_m_s;
