@@ -9,6 +9,7 @@
 
 #include "core/law_consensus.h"
 #include "core/pilot.h"
+#include "core/quantile.h"
 
 namespace glidelab::core {
 namespace {
@@ -109,10 +110,9 @@ class Finder {
       }
       if (!is_rest(range)) continue;
       const std::size_t cut = (range.to - range.from) / 5;
-      std::vector<double> middle(motion_.x_m.begin() + static_cast<std::ptrdiff_t>(range.from + cut),
-                                 motion_.x_m.begin() + static_cast<std::ptrdiff_t>(range.to - cut));
-      std::nth_element(middle.begin(), middle.begin() + static_cast<std::ptrdiff_t>(middle.size() / 2), middle.end());
-      const double place = middle[middle.size() / 2];
+      const std::vector<double> middle(motion_.x_m.begin() + static_cast<std::ptrdiff_t>(range.from + cut),
+                                       motion_.x_m.begin() + static_cast<std::ptrdiff_t>(range.to - cut));
+      const double place = quantile(middle, 0.5);
       const auto near = [&](std::size_t i) {
         return std::abs(motion_.x_m[i] - place) <= kRestGrowth * motion_.noise_m;
       };

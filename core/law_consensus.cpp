@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/quantile.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -11,12 +13,6 @@ constexpr std::size_t kEnoughPoints = 400;  // more are thinned: the candidates 
 constexpr double kPartOfSize = 0.25;        // of the line's size that a point may lie off
 constexpr double kDeviations = 5.0;         // standard deviations that a point may lie off
 constexpr double kNormalMad = 1.4826;       // standard deviation of normal numbers over their median magnitude
-
-double quantile(std::vector<double> values, double part) {
-  const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 /// Least squares through the points for which `counts(i)`; a level line where their v hardly differ.
 template <typename Counts>

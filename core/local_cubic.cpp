@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/quantile.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -50,14 +52,6 @@ bool cubic_weights(std::span<const double> t_s, double at_s, double bandwidth_s,
     weights.a[i] = kernel[i] * 2.0 * per_h * per_h * inverse.row(2).dot(powers);
   }
   return true;
-}
-
-double median_step(std::span<const double> t_s) {
-  std::vector<double> steps(t_s.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = t_s[i + 1] - t_s[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
 }
 
 }  // namespace

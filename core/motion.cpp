@@ -5,20 +5,12 @@
 #include <numeric>
 
 #include "core/noise.h"
+#include "core/quantile.h"
 
 namespace glidelab::core {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of the largest position: some thousand epsilon
-
-double median_step(const std::vector<double>& t_s) {
-  if (t_s.size() < 2) return 0.0;
-  std::vector<double> steps(t_s.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = t_s[i + 1] - t_s[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
 
 }  // namespace
 

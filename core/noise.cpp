@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/quantile.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -157,8 +159,7 @@ PositionNoise estimate_noise(const std::vector<NoisePiece>& pieces, double at_le
     for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
   }
   if (steps.empty()) return noise;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  const double step = steps[steps.size() / 2], bandwidth = pieces.front().cubic->bandwidth_s();
+  const double step = quantile(std::move(steps), 0.5), bandwidth = pieces.front().cubic->bandwidth_s();
   const std::vector<double> filter = residual_filter(bandwidth, step);
   const auto lags = static_cast<std::size_t>(
       std::clamp(std::ceil(3.0 * bandwidth / step), 4.0, std::max(4.0, static_cast<double>(points) / 10.0)));

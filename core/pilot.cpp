@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/local_cubic.h"
+#include "core/quantile.h"
 
 namespace glidelab::core {
 namespace {
@@ -13,13 +14,6 @@ constexpr double kNoiseShare = 0.10;      // of the median |a| that its noise ma
 constexpr double kLongestPart = 12.0;     // of the moving time that the bandwidth may be
 constexpr double kGrowth = 1.15;          // from one bandwidth to the next
 constexpr double kStillDeviations = 5.0;  // of v: one point in 1e6 by chance
-
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 /// Robust standard deviation of x about the smoothed x; more than the pilot noise where the noise is correlated.
 double residual_noise(const Motion& motion, const std::vector<std::optional<SmoothedPoint>>& smoothed,

@@ -8,6 +8,7 @@
 
 #include "base/csv.h"
 #include "base/errors.h"
+#include "core/quantile.h"
 
 namespace glidelab::core {
 namespace {
@@ -27,14 +28,6 @@ void check_times(const base::CsvTable& table, const std::vector<double>& t_s) {
     throw base::InputError(base::Issue{table.file, 0, "", fmt::format("{} points", t_s.size()),
                                        fmt::format("at least {}", kFewestTrackPoints)});
   }
-}
-
-double median_step(const std::vector<double>& t_s) {
-  std::vector<double> steps(t_s.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = t_s[i + 1] - t_s[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
 }
 
 }  // namespace
