@@ -36,7 +36,7 @@ TEST_CASE("simulate writes one trajectory a clip, and tells where the glider tur
   CHECK(clip.at("reversals").at(0).at("to") == "slide_down");
 }
 
-TEST_CASE("--rate gives the states of another camera, and the table is for people") {
+TEST_CASE("the option --rate gives the states of another camera, and the table is for people") {
   const tests::TempDir temp;
   tests::write_tiny_scenario(temp / "tiny.toml");
   const tests::ProcessResult result =
