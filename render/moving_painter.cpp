@@ -53,11 +53,14 @@ struct Edge {
   Eigen::Vector3d moving;
 };
 
-/// A convex polygon that either starts a box (its outline) or lies on the box that was started last.
+/// What a polygon is: the first or another seen face of a box (faces share the box's picture among them), or a patch on
+/// the box, over what was there.
+enum class Part { first_face, face, patch };
+
 struct Polygon {
-  std::vector<Edge> edges;
+  std::array<Edge, 4> edges;
   double radiance = 0.0;
-  bool starts_box = false;
+  Part part = Part::face;
   PixelRect rect;
 };
 
@@ -68,7 +71,7 @@ struct Sphere {
   PixelRect rect;
 };
 
-using Corners = std::vector<Eigen::Vector3d>;  // camera frame, in order around
+using Corners = std::array<Eigen::Vector3d, 4>;  // camera frame, in order around
 
 /// The six faces of a box, anticlockwise from outside; bit i of a corner's number says +half along axis i.
 constexpr std::array<std::array<int, 4>, 6> kFaces = {
@@ -76,15 +79,6 @@ constexpr std::array<std::array<int, 4>, 6> kFaces = {
 
 Eigen::Vector3d corner_sign(int number) {
   return {(number & 1) != 0 ? 1.0 : -1.0, (number & 2) != 0 ? 1.0 : -1.0, (number & 4) != 0 ? 1.0 : -1.0};
-}
-
-int face_with_edge(int from, int to) {
-  for (int f = 0; f < 6; ++f) {
-    for (int k = 0; k < 4; ++k) {
-      if (kFaces[f][k] == from && kFaces[f][(k + 1) % 4] == to) return f;
-    }
-  }
-  throw std::logic_error("no such edge of a box");
 }
 
 /// All shapes of the body in the camera frame, for shifts from `first` to `last` about where it stands.
@@ -117,21 +111,21 @@ class Shapes {
     return {scale * fixed, scale * (from - to).cross(direction_C_)};
   }
 
-  void add_polygon(const Corners& corners, bool starts_box, double radiance) {
+  void add_polygon(const Corners& corners, Part part, double radiance) {
     Polygon polygon;
     polygon.radiance = radiance;
-    polygon.starts_box = starts_box;
+    polygon.part = part;
     Eigen::Vector3d inside = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& c : corners) inside += c / c.z();
     Bounds bounds;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Eigen::Vector3d& next = corners[(i + 1) % corners.size()];
-      polygon.edges.push_back(edge_between(corners[i], next, inside));
+      polygon.edges[i] = edge_between(corners[i], next, inside);
       constexpr int kSteps = 4;  // the lens bends long edges
       for (int k = 0; k < kSteps; ++k) bound(bounds, corners[i] + (next - corners[i]) * k / kSteps);
     }
     polygon.rect = bounds.pixels(camera_);
-    polygons_.push_back(std::move(polygon));
+    polygons_.push_back(polygon);
   }
 
   void add_box(const MovingBox& box) {
@@ -139,52 +133,19 @@ class Shapes {
     for (int i = 0; i < 8; ++i) {
       corner[i] = X_CW_ * (box.center_W + shift_W_ + box.axes_W * corner_sign(i).cwiseProduct(box.half_m));
     }
-    // A face is seen where its outward normal points against the line of sight.
-    std::array<bool, 6> seen{};
-    for (int f = 0; f < 6; ++f) {
-      const auto& c = kFaces[f];
-      const Eigen::Vector3d normal = (corner[c[1]] - corner[c[0]]).cross(corner[c[2]] - corner[c[1]]);
-      seen[f] = normal.dot(corner[c[0]]) < 0.0;
+    bool any = false;
+    for (std::size_t f = 0; f < kFaces.size(); ++f) {
+      const Corners around{corner[kFaces[f][0]], corner[kFaces[f][1]], corner[kFaces[f][2]], corner[kFaces[f][3]]};
+      // A face is seen where its outward normal points against the line of sight.
+      if (!((around[1] - around[0]).cross(around[2] - around[1]).dot(around[0]) < 0.0)) continue;
+      add_polygon(around, any ? Part::face : Part::first_face, box.radiance[f]);
+      any = true;
     }
-    // The outline: edges of seen faces whose other side is not seen, chained.
-    std::array<int, 8> next;
-    next.fill(-1);
-    int start = -1;
-    for (int f = 0; f < 6; ++f) {
-      for (int k = 0; k < 4 && seen[f]; ++k) {
-        const int from = kFaces[f][k];
-        const int to = kFaces[f][(k + 1) % 4];
-        if (!seen[face_with_edge(to, from)]) {
-          next[from] = to;
-          start = from;
-        }
-      }
-    }
-    if (start < 0) throw base::NumericalError("the camera is inside the glider");
-    Corners outline{corner[start]};
-    for (int at = next[start]; at != start && outline.size() < 8; at = next[at]) outline.push_back(corner[at]);
-    const auto first_seen = static_cast<int>(std::find(seen.begin(), seen.end(), true) - seen.begin());
-    add_polygon(outline, true, box.radiance[first_seen]);
-    // Every further face is cut out of the outline by the edges that it shares with other seen faces.
-    const PixelRect rect = polygons_.back().rect;
-    for (int f = first_seen + 1; f < 6; ++f) {
-      if (!seen[f]) continue;
-      Polygon face;
-      face.radiance = box.radiance[f];
-      face.rect = rect;
-      Eigen::Vector3d inside = Eigen::Vector3d::Zero();
-      for (const int c : kFaces[f]) inside += corner[c] / corner[c].z();
-      for (int k = 0; k < 4; ++k) {
-        const int from = kFaces[f][k];
-        const int to = kFaces[f][(k + 1) % 4];
-        if (seen[face_with_edge(to, from)]) face.edges.push_back(edge_between(corner[from], corner[to], inside));
-      }
-      polygons_.push_back(std::move(face));
-    }
+    if (!any) throw base::NumericalError("the camera is inside the glider");
     for (const Patch& patch : box.patches) {
       Corners around;
-      for (const Eigen::Vector3d& c : patch.corners_W) around.push_back(X_CW_ * (c + shift_W_));
-      add_polygon(around, false, patch.radiance);
+      for (std::size_t i = 0; i < around.size(); ++i) around[i] = X_CW_ * (patch.corners_W[i] + shift_W_);
+      add_polygon(around, Part::patch, patch.radiance);
     }
   }
 
@@ -205,41 +166,35 @@ class Shapes {
   std::optional<Sphere> sphere_;
 };
 
-/// Coverage of a row of pixels by a half-plane, from the rays of the row.
+/// The rays of a row of pixels.
 struct RowRays {
   const float* x_y_dxdu_dxdv;
   const float* dydu_dydv;
 };
 
-void half_plane_row(const Eigen::Vector3d& line, const RowRays& rays, int count, double* coverage) {
-  const double a = line.x();
-  const double b = line.y();
-  const double c = line.z();
+/// Coverage of a row of pixels by a polygon.
+void polygon_row(const Polygon& polygon, double shift, const RowRays& rays, int count, double* coverage) {
+  constexpr std::size_t kEdges = 4;
+  std::array<Eigen::Vector3d, kEdges> lines;
+  for (std::size_t e = 0; e < kEdges; ++e) lines[e] = polygon.edges[e].fixed + shift * polygon.edges[e].moving;
   for (int i = 0; i < count; ++i) {
-    const float* ray = rays.x_y_dxdu_dxdv + 4 * i;
-    const float* slope = rays.dydu_dydv + 2 * i;
-    coverage[i] = half_plane_coverage(a * static_cast<double>(ray[0]) + b * static_cast<double>(ray[1]) + c,
-                                      a * static_cast<double>(ray[2]) + b * static_cast<double>(slope[0]),
-                                      a * static_cast<double>(ray[3]) + b * static_cast<double>(slope[1]));
-  }
-}
-
-/// Opposite edges add (a thin strip is as wide as it is), neighbouring ones multiply.
-void polygon_row(const Polygon& polygon, double shift, const RowRays& rays, int count, double* coverage,
-                 double* scratch) {
-  const std::size_t edges = polygon.edges.size();
-  const std::size_t pairs = edges >= 4 && edges % 2 == 0 ? edges / 2 : edges;
-  std::fill_n(coverage, count, 1.0);
-  for (std::size_t e = 0; e < pairs; ++e) {
-    const auto line = [&](std::size_t k) {
-      return Eigen::Vector3d(polygon.edges[k].fixed + shift * polygon.edges[k].moving);
-    };
-    half_plane_row(line(e), rays, count, scratch);
-    if (pairs < edges) {
-      half_plane_row(line(e + pairs), rays, count, scratch + count);
-      for (int i = 0; i < count; ++i) scratch[i] = std::max(scratch[i] + scratch[count + i] - 1.0, 0.0);
+    const auto ray = [&](int k) { return static_cast<double>(rays.x_y_dxdu_dxdv[4 * i + k]); };
+    const auto slope = [&](int k) { return static_cast<double>(rays.dydu_dydv[2 * i + k]); };
+    std::array<PixelLine, kEdges> through;
+    std::size_t crossing = 0;
+    bool outside = false;
+    for (std::size_t e = 0; e < kEdges && !outside; ++e) {
+      const Eigen::Vector3d& line = lines[e];
+      const PixelLine here{line.x() * ray(0) + line.y() * ray(1) + line.z(), line.x() * ray(2) + line.y() * slope(0),
+                           line.x() * ray(3) + line.y() * slope(1)};
+      const double reach = 0.5 * (std::abs(here.gx) + std::abs(here.gy));
+      outside = here.s <= -reach;
+      if (here.s < reach) through[crossing++] = here;
     }
-    for (int i = 0; i < count; ++i) coverage[i] *= scratch[i];
+    coverage[i] = outside         ? 0.0
+                  : crossing == 0 ? 1.0
+                  : crossing == 1 ? half_plane_coverage(through[0])
+                                  : convex_coverage(std::span(through).first(crossing));
   }
 }
 
@@ -264,7 +219,7 @@ double sphere_coverage(const Sphere& sphere, const Eigen::Vector3d& c, const flo
     const double gv = 0.5 * rise.dot(dv);
     // The arc lies inside its tangent: on average over a square's side by 1/(24 R) of it.
     const double bulge = (gu * gu + gv * gv) / (24.0 * sphere.radius_m);
-    coverage += 0.25 * half_plane_coverage(sphere.radius_m - distance - bulge, gu, gv);
+    coverage += 0.25 * half_plane_coverage({sphere.radius_m - distance - bulge, gu, gv});
   }
   return coverage;
 }
@@ -298,13 +253,12 @@ MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& 
   const auto size = static_cast<std::size_t>(width) * layer.rect.height;
   layer.radiance.assign(size, 0.0f);
   layer.coverage.assign(size, 0.0f);
-  std::vector<double> buffer(static_cast<std::size_t>(width) * 7);
+  std::vector<double> buffer(static_cast<std::size_t>(width) * 5);
   double* const seen_radiance = buffer.data();
   double* const seen_coverage = seen_radiance + width;
   double* const box_radiance = seen_coverage + width;
   double* const box_coverage = box_radiance + width;
   double* const coverage = box_coverage + width;
-  double* const scratch = coverage + width;  // two rows
   const double share = 1.0 / static_cast<double>(x_m.size());
   for (int y = layer.rect.y; y < layer.rect.y + layer.rect.height; ++y) {
     const auto rays_from = [&](int x) {
@@ -317,26 +271,30 @@ MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& 
     for (const double x : x_m) {
       const double shift = x - middle;
       std::fill_n(seen_radiance, 2 * width, 0.0);
+      // One box after the other: its seen faces, which share its picture, then patches in their places, then the whole
+      // over what was there.
       for (std::size_t k = 0; k < shapes.polygons().size();) {
-        // One box: its outline, then what lies on it, then the whole over what was there.
-        const Polygon& outline = shapes.polygons()[k];
-        const int left = outline.rect.x - layer.rect.x;
-        const bool here = row_of(outline.rect);
-        if (here) {
-          polygon_row(outline, shift, rays_from(outline.rect.x), outline.rect.width, box_coverage, scratch);
-          std::fill_n(box_radiance, outline.rect.width, outline.radiance);
-        }
-        for (++k; k < shapes.polygons().size() && !shapes.polygons()[k].starts_box; ++k) {
-          const Polygon& on_it = shapes.polygons()[k];
-          const PixelRect rect = intersection(on_it.rect, outline.rect);
-          if (!here || rect.empty() || !row_of(rect)) continue;
-          polygon_row(on_it, shift, rays_from(rect.x), rect.width, coverage, scratch);
-          double* const under = box_radiance + (rect.x - outline.rect.x);
-          for (int i = 0; i < rect.width; ++i) under[i] += coverage[i] * (on_it.radiance - under[i]);
-        }
-        for (int i = 0; here && i < outline.rect.width; ++i) {
-          seen_radiance[left + i] += box_coverage[i] * (box_radiance[i] - seen_radiance[left + i]);
-          seen_coverage[left + i] += box_coverage[i] * (1.0 - seen_coverage[left + i]);
+        std::fill_n(box_radiance, 2 * width, 0.0);
+        do {
+          const Polygon& polygon = shapes.polygons()[k];
+          if (!row_of(polygon.rect)) continue;
+          const int left = polygon.rect.x - layer.rect.x;
+          polygon_row(polygon, shift, rays_from(polygon.rect.x), polygon.rect.width, coverage);
+          for (int i = 0; i < polygon.rect.width; ++i) {
+            double& box_part = box_coverage[left + i];
+            double& light = box_radiance[left + i];
+            if (polygon.part != Part::patch) {
+              light += coverage[i] * polygon.radiance;
+              box_part += coverage[i];
+            } else if (box_part > 0.0) {
+              const double patched = std::min(coverage[i], box_part);
+              light += patched * (polygon.radiance - light / box_part);
+            }
+          }
+        } while (++k < shapes.polygons().size() && shapes.polygons()[k].part != Part::first_face);
+        for (int i = 0; i < width; ++i) {
+          seen_radiance[i] += box_radiance[i] - box_coverage[i] * seen_radiance[i];
+          seen_coverage[i] += box_coverage[i] * (1.0 - seen_coverage[i]);
         }
       }
       if (const auto& sphere = shapes.sphere(); sphere && row_of(sphere->rect)) {

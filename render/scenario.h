@@ -59,7 +59,7 @@ struct SceneSetup {
 struct PlumbSetup {
   double x_m = 0.45;
   double z_m = 0.0;
-  double diameter_m = 0.0015;
+  double diameter_m = 0.003;
 };
 
 struct Scenario {

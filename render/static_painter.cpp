@@ -21,7 +21,7 @@ const int kRays = 64;
 const int kMostBoxes = 24;
 uniform sampler2D rays;    // x, y, dx/du, dx/dv
 uniform sampler2D slopes;  // dy/du, dy/dv
-uniform sampler2D wanted;  // 1 where all rays are
+uniform sampler2D wanted;  // how many rays: 0, 16 or 64
 uniform int first_pass;
 uniform vec2 offset[kRays];
 uniform mat3 rotation;     // of X_WC
@@ -87,6 +87,13 @@ float inside(float x, float low, float high, float w) {
   return clamp((x - low) / w + 0.5, 0.0, 1.0) * clamp((high - x) / w + 0.5, 0.0, 1.0);
 }
 
+// The same of a row of `squares` squares, the first from 0 to 1, with 0 outside (x), and the part that is inside (y).
+vec2 row_of_squares(float x, float squares, float w) {
+  float part = inside(x, 0.0, squares, w);
+  float last = mod(squares, 2.0) < 0.5 ? -1.0 : 1.0;
+  return vec2(x < 0.5 ? part : x > squares - 0.5 ? part * last : wave(x, w), part);
+}
+
 float albedo_on(vec2 look, vec3 local, vec3 normal, vec3 half_size) {
   int surface = int(look.y + 0.5);
   float albedo = look.x;
@@ -117,10 +124,10 @@ void main() {
   vec2 dv = vec2(ray.w, slope.y);
   float sum = 0.0;
   vec2 range = vec2(1e9, -1e9);
-  int count = first_pass == 1 ? 4 : texelFetch(wanted, pixel, 0).x > 0.5 ? kRays : 0;
-  float share = first_pass == 1 ? 0.5 : 0.125;  // of the pixel's side that a ray stands for
+  int count = first_pass == 1 ? 4 : int(texelFetch(wanted, pixel, 0).x + 0.5);
+  float share = inversesqrt(float(max(count, 1)));  // of the pixel's side that a ray stands for
   for (int i = 0; i < count; ++i) {
-    vec2 within = first_pass == 1 ? vec2((i & 1) == 0 ? -0.25 : 0.25, (i & 2) == 0 ? -0.25 : 0.25) : offset[i];
+    vec2 within = first_pass == 1 ? vec2((i & 1) == 0 ? -0.25 : 0.25, (i & 2) == 0 ? -0.25 : 0.25) : offset[i] + 0.5 / float(count) - 0.5;
     vec3 d_C = vec3(ray.xy + within.x * du + within.y * dv, 1.0);
     vec3 d = rotation * d_C;
     float t = (wall.x - eye.z) / d.z;  // the wall is behind everything
@@ -191,14 +198,15 @@ void main() {
         t = hit;
         at = eye + t * d;
         normal = -board_normal;
-        float squares = inside(p.x, -1.0, last.x, w.x) * inside(p.y, -1.0, last.y, w.y);
         // The square at (-1, -1) is black; black where the product of the two waves is positive.
-        float black = squares * (0.5 + 0.5 * wave(p.x + 1.0, w.x) * wave(p.y + 1.0, w.y));
+        vec2 row = row_of_squares(p.x + 1.0, last.x + 1.0, w.x);
+        vec2 column = row_of_squares(p.y + 1.0, last.y + 1.0, w.y);
+        float black = 0.5 * (row.y * column.y + row.x * column.x);
         albedo = mix(board_albedo.x, board_albedo.y, black);
       }
     }
     // Light: ambient, and a lamp of some width that boxes may hide.
-    vec3 lamp = normalize(to_light + 0.10 * vec3(offset[(i * 37) & 63], offset[(i * 11) & 63].x));
+    vec3 lamp = normalize(to_light + 0.10 * (vec3(offset[(i * 37) & 63], offset[(i * 11) & 63].x) - 0.5));
     float seen = max(dot(normal, to_light), 0.0);
     vec3 unused;
     for (int k = 0; k < casters; ++k) {
@@ -214,41 +222,52 @@ void main() {
 }
 )";
 
-// Radiance, of white: what may change within a pixel that gets 4 rays. Their mean is then good to some 1e-3, a quarter
-// of a code of 8 bits.
+// Radiance, of white: what may change within a pixel that gets 4 rays, or 16. The mean is then good to some 1e-3, a
+// quarter of a code of 8 bits.
 constexpr float kUneven = 0.006f;
+constexpr float kEdge = 0.04f;
 
-/// 1 at pixels that change within themselves or against a neighbour, and at their neighbours.
-FloatPicture pixels_near_change(const FloatPicture& picture, const FloatPicture& uneven) {
-  FloatPicture change = uneven;
+/// How many rays each pixel needs: by how much it changes within itself (`spread`) or against a neighbour, in itself or
+/// in one of its neighbours.
+FloatPicture wanted_rays(const FloatPicture& picture, const FloatPicture& spread) {
+  FloatPicture change = spread;
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const float here = picture.at(x, y);
-      if ((x + 1 < picture.width && std::abs(picture.at(x + 1, y) - here) > kUneven) ||
-          (y + 1 < picture.height && std::abs(picture.at(x, y + 1) - here) > kUneven)) {
-        change.at(x, y) = 1.0f;
-      }
+      float& most = change.at(x, y);
+      if (x + 1 < picture.width) most = std::max(most, std::abs(picture.at(x + 1, y) - here));
+      if (y + 1 < picture.height) most = std::max(most, std::abs(picture.at(x, y + 1) - here));
     }
   }
-  FloatPicture near(picture.width, picture.height);
+  FloatPicture wanted(picture.width, picture.height);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
-      if (change.at(x, y) < 0.5f) continue;
+      if (change.at(x, y) <= kUneven) continue;
+      const float rays = change.at(x, y) > kEdge ? 64.0f : 16.0f;
       for (int v = std::max(0, y - 1); v < std::min(picture.height, y + 2); ++v) {
-        for (int u = std::max(0, x - 1); u < std::min(picture.width, x + 2); ++u) near.at(u, v) = 1.0f;
+        for (int u = std::max(0, x - 1); u < std::min(picture.width, x + 2); ++u) {
+          wanted.at(u, v) = std::max(wanted.at(u, v), rays);
+        }
       }
     }
   }
-  return near;
+  return wanted;
 }
 
-std::vector<Eigen::Vector2f> hammersley() {
+/// The first 64 points of the Sobol sequence in two dimensions, within [0, 1)²: any first 16 of them, or all, have one
+/// point in every column and row of as many.
+std::vector<Eigen::Vector2f> sobol() {
   std::vector<Eigen::Vector2f> points;
   for (unsigned i = 0; i < kRays; ++i) {
-    unsigned reversed = 0;
-    for (unsigned bit = 0; bit < 6; ++bit) reversed |= ((i >> bit) & 1u) << (5 - bit);
-    points.emplace_back((static_cast<float>(i) + 0.5f) / kRays - 0.5f,
-                        (static_cast<float>(reversed) + 0.5f) / kRays - 0.5f);
+    unsigned x = 0;
+    unsigned y = 0;
+    unsigned direction = 32;
+    for (unsigned bit = 0; bit < 6; ++bit, direction ^= direction >> 1) {
+      if (((i >> bit) & 1u) == 0) continue;
+      x ^= 32u >> bit;
+      y ^= direction;
+    }
+    points.emplace_back(static_cast<float>(x) / kRays, static_cast<float>(y) / kRays);
   }
   return points;
 }
@@ -316,7 +335,7 @@ StaticPainter::StaticPainter(const Camera& camera, const RayTable& rays)
   canvas_.set("slopes", slopes_unit);
   wanted_unit_ = canvas_.add_texture(1, 1, 1, std::vector<float>{0.0f});
   canvas_.set("wanted", wanted_unit_);
-  canvas_.set_array("offset", std::span<const Eigen::Vector2f>(hammersley()));
+  canvas_.set_array("offset", std::span<const Eigen::Vector2f>(sobol()));
   canvas_.set("rotation", Eigen::Matrix3f(camera.X_WC.linear().cast<float>()));
   canvas_.set("eye", Eigen::Vector3f(camera.X_WC.translation().cast<float>()));
   canvas_.set("to_light", Eigen::Vector3f(kToLight.cast<float>()));
@@ -401,18 +420,18 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
   draw_tiles([](const PixelRect&) { return true; });
   canvas_.read(all, values);
   FloatPicture picture(all.width, all.height);
-  FloatPicture uneven(all.width, all.height);
+  FloatPicture spread(all.width, all.height);
   for (std::size_t i = 0; i < picture.values.size(); ++i) {
     picture.values[i] = values[2 * i];
-    uneven.values[i] = values[2 * i + 1] > kUneven ? 1.0f : 0.0f;
+    spread.values[i] = values[2 * i + 1];
   }
-  const FloatPicture wanted = pixels_near_change(picture, uneven);
+  const FloatPicture wanted = wanted_rays(picture, spread);
   canvas_.update_texture(wanted_unit_, all.width, all.height, 1, wanted.values);
   canvas_.set("first_pass", 0);
   draw_tiles([&](const PixelRect& tile) {
     for (int y = tile.y; y < tile.y + tile.height; ++y) {
       const std::span<const float> row = wanted.row(y, tile.x, tile.width);
-      if (std::find(row.begin(), row.end(), 1.0f) != row.end()) return true;
+      if (*std::max_element(row.begin(), row.end()) > 0.0f) return true;
     }
     return false;
   });
