@@ -1,0 +1,12 @@
+/// Reads what a scenario says of the camera's optics and timing: [camera].
+#pragma once
+
+#include "base/strict_toml.h"
+#include "render/scenario.h"
+
+namespace glidelab::render {
+
+/// Fills `scenario.camera` and `scenario.recording`. What is wrong is recorded in the table's file.
+void read_optics(const base::TomlTable& root, Scenario& scenario);
+
+}  // namespace glidelab::render
