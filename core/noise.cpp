@@ -81,7 +81,7 @@ Residuals residuals_of(const std::vector<NoisePiece>& pieces, std::size_t lags) 
 }
 
 bool looks_white(const Residuals& residuals, const std::vector<double>& passed) {
-  const std::size_t lags = std::min<std::size_t>(10, passed.size() - 1);
+  const std::size_t lags = std::min<std::size_t>({10, passed.size() - 1, residuals.product.size() - 1});
   double chi2 = 0.0;
   for (std::size_t lag = 1; lag <= lags; ++lag) {
     const double off = residuals.product[lag] / residuals.product[0] - passed[lag] / passed[0];
