@@ -3,10 +3,7 @@
 ///
 /// A first smoothing (the pilot) takes the least bandwidth at which the noise of a is 10 % of the median |a| of the
 /// moving glider. On it:
-///  - Direction: the sign of v where |v| is above four standard deviations and above 0.5 % of the clip's largest speed.
-///    Between two runs of opposite sign lies a reversal, at the time at which v crosses zero.
-///  - Rest: between runs, where neither slope nor curvature of x is seen; it is grown while x stays within three
-///    standard deviations of its median, so that what borders on it is truly moving.
+///  - Directions, reversals and rests are told apart (motion_runs.h).
 ///  - Hand, stop: the points (v, a) of one direction of free motion lie about one line. For each direction the line is
 ///    taken on which most points agree (candidates: lines through parts of the motion that are contiguous in time). A
 ///    point is not free where its a is off that line by more than a quarter of the line's own size AND by more than the
