@@ -2,7 +2,8 @@
 ///
 /// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
 /// nothing of the size of the data is stored. Units are the caller's. Stops when a step changes every parameter by less
-/// than its `step` (an absolute measure, one for each parameter).
+/// than its `step` (an absolute measure, one for each parameter), or changes the cost by less than 1e-7 of itself (with
+/// n data that is a step of sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels).
 #pragma once
 
 #include <Eigen/Core>
@@ -60,6 +61,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     return fit;
   }
   here->complete();
+  constexpr double kFlat = 1e-7;
   double damping = 1e-3;
   for (; fit.iterations < max_iterations; ++fit.iterations) {
     Eigen::Matrix<double, N, N> damped = here->jtj;
@@ -74,6 +76,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     std::optional<NormalEquations<N>> there = evaluate(trial);
     if (there) there->complete();
     const bool small = (delta.array().abs() < step.array()).all();
+    const bool flat = there && std::abs(here->cost - there->cost) <= kFlat * here->cost;
     if (there && there->cost <= here->cost) {
       fit.parameters = trial;
       here = there;
@@ -82,7 +85,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
       damping *= 8.0;
       if (damping > 1e8 && !small) break;
     }
-    if (small) {
+    if (small || flat) {
       fit.stop = FitStop::converged;
       break;
     }

@@ -7,17 +7,19 @@
 #include <cmath>
 #include <numbers>
 #include <queue>
+#include <type_traits>
 #include <vector>
 
 #include "core/least_squares.h"
 #include "core/median.h"
+#include "core/pixel_edge.h"
 
 namespace glidelab::core {
 namespace {
 
 constexpr double kLargestRatio = 2.0;           // of the fitted radius and the expected one
 constexpr double kLargestResidual = 1.0 / 3.0;  // of the amplitude; a disc leaves noise only
-constexpr int kMaxIterations = 30;
+constexpr int kMaxIterations = 14;              // what is a marker takes 3 to 8
 
 struct Window {
   std::vector<double> u, v, value, weight;
@@ -47,19 +49,23 @@ std::optional<Window> cut_window(const Signal& signal, cv::Point2d centre, doubl
   return window;
 }
 
-enum Parameter { kU, kV, kMuu, kMuv, kMvv, kBlur, kBright, kLevel, kSlopeU, kSlopeV, kShadeU, kShadeV, kShadeR };
+enum Parameter { kU, kV, kMuu, kMuv, kMvv, kLogBlur, kBright, kLevel, kSlopeU, kSlopeV, kShadeU, kShadeV, kShadeR };
 constexpr int kUniformParameters = kShadeU;
 constexpr int kShadedParameters = kShadeR + 1;
 
-/// Weak knowledge that keeps small markers' size and blur apart; worth `strength` of the amplitude in one pixel.
+/// Weak knowledge that keeps small markers' size and blur apart, and the blur of a sharp picture from sliding to
+/// nothing (it has no effect to be seen there); each worth so much of the amplitude in one pixel.
 struct Prior {
   double radius_px;
+  double blur_px;
   double amplitude;
 };
-constexpr double kPriorStrength = 0.05;
-constexpr double kUsualBlurPx = 0.6;
+constexpr double kSizeStrength = 0.1;  // a unit of ln(radius)
+constexpr double kBlurStrength = 0.3;  // a unit of ln(blur)
+constexpr double kShadeStrength = 0.05;
 
-constexpr double kFarSigmas = 5.0;  // from the edge: Phi(-5) = 3e-7
+constexpr double kFarSigmas = 5.0;      // from the edge: Phi(-5) = 3e-7
+constexpr double kHalfDiagonal = 0.71;  // of a pixel
 
 /// One pixel of background: its Jacobian is (-g, 0 …, 1, d), in the order centre, level, slopes.
 template <int N>
@@ -77,17 +83,25 @@ void add_background(NormalEquations<N>& equations, double residual, double du, d
   equations.weight += w;
 }
 
-template <int N>
+/// A pixel's weight in the fit.
+struct TaperWeight {
+  double operator()(double taper, double) const { return taper; }
+};
+/// Its share in the variance of the gradient, (w r)^2: the middle of the sandwich covariance.
+struct NoiseWeight {
+  double operator()(double taper, double residual) const { return taper * taper * residual * residual; }
+};
+
+template <int N, class Weigh>
 std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& prior,
-                                           const Eigen::Matrix<double, N, 1>& p) {
+                                           const Eigen::Matrix<double, N, 1>& p, const Weigh& weigh) {
   const double a = p[kMuu], b = p[kMuv], c = p[kMvv];
   const double determinant = a * c - b * b;
-  if (!(p[kBlur] > 0.05) || p[kBlur] > 20.0 || !(determinant > 1e-6) || !(a > 0.0)) return std::nullopt;
+  const double blur = std::exp(p[kLogBlur]);
+  if (!(blur > 0.01) || blur > 20.0 || !(determinant > 1e-6) || !(a > 0.0)) return std::nullopt;
   const double radius = 1.0 / std::sqrt(determinant);
-  const double inverse_blur = 1.0 / p[kBlur];
-  const double pixel_kurtosis = 1.0 / (2880.0 * std::pow(std::max(p[kBlur], 0.27), 4));
-  const double to_phi = 1.0 / std::numbers::sqrt2;
-  const double density_scale = 1.0 / std::sqrt(2.0 * std::numbers::pi);
+  const double far = kFarSigmas * blur + kHalfDiagonal;
+  const double variance = blur * blur + 1.0 / 12.0;  // of blur and pixel together
   NormalEquations<N> equations;
   Eigen::Matrix<double, N, 1> jacobian;
   for (std::size_t i = 0; i < window.size(); ++i) {
@@ -97,28 +111,22 @@ std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& pr
     const double rho = std::sqrt(mu * mu + mv * mv);
     const double steep = std::max(std::sqrt(nu * nu + nv * nv), 1e-12);
     const double s = rho * (1.0 - rho) / steep;
-    const double z = s * inverse_blur;
-    if (z < -kFarSigmas) {  // background alone: most of the other terms are zero
+    if (s < -far) {  // background alone: most of the other terms are zero
       const double residual = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv - window.value[i];
-      add_background(equations, residual, du, dv, p[kSlopeU], p[kSlopeV], window.weight[i]);
+      add_background(equations, residual, du, dv, p[kSlopeU], p[kSlopeV], weigh(window.weight[i], residual));
       continue;
     }
-    const bool far = z > kFarSigmas;
-    const double normal = far ? 0.0 : density_scale * std::exp(-0.5 * z * z);
-    // The pixel's square is no Gaussian: its fourth cumulant along the edge's normal n, -(n_u^4 + n_v^4) / 120, enters
-    // by one term of Edgeworth's series (it matters where the picture is sharp).
-    const double square = pixel_kurtosis * (nu * nu * nu * nu + nv * nv * nv * nv) / (steep * steep * steep * steep);
-    const double edge = (far ? 1.0 : 0.5 * std::erfc(-z * to_phi)) + square * (z * z - 3.0) * z * normal;
-    const double density = inverse_blur * normal * (1.0 - square * ((z * z - 6.0) * z * z + 3.0));  // d edge / d s
+    const PixelEdge pixel = s > far ? PixelEdge{1.0, 0.0, 0.0} : pixel_edge(s, nu / steep, nv / steep, blur);
+    const double edge = pixel.value;
     double surface = p[kBright];
     if constexpr (N == kShadedParameters) {
       surface += (p[kShadeU] * du + p[kShadeV] * dv) / radius + p[kShadeR] * (1.0 - rho * rho);
     }
     const double behind = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv;
     // A slope that ends at an edge keeps, once blurred, a remainder beyond it.
-    const double remainder = p[kBlur] * normal / steep;
+    const double remainder = variance * pixel.slope / steep;
     const double model = behind * (1.0 - edge) + surface * edge + (p[kSlopeU] * nu + p[kSlopeV] * nv) * remainder;
-    const double to_s = (surface - behind) * density;
+    const double to_s = (surface - behind) * pixel.slope;
     // ds = -d rho rho / |M^2 d| at fixed steepness; d rho = ((M d) . dM d) / rho, and the centre moves by -d.
     const double to_m = -to_s / steep;
     jacobian[kU] = to_s * nu / steep - (1.0 - edge) * p[kSlopeU];
@@ -126,7 +134,7 @@ std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& pr
     jacobian[kMuu] = to_m * mu * du;
     jacobian[kMuv] = to_m * (mu * dv + mv * du);
     jacobian[kMvv] = to_m * mv * dv;
-    jacobian[kBlur] = -to_s * z;
+    jacobian[kLogBlur] = (surface - behind) * blur * blur * pixel.bend;
     jacobian[kBright] = edge;
     jacobian[kLevel] = 1.0 - edge;
     jacobian[kSlopeU] = (1.0 - edge) * du + nu * remainder;
@@ -138,14 +146,16 @@ std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& pr
       jacobian[kShadeV] = edge * dv / radius;
       jacobian[kShadeR] = edge * (1.0 - rho * rho);
     }
-    equations.add(jacobian, model - window.value[i], window.weight[i]);
+    const double residual = model - window.value[i];
+    equations.add(jacobian, residual, weigh(window.weight[i], residual));
   }
-  const double strength = kPriorStrength * prior.amplitude;
+  if constexpr (std::is_same_v<Weigh, NoiseWeight>) return equations;  // what is known beforehand has no noise
+  const double sharp = kBlurStrength * prior.amplitude;
   jacobian.setZero();
-  jacobian[kBlur] = strength;
-  equations.add(jacobian, strength * (p[kBlur] - kUsualBlurPx), 1.0);
+  jacobian[kLogBlur] = sharp;
+  equations.add(jacobian, sharp * (p[kLogBlur] - std::log(prior.blur_px)), 1.0);
   // ln(radius / expected) = -ln(determinant) / 2 - ln(expected).
-  const double along = 2.0 * strength;
+  const double along = kSizeStrength * prior.amplitude;
   jacobian.setZero();
   jacobian[kMuu] = -0.5 * along * c / determinant;
   jacobian[kMvv] = -0.5 * along * a / determinant;
@@ -153,8 +163,8 @@ std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& pr
   equations.add(jacobian, along * (-0.5 * std::log(determinant) - std::log(prior.radius_px)), 1.0);
   if constexpr (N == kShadedParameters) {
     jacobian.setZero();
-    jacobian[kShadeR] = kPriorStrength;
-    equations.add(jacobian, kPriorStrength * p[kShadeR], 1.0);
+    jacobian[kShadeR] = kShadeStrength;
+    equations.add(jacobian, kShadeStrength * p[kShadeR], 1.0);
   }
   return equations;
 }
@@ -176,34 +186,46 @@ std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
   Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Constant(3e-3 * amplitude);
   start[kU] = guess.centre.x;
   start[kV] = guess.centre.y;
-  start[kMuu] = start[kMvv] = 1.0 / guess.radius_px;
-  start[kBlur] = guess.blur_px;
+  start[kMuu] = guess.shape ? (*guess.shape)[0] : 1.0 / guess.radius_px;
+  start[kMuv] = guess.shape ? (*guess.shape)[1] : 0.0;
+  start[kMvv] = guess.shape ? (*guess.shape)[2] : 1.0 / guess.radius_px;
+  start[kLogBlur] = std::log(guess.blur_px);
   start[kBright] = level + amplitude;
   start[kLevel] = level;
   step[kU] = step[kV] = 1e-3;
   step[kMuu] = step[kMuv] = step[kMvv] = 3e-3 / guess.radius_px;
-  step[kBlur] = 1e-2;
-  const Prior prior{guess.radius_px, amplitude};
-  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(window, prior, p); };
+  step[kLogBlur] = 2e-2;
+  const Prior prior{guess.radius_px, guess.blur_px, amplitude};
+  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(window, prior, p, TaperWeight{}); };
   const LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations);
   if (found.stop != FitStop::converged) return std::nullopt;
 
   const auto& p = found.parameters;
+  double total_weight = 0.0;
+  for (const double w : window.weight) total_weight += w;
+  if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;
   MarkerFit marker;
   marker.centre = {p[kU], p[kV]};
-  marker.sd_px = std::sqrt(0.5 * (found.covariance(kU, kU) + found.covariance(kV, kV)));
+  // The bright marker's pixels are noisier than the background's, and the taper counts: covariance by the sandwich
+  // A^-1 B A^-1 with A = J^T W J, B = sum (w r)^2 J J^T, and N parameters taken from the residuals' freedom.
+  auto noise = evaluate<N>(window, prior, p, NoiseWeight{});
+  noise->complete();
+  const auto inverse = (found.covariance / (found.rms * found.rms)).eval();
+  const auto covariance = (inverse * noise->jtj * inverse).eval();
+  const double freedom = total_weight / (total_weight - N);
+  marker.sd_px = std::sqrt(0.5 * freedom * (covariance(kU, kU) + covariance(kV, kV)));
   const double determinant = p[kMuu] * p[kMvv] - p[kMuv] * p[kMuv];
   marker.radius_px = 1.0 / std::sqrt(determinant);
+  marker.shape = {p[kMuu], p[kMuv], p[kMvv]};
   const double mean = 0.5 * (p[kMuu] + p[kMvv]);
   const double spread = std::hypot(0.5 * (p[kMuu] - p[kMvv]), p[kMuv]);
   marker.elongation = (mean + spread) / std::max(mean - spread, 1e-9);
   marker.amplitude = p[kBright] - p[kLevel];
   marker.background = p[kLevel];
-  marker.blur_px = p[kBlur];
+  marker.blur_px = std::exp(p[kLogBlur]);
   marker.rms = found.rms;
-  double weight = 0.0;
-  for (const double w : window.weight) weight += w;
-  marker.bic = weight * std::log(std::max(found.rms * found.rms * (weight - N) / weight, 1e-12)) + N * std::log(weight);
+  marker.bic = total_weight * std::log(std::max(found.rms * found.rms * (total_weight - N) / total_weight, 1e-12)) +
+               N * std::log(total_weight);
   const double moved = cv::norm(marker.centre - guess.centre);
   const double ratio = marker.radius_px / guess.radius_px;
   const bool plausible = moved < std::max(guess.radius_px, 1.5) && ratio < kLargestRatio &&

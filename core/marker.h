@@ -33,6 +33,7 @@ struct MarkerFit {
   double sd_px = 0.0;       ///< of one coordinate, from the residuals and the fit's covariance
   double radius_px = 0.0;   ///< of the circle with the outline's area
   double elongation = 1.0;  ///< long over short axis
+  cv::Vec3d shape;          ///< the elements uu, uv, vv of M (1/px)
   double amplitude = 0.0;   ///< B - b, in units of the signal
   double background = 0.0;
   double blur_px = 0.0;  ///< sigma
@@ -46,8 +47,8 @@ enum class Surface { uniform, shaded };
 struct MarkerGuess {
   cv::Point2d centre;
   double radius_px = 0.0;
-  double blur_px = 0.6;
-  double elongation = 1.0;  ///< with `direction`, of the last frame's fit; a start, not a constraint
+  double blur_px = 0.5;
+  std::optional<cv::Vec3d> shape;  ///< M of the last frame's fit: a start, not a constraint
 };
 
 /// Fits the model in a window of 1.25 radii plus 2.5 px. Nothing where the window leaves the picture, the fit does not

@@ -47,6 +47,20 @@ bool overlaps(std::size_t common, std::size_t a, std::size_t b) {
 /// Uniform or shaded surface by the residuals of the windows kept; for a thing known by its hue also the centroid,
 /// where it is steadier. All sightings so far are measured again in the way chosen.
 void MarkerTracker::choose_method(Path& path) const {
+  // First what all windows agree on: the picture's sharpness, and the marker's size, from which each fit then starts.
+  std::vector<double> blurs, sizes;
+  for (const Sample& sample : path.samples) {
+    const auto fit = measure(sample.window, sample.guess, Method::uniform);
+    if (!fit) continue;
+    blurs.push_back(fit->blur_px);
+    sizes.push_back(fit->radius_px / sample.guess.radius_px);
+  }
+  for (Sample& sample : path.samples) {
+    if (blurs.empty()) break;
+    sample.guess.blur_px = median_of(blurs);
+    sample.guess.radius_px *= median_of(sizes);
+    sample.guess.shape.reset();
+  }
   std::map<Method, std::map<std::size_t, MarkerFit>> fits;
   double bic_gain = 0.0;
   std::size_t both = 0;

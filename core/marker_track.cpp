@@ -92,7 +92,11 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
   MarkerGuess guess;
   guess.centre = expected;
   guess.radius_px = path.radius_px;
-  if (path.seen.back().fit.blur_px > 0.0) guess.blur_px = path.seen.back().fit.blur_px;
+  const MarkerFit& last = path.seen.back().fit;
+  if (last.blur_px > 0.0) {  // a fit, no centroid
+    guess.blur_px = last.blur_px;
+    guess.shape = last.shape;
+  }
   if (!is_new && !is_near_any(taken, expected, 0.5 * path.radius_px)) {
     const auto fit = measure(signal, guess, path.method);
     if (fit && is_like(path.radius_px, path.amplitude, *fit)) return Found{guess, *fit};
@@ -198,28 +202,42 @@ void MarkerTracker::follow_back(Path& path) const {
   for (const Seen& sighting : seen) path.push(sighting);
 }
 
+/// Something of the right size that is seen moving in this frame; null where there is nothing yet.
+const MarkerTracker::Path* MarkerTracker::mover(std::size_t frame) const {
+  const Path* best = nullptr;
+  for (const Path& path : paths_) {
+    if (path.ended || path.asleep || path.seen.back().frame != frame || path.seen.size() < kRestFrames) continue;
+    if (path.travel_px < 5.0 * path.radius_px || std::abs(std::log(size_ratio(path))) > 0.3) continue;
+    if (best == nullptr || path.amplitude > best->amplitude) best = &path;
+  }
+  return best;
+}
+
 void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
   BlobSearch search;
   search.radius_px = radius_px_;
   search.least_contrast = least_contrast(kind_);
+  // Once something moves, only what is as bright could be another piece of it, or a second marker.
+  if (const Path* moving = mover(frame))
+    search.least_contrast = std::max(search.least_contrast, 0.3 * moving->amplitude);
   search.region = cv::Rect(0, 0, signal.values.cols, signal.values.rows);
   std::vector<cv::Point2d> known = places_at(frame);
+  std::vector<cv::Point2d> sleeping;
+  for (const Path& path : paths_) {
+    if (path.asleep) sleeping.push_back(path.seen.back().fit.centre);
+  }
   for (const Blob& blob : find_blobs(signal, search)) {
     MarkerGuess guess;
     guess.centre = blob.centre;
     guess.radius_px = std::max(radius_at_(blob.centre), kSmallestRadiusPx);
-    if (is_near_any(known, blob.centre, 0.7 * guess.radius_px)) continue;
+    if (is_near_any(known, blob.centre, 0.7 * guess.radius_px) ||
+        is_near_any(sleeping, blob.centre, 0.7 * guess.radius_px)) {
+      continue;
+    }
     const auto fit = measure(signal, guess, Method::undecided);
     if (!fit || fit->elongation > kLargestElongation || is_near_any(known, fit->centre, 0.7 * guess.radius_px))
       continue;
     known.push_back(fit->centre);
-    const auto sleeper = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
-      return path.asleep && cv::norm(path.seen.back().fit.centre - fit->centre) < 0.7 * path.radius_px;
-    });
-    if (sleeper != paths_.end()) {
-      sleeper->push({frame, *fit});
-      continue;
-    }
     // A path that has just lost its thing takes up what is found near where that should be.
     const auto loser = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
       return !path.ended && !path.asleep && path.seen.back().frame < frame && path.seen.size() >= kFewestSightings &&
@@ -241,14 +259,11 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
 /// ones most like a marker.
 void MarkerTracker::put_to_sleep(std::size_t frame) {
   std::vector<Path*> resting;
-  bool something_moves = false;
+  const bool something_moves = mover(frame) != nullptr;
   for (Path& path : paths_) {
     if (path.ended || path.asleep || path.seen.size() < kRestFrames) continue;
     if (path.travel_px < 0.5 * least_travel(path.radius_px)) {
       resting.push_back(&path);
-    } else if (path.travel_px > 5.0 * path.radius_px && path.seen.back().frame == frame &&
-               std::abs(std::log(size_ratio(path))) < 0.3) {
-      something_moves = true;
     }
   }
   const auto rank = [&](const Path* path) {

@@ -88,6 +88,7 @@ class MarkerTracker {
   void follow(const Signal& signal, std::size_t frame);
   void search_whole(const Signal& signal, std::size_t frame);
   void follow_back(Path& path) const;
+  const Path* mover(std::size_t frame) const;
   void put_to_sleep(std::size_t frame);
   void tidy(std::size_t frame);
   std::vector<cv::Point2d> places_at(std::size_t frame) const;
