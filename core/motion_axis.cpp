@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "base/errors.h"
 #include "core/median.h"
@@ -14,10 +17,57 @@ constexpr int kMaxIterations = 30;
 constexpr double kTukey = 6.0;                // scaled median deviations; 99 % efficient for Gaussian residuals
 constexpr double kMedianToSd = 1.0 / 0.6745;  // of a Gaussian
 
+/// One point of every small cell, so that a marker that rests does not outvote its motion; at most about 80.
+std::vector<cv::Point2d> thinned(const std::vector<cv::Point2d>& points) {
+  cv::Point2d low = points.front(), high = points.front();
+  for (const cv::Point2d& point : points) {
+    low = {std::min(low.x, point.x), std::min(low.y, point.y)};
+    high = {std::max(high.x, point.x), std::max(high.y, point.y)};
+  }
+  const double cell = std::max(high.x - low.x, high.y - low.y) / 60.0;
+  std::set<std::pair<long, long>> taken;
+  std::vector<cv::Point2d> kept;
+  for (const cv::Point2d& point : points) {
+    if (!(cell > 0.0)) break;
+    if (!taken.emplace(std::lround((point.x - low.x) / cell), std::lround((point.y - low.y) / cell)).second) continue;
+    kept.push_back(point);
+  }
+  return kept;
+}
+
+/// The line through two of the points from which the median distance is least: half of the points may lie anywhere.
+std::optional<PlaneLine> least_median_line(const std::vector<cv::Point2d>& points) {
+  const std::vector<cv::Point2d> few = thinned(points);
+  std::optional<PlaneLine> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    for (std::size_t j = i + 1; j < few.size(); ++j) {
+      PlaneLine line;
+      line.through = few[i];
+      line.direction = (few[j] - few[i]) / cv::norm(few[j] - few[i]);
+      std::vector<double> distances;
+      for (const cv::Point2d& point : few) distances.push_back(std::abs(line.across(point)));
+      const double median = median_of(distances);
+      if (median >= least) continue;
+      least = median;
+      best = line;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_scale) {
+  if (points.empty()) throw base::NumericalError("no points to fit a line to");
   std::vector<double> weights(points.size(), 1.0);
+  if (const auto start = least_median_line(points)) {
+    std::vector<double> distances;
+    for (const cv::Point2d& point : points) distances.push_back(std::abs(start->across(point)));
+    // A generous scale: the line through two noisy points is itself off by some noise.
+    const double scale = std::max(3.0 * kMedianToSd * median_of(distances), least_scale);
+    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = distances[i] < kTukey * scale ? 1.0 : 0.0;
+  }
   PlaneLine line;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     double sum = 0.0;
@@ -26,7 +76,6 @@ PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_sc
       sum += weights[i];
       mean += weights[i] * points[i];
     }
-    if (!(sum > 0.0)) throw base::NumericalError("no points to fit a line to");
     mean /= sum;
     double xx = 0.0, xy = 0.0, yy = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {

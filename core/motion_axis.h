@@ -18,9 +18,10 @@ struct PlaneLine {
   double across(cv::Point2d point) const { return direction.cross(point - through); }
 };
 
-/// Robust total least squares: the principal axis of the points, weighted by Tukey's biweight of their distance (6
-/// scaled median deviations, of at least `least_scale`), iterated. Points' unit is the line's unit. Needs two different
-/// points; NumericalError otherwise.
+/// Robust total least squares: from the line of least median distance (thinned out where points crowd) on, the
+/// principal axis of the points, weighted by Tukey's biweight of their distance (6 scaled median deviations, of at
+/// least `least_scale`), iterated. Points' unit is the line's unit. Needs two different points; NumericalError
+/// otherwise.
 PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_scale);
 
 /// The line in which a marker moves, directed downhill.

@@ -107,6 +107,20 @@ TEST_CASE("fewer than three views with a visible pattern are an error that names
                     Catch::Contains("2 pictures with a visible pattern") && Catch::Contains("view-07.png"));
 }
 
+TEST_CASE("pictures without any visible pattern are an error that names them") {
+  const tests::TempDir dir;
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {"view-00.png", "view-01.png", "view-02.png", "view-03.png"}) {
+    files.push_back(dir / name);
+    cv::imwrite(files.back().string(), cv::Mat(120, 160, CV_8U, cv::Scalar(90)));
+  }
+  const core::BoardViews boards = core::find_board_views(files, {9, 6}, 2);
+  CHECK(boards.views.empty());
+  CHECK_THROWS_WITH(core::calibrate_camera(boards, 0.04),
+                    Catch::Contains("calibration.views") && Catch::Contains("0 pictures with a visible pattern") &&
+                        Catch::Contains("view-00.png") && Catch::Contains("view-03.png"));
+}
+
 TEST_CASE("files that are no pictures, or of another size, are errors that name the file") {
   const tests::TempDir dir;
   cv::imwrite((dir / "a.png").string(), cv::Mat(120, 160, CV_8U, cv::Scalar(90)));
