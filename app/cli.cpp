@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
   add_render(app, command);
   add_analyze(app, command);
   add_validate(app, command);
+  add_characterize(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

@@ -10,7 +10,7 @@ using namespace glidelab;
 
 namespace {
 
-const std::vector<std::string> kCommands = {"simulate", "render", "analyze", "validate"};
+const std::vector<std::string> kCommands = {"simulate", "render", "analyze", "validate", "characterize"};
 
 }  // namespace
 
@@ -79,7 +79,7 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
 TEST_CASE("an unknown command is named together with those that exist") {
   const tests::ProcessResult result = tests::glidelab({"diagnose", "folder"});
   CHECK(result.err.find("unknown command \"diagnose\"") != std::string::npos);
-  CHECK(result.err.find("simulate, render, analyze, validate") != std::string::npos);
+  CHECK(result.err.find("simulate, render, analyze, validate, characterize") != std::string::npos);
 }
 
 TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {

@@ -30,7 +30,9 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"sim", {"base"}},
     {"render", {"base", "sim"}},
     {"validate", {"base", "core", "sim", "render"}},
-    {"report", {"base", "core/results.h", "core/preview.h", "validate/comparison.h"}},  // the result types
+    {"report",
+     {"base", "core/results.h", "core/preview.h", "core/camera_measurement.h",
+      "validate/comparison.h"}},  // the result types
     {"app", {"base", "core", "sim", "render", "validate", "report"}},
 };
 

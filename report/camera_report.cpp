@@ -1,0 +1,117 @@
+#include "report/camera_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/camera_rows.h"
+#include "report/gnuplot.h"
+#include "report/html.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Rows of (mean, variance, 2 sd) of the levels in the fit, or of the others; never empty, which gnuplot does not like.
+PlotData points_of(const core::CameraMeasurement& camera, const char* name, bool used) {
+  PlotData data{name, {}};
+  for (const core::TransferPoint& point : camera.curve) {
+    if (point.used == used) data.rows.push_back({point.mean_dn, point.variance_dn2, 2.0 * point.sd_dn2});
+  }
+  if (data.rows.empty()) data.rows.push_back({kNan, kNan, kNan});
+  return data;
+}
+
+/// Beside which levels the line was fitted, and on to saturation.
+PlotData line_of(const core::CameraMeasurement& camera) {
+  PlotData data{"line", {}};
+  if (camera.gain_dn_per_e.value && camera.intercept_dn2) {
+    for (const double mean_dn : {0.0, camera.saturation_dn}) {
+      data.rows.push_back({mean_dn, *camera.intercept_dn2 + *camera.gain_dn_per_e.value * mean_dn});
+    }
+  } else {
+    data.rows.push_back({kNan, kNan});
+  }
+  return data;
+}
+
+/// Five or so labels along the axis of codes: 1, 2 or 5 times a power of ten.
+double tick_step(const core::CameraMeasurement& camera) {
+  double most_dn = camera.saturation_dn;
+  for (const core::TransferPoint& point : camera.curve) most_dn = std::max(most_dn, point.mean_dn);
+  const double power = std::pow(10.0, std::floor(std::log10(most_dn / 4.0)));
+  const double digits = most_dn / 4.0 / power;
+  return power * (digits < 2.0 ? 1.0 : digits < 5.0 ? 2.0 : 5.0);
+}
+
+Plot transfer_plot(const core::CameraMeasurement& camera) {
+  std::string script(kFrame);
+  script += fmt::format(
+      "set xlabel 'mean above dark (DN)'\nset ylabel 'variance (DN²)'\nset xrange [0:*]\nset yrange [0:*]\nset xtics "
+      "{4:.6g}\nset arrow from {0:.6g}, graph "
+      "0 to {0:.6g}, graph 1 nohead dt 2 lc rgb '{1}'\nplot $line using 1:2 with lines lw 2 lc rgb '{2}' title 'line', "
+      "$used using 1:2:3 with yerrorbars pt 7 ps 0.7 lc rgb '{3}' title 'in the fit', $others using 1:2 with points pt "
+      "6 ps 0.8 lc rgb '{1}' title 'others'\n",
+      0.7 * camera.saturation_dn, kGrey, color(1), color(0), tick_step(camera));
+  const std::vector<PlotData> data = {line_of(camera), points_of(camera, "used", true),
+                                      points_of(camera, "others", false)};
+  return {gnuplot_svg(script, data),
+          "Photon transfer: variance of the pixels from frame to frame, rounding subtracted, over the mean. The slope "
+          "is the gain. Bars: 2 sd; dashed: 70 % of saturation",
+          "Variance over mean of every level, with the fitted line"};
+}
+
+/// Where levels were made by exposures: what the mean does over them.
+std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
+  PlotData data{"levels", {}};
+  for (const core::TransferPoint& point : camera.curve) {
+    if (point.exposure_s) data.rows.push_back({*point.exposure_s * 1e3, point.picture_dn});
+  }
+  const auto same = [&](const std::vector<double>& row) { return row[0] == data.rows.front()[0]; };
+  if (data.rows.size() < 3 || std::all_of(data.rows.begin(), data.rows.end(), same)) return {};
+  std::string script(kFrame);
+  script += fmt::format(
+      "set xlabel 'exposure (ms)'\nset ylabel 'mean above dark (DN)'\nset xrange [0:*]\nset yrange [0:*]\nunset "
+      "key\nplot $levels using 1:2 with linespoints pt 7 ps 0.7 lc rgb '{}'\n",
+      color(0));
+  return {{gnuplot_svg(script, std::vector<PlotData>{data}), "Linearity: mean over exposure",
+           "Mean of every level over its exposure"}};
+}
+
+std::string numbers_table(const core::CameraMeasurement& camera) {
+  HtmlTable table({"", "value", "sd", "unit"});
+  std::string remarks;
+  for (const CameraRow& row : camera_rows(camera)) {
+    table.row({escape(row.name), escape(row.value), escape(row.sd), escape(row.unit)});
+    const std::string& remark = row.measured->value ? row.measured->how : row.measured->why;
+    if (!remark.empty()) remarks += fmt::format("<li>{}: {}</li>", escape(row.name), escape(remark));
+  }
+  return table.str() + (remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");
+}
+
+}  // namespace
+
+std::string camera_report(const core::CameraMeasurement& camera) {
+  std::string body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} x {} pixels, {} bits, by photon "
+      "transfer (EMVA 1288).</p>\n",
+      escape(camera.folder.name), camera.frames, camera.picture.width, camera.picture.height, camera.folder.bit_depth);
+  body += numbers_table(camera);
+  body += fmt::format(
+      "<p>Pixels that stand out of the pattern: {} hot, {} dead, {} in all; they are not in the numbers.</p>\n",
+      camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
+  if (!camera.notes.empty()) {
+    body += "<div class=\"note\"><ul>";
+    for (const std::string& note : camera.notes) body += fmt::format("<li>{}</li>", escape(note));
+    body += "</ul></div>\n";
+  }
+  std::vector<Plot> plots = {transfer_plot(camera)};
+  for (Plot& plot : linearity_plot(camera)) plots.push_back(std::move(plot));
+  body += figures(plots);
+  return page(camera.folder.name, body);
+}
+
+}  // namespace glidelab::report

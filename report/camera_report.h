@@ -1,0 +1,13 @@
+/// The page of a measured camera: its numbers, the photon-transfer diagram, what was noticed.
+#pragma once
+
+#include <string>
+
+#include "core/camera_measurement.h"
+
+namespace glidelab::report {
+
+/// A self-contained HTML page. EnvironmentError where gnuplot fails.
+std::string camera_report(const core::CameraMeasurement& camera);
+
+}  // namespace glidelab::report
