@@ -199,7 +199,8 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
     // A rolling shutter exposes the marker's row later than the picture's middle row, to which the frame's time
     // belongs.
     const double row = point.sighting.v_px - 0.5 * (seen.size.height - 1);
-    track.t_s.push_back(seen.frame_t_s[point.sighting.frame] + camera.line_readout_s * row);
+    const double delay_s = camera.line_readout_s * (camera.bottom_row_first ? -row : row);
+    track.t_s.push_back(seen.frame_t_s[point.sighting.frame] + delay_s);
     track.x_m.push_back(axis.x_of(point.place));
     track.sightings.push_back(point.sighting);
   }

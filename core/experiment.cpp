@@ -28,6 +28,10 @@ CameraSettings read_camera(const TomlTable& table) {
   camera.line_readout_s = camera.shutter == Shutter::rolling
                               ? table.number("line_readout_s", base::at_least(0.0))
                               : table.number_or("line_readout_s", 0.0, base::at_least(0.0));
+  camera.bottom_row_first = table.word("first_row", {"top", "bottom"}, "top") == "bottom";
+  if (camera.shutter == Shutter::global && camera.bottom_row_first) {
+    table.reject("first_row", "\"bottom\" with a global shutter", "shutter = \"rolling\"");
+  }
   camera.bit_depth = static_cast<int>(table.integer_or("bit_depth", 8, 8, 16));
   camera.time =
       table.word("time", {"rate", "container"}, "rate") == "container" ? TimeSource::container : TimeSource::rate;

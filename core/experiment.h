@@ -22,7 +22,8 @@ struct CameraSettings {
   double frame_rate_hz = 0.0;
   std::optional<double> exposure_s;
   Shutter shutter = Shutter::global;
-  double line_readout_s = 0.0;  ///< rolling: time from one row to the next, top row first
+  double line_readout_s = 0.0;    ///< rolling: time from one row to the next
+  bool bottom_row_first = false;  ///< rolling: the picture's bottom row is read first; else its top row
   int bit_depth = 8;
   TimeSource time = TimeSource::rate;
 };

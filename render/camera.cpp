@@ -132,7 +132,12 @@ std::optional<Eigen::Vector2d> undistorted_at(const Camera& camera, const Eigen:
 }
 
 std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vector2d& undistorted) {
-  if (!(undistorted.norm() < fold_radius(camera.lens))) return std::nullopt;
+  return pixel_of(camera, undistorted, fold_radius(camera.lens));
+}
+
+std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vector2d& undistorted,
+                                        double largest_radius) {
+  if (!(undistorted.norm() < largest_radius)) return std::nullopt;
   return Eigen::Vector2d(distort(camera.lens, undistorted).cwiseProduct(camera.focal_px) + camera.center_px);
 }
 

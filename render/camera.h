@@ -58,6 +58,10 @@ std::optional<Eigen::Vector2d> undistorted_at(const Camera& camera, const Eigen:
 /// The pixel at which undistorted coordinates appear; also outside the picture. Nothing beyond the fold radius.
 std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vector2d& undistorted);
 
+/// The same with `largest_radius` in place of the fold radius, for a caller who asks many times.
+std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vector2d& undistorted,
+                                        double largest_radius);
+
 /// The pixel at which a point of the world appears; also outside the picture. Nothing for a point behind the camera or
 /// beyond the fold radius.
 std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_W);

@@ -63,6 +63,10 @@ nlohmann::ordered_json camera_json(const Scenario& scenario) {
           {"position_m", {eye.x(), eye.y(), eye.z()}},
           {"frame_rate_hz", scenario.recording.frame_rate_hz},
           {"exposure_s", scenario.recording.exposure_s},
+          {"shutter",
+           {{"kind", scenario.recording.shutter.rolling ? "rolling" : "global"},
+            {"line_readout_s", scenario.recording.shutter.line_readout_s},
+            {"first_row", scenario.recording.shutter.bottom_first ? "bottom" : "top"}}},
           {"sensor",
            {{"bit_depth", scenario.sensor.bit_depth},
             {"full_well_e", scenario.sensor.full_well_e},
@@ -94,7 +98,10 @@ std::string experiment_toml(const Scenario& scenario) {
   table("[camera]");
   line("frame_rate_hz", number(scenario.recording.frame_rate_hz));
   line("exposure_s", number(scenario.recording.exposure_s));
-  line("shutter", "\"global\"");
+  const Shutter& shutter = scenario.recording.shutter;
+  line("shutter", shutter.rolling ? "\"rolling\"" : "\"global\"");
+  if (shutter.rolling) line("line_readout_s", number(shutter.line_readout_s));
+  if (shutter.bottom_first) line("first_row", "\"bottom\"");
   line("bit_depth", fmt::format("{}", scenario.sensor.bit_depth));
   table("[calibration]");
   line("pattern", "\"chessboard\"");
@@ -146,7 +153,8 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed) {
                        {"configuration", configuration.name},
                        {"frames", frame_count(scenario.recording, motion)},
                        {"x_origin_m", x_origin_m(scenario, configuration.body.incline_rad)},
-                       {"trajectory", "trajectory-" + motion.name + ".csv"}});
+                       {"trajectory", "trajectory-" + motion.name + ".csv"},
+                       {"marker", "marker-" + motion.name + ".csv"}});
     }
     configurations.push_back(
         {{"name", configuration.name},

@@ -15,9 +15,9 @@ namespace {
 /// Grows a rectangle of pixels by points of the picture.
 class Bounds {
  public:
-  void add(const Camera& camera, const Eigen::Vector3d& p_C) {
+  void add(const Camera& camera, double fold_radius, const Eigen::Vector3d& p_C) {
     if (!(p_C.z() > 0.0)) throw base::NumericalError("the glider reaches behind the camera");
-    const std::optional<Eigen::Vector2d> pixel = pixel_of(camera, p_C.head<2>() / p_C.z());
+    const std::optional<Eigen::Vector2d> pixel = pixel_of(camera, p_C.head<2>() / p_C.z(), fold_radius);
     if (!pixel) {
       beyond_the_lens_ = true;
       return;
@@ -26,9 +26,8 @@ class Bounds {
     high_ = high_.cwiseMax(*pixel);
   }
 
-  /// The whole picture where a part has no picture of its own and another part is seen.
-  PixelRect pixels(const Camera& camera) const {
-    const PixelRect all{0, 0, camera.width_px, camera.height_px};
+  /// What of `all` may be touched; all of it where a part has no picture of its own and another part is seen.
+  PixelRect pixels(const Camera& camera, const PixelRect& all) const {
     if (!(high_.x() >= low_.x())) return {};
     constexpr double kMargin = 2.0;  // half a pixel, and what the lens bends an edge between the points that were added
     const double widest = 4.0 * (camera.width_px + camera.height_px);  // keeps the conversion to int defined
@@ -81,12 +80,20 @@ Eigen::Vector3d corner_sign(int number) {
   return {(number & 1) != 0 ? 1.0 : -1.0, (number & 2) != 0 ? 1.0 : -1.0, (number & 4) != 0 ? 1.0 : -1.0};
 }
 
+/// Where shapes are drawn: the camera's lens, and the pixels that are wanted.
+struct Target {
+  const Camera& camera;
+  double fold_radius;
+  PixelRect within;
+};
+
 /// All shapes of the body in the camera frame, for shifts from `first` to `last` about where it stands.
 class Shapes {
  public:
-  Shapes(const Camera& camera, const MovingBody& body, double middle, double first, double last)
-      : camera_(camera),
-        X_CW_(camera.X_WC.inverse()),
+  template <typename Transform>
+  Shapes(const Target& target, const Transform& X_CW, const MovingBody& body, double middle, double first, double last)
+      : target_(target),
+        X_CW_(X_CW),
         shift_W_(middle * body.direction_W),
         direction_C_(X_CW_.linear() * body.direction_W),
         first_(first),
@@ -101,8 +108,8 @@ class Shapes {
 
  private:
   void bound(Bounds& bounds, const Eigen::Vector3d& p_C) const {
-    bounds.add(camera_, p_C + first_ * direction_C_);
-    bounds.add(camera_, p_C + last_ * direction_C_);
+    bounds.add(target_.camera, target_.fold_radius, p_C + first_ * direction_C_);
+    bounds.add(target_.camera, target_.fold_radius, p_C + last_ * direction_C_);
   }
 
   Edge edge_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& inside) const {
@@ -124,7 +131,7 @@ class Shapes {
       constexpr int kSteps = 4;  // the lens bends long edges
       for (int k = 0; k < kSteps; ++k) bound(bounds, corners[i] + (next - corners[i]) * k / kSteps);
     }
-    polygon.rect = bounds.pixels(camera_);
+    polygon.rect = bounds.pixels(target_.camera, target_.within);
     polygons_.push_back(polygon);
   }
 
@@ -153,12 +160,12 @@ class Shapes {
     Sphere sphere{X_CW_ * (marker.center_W + shift_W_), marker.radius_m, marker.radiance, {}};
     Bounds bounds;
     for (int i = 0; i < 8; ++i) bound(bounds, sphere.center_C + marker.radius_m * corner_sign(i));
-    sphere.rect = bounds.pixels(camera_);
+    sphere.rect = bounds.pixels(target_.camera, target_.within);
     sphere_ = sphere;
   }
 
-  const Camera& camera_;
-  Eigen::Isometry3d X_CW_;
+  Target target_;
+  Eigen::Affine3d X_CW_;
   Eigen::Vector3d shift_W_;
   Eigen::Vector3d direction_C_;
   double first_, last_;
@@ -224,93 +231,143 @@ double sphere_coverage(const Sphere& sphere, const Eigen::Vector3d& c, const flo
   return coverage;
 }
 
+/// Pictures of rows, one instant after the other.
+class RowPainter {
+ public:
+  RowPainter(const RayTable& rays, const PixelRect& rect)
+      : rays_(rays), rect_(rect), buffer_(static_cast<std::size_t>(rect.width) * 5) {}
+
+  /// Adds what the row y shows of the shapes, shifted along the track.
+  void add(const Shapes& shapes, double shift, double weight, int y, float* out_radiance, float* out_coverage) {
+    const int width = rect_.width;
+    double* const seen_radiance = buffer_.data();
+    double* const seen_coverage = seen_radiance + width;
+    double* const box_radiance = seen_coverage + width;
+    double* const box_coverage = box_radiance + width;
+    double* const coverage = box_coverage + width;
+    const auto rays_from = [&](int x) {
+      const std::size_t at = static_cast<std::size_t>(y) * rays_.width + x;
+      return RowRays{rays_.x_y_dxdu_dxdv.data() + 4 * at, rays_.dydu_dydv.data() + 2 * at};
+    };
+    const auto row_of = [&](const PixelRect& rect) { return y >= rect.y && y < rect.y + rect.height; };
+    std::fill_n(seen_radiance, 2 * width, 0.0);
+    // One box after the other: its seen faces, which share its picture, then patches in their places, then the whole
+    // over what was there.
+    for (std::size_t k = 0; k < shapes.polygons().size();) {
+      std::fill_n(box_radiance, 2 * width, 0.0);
+      do {
+        const Polygon& polygon = shapes.polygons()[k];
+        if (!row_of(polygon.rect)) continue;
+        const int left = polygon.rect.x - rect_.x;
+        polygon_row(polygon, shift, rays_from(polygon.rect.x), polygon.rect.width, coverage);
+        for (int i = 0; i < polygon.rect.width; ++i) {
+          double& box_part = box_coverage[left + i];
+          double& light = box_radiance[left + i];
+          if (polygon.part != Part::patch) {
+            light += coverage[i] * polygon.radiance;
+            box_part += coverage[i];
+          } else if (box_part > 0.0) {
+            const double patched = std::min(coverage[i], box_part);
+            light += patched * (polygon.radiance - light / box_part);
+          }
+        }
+      } while (++k < shapes.polygons().size() && shapes.polygons()[k].part != Part::first_face);
+      for (int i = 0; i < width; ++i) {
+        seen_radiance[i] += box_radiance[i] - box_coverage[i] * seen_radiance[i];
+        seen_coverage[i] += box_coverage[i] * (1.0 - seen_coverage[i]);
+      }
+    }
+    if (const auto& sphere = shapes.sphere(); sphere && row_of(sphere->rect)) {
+      const Eigen::Vector3d c = sphere->center_C + shift * shapes.direction_C();
+      const RowRays row = rays_from(sphere->rect.x);
+      for (int i = 0; i < sphere->rect.width; ++i) {
+        const double covered = sphere_coverage(*sphere, c, row.x_y_dxdu_dxdv + 4 * i, row.dydu_dydv + 2 * i);
+        const int at = sphere->rect.x - rect_.x + i;
+        seen_radiance[at] += covered * (sphere->radiance - seen_radiance[at]);
+        seen_coverage[at] += covered * (1.0 - seen_coverage[at]);
+      }
+    }
+    for (int i = 0; i < width; ++i) {
+      out_radiance[i] += static_cast<float>(weight * seen_radiance[i]);
+      out_coverage[i] += static_cast<float>(weight * seen_coverage[i]);
+    }
+  }
+
+ private:
+  const RayTable& rays_;
+  PixelRect rect_;
+  std::vector<double> buffer_;
+};
+
+void include(PixelRect& whole, const PixelRect& rect) {
+  if (rect.empty()) return;
+  if (whole.empty()) {
+    whole = rect;
+    return;
+  }
+  const int left = std::min(whole.x, rect.x);
+  const int top = std::min(whole.y, rect.y);
+  whole = {left, top, std::max(whole.x + whole.width, rect.x + rect.width) - left,
+           std::max(whole.y + whole.height, rect.y + rect.height) - top};
+}
+
+void include(PixelRect& whole, const Shapes& shapes) {
+  for (const Polygon& polygon : shapes.polygons()) include(whole, polygon.rect);
+  if (shapes.sphere()) include(whole, shapes.sphere()->rect);
+}
+
+MovingLayer empty_layer(const PixelRect& rect) {
+  const std::size_t size = rect.empty() ? 0 : static_cast<std::size_t>(rect.width) * rect.height;
+  return {rect, std::vector<float>(size, 0.0f), std::vector<float>(size, 0.0f)};
+}
+
 }  // namespace
 
 MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, std::span<const double> x_m) {
+  return paint(camera, rays, body, x_m, {0, 0, camera.width_px, camera.height_px});
+}
+
+MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, std::span<const double> x_m,
+                  const PixelRect& within) {
   if (x_m.empty()) throw std::logic_error("no instant to paint");
   const double first = *std::min_element(x_m.begin(), x_m.end());
   const double last = *std::max_element(x_m.begin(), x_m.end());
   const double middle = 0.5 * (first + last);
-  const Shapes shapes(camera, body, middle, first - middle, last - middle);
-
-  MovingLayer layer;
-  const auto include = [&](const PixelRect& rect) {
-    if (rect.empty()) return;
-    if (layer.rect.empty()) {
-      layer.rect = rect;
-      return;
-    }
-    const int left = std::min(layer.rect.x, rect.x);
-    const int top = std::min(layer.rect.y, rect.y);
-    layer.rect = {left, top, std::max(layer.rect.x + layer.rect.width, rect.x + rect.width) - left,
-                  std::max(layer.rect.y + layer.rect.height, rect.y + rect.height) - top};
-  };
-  for (const Polygon& polygon : shapes.polygons()) include(polygon.rect);
-  if (shapes.sphere()) include(shapes.sphere()->rect);
-  if (layer.rect.empty()) return layer;
-
-  const int width = layer.rect.width;
-  const auto size = static_cast<std::size_t>(width) * layer.rect.height;
-  layer.radiance.assign(size, 0.0f);
-  layer.coverage.assign(size, 0.0f);
-  std::vector<double> buffer(static_cast<std::size_t>(width) * 5);
-  double* const seen_radiance = buffer.data();
-  double* const seen_coverage = seen_radiance + width;
-  double* const box_radiance = seen_coverage + width;
-  double* const box_coverage = box_radiance + width;
-  double* const coverage = box_coverage + width;
+  const Shapes shapes({camera, rays.fold_radius, within}, camera.X_WC.inverse(), body, middle, first - middle,
+                      last - middle);
+  PixelRect rect;
+  include(rect, shapes);
+  MovingLayer layer = empty_layer(rect);
+  if (rect.empty()) return layer;
+  RowPainter painter(rays, rect);
   const double share = 1.0 / static_cast<double>(x_m.size());
-  for (int y = layer.rect.y; y < layer.rect.y + layer.rect.height; ++y) {
-    const auto rays_from = [&](int x) {
-      const std::size_t at = static_cast<std::size_t>(y) * rays.width + x;
-      return RowRays{rays.x_y_dxdu_dxdv.data() + 4 * at, rays.dydu_dydv.data() + 2 * at};
-    };
-    const auto row_of = [&](const PixelRect& rect) { return y >= rect.y && y < rect.y + rect.height; };
-    float* const out_radiance = layer.radiance.data() + static_cast<std::size_t>(y - layer.rect.y) * width;
-    float* const out_coverage = layer.coverage.data() + static_cast<std::size_t>(y - layer.rect.y) * width;
+  for (int y = 0; y < rect.height; ++y) {
+    const std::size_t at = static_cast<std::size_t>(y) * rect.width;
     for (const double x : x_m) {
-      const double shift = x - middle;
-      std::fill_n(seen_radiance, 2 * width, 0.0);
-      // One box after the other: its seen faces, which share its picture, then patches in their places, then the whole
-      // over what was there.
-      for (std::size_t k = 0; k < shapes.polygons().size();) {
-        std::fill_n(box_radiance, 2 * width, 0.0);
-        do {
-          const Polygon& polygon = shapes.polygons()[k];
-          if (!row_of(polygon.rect)) continue;
-          const int left = polygon.rect.x - layer.rect.x;
-          polygon_row(polygon, shift, rays_from(polygon.rect.x), polygon.rect.width, coverage);
-          for (int i = 0; i < polygon.rect.width; ++i) {
-            double& box_part = box_coverage[left + i];
-            double& light = box_radiance[left + i];
-            if (polygon.part != Part::patch) {
-              light += coverage[i] * polygon.radiance;
-              box_part += coverage[i];
-            } else if (box_part > 0.0) {
-              const double patched = std::min(coverage[i], box_part);
-              light += patched * (polygon.radiance - light / box_part);
-            }
-          }
-        } while (++k < shapes.polygons().size() && shapes.polygons()[k].part != Part::first_face);
-        for (int i = 0; i < width; ++i) {
-          seen_radiance[i] += box_radiance[i] - box_coverage[i] * seen_radiance[i];
-          seen_coverage[i] += box_coverage[i] * (1.0 - seen_coverage[i]);
-        }
-      }
-      if (const auto& sphere = shapes.sphere(); sphere && row_of(sphere->rect)) {
-        const Eigen::Vector3d c = sphere->center_C + shift * shapes.direction_C();
-        const RowRays row = rays_from(sphere->rect.x);
-        for (int i = 0; i < sphere->rect.width; ++i) {
-          const double covered = sphere_coverage(*sphere, c, row.x_y_dxdu_dxdv + 4 * i, row.dydu_dydv + 2 * i);
-          const int at = sphere->rect.x - layer.rect.x + i;
-          seen_radiance[at] += covered * (sphere->radiance - seen_radiance[at]);
-          seen_coverage[at] += covered * (1.0 - seen_coverage[at]);
-        }
-      }
-      for (int i = 0; i < width; ++i) {
-        out_radiance[i] += static_cast<float>(share * seen_radiance[i]);
-        out_coverage[i] += static_cast<float>(share * seen_coverage[i]);
-      }
+      painter.add(shapes, x - middle, share, rect.y + y, layer.radiance.data() + at, layer.coverage.data() + at);
+    }
+  }
+  return layer;
+}
+
+MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, const Looks& looks,
+                  const PixelRect& within) {
+  const double middle = 0.5 * (looks.first_x_m + looks.last_x_m);
+  std::vector<Shapes> shapes;
+  PixelRect rect;
+  for (const Eigen::Affine3d& X_CW : looks.views) {
+    shapes.emplace_back(Target{camera, rays.fold_radius, within}, X_CW, body, middle, looks.first_x_m - middle,
+                        looks.last_x_m - middle);
+    include(rect, shapes.back());
+  }
+  MovingLayer layer = empty_layer(rect);
+  if (rect.empty()) return layer;
+  RowPainter painter(rays, rect);
+  for (int y = 0; y < rect.height; ++y) {
+    const std::size_t at = static_cast<std::size_t>(y) * rect.width;
+    for (const Instant& instant : looks.of_row(rect.y + y)) {
+      painter.add(shapes[instant.view], instant.x_m - middle, instant.weight, rect.y + y, layer.radiance.data() + at,
+                  layer.coverage.data() + at);
     }
   }
   return layer;

@@ -15,6 +15,7 @@ RayTable make_ray_table(const Camera& camera) {
   table.dydu_dydv.reserve(pixels * 2);
   const Eigen::Matrix2d per_pixel = camera.focal_px.cwiseInverse().asDiagonal();
   const double largest_radius = fold_radius(camera.lens);
+  table.fold_radius = largest_radius;
   for (int v = 0; v < camera.height_px; ++v) {
     for (int u = 0; u < camera.width_px; ++u) {
       const std::optional<Eigen::Vector2d> ray = undistort(

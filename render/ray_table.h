@@ -17,6 +17,7 @@ struct RayTable {
   int height = 0;
   std::vector<float> x_y_dxdu_dxdv;  ///< four floats a pixel
   std::vector<float> dydu_dydv;      ///< two floats a pixel
+  double fold_radius = 0.0;          ///< of the lens
 };
 
 /// NumericalError where a pixel has no ray (a camera that `why_not_one_to_one` would refuse).

@@ -72,10 +72,34 @@ void read_camera(const TomlTable& root, Scenario& scenario) {
   camera.X_WC = look_at(pose.position, pose.target, pose.roll_rad);
 }
 
+void read_shutter(const TomlTable& root, const Camera& camera, Recording& recording) {
+  Shutter& shutter = recording.shutter;
+  shutter.rows = camera.height_px;
+  const std::optional<TomlTable> table = root.maybe_table("shutter");
+  if (!table) return;
+  shutter.rolling = table->word("kind", {"global", "rolling"}) == "rolling";
+  shutter.bottom_first = table->word("first_row", {"top", "bottom"}, "top") == "bottom";
+  if (!shutter.rolling) {
+    for (const char* key : {"line_readout_s", "first_row"}) {
+      if (table->has(key)) table->reject(key, "one with a global shutter", "kind = \"rolling\"");
+    }
+    return;
+  }
+  shutter.line_readout_s = table->number("line_readout_s", base::above(0.0));
+  const double frame_s = 1.0 / recording.frame_rate_hz;
+  if (shutter.line_readout_s * camera.height_px > frame_s * (1.0 + 1e-9)) {
+    table->reject("line_readout_s",
+                  fmt::format("{} s, with {} rows {:.6g} s", shutter.line_readout_s, camera.height_px,
+                              shutter.line_readout_s * camera.height_px),
+                  fmt::format("rows that are read within the frame time, {:.6g} s", frame_s));
+  }
+}
+
 }  // namespace
 
 void read_optics(const TomlTable& root, Scenario& scenario) {
   read_camera(root, scenario);
+  read_shutter(root, scenario.camera, scenario.recording);
 }
 
 }  // namespace glidelab::render

@@ -1,4 +1,4 @@
-/// Reads what a scenario says of the camera's optics and timing: [camera].
+/// Reads what a scenario says of the camera's optics and timing: [camera], [shutter].
 #pragma once
 
 #include "base/strict_toml.h"

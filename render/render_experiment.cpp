@@ -10,6 +10,7 @@
 #include "base/staged_output.h"
 #include "render/clip_renderer.h"
 #include "render/folders.h"
+#include "render/marker_truth.h"
 #include "render/parallel.h"
 #include "render/static_painter.h"
 #include "render/video_writer.h"
@@ -85,19 +86,26 @@ Sensor with_8_bits(const Sensor& sensor) {
 
 template <typename Code>
 void render_frames(const Scenario& scenario, const Clip& clip, ClipRenderer& renderer, VideoWriter& writer,
-                   base::CsvWriter& truth, const std::function<void()>& frame_done) {
+                   base::CsvWriter& truth, base::CsvWriter& marker_truth, const std::function<void()>& frame_done) {
   const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
   std::vector<Code> codes(static_cast<std::size_t>(all.width) * all.height);
-  for_each_frame(clip.configuration->body, *clip.motion, scenario.recording, renderer.longest_step_m(),
-                 [&](const FrameMotion& frame) {
-                   renderer.read(frame, all, std::span<Code>(codes));
-                   writer.write(std::span<const Code>(codes));
-                   const sim::State& state = frame.middle;
-                   truth.number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
-                   truth.text(sim::name_of(state.mode));
-                   truth.end_row();
-                   frame_done();
-                 });
+  const auto visit = [&](const FrameMotion& frame) {
+    renderer.read(frame, all, std::span<Code>(codes));
+    writer.write(std::span<const Code>(codes));
+    const sim::State& state = frame.middle;
+    truth.number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
+    truth.text(sim::name_of(state.mode));
+    truth.end_row();
+    if (const auto marker = marker_in_picture(scenario, clip.configuration->body, frame)) {
+      marker_truth.number(static_cast<double>(frame.frame)).number(marker->t_s);
+      marker_truth.number(marker->center_px.x()).number(marker->center_px.y());
+      marker_truth.number(marker->centroid_px.x()).number(marker->centroid_px.y());
+      marker_truth.end_row();
+    }
+    frame_done();
+  };
+  for_each_frame(clip.configuration->body, *clip.motion, scenario.recording, renderer.longest_step_m(), visit,
+                 renderer.detail());
 }
 
 }  // namespace
@@ -164,14 +172,16 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
       const auto writer =
           open_video(experiment_dir / "clips" / file_name_of(scenario.codec, clip.motion->name), format);
       base::CsvWriter truth("t_s,x_m,v_m_s,a_m_s2,mode");
+      base::CsvWriter marker_truth("frame,t_s,u_px,v_px,centroid_u_px,centroid_v_px");
       const auto frame_done = [&] { advance(1.0); };
       if (scenario.sensor.bit_depth > 8) {
-        render_frames<std::uint16_t>(scenario, clip, renderer, *writer, truth, frame_done);
+        render_frames<std::uint16_t>(scenario, clip, renderer, *writer, truth, marker_truth, frame_done);
       } else {
-        render_frames<std::uint8_t>(scenario, clip, renderer, *writer, truth, frame_done);
+        render_frames<std::uint8_t>(scenario, clip, renderer, *writer, truth, marker_truth, frame_done);
       }
       writer->finish();
       base::write_file(truth_dir / fmt::format("trajectory-{}.csv", clip.motion->name), truth.str());
+      base::write_file(truth_dir / fmt::format("marker-{}.csv", clip.motion->name), marker_truth.str());
     }
   });
 

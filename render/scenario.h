@@ -10,15 +10,17 @@
 
 #include "render/camera.h"
 #include "render/sensor.h"
+#include "render/shutter.h"
 #include "render/video_writer.h"
 #include "sim/scenario.h"
 
 namespace glidelab::render {
 
-/// How the pictures are taken: an exposure every 1/rate, all rows at the same time.
+/// How the pictures are taken: every row is exposed once every 1/rate.
 struct Recording {
   double frame_rate_hz = 200.0;
   double exposure_s = 0.001;
+  Shutter shutter = {};
 };
 
 /// How bright things are in the picture.

@@ -74,7 +74,10 @@ RestitutionComparison compare_positions(const core::AnalysisResults& results, co
     const TrueClip& expected = truth_of(clip, truth);
     for (std::size_t frame = 0; frame < clip.motion.size(); ++frame) {
       const core::MotionPoint& point = clip.motion[frame];
-      const double x_m = expected.x_m[frame] - expected.x_origin_m;
+      // With a rolling shutter a marker off the middle row is seen a little before or after the frame's time.
+      const double late_s = point.t_s - expected.t_s[frame];
+      const double x_m = expected.x_m[frame] +
+                         late_s * (expected.v_m_s[frame] + 0.5 * late_s * expected.a_m_s2[frame]) - expected.x_origin_m;
       low = std::min(low, x_m);
       high = std::max(high, x_m);
       if (!point.measured_m) continue;

@@ -76,7 +76,9 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   const Folder folder;
   const core::Experiment experiment = folder.read(
       kHead + "gravity_m_s2 = 9.81\n" + kCamera +
-      "shutter = \"rolling\"\nline_readout_s = 1e-5\nbit_depth = 12\ntime = \"container\"\n" + kCalibration +
+      "shutter = \"rolling\"\nline_readout_s = 1e-5\nfirst_row = \"bottom\"\nbit_depth = 12\ntime = "
+      "\"container\"\n" +
+      kCalibration +
       "[plumb]\nview = \"plumb.png\"\nregion = [40, 0, 120, 500]\n" + kMarker +
       "height_m = 0.03\ncolor = \"#10f0A0\"\nstart_px = [400, 120.5]\n" + kTrack + "length_m = 2.0\n" + kClip +
       "incline_sd_deg = 0.3\nmass_sd_kg = 0.0005\nstart_s = 0.1\nend_s = 1.8\ngroup = \"flat\"\n" +
@@ -89,6 +91,7 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   CHECK(experiment.camera->frame_rate_hz == 200.0);
   CHECK(experiment.camera->shutter == core::Shutter::rolling);
   CHECK(experiment.camera->line_readout_s == 1e-5);
+  CHECK(experiment.camera->bottom_row_first);
   CHECK(experiment.camera->bit_depth == 12);
   CHECK(experiment.camera->time == core::TimeSource::container);
   REQUIRE(experiment.calibration);
@@ -208,6 +211,7 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"exposure_s = 0.001", "exposure_s = 0.006", "5: camera.exposure_s: found 0.006, expected at most"},
       {"exposure_s = 0.001", "shutter = \"roling\"", "5: camera.shutter"},
       {"exposure_s = 0.001", "shutter = \"rolling\"", "3: camera.line_readout_s: found nothing"},
+      {"exposure_s = 0.001", "first_row = \"bottom\"", "5: camera.first_row: found \"bottom\" with a global shutter"},
       {"exposure_s = 0.001", "line_readout_s = 1e-5", "5: camera.line_readout_s: found 1e-05 with a global shutter"},
       {"exposure_s = 0.001", "bit_depth = 17", "5: camera.bit_depth: found 17, expected a whole number from 8 to 16"},
       {"exposure_s = 0.001", "time = \"file\"", "5: camera.time"},

@@ -142,7 +142,9 @@ TEST_CASE("An experiment folder holds what the contract says, and the analysis r
                                        "e/clips/m2-down.mkv", "e/calibration/view-00.png", "e/calibration/view-01.png",
                                        "e/calibration/view-02.png", "e/calibration/plane.png", "e/plumb.png",
                                        "e.truth/truth.json", "e.truth/trajectory-m1-up.csv",
-                                       "e.truth/trajectory-m1-down.csv", "e.truth/trajectory-m2-down.csv"});
+                                       "e.truth/trajectory-m1-down.csv", "e.truth/trajectory-m2-down.csv",
+                                       "e.truth/marker-m1-up.csv", "e.truth/marker-m1-down.csv",
+                                       "e.truth/marker-m2-down.csv"});
   const core::Experiment experiment = core::read_experiment(made.experiment());
   CHECK(experiment.name == "small \"one\"");
   REQUIRE(experiment.clips.size() == 3);

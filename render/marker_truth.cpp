@@ -1,0 +1,50 @@
+#include "render/marker_truth.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/errors.h"
+#include "render/scene.h"
+#include "render/sphere_image.h"
+
+namespace glidelab::render {
+
+std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const sim::Body& body,
+                                                 const FrameMotion& frame) {
+  const Camera& camera = scenario.camera;
+  const Recording& recording = scenario.recording;
+  const auto center_C = [&](double x_m) -> Eigen::Vector3d {
+    return camera.X_WC.inverse() * marker_position_W(scenario, body.incline_rad, x_m);
+  };
+  MarkerInPicture marker;
+  marker.x_m = frame.middle.x_m;
+  marker.t_s = frame.middle.t_s;
+  const double middle_row = 0.5 * (camera.height_px - 1);
+  if (recording.shutter.rolling) {
+    // The row's time and the centre's row depend on one another: t = mid-exposure of the row v(t), a contraction where
+    // the marker moves by less than a row in a line time.
+    double row = middle_row;
+    for (int i = 0;; ++i) {
+      marker.x_m = frame.path.x_m(mid_exposure_s(recording, frame, row));
+      const auto pixel = pixel_of(camera, center_C(marker.x_m).hnormalized());
+      if (!pixel) return std::nullopt;
+      const double change = pixel->y() - row;
+      row = pixel->y();
+      if (std::abs(change) < 1e-9) break;
+      if (i == 200) {
+        throw base::NumericalError(fmt::format("frame {}: the marker moves as fast as the rows are read", frame.frame));
+      }
+    }
+    marker.t_s += recording.shutter.delay_s(row) - recording.shutter.delay_s(middle_row);
+  }
+  const Eigen::Vector3d c = center_C(marker.x_m);
+  const auto pixel = c.z() > 0.0 ? pixel_of(camera, c.hnormalized()) : std::nullopt;
+  const auto outline = image_of_sphere(c, 0.5 * scenario.marker.diameter_m);
+  if (!pixel || !outline || !in_picture(camera, *pixel)) return std::nullopt;
+  marker.center_px = *pixel;
+  marker.centroid_px = picture_of(camera, *outline).centroid_px;
+  return marker;
+}
+
+}  // namespace glidelab::render
