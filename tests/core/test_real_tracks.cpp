@@ -1,32 +1,14 @@
-// Measured tracks that no one here made (../shared/real beside the checkout); without them these tests pass with a
-// warning.
-#include <filesystem>
+// Measured tracks that no one here made.
+#include <cmath>
 #include <map>
-#include <optional>
 
 #include "catch.h"
-#include "core/analyze.h"
-#include "temp_dir.h"
+#include "real_data.h"
 
 using namespace glidelab;
-namespace fs = std::filesystem;
+using tests::analyze_real;
 
 namespace {
-
-/// The folder that an experimenter would have: the experiment.toml of tests/real/NAME with the data beside it. Empty
-/// where the data are not there.
-std::optional<core::AnalysisResults> analyze_real(const std::string& name) {
-  const fs::path data = fs::path(GLIDELAB_SOURCE_DIR) / "../shared/real" / name;
-  if (!fs::exists(data)) {
-    WARN("skipped: no measured data in " << data.lexically_normal());
-    return {};
-  }
-  const tests::TempDir temp;
-  for (const auto& file : fs::directory_iterator(data))
-    fs::create_symlink(fs::canonical(file), temp / file.path().filename());
-  fs::copy_file(fs::path(GLIDELAB_SOURCE_DIR) / "tests/real" / name / "experiment.toml", temp / "experiment.toml");
-  return core::analyze({temp.path()}, {std::nullopt, 2});
-}
 
 double newtons(const core::Quantity& mu, double mass_kg) {
   return mu.estimate->value * mass_kg * 9.80665;

@@ -1,0 +1,31 @@
+/// Measured recordings that no one here made (../shared/real beside the checkout), analysed with the experiment.toml of
+/// tests/real. Where the data are not there, tests of them pass with a warning.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "catch.h"
+#include "core/analyze.h"
+#include "temp_dir.h"
+
+namespace glidelab::tests {
+
+/// Results of the folder that an experimenter would have; nothing where the data are not there.
+inline std::optional<core::AnalysisResults> analyze_real(const std::string& name) {
+  namespace fs = std::filesystem;
+  const fs::path data = fs::path(GLIDELAB_SOURCE_DIR) / "../shared/real" / name;
+  if (!fs::exists(data)) {
+    WARN("skipped: no measured data in " << data.lexically_normal());
+    return {};
+  }
+  const TempDir temp;
+  for (const auto& file : fs::directory_iterator(data)) {
+    fs::create_symlink(fs::canonical(file), temp / file.path().filename());
+  }
+  fs::copy_file(fs::path(GLIDELAB_SOURCE_DIR) / "tests/real" / name / "experiment.toml", temp / "experiment.toml");
+  return core::analyze({temp.path()}, {std::nullopt, 2});
+}
+
+}  // namespace glidelab::tests

@@ -1,0 +1,73 @@
+#include "validate/run_validation.h"
+
+#include <cmath>
+
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "catch.h"
+#include "core/analyze.h"
+#include "render/scenario.h"
+#include "report/results_json.h"
+#include "small_scenario.h"
+#include "temp_dir.h"
+#include "validate/truth.h"
+
+using namespace glidelab;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Loop {
+  Loop() {
+    base::write_file(temp / "scenario.toml", tests::kSmallScenario);
+    fs::create_directory(experiment());
+    fs::create_directory(truth());
+  }
+  fs::path experiment() const { return temp / "experiment"; }
+  fs::path truth() const { return temp / "experiment.truth"; }
+  render::Scenario scenario() const { return render::read_scenario(temp / "scenario.toml"); }
+  tests::TempDir temp;
+};
+
+}  // namespace
+
+TEST_CASE("an analysis gives the same results.json with the truth folder deleted, and for any number of jobs") {
+  const Loop loop;
+  render::render_experiment(loop.scenario(), loop.experiment(), loop.truth(), {.seed = 5, .jobs = 2});
+  REQUIRE(fs::exists(loop.truth() / "truth.json"));
+  const std::string beside = report::results_json(core::analyze({loop.experiment()}, {.bandwidth_s = {}, .jobs = 2}));
+  fs::remove_all(loop.truth());
+  const std::string alone = report::results_json(core::analyze({loop.experiment()}, {.bandwidth_s = {}, .jobs = 1}));
+  CHECK(beside == alone);
+  CHECK(beside.find("\"k_over_m_1_s\": {") != std::string::npos);  // it did find something
+}
+
+TEST_CASE("the closed loop of a small scenario recovers its truth within the stated errors") {
+  const Loop loop;
+  const validate::ValidationResult result =
+      validate::run_validation(loop.scenario(), loop.experiment(), loop.truth(), {{5, 2}, {{}, 2}});
+  const validate::Comparison& comparison = result.comparison;
+  CHECK(comparison.frames == 290);
+  CHECK(comparison.detected == 290);
+  REQUIRE(comparison.quantities.size() == 4);
+  for (const validate::QuantityComparison& quantity : comparison.quantities) {
+    INFO(quantity.quantity << ": " << quantity.why);
+    REQUIRE(quantity.error);
+    // Fixed seed; four standard deviations of a normal error are exceeded once in 16,000 draws.
+    CHECK(std::abs(*quantity.error) < 4.0 * *quantity.sd);
+  }
+  // The paper's figure for the restitution, 0.1 % of the field (section 2.2).
+  CHECK(comparison.restitution.max_m < 1e-3 * comparison.restitution.field_m);
+}
+
+TEST_CASE("the truth of one experiment does not compare with the results of another") {
+  const Loop loop;
+  render::render_experiment(loop.scenario(), loop.experiment(), loop.truth(), {.seed = 5, .jobs = 2});
+  validate::Truth truth = validate::read_truth(loop.truth());
+  CHECK(truth.clips.size() == 2);
+  truth.clips[0].name = "another";
+  core::AnalysisResults results;
+  results.clips.resize(1);
+  results.clips[0].name = "up";
+  CHECK_THROWS_AS(validate::compare(results, truth), base::InputError);
+}
