@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "base/staged_output.h"
+#include "test_paths.h"
 
 namespace glidelab::tests {
 namespace fs = std::filesystem;
@@ -71,7 +72,7 @@ ProcessResult run(std::vector<std::string> arguments, const fs::path& working_di
 }
 
 ProcessResult glidelab(std::vector<std::string> arguments, const fs::path& working_dir) {
-  arguments.insert(arguments.begin(), GLIDELAB_BINARY);
+  arguments.insert(arguments.begin(), tests::kBinary);
   return run(std::move(arguments), working_dir);
 }
 

@@ -8,6 +8,7 @@
 #include "made_track.h"
 #include "run_process.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 
 using namespace glidelab;
 using nlohmann::json;
@@ -120,7 +121,7 @@ TEST_CASE("a disk that fills up is status 3, and nothing is left under the final
   tests::write_track_experiment(temp / "made");
   // Files of at most 8 blocks of 512 bytes: smaller than any of the results.
   const tests::ProcessResult result =
-      tests::run({"sh", "-c", "ulimit -f 8 && exec \"$0\" analyze made --out out", GLIDELAB_BINARY}, temp.path());
+      tests::run({"sh", "-c", "ulimit -f 8 && exec \"$0\" analyze made --out out", tests::kBinary}, temp.path());
   INFO(result.err);
   CHECK(result.status == 3);
   CHECK(entries(temp.path()) == 1);
@@ -130,7 +131,7 @@ TEST_CASE("a standard output that cannot be written is status 3") {
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");
   const tests::ProcessResult result =
-      tests::run({"sh", "-c", "exec \"$0\" analyze made --json --out out > /dev/full", GLIDELAB_BINARY}, temp.path());
+      tests::run({"sh", "-c", "exec \"$0\" analyze made --json --out out > /dev/full", tests::kBinary}, temp.path());
   CHECK(result.status == 3);
 }
 
@@ -139,7 +140,7 @@ TEST_CASE("a missing gnuplot is status 3, found before the work") {
   tests::write_track_experiment(temp / "made");
   fs::create_directories(temp / "empty");
   const tests::ProcessResult result = tests::run(
-      {"env", "PATH=" + (temp / "empty").string(), GLIDELAB_BINARY, "analyze", "made", "--out", "out"}, temp.path());
+      {"env", "PATH=" + (temp / "empty").string(), tests::kBinary, "analyze", "made", "--out", "out"}, temp.path());
   CHECK(result.status == 3);
   CHECK(result.err.find("gnuplot") != std::string::npos);
   CHECK_FALSE(fs::exists(temp / "out"));

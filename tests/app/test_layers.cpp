@@ -12,6 +12,7 @@
 #include "catch.h"
 #include "run_process.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 
 using namespace glidelab;
 namespace fs = std::filesystem;
@@ -45,7 +46,7 @@ const std::map<std::string, std::vector<std::string>> kBehindOneFile = {
 };
 
 std::vector<Source> sources_of_rooms() {
-  const fs::path root = GLIDELAB_SOURCE_DIR;
+  const fs::path root = tests::kSourceDir;
   std::vector<Source> sources;
   for (const auto& [room, allowed] : kAllowed) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / room)) {
@@ -134,7 +135,7 @@ TEST_CASE("a C library that is included from two files is found, from a header a
 
 TEST_CASE("core builds alone in an empty tree, with base and cmake and no other room", "[slow]") {
   const tests::TempDir temp;
-  const fs::path root = GLIDELAB_SOURCE_DIR;
+  const fs::path root = tests::kSourceDir;
   for (const char* folder : {"core", "base", "cmake"}) {
     fs::copy(root / folder, temp / folder, fs::copy_options::recursive);
   }

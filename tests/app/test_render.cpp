@@ -8,6 +8,7 @@
 #include "core/experiment.h"
 #include "run_process.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 #include "tiny_scenario.h"
 
 using namespace glidelab;
@@ -112,7 +113,7 @@ TEST_CASE("a disk that fills up while rendering is status 3, with nothing left b
   tests::write_tiny_scenario(temp / "tiny.toml");
   // The clip takes some 300 kB; files end at 200 blocks of 512 bytes.
   const tests::ProcessResult result =
-      tests::run({"sh", "-c", "ulimit -f 200 && exec \"$0\" render tiny.toml --out out", GLIDELAB_BINARY}, temp.path());
+      tests::run({"sh", "-c", "ulimit -f 200 && exec \"$0\" render tiny.toml --out out", tests::kBinary}, temp.path());
   INFO(result.err);
   CHECK(result.status == 3);
   CHECK(entries(temp.path()) == 1);
@@ -130,7 +131,7 @@ TEST_CASE("an interrupt ends rendering with status 130 and leaves nothing behind
   const int signal = GENERATE(SIGINT, SIGTERM);
   const tests::TempDir temp;
   tests::write_tiny_scenario(temp / "tiny.toml", 60.0);  // 6000 frames: far longer than this test waits
-  tests::Process process({GLIDELAB_BINARY, "render", "tiny.toml", "--out", "out"}, temp.path());
+  tests::Process process({tests::kBinary, "render", "tiny.toml", "--out", "out"}, temp.path());
   // A staging folder beside the scenario says that the work has begun.
   for (int tries = 0; tries < 500 && entries(temp.path()) == 1; ++tries) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

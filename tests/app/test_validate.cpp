@@ -8,6 +8,7 @@
 #include "run_process.h"
 #include "small_scenario.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 
 using namespace glidelab;
 using nlohmann::json;
@@ -81,7 +82,7 @@ TEST_CASE("validate refuses to replace an experiment folder that is somebody's o
 TEST_CASE("an interrupt ends validation with status 130 and leaves nothing behind") {
   const tests::TempDir temp;
   base::write_file(temp / "small.toml", tests::kSmallScenario);
-  tests::Process process({GLIDELAB_BINARY, "validate", "small.toml", "--out", "out"}, temp.path());
+  tests::Process process({tests::kBinary, "validate", "small.toml", "--out", "out"}, temp.path());
   for (int tries = 0; tries < 500 && entries(temp.path()) == 1; ++tries) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }

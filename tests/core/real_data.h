@@ -9,13 +9,14 @@
 #include "catch.h"
 #include "core/analyze.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 
 namespace glidelab::tests {
 
 /// Results of the folder that an experimenter would have; nothing where the data are not there.
 inline std::optional<core::AnalysisResults> analyze_real(const std::string& name) {
   namespace fs = std::filesystem;
-  const fs::path data = fs::path(GLIDELAB_SOURCE_DIR) / "../shared/real" / name;
+  const fs::path data = fs::path(tests::kSourceDir) / "../shared/real" / name;
   if (!fs::exists(data)) {
     WARN("skipped: no measured data in " << data.lexically_normal());
     return {};
@@ -24,7 +25,7 @@ inline std::optional<core::AnalysisResults> analyze_real(const std::string& name
   for (const auto& file : fs::directory_iterator(data)) {
     fs::create_symlink(fs::canonical(file), temp / file.path().filename());
   }
-  fs::copy_file(fs::path(GLIDELAB_SOURCE_DIR) / "tests/real" / name / "experiment.toml", temp / "experiment.toml");
+  fs::copy_file(fs::path(tests::kSourceDir) / "tests/real" / name / "experiment.toml", temp / "experiment.toml");
   return core::analyze({temp.path()}, {std::nullopt, 2});
 }
 

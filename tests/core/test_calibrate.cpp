@@ -10,6 +10,7 @@
 #include "known_camera.h"
 #include "painter.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 
 using namespace glidelab;
 using tests::KnownCamera;
@@ -135,7 +136,7 @@ TEST_CASE("files that are no pictures, or of another size, are errors that name 
 }
 
 TEST_CASE("an action camera's real chessboard views calibrate to half a pixel") {
-  const std::filesystem::path folder = std::filesystem::path(GLIDELAB_SOURCE_DIR) / "../shared/real/chessboard-barrel";
+  const std::filesystem::path folder = std::filesystem::path(tests::kSourceDir) / "../shared/real/chessboard-barrel";
   if (!std::filesystem::exists(folder)) {
     WARN("skipped: " << folder << " is not there");
     return;

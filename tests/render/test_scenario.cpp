@@ -10,6 +10,7 @@
 #include "base/staged_output.h"
 #include "catch.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 
 using namespace glidelab;
 using namespace glidelab::render;
@@ -52,7 +53,7 @@ std::string message(const std::string& sections, const std::string& motions = kM
 
 TEST_CASE("The paper's scenarios read, with the camera that is written there") {
   for (const char* name : {"level", "inclined"}) {
-    const Scenario scenario = read_scenario(fmt::format("{}/scenarios/paper/{}.toml", GLIDELAB_SOURCE_DIR, name));
+    const Scenario scenario = read_scenario(fmt::format("{}/scenarios/paper/{}.toml", tests::kSourceDir, name));
     CHECK(scenario.camera.width_px == 800);
     CHECK(scenario.camera.height_px == 600);
     CHECK(scenario.recording.frame_rate_hz == 200.0);

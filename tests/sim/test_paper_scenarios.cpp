@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "sim/scenario.h"
 #include "sim/simulate.h"
+#include "test_paths.h"
 
 using namespace glidelab;
 
@@ -15,7 +16,7 @@ namespace {
 // The motions only: the other sections ([camera], …) are render's, and unknown here.
 sim::MotionScenario read(const std::string& name) {
   const base::TomlFile file =
-      base::TomlFile::load(std::string(GLIDELAB_SOURCE_DIR) + "/scenarios/paper/" + name + ".toml");
+      base::TomlFile::load(std::string(tests::kSourceDir) + "/scenarios/paper/" + name + ".toml");
   sim::MotionScenario scenario = sim::read_motions(file.root());
   try {
     file.finish();
