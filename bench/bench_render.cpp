@@ -108,6 +108,26 @@ BENCHMARK(sensor_pixels)
     ->Arg(static_cast<int>(Simd::baseline))
     ->Unit(benchmark::kMillisecond);
 
+/// The same with what a real sensor adds: fixed patterns, then a tone curve, then a mosaic.
+void readout_pixels(benchmark::State& state) {
+  const Stage& made = stage();
+  Sensor sensor = made.scenario.sensor;
+  const char* labels[] = {"plain", "patterns", "patterns, tone", "patterns, tone, mosaic"};
+  if (state.range(0) > 0) sensor.pixels = {20.0, 0.01, 3.0, 1e-4, 1e4, 1e-4};
+  if (state.range(0) > 1) sensor.tone.kind = ToneCurve::Kind::bt709;
+  if (state.range(0) > 2) sensor.colour = Colour::bayer;
+  const Readout readout(sensor, made.scenario.recording.exposure_s, 1, made.all.width, made.all.height);
+  std::vector<std::uint8_t> codes(made.background_e.values.size());
+  std::uint32_t frame = 0;
+  for (auto _ : state) {
+    readout.read(made.background_e, 0, frame++, made.all, std::span<std::uint8_t>(codes));
+    benchmark::DoNotOptimize(codes.data());
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * codes.size()));
+  state.SetLabel(labels[state.range(0)]);
+}
+BENCHMARK(readout_pixels)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
+
 void still_picture(benchmark::State& state) {
   const Stage& made = stage();
   StaticPainter painter(made.scenario.camera, made.rays);

@@ -15,7 +15,9 @@ ClipRenderer::ClipRenderer(const Scenario& scenario, const sim::ConfigurationSet
       background_e_(background_e),
       expected_e_(background_e),
       white_e_(electrons_of_white(scenario)),
-      key_{seed, stream, 0} {
+      readout_(scenario.sensor, scenario.recording.exposure_s, seed, scenario.camera.width_px,
+               scenario.camera.height_px),
+      stream_(stream) {
   // At the reference point, which the camera looks at; half a pixel there.
   const double depth =
       (scenario.camera.X_WC.inverse() * marker_position_W(scenario, configuration.body.incline_rad, 0.0)).z();
@@ -62,12 +64,10 @@ MovingLayer ClipRenderer::layer_of(const FrameMotion& frame, const MovingBody& b
 }
 
 void ClipRenderer::read(const FrameMotion& frame, const PixelRect& rect, std::span<std::uint8_t> codes) {
-  key_.frame = static_cast<std::uint32_t>(frame.frame);
-  read_out(scenario_.sensor, expected(frame, rect), key_, rect, codes);
+  readout_.read(expected(frame, readout_.seen_by(rect)), stream_, static_cast<std::uint32_t>(frame.frame), rect, codes);
 }
 void ClipRenderer::read(const FrameMotion& frame, const PixelRect& rect, std::span<std::uint16_t> codes) {
-  key_.frame = static_cast<std::uint32_t>(frame.frame);
-  read_out(scenario_.sensor, expected(frame, rect), key_, rect, codes);
+  readout_.read(expected(frame, readout_.seen_by(rect)), stream_, static_cast<std::uint32_t>(frame.frame), rect, codes);
 }
 
 }  // namespace glidelab::render

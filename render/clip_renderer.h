@@ -8,6 +8,7 @@
 
 #include "render/clip_motion.h"
 #include "render/moving_painter.h"
+#include "render/readout.h"
 #include "render/scene.h"
 
 namespace glidelab::render {
@@ -44,7 +45,8 @@ class ClipRenderer {
   double white_e_ = 0.0;
   double longest_step_m_ = 0.0;
   std::vector<Instant> instants_;
-  NoiseKey key_;
+  Readout readout_;
+  std::uint32_t stream_ = 0;
 };
 
 }  // namespace glidelab::render

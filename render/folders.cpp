@@ -73,6 +73,15 @@ nlohmann::ordered_json camera_json(const Scenario& scenario) {
             {"read_noise_e", scenario.sensor.read_noise_e},
             {"gain_dn_per_e", scenario.sensor.gain_dn_per_e},
             {"offset_dn", scenario.sensor.offset_dn},
+            {"converter_bits", scenario.sensor.converter_bits.value_or(scenario.sensor.bit_depth)},
+            {"dark_signal_e_s", scenario.sensor.pixels.dark_signal_e_s},
+            {"prnu", scenario.sensor.pixels.prnu},
+            {"dsnu_e", scenario.sensor.pixels.dsnu_e},
+            {"hot_fraction", scenario.sensor.pixels.hot_fraction},
+            {"dead_fraction", scenario.sensor.pixels.dead_fraction},
+            {"tone", name_of(scenario.sensor.tone.kind)},
+            {"colour", scenario.sensor.colour == Colour::bayer ? "bayer" : "mono"},
+            {"quantum_efficiency", scenario.exposure.quantum_efficiency},
             {"white_e", electrons_of_white(scenario)}}}};
 }
 

@@ -12,6 +12,7 @@
 #include "render/folders.h"
 #include "render/marker_truth.h"
 #include "render/parallel.h"
+#include "render/readout.h"
 #include "render/static_painter.h"
 #include "render/video_writer.h"
 
@@ -77,8 +78,12 @@ FloatPicture scaled(FloatPicture picture, double factor) {
 /// Stills are kept with 8 bits, as a viewer program saves them.
 Sensor with_8_bits(const Sensor& sensor) {
   Sensor shallow = sensor;
-  const double share = 255.0 / sensor.largest_code();
   shallow.bit_depth = 8;
+  if (sensor.converter_bits || sensor.tone.kind != ToneCurve::Kind::linear || sensor.colour == Colour::bayer) {
+    shallow.converter_bits = sensor.converter_bits.value_or(sensor.bit_depth);
+    return shallow;
+  }
+  const double share = 255.0 / sensor.largest_code();
   shallow.gain_dn_per_e *= share;
   shallow.offset_dn *= share;
   return shallow;
@@ -144,6 +149,8 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
     progress("rendering", std::min(1.0, (before + work) / all_work));
   };
 
+  const Readout still_readout(with_8_bits(scenario.sensor), scenario.recording.exposure_s, options.seed,
+                              scenario.camera.width_px, scenario.camera.height_px);
   in_parallel(options.jobs, stills.size() + backgrounds.size(), [&](const auto& next) {
     StaticPainter painter(scenario.camera, rays);
     const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
@@ -154,8 +161,8 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
       } else {
         const std::size_t number = i - backgrounds.size();
         const FloatPicture expected_e = scaled(painter.paint(stills[number].scene), white_e);
-        const NoiseKey key{options.seed, kFirstStill + static_cast<std::uint32_t>(number), 0};
-        read_out(with_8_bits(scenario.sensor), expected_e, key, all, std::span<std::uint8_t>(codes));
+        still_readout.read(expected_e, kFirstStill + static_cast<std::uint32_t>(number), 0, all,
+                           std::span<std::uint8_t>(codes));
         write_png(experiment_dir / stills[number].name, cv::Mat(all.height, all.width, CV_8U, codes.data()));
       }
       advance(kStillWork);

@@ -9,6 +9,7 @@
 #include "base/strict_toml.h"
 #include "render/clip_motion.h"
 #include "render/read_optics.h"
+#include "render/read_sensor.h"
 #include "render/scene.h"
 
 namespace glidelab::render {
@@ -22,41 +23,6 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 template <typename Read>
 void section(const TomlTable& root, std::string_view key, const Read& read) {
   if (const std::optional<TomlTable> table = root.maybe_table(key)) read(*table);
-}
-
-void read_sensor(const TomlTable& root, Scenario& scenario) {
-  Sensor& sensor = scenario.sensor;
-  const auto read = [&](const TomlTable* table) {
-    const auto number = [&](std::string_view key, double otherwise, base::Range range) {
-      return table == nullptr ? otherwise : table->number_or(key, otherwise, range);
-    };
-    if (table != nullptr) sensor.bit_depth = static_cast<int>(table->integer_or("bit_depth", 8, 8, 16));
-    const double codes = sensor.largest_code();
-    sensor.full_well_e = number("full_well_e", sensor.full_well_e, {10.0, 1e7, false, false});
-    sensor.read_noise_e = number("read_noise_e", sensor.read_noise_e, base::between(0.0, 1e5));
-    sensor.offset_dn = number("offset_dn", std::round(codes / 128.0), base::between(0.0, 0.5 * codes));
-    sensor.gain_dn_per_e =
-        number("gain_dn_per_e", (codes - sensor.offset_dn) / sensor.full_well_e, {0.0, 1e5, true, false});
-    scenario.exposure.white_level = number("white_level", scenario.exposure.white_level, {0.01, 10.0, false, false});
-    if (table != nullptr && !(electrons_of_white(scenario) > 0.0)) {
-      table->reject("white_level", fmt::format("{}", scenario.exposure.white_level), "a white above the offset");
-    }
-  };
-  const std::optional<TomlTable> table = root.maybe_table("sensor");
-  read(table ? &*table : nullptr);
-}
-
-void read_codec(const TomlTable& root, Scenario& scenario) {
-  const bool deep = scenario.sensor.bit_depth > 8;
-  scenario.codec = deep ? Codec::png : Codec::ffv1;
-  section(root, "codec", [&](const TomlTable& table) {
-    const std::string name = table.word("name", {"ffv1", "raw", "png"});
-    scenario.codec = name == "ffv1" ? Codec::ffv1 : name == "raw" ? Codec::raw : Codec::png;
-    if (deep && scenario.codec != Codec::png) {
-      table.reject("name", fmt::format("text \"{}\"", name),
-                   fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));
-    }
-  });
 }
 
 void read_pattern(const TomlTable& root, PatternSetup& pattern) {

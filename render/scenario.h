@@ -23,9 +23,11 @@ struct Recording {
   Shutter shutter = {};
 };
 
-/// How bright things are in the picture.
+/// How bright things are in the picture: a white surface in the middle of the light.
 struct Exposure {
-  double white_level = 0.75;  ///< a white surface in the middle of the light, as part of the largest code
+  double white_level = 0.75;              ///< its code, as part of the largest code; not looked at where there is
+  std::optional<double> white_photons_s;  ///< the photons that come from it to a pixel
+  double quantum_efficiency = 1.0;        ///< electrons a photon
 };
 
 struct PatternSetup {

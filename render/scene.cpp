@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "render/readout.h"
 
 namespace glidelab::render {
 namespace {
@@ -209,7 +210,12 @@ std::optional<PixelRect> plumb_region(const Scenario& scenario) {
 
 double electrons_of_white(const Scenario& scenario) {
   const Sensor& sensor = scenario.sensor;
-  return (scenario.exposure.white_level * sensor.largest_code() - sensor.offset_dn) / sensor.gain_dn_per_e;
+  const Exposure& exposure = scenario.exposure;
+  if (exposure.white_photons_s) {
+    return *exposure.white_photons_s * exposure.quantum_efficiency * scenario.recording.exposure_s;
+  }
+  return (converter_code(sensor, exposure.white_level * sensor.largest_code()) - sensor.offset_dn) /
+         sensor.gain_dn_per_e;
 }
 
 }  // namespace glidelab::render

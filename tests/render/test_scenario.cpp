@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "catch.h"
+#include "render/scene.h"
 #include "temp_dir.h"
 #include "test_paths.h"
 
@@ -95,6 +96,18 @@ TEST_CASE("Keys are converted to SI and radians where they are read") {
   CHECK(scenario.track.downhill == -1);
 }
 
+TEST_CASE("White is given as a code, through a tone curve too, or in photons") {
+  const double linear_e = electrons_of_white(read("[sensor]\nfull_well_e = 10000.0\nwhite_level = 0.5\n"));
+  // Full well at code 255, offset 2: white is at 125.5 of 253 codes above it.
+  CHECK(std::abs(linear_e - 10000.0 * 125.5 / 253.0) < 1e-9);
+  const double gamma_e = electrons_of_white(
+      read("[sensor]\nfull_well_e = 10000.0\nwhite_level = 0.5\ntone = \"gamma\"\ngamma = 2.0\nconverter_bits = 12\n"));
+  CHECK(std::abs(gamma_e - 2500.0) < 1e-9);
+  const std::string photons = "[sensor]\nquantum_efficiency = 0.5\nwhite_photons_s = 1e7\n[camera]\nexposure_s = ";
+  CHECK(std::abs(electrons_of_white(read(photons + "0.001\n")) - 5000.0) < 1e-9);
+  CHECK(std::abs(electrons_of_white(read(photons + "0.002\n")) - 10000.0) < 1e-9);
+}
+
 TEST_CASE("What makes no sense is refused by its key, with the line") {
   struct Case {
     const char* sections;
@@ -122,6 +135,17 @@ TEST_CASE("What makes no sense is refused by its key, with the line") {
       {"[sensor]\nfull_well_e = 0.0\n", "sensor.full_well_e", "number"},
       {"[sensor]\nread_noise_e = -1.0\n", "sensor.read_noise_e", "0"},
       {"[sensor]\noffset_dn = 100.0\nwhite_level = 0.1\n", "sensor.white_level", "above the offset"},
+      {"[sensor]\nconverter_bits = 10\nbit_depth = 12\n", "sensor.converter_bits", "at least the 12"},
+      {"[sensor]\nprnu = 0.7\n", "sensor.prnu", "0.5"},
+      {"[sensor]\nhot_fraction = 0.1\n", "sensor.hot_signal_e_s", "hot pixel"},
+      {"[sensor]\ntone = \"gamma\"\n", "sensor.gamma", "number"},
+      {"[sensor]\ngamma = 2.2\n", "sensor.gamma", "unknown key"},
+      {"[sensor]\ntone = \"table\"\ntone_from = [0.0, 0.5, 1.0]\ntone_to = [0.0, 1.0]\n", "sensor.tone_to", "rising"},
+      {"[sensor]\ntone = \"table\"\ntone_from = [0.0, 0.5, 1.0]\ntone_to = [0.0, 0.6, 0.5]\n", "sensor.tone_to",
+       "rising"},
+      {"[sensor]\ntone = \"bt709\"\nwhite_level = 1.5\n", "sensor.white_level", "to 1"},
+      {"[sensor]\nwhite_photons_s = 1e6\nwhite_level = 0.5\n", "sensor.white_level", "one of the two"},
+      {"[sensor]\nquantum_efficiency = 1.2\n", "sensor.quantum_efficiency", "1"},
       {"[codec]\nname = \"h266\"\n", "codec.name", "ffv1"},
       {"[sensor]\nbit_depth = 12\n[codec]\nname = \"ffv1\"\n", "codec.name", "png"},
       {"[calibration]\ninner_corners = [6, 9]\n", "calibration.inner_corners", "larger one first"},

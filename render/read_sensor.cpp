@@ -1,0 +1,119 @@
+#include "render/read_sensor.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "render/scene.h"
+
+namespace glidelab::render {
+namespace {
+
+using base::TomlTable;
+
+void read_converter(const TomlTable& table, Sensor& sensor) {
+  sensor.bit_depth = static_cast<int>(table.integer_or("bit_depth", sensor.bit_depth, 8, 16));
+  if (!table.has("converter_bits")) return;
+  sensor.converter_bits = static_cast<int>(table.integer("converter_bits", 8, 16));
+  if (*sensor.converter_bits < sensor.bit_depth) {
+    table.reject("converter_bits", fmt::format("{}", *sensor.converter_bits),
+                 fmt::format("at least the {} bits of the codes that come out", sensor.bit_depth));
+  }
+}
+
+void read_charge(const TomlTable& table, Sensor& sensor) {
+  const double codes = sensor.largest_converter_code();
+  sensor.full_well_e = table.number_or("full_well_e", sensor.full_well_e, {10.0, 1e7, false, false});
+  sensor.read_noise_e = table.number_or("read_noise_e", sensor.read_noise_e, base::between(0.0, 1e5));
+  sensor.offset_dn = table.number_or("offset_dn", std::round(codes / 128.0), base::between(0.0, 0.5 * codes));
+  sensor.gain_dn_per_e =
+      table.number_or("gain_dn_per_e", (codes - sensor.offset_dn) / sensor.full_well_e, {0.0, 1e5, true, false});
+}
+
+void read_pixels(const TomlTable& table, PixelSpread& pixels) {
+  pixels.dark_signal_e_s = table.number_or("dark_signal_e_s", 0.0, base::between(0.0, 1e7));
+  pixels.prnu = table.number_or("prnu", 0.0, base::between(0.0, 0.5));
+  pixels.dsnu_e = table.number_or("dsnu_e", 0.0, base::between(0.0, 1e5));
+  pixels.hot_fraction = table.number_or("hot_fraction", 0.0, base::between(0.0, 1.0));
+  pixels.hot_signal_e_s = table.number_or("hot_signal_e_s", 0.0, base::between(0.0, 1e9));
+  pixels.dead_fraction = table.number_or("dead_fraction", 0.0, base::between(0.0, 1.0));
+  if (pixels.hot_fraction > 0.0 && !(pixels.hot_signal_e_s > 0.0) && !table.has("hot_signal_e_s")) {
+    table.reject("hot_signal_e_s", "nothing",
+                 "what a hot pixel has beyond the dark signal, where hot_fraction is given");
+  }
+}
+
+bool rises(const std::vector<double>& values) {
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (!(values[i] > values[i - 1])) return false;
+  }
+  return values.size() > 1 && values.front() == 0.0 && values.back() == 1.0;
+}
+
+void read_tone(const TomlTable& table, ToneCurve& tone) {
+  const std::string word = table.word("tone", {"linear", "gamma", "bt709", "table"}, "linear");
+  if (word == "gamma") {
+    tone.kind = ToneCurve::Kind::gamma;
+    tone.gamma = table.number("gamma", base::between(0.2, 5.0));
+  } else if (word == "bt709") {
+    tone.kind = ToneCurve::Kind::bt709;
+  } else if (word == "table") {
+    tone = {ToneCurve::Kind::table, tone.gamma, table.numbers("tone_from", 0), table.numbers("tone_to", 0)};
+    if (rises(tone.from) && rises(tone.to) && tone.from.size() == tone.to.size()) return;
+    table.reject("tone_to", fmt::format("{} numbers, beside {} in tone_from", tone.to.size(), tone.from.size()),
+                 "as many in both, rising from 0 to 1");
+  }
+}
+
+void read_colour(const TomlTable& table, Sensor& sensor) {
+  if (table.word("colour", {"mono", "bayer"}, "mono") == "mono") return;
+  sensor.colour = Colour::bayer;
+  if (const auto response = table.maybe_numbers("colour_response", 3, {0.01, 1.0, false, false})) {
+    sensor.colour_response = {(*response)[0], (*response)[1], (*response)[2]};
+  }
+}
+
+void read_white(const TomlTable& table, const Scenario& scenario, Exposure& exposure) {
+  exposure.quantum_efficiency = table.number_or("quantum_efficiency", 1.0, {0.0, 1.0, true, false});
+  exposure.white_photons_s = table.maybe_number("white_photons_s", base::above(0.0));
+  const bool linear = scenario.sensor.tone.kind == ToneCurve::Kind::linear;
+  const base::Range levels{0.01, linear ? 10.0 : 1.0, false, false};
+  if (!exposure.white_photons_s) {
+    exposure.white_level = table.number_or("white_level", exposure.white_level, levels);
+    if (!(electrons_of_white(scenario) > 0.0)) {
+      table.reject("white_level", fmt::format("{}", exposure.white_level), "a white above the offset");
+    }
+  } else if (table.has("white_level")) {
+    table.reject("white_level", "a level beside white_photons_s", "one of the two");
+    table.number("white_level");
+  }
+}
+
+}  // namespace
+
+void read_sensor(const TomlTable& root, Scenario& scenario) {
+  Sensor& sensor = scenario.sensor;
+  const std::optional<TomlTable> table = root.maybe_table("sensor");
+  if (!table) return;
+  read_converter(*table, sensor);
+  read_charge(*table, sensor);
+  read_pixels(*table, sensor.pixels);
+  read_tone(*table, sensor.tone);
+  read_colour(*table, sensor);
+  read_white(*table, scenario, scenario.exposure);
+}
+
+void read_codec(const TomlTable& root, Scenario& scenario) {
+  const bool deep = scenario.sensor.bit_depth > 8;
+  scenario.codec = deep ? Codec::png : Codec::ffv1;
+  const std::optional<TomlTable> table = root.maybe_table("codec");
+  if (!table) return;
+  const std::string name = table->word("name", {"ffv1", "raw", "png"});
+  scenario.codec = name == "ffv1" ? Codec::ffv1 : name == "raw" ? Codec::raw : Codec::png;
+  if (deep && scenario.codec != Codec::png) {
+    table->reject("name", fmt::format("text \"{}\"", name),
+                  fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));
+  }
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,15 @@
+/// The [sensor] and [codec] of a scenario.
+#pragma once
+
+#include "base/strict_toml.h"
+#include "render/scenario.h"
+
+namespace glidelab::render {
+
+/// Fills scenario.sensor and scenario.exposure; scenario.recording is read before. What is wrong is recorded in `root`.
+void read_sensor(const base::TomlTable& root, Scenario& scenario);
+
+/// Fills scenario.codec; scenario.sensor is read before.
+void read_codec(const base::TomlTable& root, Scenario& scenario);
+
+}  // namespace glidelab::render
