@@ -66,14 +66,17 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   AnalysisResults results;
   std::vector<ClipSetup> setups;
   std::vector<TrackData> tracks;
+  std::size_t modes = 0;  // of the cameras so far: folders share none
   std::vector<const Experiment*> experiment_of;
   for (const Experiment& experiment : experiments) {
     PictureResults seen = tracks_of(experiment, options.jobs, progress);
     for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
+      tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
       experiment_of.push_back(&experiment);
     }
+    modes += seen.modes;
     if (seen.calibration) results.calibrations.push_back(std::move(*seen.calibration));
     for (PlumbResult& plumb : seen.plumbs) results.plumbs.push_back(std::move(plumb));
   }

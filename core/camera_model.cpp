@@ -31,6 +31,18 @@ Distorted distort(const std::array<double, 5>& d, cv::Point2d n) {
 
 }  // namespace
 
+CameraModel CameraModel::moved(const Eigen::Matrix<double, 9, 1>& change) const {
+  CameraModel camera = *this;
+  camera.fx += change[0];
+  camera.fy += change[1];
+  camera.cx += change[2];
+  camera.cy += change[3];
+  for (std::size_t i = 0; i < distortion.size(); ++i) {
+    camera.distortion[i] += change[4 + static_cast<Eigen::Index>(i)];
+  }
+  return camera;
+}
+
 cv::Point2d CameraModel::to_pixel(cv::Point2d normalised) const {
   const Distorted distorted = distort(distortion, normalised);
   return {fx * distorted.at.x + cx, fy * distorted.at.y + cy};

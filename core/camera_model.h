@@ -10,6 +10,7 @@
 /// Pixels; the centre of the first pixel is (0, 0).
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include <array>
@@ -24,6 +25,9 @@ struct CameraModel {
   double cy = 0.0;
   std::array<double, 5> distortion{};  ///< k1, k2, p1, p2, k3
   cv::Size size;                       ///< of the pictures
+
+  /// The camera with these changes of fx, fy, cx, cy, k1, k2, p1, p2, k3.
+  CameraModel moved(const Eigen::Matrix<double, 9, 1>& change) const;
 
   /// From normalised coordinates to pixels.
   cv::Point2d to_pixel(cv::Point2d normalised) const;

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/least_squares.h"
+#include "core/pixel_edge.h"
 
 namespace glidelab::core {
 namespace {
@@ -154,7 +155,7 @@ Surroundings surroundings_of(const BoardCorners& board, int i, int j) {
   return {std::min(kWindowShare * nearest, kLargestWindowPx), std::atan2(x.y, x.x), std::atan2(y.y, y.x)};
 }
 
-enum Parameter { kU, kV, kAngleX, kAngleY, kBlur, kMean, kAmplitude, kSlopeU, kSlopeV, kParameters };
+enum Parameter { kU, kV, kAngleX, kAngleY, kLogBlur, kMean, kAmplitude, kSlopeU, kSlopeV, kParameters };
 using Vector = Eigen::Matrix<double, kParameters, 1>;
 
 struct RefinedCorner {
@@ -185,44 +186,47 @@ Window cut_window(const cv::Mat& grey, cv::Point2d centre, double radius) {
   return window;
 }
 
+/// What is known of the blur beforehand, for an edge that runs along a pixel's border has no width to be seen.
+constexpr double kUsualBlurPx = 0.4;
+constexpr double kBlurStrength = 0.05;  // worth so much of the contrast in one pixel, a unit of ln(blur)
+
 std::optional<NormalEquations<kParameters>> evaluate(const Window& window, double contrast, const Vector& p) {
-  if (p[kBlur] < 0.05 || p[kBlur] > 10.0) return std::nullopt;
+  const double blur = std::exp(p[kLogBlur]);
+  if (!(blur > 0.01) || blur > 10.0) return std::nullopt;
   NormalEquations<kParameters> equations;
   const double cx = std::cos(p[kAngleX]), sx = std::sin(p[kAngleX]);
   const double cy = std::cos(p[kAngleY]), sy = std::sin(p[kAngleY]);
-  const double scale = 1.0 / (std::numbers::sqrt2 * p[kBlur]);
-  const double slope_of_erf = 2.0 / std::sqrt(std::numbers::pi) * scale;
+  const double far = 5.0 * blur + 0.71;  // pixels that an edge leaves all dark or all bright: Phi(-5) = 3e-7
+  const auto response = [&](double d, double nu, double nv) {
+    return std::abs(d) > far ? PixelEdge{d > 0.0 ? 1.0 : 0.0, 0.0, 0.0} : pixel_edge(d, nu, nv, blur);
+  };
   for (std::size_t i = 0; i < window.at.size(); ++i) {
     const double du = window.at[i].x - p[kU];
     const double dv = window.at[i].y - p[kV];
     // Signed distances from the edge along x (its normal is (-sx, cx)) and from the edge along y.
-    const double d1 = -sx * du + cx * dv;
-    const double d2 = -sy * du + cy * dv;
-    const double e1 = std::erf(d1 * scale), e2 = std::erf(d2 * scale);
-    const double g1 = slope_of_erf * std::exp(-d1 * d1 * scale * scale);  // d e1 / d d1
-    const double g2 = slope_of_erf * std::exp(-d2 * d2 * scale * scale);
+    const PixelEdge first = response(-sx * du + cx * dv, -sx, cx);
+    const PixelEdge second = response(-sy * du + cy * dv, -sy, cy);
+    const double e1 = 2.0 * first.value - 1.0, e2 = 2.0 * second.value - 1.0;
     const double light = 1.0 + p[kSlopeU] * du + p[kSlopeV] * dv;
     const double pattern = p[kMean] + p[kAmplitude] * e1 * e2;
-    const double to_d1 = light * p[kAmplitude] * g1 * e2;
-    const double to_d2 = light * p[kAmplitude] * e1 * g2;
+    const double to_d1 = light * p[kAmplitude] * 2.0 * first.slope * e2;
+    const double to_d2 = light * p[kAmplitude] * e1 * 2.0 * second.slope;
     Vector jacobian;
     jacobian[kU] = to_d1 * sx + to_d2 * sy - p[kSlopeU] * pattern;
     jacobian[kV] = -to_d1 * cx - to_d2 * cy - p[kSlopeV] * pattern;
     jacobian[kAngleX] = to_d1 * (-cx * du - sx * dv);
     jacobian[kAngleY] = to_d2 * (-cy * du - sy * dv);
-    jacobian[kBlur] = -(to_d1 * d1 + to_d2 * d2) / p[kBlur];
+    jacobian[kLogBlur] = light * p[kAmplitude] * 2.0 * blur * blur * (first.bend * e2 + e1 * second.bend);
     jacobian[kMean] = light;
     jacobian[kAmplitude] = light * e1 * e2;
     jacobian[kSlopeU] = pattern * du;
     jacobian[kSlopeV] = pattern * dv;
     equations.add(jacobian, light * pattern - window.value[i], window.weight[i]);
   }
-  // An edge that runs along a pixel's border has no width to be seen; one further datum, worth 2 % of the contrast in
-  // one pixel, keeps the blur at a camera's usual half pixel there.
   Vector jacobian = Vector::Zero();
-  const double strength = 0.04 * contrast;
-  jacobian[kBlur] = strength;
-  equations.add(jacobian, strength * (p[kBlur] - 0.5), 1.0);
+  const double strength = kBlurStrength * contrast;
+  jacobian[kLogBlur] = strength;
+  equations.add(jacobian, strength * (p[kLogBlur] - std::log(kUsualBlurPx)), 1.0);
   return equations;
 }
 
@@ -237,8 +241,8 @@ std::optional<RefinedCorner> refine_corner(const cv::Mat& grey, cv::Point2d star
     if (window.at.size() < 2 * kParameters) return std::nullopt;
     if (pass == 0) {
       const auto [low, high] = std::minmax_element(window.value.begin(), window.value.end());
-      parameters << start.x, start.y, around.angle_x, around.angle_y, 0.8, 0.5 * (*low + *high), 0.5 * (*high - *low),
-          0.0, 0.0;
+      parameters << start.x, start.y, around.angle_x, around.angle_y, std::log(0.6), 0.5 * (*low + *high),
+          0.5 * (*high - *low), 0.0, 0.0;
       double agreement = 0.0;  // the sign of the amplitude: which two of the four squares are bright
       const auto at_start = evaluate(window, 0.0, parameters);
       if (at_start)
@@ -247,7 +251,7 @@ std::optional<RefinedCorner> refine_corner(const cv::Mat& grey, cv::Point2d star
     }
     Vector step;
     const double level = 1e-4 * std::abs(parameters[kAmplitude]) + 1e-9;
-    step << 1e-4, 1e-4, 1e-4, 1e-4, 1e-3, level, level, 1e-5, 1e-5;
+    step << 1e-4, 1e-4, 1e-4, 1e-4, 1e-2, level, level, 1e-5, 1e-5;
     const double contrast = std::abs(parameters[kAmplitude]);
     const auto model = [&](const Vector& p) { return evaluate(window, contrast, p); };
     const auto fit = fit_least_squares<kParameters>(model, parameters, step, 50);

@@ -13,6 +13,7 @@
 #include "core/calibrate.h"
 #include "core/frame_source.h"
 #include "core/marker_track.h"
+#include "core/mode_axis.h"
 #include "core/motion_axis.h"
 #include "core/parallel.h"
 #include "core/plumb.h"
@@ -208,14 +209,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   if (lost > 0) {
     track.notes.push_back(fmt::format("{} sightings lie where the lens model has no ray and are left out", lost));
   }
-  if (points.size() > 1) {
-    const auto [low, high] = std::minmax_element(track.x_m.begin(), track.x_m.end());
-    const auto pixel = [&](const double* x) {
-      const MarkerSighting& sighting = track.sightings[static_cast<std::size_t>(x - track.x_m.data())];
-      return cv::Point2d(sighting.u_px, sighting.v_px);
-    };
-    track.scale_sd_relative = restitution.relative_scale_sd(pixel(&*low), pixel(&*high));
-  }
+  track.scale_sd_relative = restitution.relative_scale_sd();
   return track;
 }
 
@@ -268,9 +262,20 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
     }
     const bool moves = !all.empty() && cv::norm(high - low) > 0.5 * experiment.marker->diameter_m;
     const MotionAxis axis = moves ? MotionAxis::through(all, downhill) : MotionAxis::along_x(downhill);
+    const std::vector<ModeAxis> modes = mode_axes(restitution, axis, all, downhill);
+    const auto camera_modes = static_cast<std::size_t>(
+        std::count_if(modes.begin(), modes.end(), [](const ModeAxis& mode) { return mode.mode.of_camera; }));
+    results.modes = std::max(results.modes, camera_modes);
     for (const std::size_t i : pictures) {
       if (experiment.clips[i].group != name) continue;
       results.tracks[i] = track_from(seen[i], points[i], axis, *experiment.camera, restitution);
+      std::vector<cv::Point2d> places;
+      for (const PlanePoint& point : points[i]) places.push_back(point.place);
+      std::vector<std::vector<double>>& shared = results.tracks[i].shared_m;
+      for (const ModeAxis& mode : modes) {
+        if (shared.size() == camera_modes) shared.resize(results.modes);  // the groups before have their own
+        shared.push_back(mode.displacement(restitution, axis, places));
+      }
       note_axis(axis, experiment.calibration.has_value(), results.tracks[i].notes);
       if (experiment.scale && experiment.scale->px_per_m_sd == 0.0) {
         results.tracks[i].notes.emplace_back("the scale is taken as exact (px_per_m_sd is 0 or not given)");
@@ -278,7 +283,8 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
     }
     const GroupSetup* group = group_of(experiment, name);
     const std::optional<PlumbSetup>& plumb = group != nullptr && group->plumb ? group->plumb : experiment.plumb;
-    if (plumb) results.plumbs.push_back({name, plumb_angle(*plumb, restitution, axis, setting.size)});
+    if (plumb) results.plumbs.push_back({name, plumb_angle(*plumb, restitution, axis, setting.size, modes)});
+    results.modes += modes.size() - camera_modes;
   }
   results.calibration = setting.calibration;
   return results;

@@ -17,6 +17,7 @@ struct PictureResults {
   std::vector<TrackData> tracks;  ///< one for each clip, in the experiment's order
   std::optional<CalibrationResult> calibration;
   std::vector<PlumbResult> plumbs;
+  std::size_t modes = 0;  ///< independent errors of camera and planes: entries of every track's shared_m, at most
 };
 
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of

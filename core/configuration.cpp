@@ -67,8 +67,10 @@ double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joi
   double chi2 = 0.0;
   for (const Part& part : parts) {
     Eigen::Matrix2d covariance = random_part(part.line->parts);
-    const Eigen::Vector2d bias(part.line->parts.smoothing_k, part.line->parts.smoothing_a0);
-    covariance += bias * bias.transpose();
+    for (const LineShift& shift : shared_shifts(*part.line)) {
+      const Eigen::Vector2d both(shift.k, shift.a0);
+      covariance += both * both.transpose();
+    }
     if (!(covariance.determinant() > 0.0)) return 1.0;
     const Eigen::Vector2d off = Eigen::Vector2d(part.line->k_over_m_1_s.value, part.line->a0_m_s2.value) - joint;
     chi2 += off.dot(covariance.inverse() * off);
@@ -97,6 +99,7 @@ double squared_correlation(const std::vector<Part>& parts) {
 LineFit join(const std::vector<Part>& parts, int direction) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero(), random = Eigen::Matrix2d::Zero();
   Eigen::Vector2d line = Eigen::Vector2d::Zero(), smoothing = line, mass = line;
+  std::vector<Eigen::Vector2d> calibration;
   double var_a0 = 0.0, var2_per_degree = 0.0;
   LineFit joint;
   joint.direction = direction;
@@ -116,6 +119,10 @@ LineFit join(const std::vector<Part>& parts, int direction) {
     joint.from_v_m_s = std::min(joint.from_v_m_s, part.line->from_v_m_s);
     joint.to_v_m_s = std::max(joint.to_v_m_s, part.line->to_v_m_s);
     joint.parts.scale_relative = std::max(joint.parts.scale_relative, of.scale_relative);
+    if (calibration.size() < of.calibration.size()) calibration.resize(of.calibration.size(), Eigen::Vector2d::Zero());
+    for (std::size_t mode = 0; mode < of.calibration.size(); ++mode) {
+      calibration[mode] += part.normal * Eigen::Vector2d(of.calibration[mode].k, of.calibration[mode].a0);
+    }
   }
   const Eigen::Matrix2d inverse = normal.inverse();
   const Eigen::Vector2d solution = inverse * line;
@@ -132,6 +139,10 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   joint.parts.smoothing_a0 = (inverse * smoothing)[1];
   joint.parts.mass_k = (inverse * mass)[0];
   joint.parts.mass_a0 = (inverse * mass)[1];
+  for (const Eigen::Vector2d& sum : calibration) {
+    const Eigen::Vector2d shift = inverse * sum;
+    joint.parts.calibration.push_back({shift[0], shift[1]});
+  }
   joint.r2 = squared_correlation(parts);
   complete_line(joint);
   return joint;
@@ -148,30 +159,32 @@ Quantity mean_k(const std::vector<LineFit>& lines) {
     const double allowed = std::pow(lines[0].k_over_m_1_s.sd, 2) + std::pow(lines[1].k_over_m_1_s.sd, 2);
     between = std::max(0.0, 0.5 * (apart * apart - allowed));
   }
-  double weights = 0.0, value = 0.0, smoothing = 0.0, mass = 0.0, degrees = std::numeric_limits<double>::infinity();
+  double weights = 0.0, value = 0.0, degrees = std::numeric_limits<double>::infinity();
+  std::vector<double> shared;
   for (const LineFit& line : lines) {
     const double weight = 1.0 / std::max(line.parts.var_k + between, 1e-30);  // noise-free points weigh the same
     weights += weight;
     value += weight * line.k_over_m_1_s.value;
-    smoothing += weight * line.parts.smoothing_k;
-    mass += weight * line.parts.mass_k;
+    const std::vector<LineShift> shifts = shared_shifts(line);
+    if (shared.size() < shifts.size()) shared.resize(shifts.size(), 0.0);
+    for (std::size_t k = 0; k < shifts.size(); ++k) shared[k] += weight * shifts[k].k;
     degrees = std::min(degrees, line.parts.degrees);
   }
-  smoothing /= weights;
-  mass /= weights;
-  const double variance = 1.0 / weights + smoothing * smoothing + mass * mass;
+  double variance = 1.0 / weights;
+  for (const double shift : shared) variance += std::pow(shift / weights, 2);
   return determined(estimate(value / weights, std::sqrt(variance), degrees));
 }
 
 /// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+).
 Estimate of_intercepts(double value, double by_minus, double by_plus, const LineFit& minus, const LineFit& plus) {
-  const double random = by_minus * by_minus * minus.parts.var_a0 + by_plus * by_plus * plus.parts.var_a0;
-  const double smoothing = by_minus * minus.parts.smoothing_a0 + by_plus * plus.parts.smoothing_a0;
-  const double mass = by_minus * minus.parts.mass_a0 + by_plus * plus.parts.mass_a0;
-  const double scale = by_minus * minus.a0_m_s2.value * minus.parts.scale_relative +
-                       by_plus * plus.a0_m_s2.value * plus.parts.scale_relative;
-  return estimate(value, std::sqrt(random + smoothing * smoothing + mass * mass + scale * scale),
-                  std::min(minus.parts.degrees, plus.parts.degrees));
+  double variance = by_minus * by_minus * minus.parts.var_a0 + by_plus * by_plus * plus.parts.var_a0;
+  const std::vector<LineShift> of_minus = shared_shifts(minus), of_plus = shared_shifts(plus);
+  for (std::size_t k = 0; k < std::max(of_minus.size(), of_plus.size()); ++k) {
+    const double a = k < of_minus.size() ? by_minus * of_minus[k].a0 : 0.0;
+    const double b = k < of_plus.size() ? by_plus * of_plus[k].a0 : 0.0;
+    variance += (a + b) * (a + b);
+  }
+  return estimate(value, std::sqrt(variance), std::min(minus.parts.degrees, plus.parts.degrees));
 }
 
 /// Equation (13): (a0- + a0+)/2 = g sin(alpha), (a0- - a0+)/2 = mu g cos(alpha).

@@ -31,6 +31,19 @@ Eigen::Vector2d coefficients(const Eigen::Matrix2d& inverse, const std::vector<d
   return inverse * sum;
 }
 
+LineShift shift_by(const LineInput& input, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& line,
+                   const std::vector<MotionShift>& mode) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t j = 0; j < mode.size(); ++j) {
+    const Eigen::Vector2d design(-input.v_m_s[j], 1.0);
+    const double residual = input.a_m_s2[j] - design.dot(line);
+    sum += design * (mode[j].a_m_s2 + line[0] * mode[j].v_m_s);
+    sum[0] -= mode[j].v_m_s * residual;
+  }
+  const Eigen::Vector2d change = inverse * sum;
+  return {change[0], change[1]};
+}
+
 double squared_correlation(const std::vector<double>& x, const std::vector<double>& y) {
   double mean_x = 0.0, mean_y = 0.0;
   for (std::size_t j = 0; j < x.size(); ++j) {
@@ -189,20 +202,33 @@ std::optional<LineFit> fit_line(int direction, const LineInput& input, const std
   fit.parts.mass_k = mass[0];
   fit.parts.mass_a0 = mass[1];
   fit.parts.scale_relative = scale_sd_relative;
+  for (const std::vector<MotionShift>& mode : input.calibration) {
+    fit.parts.calibration.push_back(mode.empty() ? LineShift{} : shift_by(input, inverse, line, mode));
+  }
   complete_line(fit);
   return fit;
 }
 
+std::vector<LineShift> shared_shifts(const LineFit& line) {
+  const LineUncertainty& parts = line.parts;
+  std::vector<LineShift> shifts{{parts.smoothing_k, parts.smoothing_a0},
+                                {parts.mass_k, parts.mass_a0},
+                                {0.0, parts.scale_relative * line.a0_m_s2.value}};
+  shifts.insert(shifts.end(), parts.calibration.begin(), parts.calibration.end());
+  return shifts;
+}
+
 void complete_line(LineFit& line) {
   const LineUncertainty& parts = line.parts;
-  const double k = line.k_over_m_1_s.value, a0 = line.a0_m_s2.value;
-  const double var_k = parts.var_k + parts.smoothing_k * parts.smoothing_k + parts.mass_k * parts.mass_k;
-  const double of_scale = parts.scale_relative * a0;
-  const double var_a0 =
-      parts.var_a0 + parts.smoothing_a0 * parts.smoothing_a0 + parts.mass_a0 * parts.mass_a0 + of_scale * of_scale;
-  line.k_over_m_1_s = estimate(k, std::sqrt(var_k), parts.degrees);
-  line.a0_m_s2 = estimate(a0, std::sqrt(var_a0), parts.degrees);
-  line.covariance = parts.cov + parts.smoothing_k * parts.smoothing_a0 + parts.mass_k * parts.mass_a0;
+  double var_k = parts.var_k, var_a0 = parts.var_a0;
+  line.covariance = parts.cov;
+  for (const LineShift& shift : shared_shifts(line)) {
+    var_k += shift.k * shift.k;
+    var_a0 += shift.a0 * shift.a0;
+    line.covariance += shift.k * shift.a0;
+  }
+  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, std::sqrt(var_k), parts.degrees);
+  line.a0_m_s2 = estimate(line.a0_m_s2.value, std::sqrt(var_a0), parts.degrees);
 }
 
 Quantity limit_velocity(const std::vector<LineFit>& lines) {
@@ -217,11 +243,8 @@ Quantity limit_velocity(const std::vector<LineFit>& lines) {
   }
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
   const LineUncertainty& parts = found->parts;
-  const double random = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
-  const double smoothing = by_k * parts.smoothing_k + by_a0 * parts.smoothing_a0;
-  const double mass = by_k * parts.mass_k + by_a0 * parts.mass_a0;
-  const double scale = parts.scale_relative * a0 / k;
-  const double variance = random + smoothing * smoothing + mass * mass + scale * scale;
+  double variance = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
+  for (const LineShift& shift : shared_shifts(*found)) variance += std::pow(by_k * shift.k + by_a0 * shift.a0, 2);
   return determined(estimate(a0 / k, std::sqrt(variance), parts.degrees));
 }
 

@@ -16,18 +16,29 @@
 ///     covariance += (1 - 1/X) (A'A)^-1 [ sum over blocks of s s' ] (A'A)^-1  n_b / (n_b - 2),   s = sum of A_j' e_j,
 ///
 /// with X the mean square residual over that expected of the noise, where X is above 1 by three standard deviations.
+/// An error of the camera or the plane displaces all positions by x_k(t), and so v by dv and a by da (the same sums
+/// over the kernel); to first order the line changes by
+///
+///     d(K/m, a0) = (A'A)^-1 [A' (da + (K/m) dv) + (dA)' e],     (dA)' e = (- sum of dv_j e_j, 0).
+///
 /// Where there are four stretches or more, leaving them out one at a time (the jackknife) gives a covariance that knows
 /// of no noise model; the larger one counts.
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/local_cubic.h"
 #include "core/results.h"
 
 namespace glidelab::core {
+
+struct MotionShift {
+  double v_m_s = 0.0;
+  double a_m_s2 = 0.0;
+};
 
 /// The points of one direction, and how they follow from the `track_points` measured positions.
 struct LineInput {
@@ -38,6 +49,9 @@ struct LineInput {
   std::vector<std::size_t> stretch;    ///< that each point belongs to; they follow each other
   std::vector<double> bias_a_m_s2;     ///< estimated smoothing bias of a
   std::vector<double> mass_part_m_s2;  ///< change of a by one standard deviation of the mass
+  /// Change of v and a of every point by one standard deviation of each of the calibration's modes; empty where a mode
+  /// does not touch the track.
+  std::vector<std::vector<MotionShift>> calibration;
 };
 
 enum class Misfit { widens, ignored };
@@ -49,6 +63,10 @@ std::optional<LineFit> fit_line(int direction, const LineInput& input, const std
 
 /// Fills in the standard deviations and intervals of K/m and a0 from line.parts.
 void complete_line(LineFit& line);
+
+/// Changes of the line by one standard deviation of everything that it may share with others: the kernel's bias, the
+/// mass, the scale, the calibration's modes; in the same order for all lines (those that are missing at the end are 0).
+std::vector<LineShift> shared_shifts(const LineFit& line);
 
 /// Where the line of v > 0 meets a = 0. Null with the reason where there is no such line, where a0 is not above zero
 /// by 1.96 standard deviations (a level track: no equilibrium at v > 0), or where K/m is not.

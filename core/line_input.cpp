@@ -21,4 +21,19 @@ LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& poin
   return input;
 }
 
+std::vector<std::vector<MotionShift>> calibration_shifts(const Motion& motion, const LineInput& input,
+                                                         const std::vector<std::vector<double>>& shared_m) {
+  std::vector<std::vector<MotionShift>> shifts(shared_m.size());
+  for (std::size_t mode = 0; mode < shared_m.size(); ++mode) {
+    if (shared_m[mode].empty()) continue;
+    std::vector<double> displacement;
+    for (const std::size_t point : motion.point) displacement.push_back(shared_m[mode][point]);
+    for (const KernelRow& row : input.rows) {
+      const SmoothedPoint smoothed = weighted_sums(row, displacement);
+      shifts[mode].push_back({smoothed.v_m_s, smoothed.a_m_s2});
+    }
+  }
+  return shifts;
+}
+
 }  // namespace glidelab::core

@@ -14,4 +14,8 @@ namespace glidelab::core {
 LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& points, const std::vector<double>& bias,
                      int direction, double mass_kg, double mass_sd_kg);
 
+/// What displacements of the track's positions (TrackData::shared_m) do to v and a of the input's points.
+std::vector<std::vector<MotionShift>> calibration_shifts(const Motion& motion, const LineInput& input,
+                                                         const std::vector<std::vector<double>>& shared_m);
+
 }  // namespace glidelab::core

@@ -167,7 +167,8 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::o
   const std::vector<double> law = pilot_law(motion, free.stretches, law_bandwidth(motion, free.pilot_bandwidth_s));
   const std::vector<double> bias = smoothing_bias(motion, free.stretches, law, points);
   for (const int direction : {-1, 1}) {
-    const LineInput input = line_input(motion, points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
+    LineInput input = line_input(motion, points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
+    input.calibration = calibration_shifts(motion, input, track.shared_m);
     const auto line = fit_line(direction, input, noise.autocovariance, track.scale_sd_relative);
     if (line) clip.segments.push_back(*line);
   }

@@ -101,6 +101,17 @@ std::optional<double> centre_of(const std::vector<double>& values, double expect
   return std::nullopt;
 }
 
+/// Directed from the place of the upper pixel to that of the lower one.
+PlaneLine thread_line(const std::vector<cv::Point2d>& places, std::size_t upper, std::size_t lower) {
+  PlaneLine line = fit_plane_line(places, 1e-7);
+  if (line.direction.dot(places[lower] - places[upper]) < 0.0) line.direction = -line.direction;
+  return line;
+}
+
+double inclination(const MotionAxis& axis, const PlaneLine& down) {
+  return std::asin(std::clamp(axis.line().direction.dot(down.direction), -1.0, 1.0));
+}
+
 Thread find_along(const cv::Mat& grey, cv::Rect region, bool turned,
                   const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight) {
   const int rows = turned ? region.width : region.height;
@@ -183,7 +194,7 @@ std::vector<cv::Point2d> find_thread(const cv::Mat& grey, cv::Rect region,
 }
 
 Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
-                     std::optional<cv::Size> picture_size) {
+                     std::optional<cv::Size> picture_size, const std::vector<ModeAxis>& modes) {
   const cv::Mat grey = read_grey_picture(setup.view);
   const auto fail = [&](std::string found, std::string expected) {
     throw base::InputError(base::Issue{setup.view.string(), 0, "plumb", std::move(found), std::move(expected)});
@@ -199,30 +210,32 @@ Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, co
   }
   const auto straight = [&](cv::Point2d pixel) { return restitution.undistorted(pixel); };
   const std::vector<cv::Point2d> thread = find_thread(grey, setup.region, straight);
-  std::vector<cv::Point2d> places;
-  cv::Point2d first, last;  // in the picture, by row
-  double top = std::numeric_limits<double>::infinity(), bottom = -top;
+  std::vector<cv::Point2d> places, centres;
   for (const cv::Point2d& pixel : thread) {
     const auto place = restitution.to_plane(pixel);
     if (!place) continue;
     places.push_back(*place);
-    if (pixel.y < top) {
-      top = pixel.y;
-      first = *place;
-    }
-    if (pixel.y > bottom) {
-      bottom = pixel.y;
-      last = *place;
-    }
+    centres.push_back(restitution.centre_pixel(*place));
   }
   if (places.size() < 6) fail("no thin straight line in the region", "a dark or bright thread");
-  PlaneLine line = fit_plane_line(places, 1e-7);
-  if (line.direction.dot(last - first) < 0.0) line.direction = -line.direction;
   if (!std::isfinite(axis.line().sd_angle_rad)) return undetermined("the marker does not move, so its line is unknown");
-  const double alpha = std::asin(std::clamp(axis.line().direction.dot(line.direction), -1.0, 1.0));
-  const double sd = std::hypot(line.sd_angle_rad, axis.line().sd_angle_rad);
+  const auto [top, bottom] =
+      std::minmax_element(centres.begin(), centres.end(), [](cv::Point2d a, cv::Point2d b) { return a.y < b.y; });
+  const auto first = static_cast<std::size_t>(top - centres.begin());
+  const auto last = static_cast<std::size_t>(bottom - centres.begin());
+  const PlaneLine line = thread_line(places, first, last);
+  const double alpha = inclination(axis, line);
+  double variance = std::pow(line.sd_angle_rad, 2) + std::pow(axis.line().sd_angle_rad, 2);
+  for (const ModeAxis& mode : modes) {
+    std::vector<cv::Point2d> displaced;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      displaced.push_back(mode.mode.to_plane(centres[i]).value_or(places[i]));
+    }
+    const double moved = inclination(mode.axis, thread_line(displaced, first, last));
+    variance += std::pow((moved - alpha) / mode.mode.sds, 2);
+  }
   constexpr double kDegrees = 180.0 / std::numbers::pi;
-  return determined(estimate(alpha * kDegrees, sd * kDegrees, static_cast<double>(line.used) - 2.0));
+  return determined(estimate(alpha * kDegrees, std::sqrt(variance) * kDegrees, static_cast<double>(line.used) - 2.0));
 }
 
 }  // namespace glidelab::core

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/experiment.h"
+#include "core/mode_axis.h"
 #include "core/motion_axis.h"
 #include "core/restitution.h"
 #include "core/results.h"
@@ -26,9 +27,10 @@ std::vector<cv::Point2d> find_thread(const cv::Mat& grey, cv::Rect region,
                                      const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight);
 
 /// alpha = asin(axis . down), positive downhill, down being the thread's direction towards the picture's lower edge.
-/// Its standard deviation joins the thread's and the axis's. InputError where the region leaves the picture or holds no
+/// Its standard deviation joins the thread's, the axis's and what the modes, each an error of one standard deviation of
+/// camera or plane, make of the angle between them. InputError where the region leaves the picture or holds no
 /// thread; undetermined where the marker does not move.
 Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
-                     std::optional<cv::Size> picture_size);
+                     std::optional<cv::Size> picture_size, const std::vector<ModeAxis>& modes = {});
 
 }  // namespace glidelab::core

@@ -128,6 +128,26 @@ Eigen::VectorXd fit_poses(const CameraModel& camera, const std::vector<BoardCorn
   return parameters;
 }
 
+/// Columns whose products sum up to the covariance, one for each direction that has a variance: the eigenvectors of
+/// the correlations, so that the parameters' units do not matter.
+Eigen::MatrixXd square_root(const Eigen::MatrixXd& covariance) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
+    if (covariance(k, k) > 0.0) free.push_back(k);
+  }
+  const auto size = static_cast<Eigen::Index>(free.size());
+  Eigen::VectorXd sd(size);
+  for (Eigen::Index k = 0; k < size; ++k)
+    sd[k] = std::sqrt(covariance(free[static_cast<std::size_t>(k)], free[static_cast<std::size_t>(k)]));
+  const Eigen::MatrixXd part = covariance(free, free);
+  const Eigen::MatrixXd correlations = sd.cwiseInverse().asDiagonal() * part * sd.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlations);
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(covariance.rows(), size);
+  root(free, Eigen::all) =
+      sd.asDiagonal() * solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return root;
+}
+
 std::optional<cv::Point2d> meet_plane(const CameraModel& camera, const PlanePose& pose, cv::Point2d pixel, double z) {
   const auto normalised = camera.to_normalised(pixel);
   if (!normalised) return std::nullopt;
@@ -227,19 +247,18 @@ cv::Point2d Restitution::outline_offset(cv::Point2d plane) const {
   return moment / (3.0 * area);
 }
 
-std::optional<cv::Point2d> Restitution::intersect(const CameraModel& camera, const PlanePose& pose,
-                                                  cv::Point2d pixel) const {
-  return meet_plane(camera, pose, pixel, -height_m_);
+std::optional<cv::Point2d> Restitution::intersect(cv::Point2d pixel) const {
+  return meet_plane(calibration_.camera, plane_->pose, pixel, -height_m_);
 }
 
 std::optional<cv::Point2d> Restitution::to_plane(cv::Point2d pixel) const {
   if (scale_) return cv::Point2d(pixel.x / scale_->px_per_m, pixel.y / scale_->px_per_m);
-  const auto first = intersect(calibration_.camera, plane_->pose, pixel);
+  const auto first = intersect(pixel);
   if (!first || radius_m_ == 0.0) return first;
   // The offset varies slowly: a second step, from the place that the first one gave, is good to a millionth of it.
-  const auto second = intersect(calibration_.camera, plane_->pose, pixel - outline_offset(*first));
+  const auto second = intersect(pixel - outline_offset(*first));
   if (!second) return std::nullopt;
-  return intersect(calibration_.camera, plane_->pose, pixel - outline_offset(*second));
+  return intersect(pixel - outline_offset(*second));
 }
 
 cv::Point2d Restitution::to_pixel(cv::Point2d plane) const {
@@ -258,7 +277,7 @@ std::optional<cv::Point2d> Restitution::undistorted(cv::Point2d pixel) const {
 
 std::optional<double> Restitution::marker_radius_px(cv::Point2d pixel) const {
   if (scale_) return radius_m_ * scale_->px_per_m;
-  const auto plane = intersect(calibration_.camera, plane_->pose, pixel);
+  const auto plane = intersect(pixel);
   if (!plane) return std::nullopt;
   // Mean of the radii along the picture's two axes, from the scale along and across the plane.
   const cv::Point2d centre = project({plane->x, plane->y, -height_m_});
@@ -268,20 +287,22 @@ std::optional<double> Restitution::marker_radius_px(cv::Point2d pixel) const {
   return 0.5 * (cv::norm(right - centre) + cv::norm(down - centre));
 }
 
-double Restitution::relative_scale_sd(cv::Point2d from, cv::Point2d to) const {
-  if (scale_) return scale_->px_per_m_sd / scale_->px_per_m;
-  const auto length = [&](const CameraModel& camera, const PlanePose& pose) {
-    const auto a = intersect(camera, pose, from);
-    const auto b = intersect(camera, pose, to);
-    return a && b ? cv::norm(*b - *a) : std::numeric_limits<double>::quiet_NaN();
-  };
-  const double here = length(calibration_.camera, plane_->pose);
-  if (!(here > 0.0)) return 0.0;
+cv::Point2d Restitution::centre_pixel(cv::Point2d plane) const {
+  return scale_ ? plane * scale_->px_per_m : project({plane.x, plane.y, -height_m_});
+}
 
-  // The plane's pose, camera held.
+std::optional<cv::Point2d> RestitutionMode::to_plane(cv::Point2d centre_pixel) const {
+  return meet_plane(camera, pose, centre_pixel, -height_m);
+}
+
+std::vector<RestitutionMode> Restitution::modes() const {
+  std::vector<RestitutionMode> modes;
+  if (scale_) return modes;
+  // A quarter of a standard deviation: far above the fits' rounding, and small beside what bends the response.
+  constexpr double kSds = 0.25;
+  Eigen::VectorXd parameters(static_cast<Eigen::Index>(6 + 3 * (views_.size() - 1)));
   cv::Vec3d turn;
   cv::Rodrigues(plane_->pose.rotation, turn);
-  Eigen::VectorXd parameters(static_cast<Eigen::Index>(6 + 3 * (views_.size() - 1)));
   for (int i = 0; i < 3; ++i) {
     parameters[i] = turn[i];
     parameters[3 + i] = plane_->pose.shift[i];
@@ -289,37 +310,18 @@ double Restitution::relative_scale_sd(cv::Point2d from, cv::Point2d to) const {
   for (std::size_t k = 1; k < views_.size(); ++k) {
     parameters.segment<3>(6 + 3 * (static_cast<Eigen::Index>(k) - 1)) = plane_->in_plane[k];
   }
-  constexpr double kStep = 1e-6;
-  Eigen::Matrix<double, 6, 1> by_pose;
-  for (Eigen::Index k = 0; k < 6; ++k) {
-    Eigen::VectorXd moved = parameters;
-    moved[k] += kStep;
-    by_pose[k] = (length(calibration_.camera, pose_from(moved)) - here) / kStep;
+  const Eigen::MatrixXd of_camera = square_root(calibration_.covariance);
+  for (Eigen::Index k = 0; k < of_camera.cols(); ++k) {
+    const CameraModel camera = calibration_.camera.moved(kSds * of_camera.col(k));
+    const PlanePose pose = pose_from(fit_poses(camera, views_, square_m_, parameters));
+    modes.push_back({camera, pose, height_m_, kSds, true});
   }
-  double variance = by_pose.dot(plane_->covariance * by_pose);
-
-  // The camera, the pose following it.
-  Eigen::Matrix<double, 9, 1> by_camera = Eigen::Matrix<double, 9, 1>::Zero();
-  for (Eigen::Index k = 0; k < 9; ++k) {
-    const double sd = std::sqrt(calibration_.covariance(k, k));
-    if (!(sd > 0.0)) continue;
-    CameraModel camera = calibration_.camera;
-    const std::array<double*, 9> terms{&camera.fx,
-                                       &camera.fy,
-                                       &camera.cx,
-                                       &camera.cy,
-                                       &camera.distortion[0],
-                                       &camera.distortion[1],
-                                       &camera.distortion[2],
-                                       &camera.distortion[3],
-                                       &camera.distortion[4]};
-    const double step = 0.1 * sd;
-    *terms[static_cast<std::size_t>(k)] += step;
-    const Eigen::VectorXd refitted = fit_poses(camera, views_, square_m_, parameters);
-    by_camera[k] = (length(camera, pose_from(refitted)) - here) / step;
+  const Eigen::MatrixXd of_pose = square_root(plane_->covariance);
+  for (Eigen::Index k = 0; k < of_pose.cols(); ++k) {
+    const Eigen::VectorXd moved = parameters.head<6>() + kSds * of_pose.col(k);
+    modes.push_back({calibration_.camera, pose_from(moved), height_m_, kSds, false});
   }
-  variance += by_camera.dot(calibration_.covariance * by_camera);
-  return std::isfinite(variance) ? std::sqrt(variance) / here : 0.0;
+  return modes;
 }
 
 }  // namespace glidelab::core

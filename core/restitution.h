@@ -5,6 +5,11 @@
 /// least squares with the calibrated camera; several of them share one plane and differ by a motion in it. The outline
 /// of a sphere is not centred on the projection of its centre (its image is nearly an ellipse, shifted away from the
 /// axis); that is corrected from the marker's diameter. With one scale: X = u / px_per_m, Y = v / px_per_m.
+///
+/// How sure it is: the camera's covariance and, with the camera held, that of the plane's pose are each split into
+/// independent modes (the columns of a square root of the covariance). A mode is the camera and the pose as an error of
+/// some standard deviations would have made them, the pose following the camera by a new fit of the plane views. Places
+/// restituted with it, minus those restituted without, are the signed displacements that such an error causes.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,13 +32,25 @@ struct PlanePose {
 struct PlaneFit {
   PlanePose pose;                          ///< of the first plane view
   std::vector<Eigen::Vector3d> in_plane;   ///< each view's pattern in the first one's frame: turn [rad], X, Y [m]
-  Eigen::Matrix<double, 6, 6> covariance;  ///< of (turn vector, shift) of `pose`
+  Eigen::Matrix<double, 6, 6> covariance;  ///< of (turn vector, shift) of `pose`, the camera held
   double rms_m = 0.0;                      ///< of the corners, restituted, against the pattern (one coordinate)
   double rms_px = 0.0;                     ///< the same in the picture
 };
 
 /// Pose of the pattern in one or more plane views, with the camera held.
 PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m);
+
+/// The way from pixels to the plane with an error of `sds` standard deviations in one independent direction.
+struct RestitutionMode {
+  CameraModel camera;
+  PlanePose pose;
+  double height_m = 0.0;
+  double sds = 0.0;
+  bool of_camera = false;  ///< else of this plane's pose alone
+
+  /// Where the marker's centre is whose projection is this pixel (Restitution::centre_pixel).
+  std::optional<cv::Point2d> to_plane(cv::Point2d centre_pixel) const;
+};
 
 class Restitution {
  public:
@@ -54,16 +71,22 @@ class Restitution {
   /// Radius of the marker's image there, in pixels; nothing where to_plane gives nothing.
   std::optional<double> marker_radius_px(cv::Point2d pixel) const;
 
-  /// Relative standard deviation of the distance between two pixels' places, from the camera's and the plane's
-  /// covariance, or as stated with the scale.
-  double relative_scale_sd(cv::Point2d from, cv::Point2d to) const;
+  /// Onto which pixel the marker's centre is projected, which is not where its outline is centred.
+  cv::Point2d centre_pixel(cv::Point2d plane) const;
+
+  /// Relative standard deviation of px_per_m, as stated with the scale; 0 with a pattern, whose scale is in the modes.
+  double relative_scale_sd() const { return scale_ ? scale_->px_per_m_sd / scale_->px_per_m : 0.0; }
+
+  /// Those of the camera come first and are the same (and in the same order) for every plane of one calibration. None
+  /// with a scale.
+  std::vector<RestitutionMode> modes() const;
 
   /// What the plane views gave; nothing for a scale.
   const std::optional<PlaneFit>& plane() const { return plane_; }
 
  private:
   Restitution() = default;
-  std::optional<cv::Point2d> intersect(const CameraModel& camera, const PlanePose& pose, cv::Point2d pixel) const;
+  std::optional<cv::Point2d> intersect(cv::Point2d pixel) const;
   cv::Point2d project(cv::Vec3d point_in_p) const;
   cv::Point2d outline_offset(cv::Point2d plane) const;
 

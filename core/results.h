@@ -56,8 +56,15 @@ struct MotionPoint {
   LeftOut left_out = LeftOut::used;
 };
 
+/// The signed change of a line by one standard deviation of an error that it may share with other lines.
+struct LineShift {
+  double k = 0.0;
+  double a0 = 0.0;
+};
+
 /// What the uncertainty of a line (K/m, a0) is made of; the standard deviations in LineFit hold all of it. Parts that
-/// two lines share (the kernel's bias, the mass, the scale) are signed, so that they add up as they should.
+/// two lines share (the kernel's bias, the mass, the scale, the calibration) are signed, so that they add up as they
+/// should.
 struct LineUncertainty {
   double var_k = 0.0;  ///< random: the noise of the positions, and what the points scatter beyond it
   double var_a0 = 0.0;
@@ -68,7 +75,8 @@ struct LineUncertainty {
   double smoothing_a0 = 0.0;
   double mass_k = 0.0;  ///< change by one standard deviation of the mass (with a known force only)
   double mass_a0 = 0.0;
-  double scale_relative = 0.0;  ///< standard deviation of the scale: of a0 and v_lim, not of K/m
+  double scale_relative = 0.0;         ///< standard deviation of one px_per_m: of a0 and v_lim, not of K/m
+  std::vector<LineShift> calibration;  ///< by each mode of the cameras and planes, the same ones for all lines
 };
 
 /// The line a = a0 - (K/m) v through the points of one direction of motion.

@@ -19,7 +19,10 @@ struct TrackData {
   std::vector<std::size_t> frame;  ///< the frame that each point comes from
   std::vector<double> frame_t_s;   ///< times of all frames, with and without marker
   double frame_rate_hz = 0.0;
-  double scale_sd_relative = 0.0;         ///< relative uncertainty of the scale (one px_per_m, calibration)
+  double scale_sd_relative = 0.0;  ///< relative uncertainty of one px_per_m
+  /// How all positions change by one standard deviation of each independent error of the camera and the plane (the
+  /// calibration's modes); one entry for every mode of the whole analysis, empty where it does not touch this track.
+  std::vector<std::vector<double>> shared_m;
   std::vector<MarkerSighting> sightings;  ///< empty for a track from a file
   std::vector<std::string> notes;
 };

@@ -157,3 +157,23 @@ TEST_CASE("an error of the scale moves the inclination and the limit velocity in
   CHECK(result.v_lim_m_s.estimate->sd == Approx(0.01 * 0.35).epsilon(1e-9));
   CHECK(result.k_over_m_1_s.estimate->sd < 1e-12);
 }
+
+TEST_CASE("an error of the camera that both lines share cancels in mu or in alpha, by its signs") {
+  const auto with = [](LineShift minus, LineShift plus) {
+    ClipResult clip = clip_on({{-1, 2.0, 0.8, 0.0, 0.0}, {1, 2.0, 0.7, 0.0, 0.0}});
+    clip.segments[0].parts.calibration = {{}, minus};
+    clip.segments[1].parts.calibration = {{}, plus, {}};  // a folder's modes that the other line does not know of
+    for (LineFit& line : clip.segments) complete_line(line);
+    return join({kUp}, {clip});
+  };
+  const auto same = with({0.02, 0.003}, {0.02, 0.003});
+  const double g_cos = kGravity * std::cos(std::asin(0.75 / kGravity));
+  CHECK(same.alpha_deg.estimate->sd == Approx(0.003 / g_cos * 180.0 / std::numbers::pi).epsilon(1e-9));
+  CHECK(same.mu.estimate->sd < 3e-6);  // mu = 0.05 / g cos(alpha) changes with alpha only
+  CHECK(same.k_over_m_1_s.estimate->sd == Approx(0.02).epsilon(1e-9));
+  CHECK(same.v_lim_m_s.estimate->sd == Approx(std::abs(0.003 - 0.35 * 0.02) / 2.0).epsilon(1e-9));
+  const auto opposite = with({0.02, 0.003}, {-0.02, -0.003});
+  CHECK(opposite.alpha_deg.estimate->sd < 1e-9);
+  CHECK(opposite.mu.estimate->sd == Approx(0.003 / g_cos).epsilon(1e-9));
+  CHECK(opposite.k_over_m_1_s.estimate->sd < 1e-9);
+}

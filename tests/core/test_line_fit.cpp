@@ -162,6 +162,39 @@ TEST_CASE("the scale's uncertainty is one of a0 and not of K/m, the mass's one o
   CHECK(heavy->parts.mass_a0 == Approx(0.03).epsilon(1e-9));
 }
 
+TEST_CASE("a displacement of all positions changes the line as a fit of the displaced positions does") {
+  const tests::Law law{2.8, 0.006, 4.0};
+  const std::vector<double> x = positions(law, 1.2, 250);
+  const auto all = smoothed(x, 1, 0.03);
+  // What an error of a camera looks like: an origin, a scale, a tilt of the plane, the lens at the field's ends.
+  std::vector<std::vector<double>> modes(4);
+  for (const double at : x) {
+    modes[0].push_back(1e-4);
+    modes[1].push_back(1e-4 * at);
+    modes[2].push_back(1e-4 * at * at);
+    modes[3].push_back(3e-5 * std::sin(7.0 * at));
+  }
+  auto input = all.input;
+  input.calibration = calibration_shifts(all.motion, input, modes);
+  const auto line = fit_line(1, input, {1e-10}, 0.0, Misfit::ignored);
+  REQUIRE(line);
+  REQUIRE(line->parts.calibration.size() == 4);
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    std::vector<double> displaced = x;
+    for (std::size_t i = 0; i < x.size(); ++i) displaced[i] += modes[k][i];
+    const auto moved = fit_line(1, smoothed(displaced, 1, 0.03).input, {1e-10}, 0.0, Misfit::ignored);
+    INFO("mode " << k);
+    // The second order: displacements are 1e-4 of the positions, the fourth one's slope 2e-4.
+    const double by_k = moved->k_over_m_1_s.value - line->k_over_m_1_s.value;
+    const double by_a0 = moved->a0_m_s2.value - line->a0_m_s2.value;
+    CHECK(line->parts.calibration[k].k == Approx(by_k).epsilon(5e-3).margin(1e-9));
+    CHECK(line->parts.calibration[k].a0 == Approx(by_a0).epsilon(5e-3).margin(1e-9));
+  }
+  CHECK(std::abs(line->parts.calibration[0].k) + std::abs(line->parts.calibration[0].a0) < 1e-8);
+  CHECK(line->parts.calibration[1].a0 == Approx(1e-4 * line->a0_m_s2.value).epsilon(1e-6));  // a scale
+  CHECK(std::abs(line->parts.calibration[1].k) < 1e-9);
+}
+
 TEST_CASE("the limit velocity is a0 over K/m, and null where the data do not determine it") {
   LineFit line;
   line.direction = 1;

@@ -123,7 +123,12 @@ TEST_CASE("a calibrated camera restitutes the whole field within a few hundredth
     const cv::Point2d right = known.project(plane.at(0.8, 0.1));
     const double length = cv::norm(*restitution.to_plane(right) - *restitution.to_plane(left));
     const double error = length / 1.2 - 1.0;
-    const double sd = restitution.relative_scale_sd(left, right);
+    double variance = 0.0;
+    for (const core::RestitutionMode& mode : restitution.modes()) {
+      const double moved = cv::norm(*mode.to_plane(right) - *mode.to_plane(left));
+      variance += std::pow((moved - length) / mode.sds / 1.2, 2);
+    }
+    const double sd = std::sqrt(variance);
     INFO("seed " << seed << ": relative error " << error << ", stated sd " << sd);
     CHECK(std::abs(error) < 5e-4);
     CHECK(sd < 5e-4);
@@ -131,9 +136,38 @@ TEST_CASE("a calibrated camera restitutes the whole field within a few hundredth
     // sd 0.01 px at 1.9 mm a pixel, six pose parameters of 108 data.
     CHECK(std::abs(restitution.plane()->rms_m - 0.01 * 1.6 / 830.0) < 0.3 * 0.01 * 1.6 / 830.0);
   }
-  // The sum of 12 squared standardised errors: chi-squared, 2.6 to 26.2 at 99.5 % each side... of a true sd.
-  CHECK(sum_z2 > 2.6);
+  // The sum of 12 squared standardised errors: chi-squared, 3.07 to 28.3 at 0.5 % on each side.
+  CHECK(sum_z2 > 3.07);
   CHECK(sum_z2 < 28.3);
+}
+
+TEST_CASE("planes of one calibration have the camera's modes in common, and each its own of the pose") {
+  const KnownCamera known;
+  cv::RNG random(3);
+  core::BoardViews boards = tests::known_views(known, 0.02, random);
+  const auto one = tests::known_corners(known, slanted(), 0.04, 0.02, random);
+  const auto two =
+      tests::known_corners(known, tests::known_plane({0, 0, 1.4}, 0, 0.1, 0, 0.16, 0.1), 0.04, 0.02, random);
+  const auto calibration = core::calibrate_camera(boards, 0.04);
+  const auto first = core::Restitution::from_pattern(calibration, {one}, 0.04, 0.0, 0.0).modes();
+  const auto second = core::Restitution::from_pattern(calibration, {two}, 0.04, 0.0, 0.0).modes();
+  REQUIRE(first.size() == second.size());
+  std::size_t of_camera = 0;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    CHECK(first[k].of_camera == second[k].of_camera);
+    CHECK(first[k].camera.fx == second[k].camera.fx);
+    CHECK(first[k].camera.distortion == second[k].camera.distortion);
+    if (!first[k].of_camera) {
+      CHECK(first[k].camera.fx == calibration.camera.fx);
+      continue;
+    }
+    CHECK(k == of_camera++);
+  }
+  CHECK(first.size() == of_camera + 6);
+  // The modes' squares add up to the covariance.
+  double variance = 0.0;
+  for (const auto& mode : first) variance += std::pow((mode.camera.fx - calibration.camera.fx) / mode.sds, 2);
+  CHECK(std::abs(variance / calibration.covariance(0, 0) - 1.0) < 1e-6);  // differences of numbers of 830 at 1e-13
 }
 
 TEST_CASE("one scale divides pixels by it and hands its uncertainty on") {
@@ -141,6 +175,7 @@ TEST_CASE("one scale divides pixels by it and hands its uncertainty on") {
   const auto found = restitution.to_plane({240.0, 120.0});
   CHECK(found->x == 0.5);
   CHECK(found->y == 0.25);
-  CHECK(restitution.relative_scale_sd({0, 0}, {100, 0}) == 40.0 / 480.0);
+  CHECK(restitution.relative_scale_sd() == 40.0 / 480.0);
+  CHECK(restitution.modes().empty());
   CHECK(*restitution.marker_radius_px({0, 0}) == 12.0);
 }
