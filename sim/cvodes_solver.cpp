@@ -6,6 +6,7 @@
 #include <sundials/sundials_context.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <exception>
 #include <string>
@@ -20,12 +21,12 @@ namespace {
 // Between two requested times. A motion of any length takes some thousand; more means that a force is not what it says.
 constexpr long kMaxSteps = 100'000;
 
-Eigen::Vector3d read(N_Vector vector) {
-  return Eigen::Map<const Eigen::Vector3d>(N_VGetArrayPointer(vector));
+OdeVector read(N_Vector vector) {
+  return Eigen::Map<const Eigen::VectorXd>(N_VGetArrayPointer(vector), N_VGetLength(vector));
 }
 
-void write(const Eigen::Vector3d& values, N_Vector vector) {
-  Eigen::Map<Eigen::Vector3d>(N_VGetArrayPointer(vector)) = values;
+void write(const OdeVector& values, N_Vector vector) {
+  Eigen::Map<Eigen::VectorXd>(N_VGetArrayPointer(vector), N_VGetLength(vector)) = values;
 }
 
 }  // namespace
@@ -37,6 +38,7 @@ struct CvodesSolver::Memory {
   N_Vector tolerance = nullptr;
   SUNMatrix matrix = nullptr;
   SUNLinearSolver linear_solver = nullptr;
+  SUNNonlinearSolver iteration = nullptr;
   void* cvodes = nullptr;
   double t_s = 0.0;
   long steps_before = 0;
@@ -48,6 +50,7 @@ struct CvodesSolver::Memory {
   Memory& operator=(const Memory&) = delete;
   ~Memory() {
     if (cvodes != nullptr) CVodeFree(&cvodes);
+    if (iteration != nullptr) SUNNonlinSolFree(iteration);
     if (linear_solver != nullptr) SUNLinSolFree(linear_solver);
     if (matrix != nullptr) SUNMatDestroy(matrix);
     if (tolerance != nullptr) N_VDestroy(tolerance);
@@ -69,7 +72,7 @@ struct CvodesSolver::Memory {
   static int rate(realtype, N_Vector y, N_Vector dydt, void* self) {
     auto& memory = *static_cast<Memory*>(self);
     return memory.guarded([&] {
-      const Eigen::Vector3d rate = memory.system.rate(read(y));
+      const OdeVector rate = memory.system.rate(read(y));
       write(rate, dydt);
       return rate.allFinite();
     });
@@ -78,8 +81,8 @@ struct CvodesSolver::Memory {
   static int jacobian(realtype, N_Vector y, N_Vector, SUNMatrix matrix, void* self, N_Vector, N_Vector, N_Vector) {
     auto& memory = *static_cast<Memory*>(self);
     return memory.guarded([&] {
-      const Eigen::Matrix3d jacobian = memory.system.jacobian(read(y));
-      Eigen::Map<Eigen::Matrix3d>(SM_DATA_D(matrix)) = jacobian;  // both column by column
+      const OdeMatrix jacobian = memory.system.jacobian(read(y));
+      Eigen::Map<Eigen::MatrixXd>(SM_DATA_D(matrix), jacobian.rows(), jacobian.cols()) = jacobian;  // by columns, both
       return jacobian.allFinite();
     });
   }
@@ -107,7 +110,7 @@ struct CvodesSolver::Memory {
                     message.empty() ? "no reason given" : message));
   }
 
-  void use(OdeSystem new_system, double start_s, const Eigen::Vector3d& start) {
+  void use(OdeSystem new_system, double start_s, const OdeVector& start) {
     system = std::move(new_system);
     t_s = start_s;
     write(start, y);
@@ -123,6 +126,23 @@ struct CvodesSolver::Memory {
     check(CVodeSetNoInactiveRootWarn(cvodes) == CV_SUCCESS, "CVodeSetNoInactiveRootWarn");
   }
 
+  void use_newton() {
+    const sunindextype n = N_VGetLength(y);
+    matrix = SUNDenseMatrix(n, n, context);
+    check(matrix != nullptr, "SUNDenseMatrix");
+    linear_solver = SUNLinSol_Dense(y, matrix, context);
+    check(linear_solver != nullptr, "SUNLinSol_Dense");
+    check(CVodeSetLinearSolver(cvodes, linear_solver, matrix) == CVLS_SUCCESS, "CVodeSetLinearSolver");
+    check(CVodeSetJacFn(cvodes, jacobian) == CVLS_SUCCESS, "CVodeSetJacFn");
+  }
+
+  void use_iteration() {
+    constexpr int kAcceleration = 0;  // plain functional iteration
+    iteration = SUNNonlinSol_FixedPoint(y, kAcceleration, context);
+    check(iteration != nullptr, "SUNNonlinSol_FixedPoint");
+    check(CVodeSetNonlinearSolver(cvodes, iteration) == CV_SUCCESS, "CVodeSetNonlinearSolver");
+  }
+
   long steps_now() const {
     long steps = 0;
     CVodeGetNumSteps(cvodes, &steps);
@@ -130,24 +150,25 @@ struct CvodesSolver::Memory {
   }
 };
 
-CvodesSolver::CvodesSolver(OdeSystem system, double t_s, const Eigen::Vector3d& y)
-    : memory_(std::make_unique<Memory>()) {
+CvodesSolver::CvodesSolver(OdeSystem system, double t_s, const OdeVector& y) : memory_(std::make_unique<Memory>()) {
   Memory& m = *memory_;
+  const bool stiff = static_cast<bool>(system.jacobian);
   m.check(SUNContext_Create(nullptr, &m.context) == 0, "SUNContext_Create");
-  m.y = N_VNew_Serial(3, m.context);
-  m.tolerance = N_VNew_Serial(3, m.context);
-  m.matrix = SUNDenseMatrix(3, 3, m.context);
-  m.check(m.y != nullptr && m.tolerance != nullptr && m.matrix != nullptr, "N_VNew_Serial");
-  m.linear_solver = SUNLinSol_Dense(m.y, m.matrix, m.context);
-  m.cvodes = CVodeCreate(CV_BDF, m.context);
-  m.check(m.linear_solver != nullptr && m.cvodes != nullptr, "CVodeCreate");
+  m.y = N_VNew_Serial(y.size(), m.context);
+  m.tolerance = N_VNew_Serial(y.size(), m.context);
+  m.check(m.y != nullptr && m.tolerance != nullptr, "N_VNew_Serial");
+  m.cvodes = CVodeCreate(stiff ? CV_BDF : CV_ADAMS, m.context);
+  m.check(m.cvodes != nullptr, "CVodeCreate");
   m.check(CVodeSetErrHandlerFn(m.cvodes, Memory::report, &m) == CV_SUCCESS, "CVodeSetErrHandlerFn");
   m.use(std::move(system), t_s, y);
   m.check(CVodeInit(m.cvodes, Memory::rate, t_s, m.y) == CV_SUCCESS, "CVodeInit");
   m.check(CVodeSetUserData(m.cvodes, &m) == CV_SUCCESS, "CVodeSetUserData");
   m.set_event_and_tolerances();
-  m.check(CVodeSetLinearSolver(m.cvodes, m.linear_solver, m.matrix) == CVLS_SUCCESS, "CVodeSetLinearSolver");
-  m.check(CVodeSetJacFn(m.cvodes, Memory::jacobian) == CVLS_SUCCESS, "CVodeSetJacFn");
+  if (stiff) {
+    m.use_newton();
+  } else {
+    m.use_iteration();
+  }
   m.check(CVodeSetMaxNumSteps(m.cvodes, kMaxSteps) == CV_SUCCESS, "CVodeSetMaxNumSteps");
 }
 
@@ -162,7 +183,7 @@ OdeState CvodesSolver::advance(double t_s) {
   return {.t_s = m.t_s, .y = read(m.y), .at_event = flag == CV_ROOT_RETURN};
 }
 
-void CvodesSolver::restart(OdeSystem system, double t_s, const Eigen::Vector3d& y) {
+void CvodesSolver::restart(OdeSystem system, double t_s, const OdeVector& y) {
   Memory& m = *memory_;
   m.steps_before += m.steps_now();
   m.use(std::move(system), t_s, y);

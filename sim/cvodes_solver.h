@@ -1,7 +1,9 @@
 /// CVODES (SUNDIALS) behind one owner of its memory.
 ///
-///     dy/dt = rate(y), y of three components, autonomous; backward differentiation formulas of order 1 to 5 with
-///     Newton's method and the Jacobian given; stops at a root of event(y).
+///     dy/dt = rate(y), autonomous, up to kMostComponents components; stops at a root of event(y).
+///
+/// With a Jacobian: backward differentiation formulas of order 1 to 5 with Newton's method. Without one, for what is
+/// not stiff: Adams' formulas of order 1 to 12 with functional iteration.
 ///
 /// Nothing is printed: what CVODES reports becomes the text of a NumericalError with time, step and tolerances.
 #pragma once
@@ -12,25 +14,29 @@
 
 namespace glidelab::sim {
 
+inline constexpr int kMostComponents = 32;
+using OdeVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostComponents, 1>;
+using OdeMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostComponents, kMostComponents>;
+
 struct OdeSystem {
-  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> rate;
-  std::function<Eigen::Matrix3d(const Eigen::Vector3d&)> jacobian;  ///< d rate[i] / d y[j]
-  std::function<double(const Eigen::Vector3d&)> event;              ///< empty: no event
-  int event_crossing = 0;                                           ///< +1 where it rises, -1 where it falls
+  std::function<OdeVector(const OdeVector&)> rate;
+  std::function<OdeMatrix(const OdeVector&)> jacobian;  ///< d rate[i] / d y[j]; empty: Adams
+  std::function<double(const OdeVector&)> event;        ///< empty: no event
+  int event_crossing = 0;                               ///< +1 where it rises, -1 where it falls
   double relative_tolerance = 0.0;
-  Eigen::Vector3d absolute_tolerance = Eigen::Vector3d::Zero();
+  OdeVector absolute_tolerance;  ///< of each component
 };
 
 struct OdeState {
   double t_s = 0.0;
-  Eigen::Vector3d y = Eigen::Vector3d::Zero();
+  OdeVector y;
   bool at_event = false;
 };
 
 class CvodesSolver {
  public:
   /// Ready to move `system` from (t, y). NumericalError where CVODES refuses or there is no memory.
-  CvodesSolver(OdeSystem system, double t_s, const Eigen::Vector3d& y);
+  CvodesSolver(OdeSystem system, double t_s, const OdeVector& y);
   ~CvodesSolver();
   CvodesSolver(CvodesSolver&&) noexcept;
   CvodesSolver& operator=(CvodesSolver&&) noexcept;
@@ -39,8 +45,8 @@ class CvodesSolver {
   /// first. After an event, restart. NumericalError where a step fails.
   OdeState advance(double t_s);
 
-  /// Starts anew with another system: the order falls to 1 and no history is kept.
-  void restart(OdeSystem system, double t_s, const Eigen::Vector3d& y);
+  /// Starts anew with another system of the same size and kind: the order falls to 1 and no history is kept.
+  void restart(OdeSystem system, double t_s, const OdeVector& y);
 
   /// Steps taken since the construction.
   long steps() const;

@@ -81,7 +81,7 @@ TEST_CASE("the solver follows an exponential and stops at its event") {
   OdeSystem system = decay(2.0);
   system.event = [](const Eigen::Vector3d& y) { return y[1] - 0.25; };
   system.event_crossing = -1;
-  CvodesSolver solver(system, 1.0, {0.0, 1.0, 0.0});
+  CvodesSolver solver(system, 1.0, Eigen::Vector3d(0.0, 1.0, 0.0));
   const OdeState before = solver.advance(1.5);
   CHECK_FALSE(before.at_event);
   CHECK(std::abs(before.y[1] - std::exp(-1.0)) < 1e-10);  // 100 steps, each within 1e-12
@@ -89,7 +89,7 @@ TEST_CASE("the solver follows an exponential and stops at its event") {
   CHECK(at.at_event);
   CHECK(std::abs(at.t_s - (1.0 + std::log(4.0) / 2.0)) < 1e-10);
   const long steps = solver.steps();
-  solver.restart(decay(1.0), 0.0, {0.0, 1.0, 0.0});
+  solver.restart(decay(1.0), 0.0, Eigen::Vector3d(0.0, 1.0, 0.0));
   CHECK(std::abs(solver.advance(1.0).y[1] - std::exp(-1.0)) < 1e-10);
   CHECK(solver.steps() > steps);
 }
@@ -98,7 +98,7 @@ TEST_CASE("an event in the other direction is passed over") {
   OdeSystem system = decay(2.0);
   system.event = [](const Eigen::Vector3d& y) { return y[1] - 0.25; };
   system.event_crossing = +1;
-  CHECK_FALSE(CvodesSolver(system, 0.0, {0.0, 1.0, 0.0}).advance(3.0).at_event);
+  CHECK_FALSE(CvodesSolver(system, 0.0, Eigen::Vector3d(0.0, 1.0, 0.0)).advance(3.0).at_event);
 }
 
 TEST_CASE("a force that is not a number is a numerical error with time, step and tolerance, and nothing is printed") {
