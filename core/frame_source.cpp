@@ -131,7 +131,11 @@ class VideoFrames final : public FrameSource {
 
   void check_length() {
     if (count_ == 0) fail(file_, "", "no frame", "a clip with frames");
-    const double missing = static_cast<double>(stated_) - static_cast<double>(count_ + unstamped_);
+    // Where the container tells its length and not its number of frames, frames that were dropped are in the stated
+    // number; the last stamp then shows that the clip is whole.
+    const double by_stamps = stamps_s_.empty() ? 0.0 : stamps_s_.back() * stated_rate_hz_ + 1.0;
+    const double missing = static_cast<double>(stated_) - std::max(static_cast<double>(count_), by_stamps) -
+                           static_cast<double>(unstamped_);
     if (missing > std::max(2.0, 0.01 * static_cast<double>(stated_))) {
       fail(file_, fmt::format("frame {}", count_), fmt::format("the end of the clip after {} frames", count_),
            fmt::format("{} frames, as the container says (is the file truncated?)", stated_));

@@ -8,9 +8,10 @@
 namespace glidelab::render {
 
 std::size_t frame_count(const Recording& recording, const sim::MotionSetup& motion) {
+  const double rate_hz = FrameClock(recording.clock, recording.frame_rate_hz, 0, 0).true_rate_hz();
   const double last_start = motion.duration_s - recording.exposure_s - recording.shutter.readout_s();
   // A whole number of frame times that rounding made a little shorter still counts.
-  return last_start <= 0.0 ? 1 : static_cast<std::size_t>(std::floor(last_start * recording.frame_rate_hz + 1e-9)) + 1;
+  return last_start <= 0.0 ? 1 : static_cast<std::size_t>(std::floor(last_start * rate_hz + 1e-9)) + 1;
 }
 
 std::size_t exposure_instants(double length_m, double longest_step_m) {
@@ -75,6 +76,13 @@ double mid_exposure_s(const Recording& recording, const FrameMotion& frame, doub
 
 void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
                     double longest_step_m, const std::function<void(const FrameMotion&)>& visit, MotionDetail detail) {
+  const FrameClock even({}, recording.frame_rate_hz, 0, 0);
+  for_each_frame(body, motion, recording, even, longest_step_m, visit, detail);
+}
+
+void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
+                    const FrameClock& clock, double longest_step_m,
+                    const std::function<void(const FrameMotion&)>& visit, MotionDetail detail) {
   constexpr std::size_t kChunk = 1024;
   constexpr double kLongestStep = 0.001;  // s, between the knots of a path
   const bool with_path = detail == MotionDetail::path || recording.shutter.rolling;
@@ -84,9 +92,9 @@ void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const
   const double step_s = open_s / static_cast<double>(pieces);
   double x0_m = motion.x0_m;
   double v0_m_s = motion.v0_m_s;
-  const auto start_of = [&](std::size_t i) { return static_cast<double>(i) / recording.frame_rate_hz; };
   for (std::size_t first = 0; first < frames; first += kChunk) {
     const std::size_t count = std::min(kChunk, frames - first);
+    const auto start_of = [&](std::size_t i) { return clock.between_s(first, first + i); };
     // Once for the middles, which say how fast the glider is; then for the parts of each exposure.
     std::vector<double> times;
     for (std::size_t i = 0; i < count; ++i) {
@@ -126,9 +134,9 @@ void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const
     for (std::size_t i = 0; i < count; ++i) {
       FrameMotion frame;
       frame.frame = first + i;
-      frame.start_s = start_of(first + i);
+      frame.start_s = clock.start_s(first + i);
       frame.middle = middles.states[i];
-      frame.middle.t_s = static_cast<double>(first + i) / recording.frame_rate_hz;
+      frame.middle.t_s = frame.start_s;
       if (with_path) {
         std::vector<sim::State> knots;
         for (std::size_t k = 0; k < parts[i]; ++k) knots.push_back(state_at(part_times[at++]));

@@ -1,8 +1,8 @@
 /// Where the glider is during each frame's exposure.
 ///
-/// The first row's exposure of frame k is [k / rate, k / rate + exposure] on the clock of sim (the motion starts at
-/// t = 0, with the first exposure), other rows follow as the shutter says. The middle of the middle row's exposure has
-/// the time k / rate on the clock of the recording.
+/// The first row's exposure of frame k is [start, start + exposure] on the clock of sim, start = k / rate where the
+/// camera's clock is right (frame_clock.h); the motion starts at t = 0, with the first exposure. Other rows follow as
+/// the shutter says. The middle of the middle row's exposure has the time `start` on the clock of the truth.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace glidelab::render {
 
-/// Frames whose last row's exposure ends within the motion's duration; at least one.
+/// Slots of the clock whose last row's exposure ends within the motion's duration; at least one.
 std::size_t frame_count(const Recording& recording, const sim::MotionSetup& motion);
 
 /// The motion while a frame is read, for any instant: cubic Hermite between states of equal distance. With knots h = 1
@@ -42,9 +42,9 @@ class MotionPath {
 };
 
 struct FrameMotion {
-  std::size_t frame = 0;
+  std::size_t frame = 0;    ///< slot of the clock
   double start_s = 0.0;     ///< when its first row's exposure starts, on sim's clock
-  sim::State middle;        ///< at the middle row's mid-exposure; t_s = frame / rate, the recording's clock
+  sim::State middle;        ///< at the middle row's mid-exposure; t_s = start_s, from the first frame's middle
   std::vector<double> x_m;  ///< at the instants that stand for the exposure (below); empty where there is a path
   MotionPath path;          ///< from the start of the first row's exposure to the end of the last one's
 };
@@ -63,7 +63,11 @@ std::size_t exposure_instants(double length_m, double longest_step_m);
 /// that their variance is that of the whole, 1/12 (for n = 1: 0). A smear so has its length to the second moment.
 double exposure_instant(std::size_t i, std::size_t n);
 
-/// Calls `visit` for every frame in order, simulating in chunks so that no clip is held in memory.
+/// Calls `visit` for every slot of the clock in order, simulating in chunks so that no clip is held in memory. Without
+/// a clock, frames come at the stated rate.
+void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
+                    const FrameClock& clock, double longest_step_m,
+                    const std::function<void(const FrameMotion&)>& visit, MotionDetail detail = MotionDetail::parts);
 void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
                     double longest_step_m, const std::function<void(const FrameMotion&)>& visit,
                     MotionDetail detail = MotionDetail::parts);

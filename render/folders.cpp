@@ -63,6 +63,13 @@ nlohmann::ordered_json camera_json(const Scenario& scenario) {
           {"position_m", {eye.x(), eye.y(), eye.z()}},
           {"frame_rate_hz", scenario.recording.frame_rate_hz},
           {"exposure_s", scenario.recording.exposure_s},
+          {"clock",
+           {{"rate_error_ppm", scenario.recording.clock.rate_error_ppm},
+            {"jitter_s", scenario.recording.clock.jitter_s},
+            {"dropped_fraction", scenario.recording.clock.dropped_fraction},
+            {"duplicated_fraction", scenario.recording.clock.duplicated_fraction},
+            {"variable", scenario.recording.clock.variable}}},
+          {"codec", name_of(scenario.codec)},
           {"shutter",
            {{"kind", scenario.recording.shutter.rolling ? "rolling" : "global"},
             {"line_readout_s", scenario.recording.shutter.line_readout_s},
@@ -112,6 +119,7 @@ std::string experiment_toml(const Scenario& scenario) {
   if (shutter.rolling) line("line_readout_s", number(shutter.line_readout_s));
   if (shutter.bottom_first) line("first_row", "\"bottom\"");
   line("bit_depth", fmt::format("{}", scenario.sensor.bit_depth));
+  if (scenario.recording.clock.variable) line("time", "\"container\"");
   table("[calibration]");
   line("pattern", "\"chessboard\"");
   line("inner_corners", fmt::format("[{}, {}]", scenario.pattern.inner_columns, scenario.pattern.inner_rows));
@@ -133,7 +141,7 @@ std::string experiment_toml(const Scenario& scenario) {
     for (const sim::MotionSetup& motion : configuration.motions) {
       table("[[clip]]");
       line("name", quoted(motion.name));
-      line("file", quoted("clips/" + file_name_of(scenario.codec, motion.name)));
+      line("file", quoted("clips/" + file_name_of(scenario.codec, scenario.compression, motion.name)));
       line("mass_kg", number(configuration.body.mass_kg));
       line("incline_deg", number(configuration.stated_incline_rad * kDegPerRad));
       if (configuration.stated_incline_sd_rad > 0.0) {
@@ -158,12 +166,15 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed) {
     nlohmann::ordered_json names = nlohmann::ordered_json::array();
     for (const sim::MotionSetup& motion : configuration.motions) {
       names.push_back(motion.name);
+      const FrameClock clock(scenario.recording.clock, scenario.recording.frame_rate_hz, seed,
+                             static_cast<std::uint32_t>(clips.size()));
       clips.push_back({{"name", motion.name},
                        {"configuration", configuration.name},
-                       {"frames", frame_count(scenario.recording, motion)},
+                       {"frames", clock.frames_of(frame_count(scenario.recording, motion))},
                        {"x_origin_m", x_origin_m(scenario, configuration.body.incline_rad)},
                        {"trajectory", "trajectory-" + motion.name + ".csv"},
-                       {"marker", "marker-" + motion.name + ".csv"}});
+                       {"marker", "marker-" + motion.name + ".csv"},
+                       {"frame_times", "frames-" + motion.name + ".csv"}});
     }
     configurations.push_back(
         {{"name", configuration.name},

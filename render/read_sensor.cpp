@@ -89,6 +89,56 @@ void read_white(const TomlTable& table, const Scenario& scenario, Exposure& expo
   }
 }
 
+void read_h264(const TomlTable& table, Scenario& scenario) {
+  Compression& compression = scenario.compression;
+  compression.gop = static_cast<int>(table.integer_or("gop", compression.gop, 1, 10'000));
+  compression.bitrate_kbit_s = table.number_or("bitrate_kbit_s", 0.0, base::between(10.0, 1e6));
+  if (table.has("bitrate_kbit_s") && table.has("crf")) {
+    table.reject("crf", "a constant rate factor beside a bit rate", "one of the two");
+  }
+  compression.crf = table.number_or("crf", compression.crf, base::between(0.0, 51.0));
+  const Camera& camera = scenario.camera;
+  if (camera.width_px % 2 != 0 || camera.height_px % 2 != 0) {
+    table.reject("name", fmt::format("text \"h264\" for {} x {} pixels", camera.width_px, camera.height_px),
+                 "even numbers of pixels");
+  }
+}
+
+void read_container(const TomlTable& table, Scenario& scenario) {
+  if (!table.has("container")) return;
+  const std::string name = table.word("container", {"mkv", "avi", "mp4"});
+  const Container container = name == "mkv" ? Container::mkv : name == "avi" ? Container::avi : Container::mp4;
+  scenario.compression.container = container;
+  if (!fits(scenario.codec, container)) {
+    table.reject("container", fmt::format("text \"{}\" for {}", name, name_of(scenario.codec)),
+                 "mkv for ffv1, avi for raw, avi, mkv or mp4 for mjpeg, mp4 or mkv for h264");
+  }
+}
+
+/// Exposures must not overlap, and a file must be able to hold the stamps.
+void check_clock(const TomlTable& table, const Scenario& scenario) {
+  const Recording& recording = scenario.recording;
+  const ClockSetup& clock = recording.clock;
+  const double frame_s = 1.0 / (recording.frame_rate_hz * (1.0 + 1e-6 * clock.rate_error_ppm));
+  const double free_s = frame_s * (1.0 + 1e-9) - recording.exposure_s - 2.0 * kLargestJitter * clock.jitter_s;
+  if (free_s < 0.0) {
+    table.reject(clock.jitter_s > 0.0 ? "jitter_s" : "rate_error_ppm",
+                 fmt::format("exposures of {} s every {} s that overlap", recording.exposure_s, frame_s),
+                 "exposures that do not, with a jitter of up to 5.9 standard deviations each");
+  }
+  const Container container = scenario.compression.container.value_or(usual_container(scenario.codec));
+  if (clock.variable && (container == Container::avi || container == Container::folder)) {
+    table.reject("variable", fmt::format("a variable rate for {}", name_of(scenario.codec)),
+                 "a codec in mkv or mp4, which hold time stamps");
+  }
+}
+
+void read_tick(const TomlTable& table, ClockSetup& clock, double frame_rate_hz) {
+  if (!table.has("stamp_tick_s")) return;
+  clock.stamp_tick_s = table.number("stamp_tick_s", {0.0, 0.5 / frame_rate_hz, true, false});
+  if (!clock.variable) table.reject("stamp_tick_s", "a tick", "variable = true beside it: only then there are stamps");
+}
+
 }  // namespace
 
 void read_sensor(const TomlTable& root, Scenario& scenario) {
@@ -108,12 +158,37 @@ void read_codec(const TomlTable& root, Scenario& scenario) {
   scenario.codec = deep ? Codec::png : Codec::ffv1;
   const std::optional<TomlTable> table = root.maybe_table("codec");
   if (!table) return;
-  const std::string name = table->word("name", {"ffv1", "raw", "png"});
-  scenario.codec = name == "ffv1" ? Codec::ffv1 : name == "raw" ? Codec::raw : Codec::png;
+  const std::string name = table->word("name", {"ffv1", "raw", "png", "mjpeg", "h264"});
+  for (const Codec codec : {Codec::ffv1, Codec::raw, Codec::png, Codec::mjpeg, Codec::h264}) {
+    if (name == name_of(codec)) scenario.codec = codec;
+  }
   if (deep && scenario.codec != Codec::png) {
     table->reject("name", fmt::format("text \"{}\"", name),
                   fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));
   }
+  Compression& compression = scenario.compression;
+  if (scenario.codec == Codec::mjpeg) {
+    compression.quality = static_cast<int>(table->integer_or("quality", compression.quality, 1, 100));
+  }
+  if (scenario.codec == Codec::h264) read_h264(*table, scenario);
+  read_container(*table, scenario);
+}
+
+void read_clock(const TomlTable& root, Scenario& scenario) {
+  const std::optional<TomlTable> table = root.maybe_table("clock");
+  if (!table) return;
+  ClockSetup& clock = scenario.recording.clock;
+  clock.rate_error_ppm = table->number_or("rate_error_ppm", 0.0, base::between(-1e5, 1e5));
+  clock.jitter_s = table->number_or("jitter_s", 0.0, base::between(0.0, 1.0));
+  clock.dropped_fraction = table->number_or("dropped_fraction", 0.0, base::between(0.0, 0.9));
+  clock.duplicated_fraction = table->number_or("duplicated_fraction", 0.0, base::between(0.0, 0.9));
+  if (clock.dropped_fraction + clock.duplicated_fraction > 0.9) {
+    table->reject("duplicated_fraction", fmt::format("{}", clock.duplicated_fraction),
+                  "a tenth of the frames or more that are neither dropped nor duplicated");
+  }
+  clock.variable = table->boolean_or("variable", false);
+  read_tick(*table, clock, scenario.recording.frame_rate_hz);
+  check_clock(*table, scenario);
 }
 
 }  // namespace glidelab::render

@@ -89,27 +89,71 @@ Sensor with_8_bits(const Sensor& sensor) {
   return shallow;
 }
 
+FrameClock clock_of(const Scenario& scenario, const Clip& clip, std::uint64_t seed) {
+  return {scenario.recording.clock, scenario.recording.frame_rate_hz, seed, clip.stream};
+}
+
+/// What the truth says of one clip, frame by frame of the file.
+struct ClipTruth {
+  base::CsvWriter trajectory{"t_s,x_m,v_m_s,a_m_s2,mode"};
+  base::CsvWriter marker{"frame,t_s,u_px,v_px,centroid_u_px,centroid_v_px"};
+  base::CsvWriter times{"frame,slot,t_s,stamp_s,duplicate"};
+  std::size_t frames = 0;
+
+  /// A frame of the file that shows `shown`, which was exposed in its own slot, and stands in `slot`.
+  void add(const FrameMotion& shown, const std::optional<MarkerInPicture>& in_picture, std::size_t slot,
+           double stamp_s) {
+    const sim::State& state = shown.middle;
+    trajectory.number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
+    trajectory.text(sim::name_of(state.mode));
+    trajectory.end_row();
+    if (in_picture) {
+      marker.number(static_cast<double>(frames)).number(in_picture->t_s);
+      marker.number(in_picture->center_px.x()).number(in_picture->center_px.y());
+      marker.number(in_picture->centroid_px.x()).number(in_picture->centroid_px.y());
+      marker.end_row();
+    }
+    times.number(static_cast<double>(frames)).number(static_cast<double>(slot)).number(state.t_s).number(stamp_s);
+    times.number(shown.frame == slot ? 0.0 : 1.0);
+    times.end_row();
+    ++frames;
+  }
+};
+
 template <typename Code>
-void render_frames(const Scenario& scenario, const Clip& clip, ClipRenderer& renderer, VideoWriter& writer,
-                   base::CsvWriter& truth, base::CsvWriter& marker_truth, const std::function<void()>& frame_done) {
+void write_frame(VideoWriter& writer, std::span<const Code> codes, const std::optional<double>& stamp_s) {
+  if constexpr (sizeof(Code) == 1) {
+    if (stamp_s) {
+      writer.write(codes, *stamp_s);
+      return;
+    }
+  }
+  writer.write(codes);
+}
+
+template <typename Code>
+void render_frames(const Scenario& scenario, const Clip& clip, const FrameClock& clock, ClipRenderer& renderer,
+                   VideoWriter& writer, ClipTruth& truth, const std::function<void()>& frame_done) {
   const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
   std::vector<Code> codes(static_cast<std::size_t>(all.width) * all.height);
+  FrameMotion shown;
+  std::optional<MarkerInPicture> marker;
   const auto visit = [&](const FrameMotion& frame) {
-    renderer.read(frame, all, std::span<Code>(codes));
-    writer.write(std::span<const Code>(codes));
-    const sim::State& state = frame.middle;
-    truth.number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
-    truth.text(sim::name_of(state.mode));
-    truth.end_row();
-    if (const auto marker = marker_in_picture(scenario, clip.configuration->body, frame)) {
-      marker_truth.number(static_cast<double>(frame.frame)).number(marker->t_s);
-      marker_truth.number(marker->center_px.x()).number(marker->center_px.y());
-      marker_truth.number(marker->centroid_px.x()).number(marker->centroid_px.y());
-      marker_truth.end_row();
+    const FrameFate fate = clock.fate(frame.frame);
+    if (fate == FrameFate::recorded) {
+      renderer.read(frame, all, std::span<Code>(codes));
+      shown = frame;
+      marker = marker_in_picture(scenario, clip.configuration->body, frame);
+    }
+    if (fate != FrameFate::dropped) {
+      const double stamp_s = clock.stamp_s(frame.frame);
+      write_frame(writer, std::span<const Code>(codes),
+                  scenario.recording.clock.variable ? std::optional(stamp_s) : std::nullopt);
+      truth.add(shown, marker, frame.frame, stamp_s);
     }
     frame_done();
   };
-  for_each_frame(clip.configuration->body, *clip.motion, scenario.recording, renderer.longest_step_m(), visit,
+  for_each_frame(clip.configuration->body, *clip.motion, scenario.recording, clock, renderer.longest_step_m(), visit,
                  renderer.detail());
 }
 
@@ -127,20 +171,22 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   std::map<std::string, SetUp> set_ups;
   std::vector<Clip> clips;
   RenderSummary summary;
+  double all_slots = 0.0;
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     SetUp& set_up = set_ups[configuration.group];
     if (set_up.scene.boxes.empty()) set_up.scene = empty_track(scenario, configuration.body.incline_rad);
     for (const sim::MotionSetup& motion : configuration.motions) {
       clips.push_back({&configuration, &motion, &set_up, static_cast<std::uint32_t>(clips.size())});
-      summary.frames += frame_count(scenario.recording, motion);
+      const std::size_t slots = frame_count(scenario.recording, motion);
+      all_slots += static_cast<double>(slots);
+      summary.frames += clock_of(scenario, clips.back(), options.seed).frames_of(slots);
     }
   }
   summary.clips = clips.size();
   std::vector<SetUp*> backgrounds;
   for (auto& [name, set_up] : set_ups) backgrounds.push_back(&set_up);
 
-  const double all_work =
-      kStillWork * static_cast<double>(stills.size() + backgrounds.size()) + static_cast<double>(summary.frames);
+  const double all_work = kStillWork * static_cast<double>(stills.size() + backgrounds.size()) + all_slots;
   std::atomic<double> done{0.0};
   const auto advance = [&](double work) {
     double before = done.load();
@@ -174,21 +220,28 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
       const Clip& clip = clips[i];
       ClipRenderer renderer(scenario, *clip.configuration, clip.set_up->scene, rays, clip.set_up->background_e,
                             options.seed, clip.stream);
-      const VideoFormat format{scenario.codec, scenario.camera.width_px, scenario.camera.height_px,
-                               scenario.recording.frame_rate_hz, 1};
-      const auto writer =
-          open_video(experiment_dir / "clips" / file_name_of(scenario.codec, clip.motion->name), format);
-      base::CsvWriter truth("t_s,x_m,v_m_s,a_m_s2,mode");
-      base::CsvWriter marker_truth("frame,t_s,u_px,v_px,centroid_u_px,centroid_v_px");
+      const VideoFormat format{scenario.codec,
+                               scenario.camera.width_px,
+                               scenario.camera.height_px,
+                               scenario.recording.frame_rate_hz,
+                               1,
+                               scenario.compression,
+                               scenario.recording.clock.variable};
+      const auto writer = open_video(
+          experiment_dir / "clips" / file_name_of(scenario.codec, scenario.compression, clip.motion->name), format);
+      const FrameClock clock = clock_of(scenario, clip, options.seed);
+      ClipTruth truth;
       const auto frame_done = [&] { advance(1.0); };
       if (scenario.sensor.bit_depth > 8) {
-        render_frames<std::uint16_t>(scenario, clip, renderer, *writer, truth, marker_truth, frame_done);
+        render_frames<std::uint16_t>(scenario, clip, clock, renderer, *writer, truth, frame_done);
       } else {
-        render_frames<std::uint8_t>(scenario, clip, renderer, *writer, truth, marker_truth, frame_done);
+        render_frames<std::uint8_t>(scenario, clip, clock, renderer, *writer, truth, frame_done);
       }
       writer->finish();
-      base::write_file(truth_dir / fmt::format("trajectory-{}.csv", clip.motion->name), truth.str());
-      base::write_file(truth_dir / fmt::format("marker-{}.csv", clip.motion->name), marker_truth.str());
+      const std::string& name = clip.motion->name;
+      base::write_file(truth_dir / fmt::format("trajectory-{}.csv", name), truth.trajectory.str());
+      base::write_file(truth_dir / fmt::format("marker-{}.csv", name), truth.marker.str());
+      base::write_file(truth_dir / fmt::format("frames-{}.csv", name), truth.times.str());
     }
   });
 

@@ -143,6 +143,7 @@ Scenario read_scenario(const std::filesystem::path& path) {
   read_optics(root, scenario);
   read_sensor(root, scenario);
   read_codec(root, scenario);
+  read_clock(root, scenario);
   read_pattern(root, scenario.pattern);
   read_laboratory(root, scenario);
   file.finish();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/camera.h"
+#include "render/frame_clock.h"
 #include "render/sensor.h"
 #include "render/shutter.h"
 #include "render/video_writer.h"
@@ -21,6 +22,7 @@ struct Recording {
   double frame_rate_hz = 200.0;
   double exposure_s = 0.001;
   Shutter shutter = {};
+  ClockSetup clock = {};
 };
 
 /// How bright things are in the picture: a white surface in the middle of the light.
@@ -75,6 +77,7 @@ struct Scenario {
   Sensor sensor;
   Exposure exposure;
   Codec codec = Codec::ffv1;
+  Compression compression;
   PatternSetup pattern;
   MarkerSetup marker;
   TrackSetup track;

@@ -138,13 +138,13 @@ TEST_CASE("An experiment folder holds what the contract says, and the analysis r
   CHECK(made.summary.frames == 12 + 10 + 6);
   std::set<std::string> names;
   for (const auto& [name, bytes] : made.files()) names.insert(name);
-  CHECK(names == std::set<std::string>{"e/experiment.toml", "e/clips/m1-up.mkv", "e/clips/m1-down.mkv",
-                                       "e/clips/m2-down.mkv", "e/calibration/view-00.png", "e/calibration/view-01.png",
-                                       "e/calibration/view-02.png", "e/calibration/plane.png", "e/plumb.png",
-                                       "e.truth/truth.json", "e.truth/trajectory-m1-up.csv",
-                                       "e.truth/trajectory-m1-down.csv", "e.truth/trajectory-m2-down.csv",
-                                       "e.truth/marker-m1-up.csv", "e.truth/marker-m1-down.csv",
-                                       "e.truth/marker-m2-down.csv"});
+  CHECK(names == std::set<std::string>{
+                     "e/experiment.toml", "e/clips/m1-up.mkv", "e/clips/m1-down.mkv", "e/clips/m2-down.mkv",
+                     "e/calibration/view-00.png", "e/calibration/view-01.png", "e/calibration/view-02.png",
+                     "e/calibration/plane.png", "e/plumb.png", "e.truth/truth.json", "e.truth/trajectory-m1-up.csv",
+                     "e.truth/trajectory-m1-down.csv", "e.truth/trajectory-m2-down.csv", "e.truth/marker-m1-up.csv",
+                     "e.truth/marker-m1-down.csv", "e.truth/marker-m2-down.csv", "e.truth/frames-m1-up.csv",
+                     "e.truth/frames-m1-down.csv", "e.truth/frames-m2-down.csv"});
   const core::Experiment experiment = core::read_experiment(made.experiment());
   CHECK(experiment.name == "small \"one\"");
   REQUIRE(experiment.clips.size() == 3);
