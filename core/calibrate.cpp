@@ -80,41 +80,54 @@ OpenCvCalibration fit_supported_terms(const std::vector<const BoardView*>& views
   return run_opencv(views, size, square_m, flags);
 }
 
-/// (J^T J)^-1 of the camera's terms with the poses eliminated (Schur complement), times the residual variance of a
-/// coordinate.
-Eigen::Matrix<double, 9, 9> covariance_of(const OpenCvCalibration& found, const std::vector<const BoardView*>& views,
-                                          double square_m) {
-  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+struct Uncertainty {
+  Eigen::Matrix<double, 9, 9> covariance;
+  CornerNoise noise;
+};
+
+/// With the poses eliminated, M = J - P (P'P)^-1 P'J of every view, an error e of the corners changes the camera's
+/// terms by S^-1 sum of M'e, S = sum of M'M; so their covariance is S^-1 [sum of M'V M] S^-1.
+Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<const BoardView*>& views,
+                           double square_m) {
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 15, Eigen::RowMajor>;
-  Matrix9 information = Matrix9::Zero();
-  double coordinates = 0.0;
+  std::vector<int> free;
+  for (int k = 0; k < 9; ++k) {
+    if (found.sd.at<double>(k) > 0.0) free.push_back(k);  // OpenCV says 0 of a fixed term
+  }
+  std::vector<ViewResiduals> residuals;
+  std::vector<Eigen::MatrixXd> by_terms;  // M
   for (std::size_t i = 0; i < views.size(); ++i) {
+    const BoardCorners& corners = views[i]->corners;
     std::vector<cv::Point3d> points;
-    for (const cv::Point3f& point : pattern_points(views[i]->corners.grid, square_m)) points.emplace_back(point);
+    for (const cv::Point3f& point : pattern_points(corners.grid, square_m)) points.emplace_back(point);
     std::vector<cv::Point2d> projected;
     cv::Mat derivative;  // rows u, v of each point; columns turn, shift, f, c, k1, k2, p1, p2, k3
     cv::projectPoints(points, found.turns[i], found.shifts[i], found.matrix, found.distortion, projected, derivative);
     const Eigen::Map<const Jacobian, 0, Eigen::OuterStride<>> jacobian(
         derivative.ptr<double>(), derivative.rows, 15,
         Eigen::OuterStride<>(static_cast<Eigen::Index>(derivative.step1())));
-    const Eigen::Matrix<double, Eigen::Dynamic, 6> pose = jacobian.leftCols<6>();
-    const Eigen::Matrix<double, Eigen::Dynamic, 9> terms = jacobian.rightCols<9>();
-    const Eigen::Matrix<double, 6, 9> mixed = pose.transpose() * terms;
-    const Eigen::Matrix<double, 6, 6> of_pose = pose.transpose() * pose;
-    information += terms.transpose() * terms - mixed.transpose() * of_pose.ldlt().solve(mixed);
-    coordinates += 2.0 * static_cast<double>(points.size());
+    ViewResiduals view{corners.grid, Eigen::VectorXd(derivative.rows), jacobian.leftCols<6>()};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      view.residual[static_cast<Eigen::Index>(2 * k)] = corners.points[k].x - projected[k].x;
+      view.residual[static_cast<Eigen::Index>(2 * k + 1)] = corners.points[k].y - projected[k].y;
+    }
+    const Eigen::MatrixXd terms = jacobian.rightCols<9>()(Eigen::all, free);
+    const Eigen::Matrix<double, 6, 6> of_pose = view.by_pose.transpose() * view.by_pose;
+    by_terms.push_back(terms - view.by_pose * of_pose.ldlt().solve(view.by_pose.transpose() * terms));
+    residuals.push_back(std::move(view));
   }
-  std::vector<int> free;
-  for (int k = 0; k < 9; ++k) {
-    if (found.sd.at<double>(k) > 0.0) free.push_back(k);  // OpenCV says 0 of a fixed term
+  Uncertainty uncertainty;
+  uncertainty.noise = estimate_corner_noise(residuals, free.size());
+  const auto size = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size), scatter = information;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    information += by_terms[i].transpose() * by_terms[i];
+    scatter += by_terms[i].transpose() * times_covariance(uncertainty.noise, residuals[i].grid, by_terms[i]);
   }
-  const Eigen::MatrixXd part = information(free, free);
-  const Eigen::MatrixXd inverse = part.ldlt().solve(Eigen::MatrixXd::Identity(part.rows(), part.cols()));
-  const double freedom = coordinates - 6.0 * static_cast<double>(views.size()) - static_cast<double>(free.size());
-  const double variance = 0.5 * found.rms_px * found.rms_px * coordinates / std::max(freedom, 1.0);
-  Matrix9 covariance = Matrix9::Zero();
-  covariance(free, free) = inverse * variance;
-  return covariance;
+  const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  uncertainty.covariance.setZero();
+  uncertainty.covariance(free, free) = inverse * scatter * inverse;
+  return uncertainty;
 }
 
 std::string names_of(const std::vector<fs::path>& files) {
@@ -198,7 +211,9 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   camera.cx = found.matrix.at<double>(0, 2);
   camera.cy = found.matrix.at<double>(1, 2);
   for (int i = 0; i < 5; ++i) camera.distortion[static_cast<std::size_t>(i)] = found.distortion.at<double>(i);
-  calibration.covariance = covariance_of(found, used, square_m);
+  const Uncertainty uncertainty = uncertainty_of(found, used, square_m);
+  calibration.covariance = uncertainty.covariance;
+  calibration.noise = uncertainty.noise;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();
 
@@ -212,6 +227,12 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
         fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
   }
   calibration.notes.insert(calibration.notes.end(), term_notes.begin(), term_notes.end());
+  if (calibration.noise.correlated_px > std::max(2.0 * kLeastCorrelatedPx, 0.5 * calibration.noise.white_px)) {
+    calibration.notes.push_back(fmt::format(
+        "neighbouring corners are off together by {:.2g} px (each alone by {:.2g} px): a bent pattern, or a "
+        "lens that the model does not follow; the uncertainties allow for it",
+        calibration.noise.correlated_px, calibration.noise.white_px));
+  }
   const double sd_fx = std::sqrt(calibration.covariance(0, 0));
   if (sd_fx > 0.02 * camera.fx) {
     calibration.notes.push_back(

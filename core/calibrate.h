@@ -15,6 +15,7 @@
 
 #include "core/camera_model.h"
 #include "core/chessboard.h"
+#include "core/corner_noise.h"
 #include "core/experiment.h"
 
 namespace glidelab::core {
@@ -39,6 +40,7 @@ struct Calibration {
   CameraModel camera;
   /// Of fx, fy, cx, cy, k1, k2, p1, p2, k3 (the views' poses are fitted with them); rows of fixed terms are 0.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
+  CornerNoise noise;    ///< what the covariance assumes of the corners
   double rms_px = 0.0;  ///< per corner (distance), over the views used
   std::size_t views_used = 0;
   std::vector<std::string> notes;

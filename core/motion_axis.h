@@ -12,7 +12,7 @@ struct PlaneLine {
   cv::Point2d through;  ///< the points' mean
   cv::Point2d direction;
   double rms_across = 0.0;    ///< distance of the points from the line, those left out not counted
-  double sd_angle_rad = 0.0;  ///< of the direction, from that
+  double sd_angle_rad = 0.0;  ///< of the direction, from that; wider where neighbouring points are off together
   std::size_t used = 0;       ///< points with a weight above one half
   double along(cv::Point2d point) const { return (point - through).dot(direction); }
   double across(cv::Point2d point) const { return direction.cross(point - through); }

@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "core/estimate.h"
 #include "core/picture.h"
+#include "core/thread_fit.h"
 
 namespace glidelab::core {
 namespace {
@@ -59,47 +60,12 @@ double excess_at(const std::vector<double>& values, int i, int width) {
   return 0.0;
 }
 
+/// The rows' places that lie on one straight line.
 struct Thread {
-  std::vector<cv::Point2d> points;
+  std::vector<Place> places;
   double strength = 0.0;
+  int width = 1;
 };
-
-/// Gauss-Newton on b + g d + a exp(-d^2 / (2 s^2)) around the expected column; nothing where it does not settle there.
-std::optional<double> centre_of(const std::vector<double>& values, double expected, double width) {
-  const int reach = static_cast<int>(std::ceil(2.0 * width + 4.0));
-  const int from = std::max(0, static_cast<int>(std::lround(expected)) - reach);
-  const int to = std::min(static_cast<int>(values.size()) - 1, static_cast<int>(std::lround(expected)) + reach);
-  if (to - from < 6) return std::nullopt;
-  double centre = expected;
-  double sigma = std::max(0.5, 0.4 * width);
-  double level = 0.5 * (values[static_cast<std::size_t>(from)] + values[static_cast<std::size_t>(to)]);
-  double slope = 0.0;
-  double height = values[static_cast<std::size_t>(std::lround(expected))] - level;
-  for (int iteration = 0; iteration < 25; ++iteration) {
-    cv::Matx<double, 5, 5> normal = cv::Matx<double, 5, 5>::zeros();
-    cv::Vec<double, 5> right = cv::Vec<double, 5>::all(0.0);
-    for (int i = from; i <= to; ++i) {
-      const double d = i - centre;
-      const double bell = std::exp(-0.5 * d * d / (sigma * sigma));
-      const double residual = values[static_cast<std::size_t>(i)] - (level + slope * d + height * bell);
-      const cv::Vec<double, 5> jacobian(height * bell * d / (sigma * sigma) - slope,
-                                        height * bell * d * d / std::pow(sigma, 3), 1.0, d, bell);
-      normal += jacobian * jacobian.t();
-      right += residual * jacobian;
-    }
-    for (int k = 0; k < 5; ++k) normal(k, k) *= 1.0 + 1e-4;
-    cv::Vec<double, 5> step;
-    if (!cv::solve(normal, right, step, cv::DECOMP_CHOLESKY)) return std::nullopt;
-    centre += std::clamp(step[0], -1.0, 1.0);
-    sigma = std::clamp(sigma + step[1], 0.3, static_cast<double>(kWidest));
-    level += step[2];
-    slope += step[3];
-    height += step[4];
-    if (std::abs(centre - expected) > 3.0) return std::nullopt;
-    if (std::abs(step[0]) < 1e-4 && std::abs(step[1]) < 1e-3) return centre;
-  }
-  return std::nullopt;
-}
 
 /// Directed from the place of the upper pixel to that of the lower one.
 PlaneLine thread_line(const std::vector<cv::Point2d>& places, std::size_t upper, std::size_t lower) {
@@ -112,8 +78,8 @@ double inclination(const MotionAxis& axis, const PlaneLine& down) {
   return std::asin(std::clamp(axis.line().direction.dot(down.direction), -1.0, 1.0));
 }
 
-Thread find_along(const cv::Mat& grey, cv::Rect region, bool turned,
-                  const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight) {
+ThreadInPicture find_along(const cv::Mat& grey, cv::Rect region, bool turned,
+                           const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight) {
   const int rows = turned ? region.width : region.height;
   const int columns = turned ? region.height : region.width;
   const auto pixel = [&](double row, double column) {
@@ -167,30 +133,57 @@ Thread find_along(const cv::Mat& grey, cv::Rect region, bool turned,
         if (static_cast<double>(seen) < std::max(6.0, kShareOfRows * rows) || strength <= 1.05 * best.strength)
           continue;
         best.strength = strength;
-        best.points.clear();
+        best.width = width;
+        best.places.clear();
         last_row = -1.0;
         for (const Place& place : places) {
           if (place.excess * places[a].excess < 0.0 || place.along == last_row) continue;
           if (std::abs(direction.cross(place.straight - places[a].straight)) > kNear * length) continue;
           last_row = place.along;
-          const auto centre =
-              centre_of(profile_of(grey, region, static_cast<int>(place.along), turned), place.at, width);
-          if (centre) best.points.push_back(pixel(place.along, *centre));
+          best.places.push_back(place);
         }
       }
     }
   }
-  return best;
+  ThreadInPicture thread;
+  if (best.places.empty()) return thread;
+  // Its course: straight where the lens's distortion is undone, brought back to the picture row by row.
+  std::vector<cv::Point2d> straights;
+  for (const Place& place : best.places) straights.push_back(place.straight);
+  const PlaneLine line = fit_plane_line(straights, kNear / 3.0);
+  std::vector<ThreadRow> seen;
+  for (const Place& place : best.places) {
+    double at = place.at;
+    for (int iteration = 0; iteration < 5; ++iteration) {
+      const auto here = straight(pixel(place.along, at)), beside = straight(pixel(place.along, at + 0.5));
+      if (!here || !beside) break;
+      const double slope = 2.0 * (line.across(*beside) - line.across(*here));
+      if (slope == 0.0) break;
+      at -= std::clamp(line.across(*here) / slope, -2.0, 2.0);
+    }
+    seen.push_back({place.along, profile_of(grey, region, static_cast<int>(place.along), turned), at});
+  }
+  const double slant = (seen.back().middle - seen.front().middle) / (seen.back().row - seen.front().row);
+  const auto fit = fit_thread(seen, slant, best.width);
+  if (!fit) return thread;
+  for (const ThreadRow& row : seen) {
+    const double arm = row.row - fit->mean_row;
+    const double middle = row.middle + fit->shift + fit->turn * arm;
+    thread.points.push_back(pixel(row.row, middle));
+    thread.turned.push_back(pixel(row.row, middle + fit->sd_turn * arm));
+  }
+  thread.rows = fit->rows;
+  return thread;
 }
 
 }  // namespace
 
-std::vector<cv::Point2d> find_thread(const cv::Mat& grey, cv::Rect region,
-                                     const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight) {
-  const Thread upright = find_along(grey, region, false, straight);
-  const Thread lying = find_along(grey, region, true, straight);
+ThreadInPicture find_thread(const cv::Mat& grey, cv::Rect region,
+                            const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight) {
+  const ThreadInPicture upright = find_along(grey, region, false, straight);
+  const ThreadInPicture lying = find_along(grey, region, true, straight);
   // A line is followed best across: in as many rows (columns) as it spans.
-  return lying.points.size() > upright.points.size() ? lying.points : upright.points;
+  return lying.rows > upright.rows ? lying : upright;
 }
 
 Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
@@ -209,12 +202,13 @@ Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, co
          fmt::format("a region inside the picture of {} x {} pixels", grey.cols, grey.rows));
   }
   const auto straight = [&](cv::Point2d pixel) { return restitution.undistorted(pixel); };
-  const std::vector<cv::Point2d> thread = find_thread(grey, setup.region, straight);
-  std::vector<cv::Point2d> places, centres;
-  for (const cv::Point2d& pixel : thread) {
-    const auto place = restitution.to_plane(pixel);
-    if (!place) continue;
+  const ThreadInPicture thread = find_thread(grey, setup.region, straight);
+  std::vector<cv::Point2d> places, turned, centres;
+  for (std::size_t i = 0; i < thread.points.size(); ++i) {
+    const auto place = restitution.to_plane(thread.points[i]), other = restitution.to_plane(thread.turned[i]);
+    if (!place || !other) continue;
     places.push_back(*place);
+    turned.push_back(*other);
     centres.push_back(restitution.centre_pixel(*place));
   }
   if (places.size() < 6) fail("no thin straight line in the region", "a dark or bright thread");
@@ -225,7 +219,8 @@ Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, co
   const auto last = static_cast<std::size_t>(bottom - centres.begin());
   const PlaneLine line = thread_line(places, first, last);
   const double alpha = inclination(axis, line);
-  double variance = std::pow(line.sd_angle_rad, 2) + std::pow(axis.line().sd_angle_rad, 2);
+  const double of_thread = inclination(axis, thread_line(turned, first, last)) - alpha;
+  double variance = of_thread * of_thread + std::pow(axis.line().sd_angle_rad, 2);
   for (const ModeAxis& mode : modes) {
     std::vector<cv::Point2d> displaced;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -235,7 +230,7 @@ Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, co
     variance += std::pow((moved - alpha) / mode.mode.sds, 2);
   }
   constexpr double kDegrees = 180.0 / std::numbers::pi;
-  return determined(estimate(alpha * kDegrees, std::sqrt(variance) * kDegrees, static_cast<double>(line.used) - 2.0));
+  return determined(estimate(alpha * kDegrees, std::sqrt(variance) * kDegrees, static_cast<double>(thread.rows) - 2.0));
 }
 
 }  // namespace glidelab::core

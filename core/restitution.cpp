@@ -161,7 +161,8 @@ std::optional<cv::Point2d> meet_plane(const CameraModel& camera, const PlanePose
 
 }  // namespace
 
-PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m) {
+PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
+                   double correlated_px) {
   if (views.empty()) throw base::NumericalError("no plane view to fit");
   const Eigen::VectorXd parameters = fit_poses(camera, views, square_m, start_of(camera, views, square_m));
   const Eigen::VectorXd residuals = residuals_of(camera, views, square_m, parameters);
@@ -170,7 +171,16 @@ PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& v
   PlaneFit fit;
   fit.pose = pose_from(parameters);
   fit.rms_px = std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.size()));
-  const Eigen::MatrixXd covariance = (jacobian.transpose() * jacobian).inverse() * (residuals.squaredNorm() / freedom);
+  const CornerNoise noise{std::sqrt(residuals.squaredNorm() / freedom), correlated_px};
+  Eigen::MatrixXd spread = jacobian;  // V J
+  Eigen::Index row = 0;
+  for (const BoardCorners& view : views) {
+    const auto rows = static_cast<Eigen::Index>(2 * view.points.size());
+    spread.middleRows(row, rows) = times_covariance(noise, view.grid, jacobian.middleRows(row, rows));
+    row += rows;
+  }
+  const Eigen::MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
+  const Eigen::MatrixXd covariance = inverse * (jacobian.transpose() * spread) * inverse;
   fit.covariance = covariance.topLeftCorner<6, 6>();
   double sum = 0.0;
   double count = 0.0;
@@ -197,7 +207,7 @@ Restitution Restitution::from_pattern(const Calibration& calibration, const std:
   restitution.calibration_ = calibration;
   restitution.views_ = planes;
   restitution.square_m_ = square_m;
-  restitution.plane_ = fit_plane(calibration.camera, planes, square_m);
+  restitution.plane_ = fit_plane(calibration.camera, planes, square_m, calibration.noise.correlated_px);
   restitution.height_m_ = marker_height_m;
   restitution.radius_m_ = 0.5 * marker_diameter_m;
   return restitution;

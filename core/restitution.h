@@ -37,8 +37,10 @@ struct PlaneFit {
   double rms_px = 0.0;                     ///< the same in the picture
 };
 
-/// Pose of the pattern in one or more plane views, with the camera held.
-PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m);
+/// Pose of the pattern in one or more plane views, with the camera held. `correlated_px`: of the corners' errors, what
+/// neighbours have in common (CornerNoise); the independent part is taken from the residuals.
+PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
+                   double correlated_px = 0.0);
 
 /// The way from pixels to the plane with an error of `sds` standard deviations in one independent direction.
 struct RestitutionMode {
