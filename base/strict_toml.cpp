@@ -34,14 +34,17 @@ struct TomlTable::Node {
     known.emplace(key);
     return table == nullptr ? nullptr : table->get(key);
   }
-  void reject(std::string_view key, int at_line, std::string found, std::string expected) {
-    document->issues.push_back(
-        {document->name, at_line, prefix + std::string(key), std::move(found), std::move(expected)});
-  }
+  /// `at`: what is wrong, or nothing where it is the table itself.
+  void reject(std::string_view key, const toml::node* at, std::string found, std::string expected);
   void reject(std::string_view key, const toml::node* found, std::string expected);
 };
 
 namespace {
+
+/// The file that a value comes from.
+std::string file_of(const toml::node& node, const std::string& otherwise) {
+  return node.source().path ? *node.source().path : otherwise;
+}
 
 int line_of(const toml::node& node) {
   return static_cast<int>(node.source().begin.line);
@@ -130,8 +133,13 @@ Range between_open(double low, double high) {
   return {.low = low, .high = high, .low_open = true, .high_open = true};
 }
 
+void TomlTable::Node::reject(std::string_view key, const toml::node* at, std::string found, std::string expected) {
+  document->issues.push_back({at == nullptr ? document->name : file_of(*at, document->name),
+                              at == nullptr ? line : line_of(*at), prefix + std::string(key), std::move(found),
+                              std::move(expected)});
+}
 void TomlTable::Node::reject(std::string_view key, const toml::node* found, std::string expected) {
-  reject(key, found == nullptr ? line : line_of(*found), show(found), std::move(expected));
+  reject(key, found, show(found), std::move(expected));
 }
 
 bool TomlTable::has(std::string_view key) const {
@@ -321,13 +329,20 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
   return found;
 }
 
+std::vector<std::string> TomlTable::keys() const {
+  std::vector<std::string> found;
+  if (node_->table == nullptr) return found;
+  for (const auto& [key, value] : *node_->table) found.emplace_back(key.str());
+  return found;
+}
+
 void TomlTable::ignore(std::string_view key) const {
   node_->known.emplace(key);
   node_->ignored.emplace(key);
 }
 
 void TomlTable::reject(std::string_view key, std::string found, std::string expected) const {
-  node_->reject(key, line(key), std::move(found), std::move(expected));
+  node_->reject(key, node_->find(key), std::move(found), std::move(expected));
 }
 
 TomlFile::TomlFile(std::shared_ptr<Document> document) : document_(std::move(document)) {}
@@ -354,6 +369,22 @@ TomlFile TomlFile::parse(std::string_view text, std::string shown_as) {
   return TomlFile(std::move(document));
 }
 
+void TomlFile::add_missing(std::string_view table, TomlFile& others, const std::vector<std::string>& without) {
+  toml::node* from = others.document_->tree.get(table);
+  if (from == nullptr) return;
+  toml::node* to = document_->tree.get(table);
+  if (to == nullptr || !from->is_table() || !to->is_table()) {
+    // A whole table, or something that is none: whoever reads it says so. Moving keeps the line and the file.
+    if (to == nullptr) from->visit([&](auto& node) { document_->tree.insert(table, std::move(node)); });
+    return;
+  }
+  for (auto&& [key, value] : *from->as_table()) {
+    if (std::find(without.begin(), without.end(), key.str()) != without.end()) continue;
+    if (to->as_table()->contains(key)) continue;
+    value.visit([&, &name = key](auto& node) { to->as_table()->insert(name, std::move(node)); });
+  }
+}
+
 TomlTable TomlFile::root() const {
   return TomlTable(document_->nodes.front());
 }
@@ -367,11 +398,12 @@ void TomlFile::finish() const {
     if (node->table == nullptr) continue;
     for (const auto& [key, value] : *node->table) {
       if (node->known.contains(key.str())) continue;
-      issues.push_back({document_->name, line_of(value), node->prefix + std::string(key.str()), "an unknown key",
-                        list_of_known(key.str(), node->known)});
+      issues.push_back({file_of(value, document_->name), line_of(value), node->prefix + std::string(key.str()),
+                        "an unknown key", list_of_known(key.str(), node->known)});
     }
   }
-  std::stable_sort(issues.begin(), issues.end(), [](const Issue& a, const Issue& b) { return a.line < b.line; });
+  std::stable_sort(issues.begin(), issues.end(),
+                   [](const Issue& a, const Issue& b) { return a.file != b.file ? a.file < b.file : a.line < b.line; });
   if (!issues.empty()) throw InputError(std::move(issues));
 }
 

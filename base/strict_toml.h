@@ -70,6 +70,8 @@ class TomlTable {
   std::vector<TomlTable> tables(std::string_view key) const;  ///< [[key]], one or more
   std::vector<TomlTable> tables_or_none(std::string_view key) const;
 
+  std::vector<std::string> keys() const;  ///< all that stand here, known or not
+
   /// Everything below this key is the user's own and is not looked at.
   void ignore(std::string_view key) const;
 
@@ -91,6 +93,11 @@ class TomlFile {
   ~TomlFile();
   TomlFile(TomlFile&&) noexcept;
   TomlFile& operator=(TomlFile&&) noexcept;
+
+  /// Gives `table` of this file (made, where it is missing) the keys that it lacks and the table of that name in
+  /// `others` has, but for those in `without`; they move from there to here. Messages name the file that a value comes
+  /// from. To be called before the table is read.
+  void add_missing(std::string_view table, TomlFile& others, const std::vector<std::string>& without);
 
   TomlTable root() const;
   const std::string& name() const;

@@ -49,7 +49,8 @@ nlohmann::ordered_json camera_json(const Scenario& scenario) {
     rotation.push_back({camera.X_WC.linear()(row, 0), camera.X_WC.linear()(row, 1), camera.X_WC.linear()(row, 2)});
   }
   const Eigen::Vector3d eye = camera.X_WC.translation();
-  return {{"width_px", camera.width_px},
+  return {{"name", scenario.camera_name},
+          {"width_px", camera.width_px},
           {"height_px", camera.height_px},
           {"focal_px", {camera.focal_px.x(), camera.focal_px.y()}},
           {"center_px", {camera.center_px.x(), camera.center_px.y()}},

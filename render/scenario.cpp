@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "base/strict_toml.h"
+#include "render/camera_file.h"
 #include "render/clip_motion.h"
 #include "render/read_optics.h"
 #include "render/read_sensor.h"
@@ -134,9 +135,12 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path) {
-  const base::TomlFile file = base::TomlFile::load(path);
+  base::TomlFile file = base::TomlFile::load(path);
   const TomlTable root = file.root();
   Scenario scenario;
+  if (const auto camera = root.maybe_text("camera_file")) {
+    scenario.camera_name = take_camera_file(path.parent_path() / *camera, file).name;
+  }
   scenario.file = path;
   scenario.motion = sim::read_motions(root);
   scenario.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));

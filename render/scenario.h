@@ -72,6 +72,7 @@ struct Scenario {
   std::filesystem::path file;
   std::uint64_t seed = 1;  ///< used where the command line gives none
   sim::MotionScenario motion;
+  std::string camera_name;  ///< of the camera file; empty without one
   Camera camera;
   Recording recording;
   Sensor sensor;

@@ -83,3 +83,28 @@ TEST_CASE("the user's own table is not looked at") {
   file.root().ignore("extra");
   CHECK(message_of(file).empty());
 }
+
+TEST_CASE("A file takes missing keys over from another, and messages name the one that a value comes from") {
+  TomlFile own = TomlFile::parse("[a]\nx = 1.0\n[c]\nz = 1.0\n", "own.toml");
+  TomlFile other =
+      TomlFile::parse("\n\n[a]\nx = 7.0\ny = \"text\"\nw = 3.0\n[b]\nu = 2.0\n[d]\nv = 1.0\n", "other.toml");
+  own.add_missing("a", other, {"w"});
+  own.add_missing("b", other, {});
+  own.add_missing("c", other, {});
+  CHECK(own.root().table("a").number("x") == 1.0);
+  CHECK(own.root().table("b").number("u") == 2.0);
+  CHECK(own.root().table("c").number("z") == 1.0);
+  CHECK_FALSE(own.root().table("a").has("w"));
+  CHECK_FALSE(own.root().has("d"));
+  CHECK(own.root().table("a").keys() == std::vector<std::string>{"x", "y"});
+  own.root().table("a").number("y");
+  try {
+    own.finish();
+    FAIL("a text was taken for a number");
+  } catch (const InputError& error) {
+    REQUIRE(error.issues().size() == 1);
+    CHECK(error.issues()[0].file == "other.toml");
+    CHECK(error.issues()[0].line == 5);
+    CHECK(error.issues()[0].key == "a.y");
+  }
+}

@@ -1,0 +1,93 @@
+#include "render/camera_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace glidelab::render {
+namespace {
+
+using base::TomlFile;
+using base::TomlTable;
+
+constexpr std::array kSections = {"camera", "vignetting", "focus", "shutter", "sensor", "clock", "codec"};
+
+/// With a key of the scenario's own, these keys of the camera make no sense.
+struct Choice {
+  const char* section;
+  const char* key;
+  std::vector<std::string> belonging;
+};
+
+const std::vector<Choice>& choices() {
+  static const std::vector<Choice> all = {
+      {"codec", "name", {"container", "quality", "crf", "bitrate_kbit_s", "gop"}},
+      {"codec", "crf", {"bitrate_kbit_s"}},
+      {"codec", "bitrate_kbit_s", {"crf"}},
+      {"shutter", "kind", {"line_readout_s", "first_row"}},
+      {"camera", "lens", {"distortion"}},
+      {"sensor", "tone", {"gamma", "tone_from", "tone_to"}},
+      {"sensor", "white_level", {"white_photons_s"}},
+      {"sensor", "white_photons_s", {"white_level"}},
+      {"clock", "variable", {"stamp_tick_s"}},
+  };
+  return all;
+}
+
+std::vector<std::string> left_out(const TomlTable& own, const char* section) {
+  std::vector<std::string> keys;
+  for (const Choice& choice : choices()) {
+    if (std::string_view(choice.section) != section || !own.has(choice.key)) continue;
+    keys.insert(keys.end(), choice.belonging.begin(), choice.belonging.end());
+  }
+  return keys;
+}
+
+void check_source(const TomlTable& values, const TomlTable& sources, const std::string& key) {
+  const std::vector<std::string> found = sources.texts_or_none(key);
+  const std::vector<std::string> kinds = {"measured", "data sheet", "derived", "assumed"};
+  const bool known = !found.empty() && std::find(kinds.begin(), kinds.end(), found.front()) != kinds.end();
+  if (found.size() == 2 && known && !found[1].empty()) return;
+  const TomlTable& where = sources.has(key) ? sources : values;
+  where.reject(key, sources.has(key) ? "another source" : "a value without a source",
+               "[kind, where from] in [source…], kind being measured, data sheet, derived or assumed");
+}
+
+void check_sources(const TomlTable& root) {
+  const std::optional<TomlTable> source = root.maybe_table("source");
+  if (!source) return;
+  for (const char* section : kSections) {
+    const std::optional<TomlTable> values = root.maybe_table(section);
+    if (!values) continue;
+    const TomlTable sources = source->table(section);
+    for (const std::string& key : values->keys()) {
+      values->ignore(key);
+      check_source(*values, sources, key);
+    }
+  }
+}
+
+}  // namespace
+
+CameraFile take_camera_file(const std::filesystem::path& path, TomlFile& scenario) {
+  TomlFile file = TomlFile::load(path);
+  const TomlTable root = file.root();
+  root.integer_or("format", 1, 1, 1);
+  CameraFile camera{root.text_or("name", path.stem().string()), root.text_or("price_class", "unknown")};
+  root.ignore("notes");
+  for (const char* section : kSections) root.ignore(section);
+  check_sources(root);
+  file.finish();
+  // Asking marks a key as known, so what is asked here is another copy of both files.
+  TomlFile values = TomlFile::load(path);
+  const TomlFile own = TomlFile::load(scenario.name());
+  for (const char* section : kSections) {
+    const std::optional<TomlTable> table = own.root().maybe_table(section);
+    scenario.add_missing(section, values, table ? left_out(*table, section) : std::vector<std::string>{});
+  }
+  return camera;
+}
+
+}  // namespace glidelab::render
