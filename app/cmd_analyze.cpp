@@ -13,6 +13,7 @@
 #include "base/staged_output.h"
 #include "core/analyze.h"
 #include "core/experiment.h"
+#include "diagnose/trajectory_results.h"
 #include "report/analysis_report.h"
 #include "report/gnuplot.h"
 #include "report/results_json.h"
@@ -46,8 +47,9 @@ void analyze(const AnalyzeOptions& options) {
 
   ProgressDisplay display(options.common.quiet);
   const base::Progress progress = display.callback();
-  const core::AnalysisResults results =
+  core::AnalysisResults results =
       core::analyze(folders, {.bandwidth_s = options.bandwidth_s, .jobs = options.common.jobs}, progress);
+  if (options.estimator == "trajectory") results = diagnose::with_trajectory_fits(std::move(results));
   write_analysis_files(results, staged.dir());
   const std::vector<core::Preview> previews = previews_of(folders, results, progress);
   base::write_file(staged.dir() / "report.html", report::analysis_report(title, results, previews, progress));
@@ -83,9 +85,11 @@ void add_analyze(CLI::App& app, Command& chosen) {
                    "Width of the smoothing kernel in seconds; default: chosen for each clip")
       ->type_name("SECONDS")
       ->check(check_bandwidth);
-  command->add_option("--estimator", options->estimator, "Method; \"phase-diagram\" fits lines in a(v)")
+  command
+      ->add_option("--estimator", options->estimator,
+                   "Method; \"phase-diagram\" fits lines in a(v), \"trajectory\" the whole motion to the positions")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"phase-diagram"}))
+      ->check(CLI::IsMember({"phase-diagram", "trajectory"}))
       ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted as by every command; an analysis draws no random numbers");

@@ -88,6 +88,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     results.clips[i].experiment = experiment_of[i]->name;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });
+  results.gravity_m_s2 = experiments.front().gravity_m_s2;
   results.configurations = join_configurations(setups, results.clips, experiments.front().gravity_m_s2);
   return results;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/bandwidth.h"
+#include "core/free_blocks.h"
 #include "core/free_motion.h"
 #include "core/line_fit.h"
 #include "core/line_input.h"
@@ -162,6 +163,10 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::o
   }
   const PositionNoise noise = noise_at(motion, free.stretches, clip.bandwidth_s);
   clip.position_noise_m = noise.sd_m;
+  clip.noise_autocovariance_m2 = noise.autocovariance;
+  clip.scale_sd_relative = track.scale_sd_relative;
+  clip.forced = motion.forced;
+  clip.blocks = free_blocks(motion, free.stretches, track.shared_m, clip.bandwidth_s);
 
   const std::vector<StretchPoint> points = smooth_stretches(motion, free.stretches, clip.bandwidth_s);
   const std::vector<double> law = pilot_law(motion, free.stretches, law_bandwidth(motion, free.pilot_bandwidth_s));

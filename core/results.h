@@ -116,6 +116,14 @@ struct MarkerSighting {
   double radius_px = 0.0;
 };
 
+/// Measured positions of free motion that follow each other; it may turn at v = 0, and nothing else happens to it.
+struct FreeBlock {
+  std::vector<double> t_s;
+  std::vector<double> x_m;
+  std::vector<int> directions;                ///< signs of v that occur, in order: one, or two where it turns
+  std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of these points
+};
+
 struct ClipResult {
   std::string name;
   std::string experiment;  ///< name of the folder it comes from
@@ -125,7 +133,11 @@ struct ClipResult {
   double bandwidth_s = 0.0;
   std::string bandwidth_method;
   double position_noise_m = 0.0;
-  std::vector<LineFit> segments;  ///< at most one for each direction
+  std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points
+  double scale_sd_relative = 0.0;               ///< as in TrackData
+  bool forced = false;                          ///< a known force acts
+  std::vector<FreeBlock> blocks;                ///< what a fit of the whole motion rests on
+  std::vector<LineFit> segments;                ///< at most one for each direction
   Quantity v_lim_m_s;
   std::vector<Stretch> stretches;
   std::vector<LeftOutInterval> left_out;
@@ -163,6 +175,7 @@ struct PlumbResult {
 };
 
 struct AnalysisResults {
+  double gravity_m_s2 = 0.0;
   std::vector<ClipResult> clips;
   std::vector<ConfigurationResult> configurations;
   std::vector<CalibrationResult> calibrations;  ///< one for each folder that has a pattern

@@ -61,7 +61,7 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
       {"analyze", "folder", "--bandwidth", "0"},
       {"analyze", "folder", "--bandwidth", "nan"},
       {"analyze", "folder", "--bandwidth", "inf"},
-      {"analyze", "folder", "--estimator", "trajectory"},
+      {"analyze", "folder", "--estimator", "magic"},
       {"analyze", "folder", "--out", ""},
       {"simulate", "a.toml", "--rate", "-200"},
       {"render", "a.toml", "--no-such-option"},

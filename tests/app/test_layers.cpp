@@ -30,11 +30,12 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"core", {"base"}},
     {"sim", {"base"}},
     {"render", {"base", "sim"}},
-    {"validate", {"base", "core", "sim", "render"}},
+    {"diagnose", {"base", "core", "sim"}},
+    {"validate", {"base", "core", "sim", "render", "diagnose"}},
     {"report",
      {"base", "core/results.h", "core/preview.h", "core/camera_measurement.h",
       "validate/comparison.h"}},  // the result types
-    {"app", {"base", "core", "sim", "render", "validate", "report"}},
+    {"app", {"base", "core", "sim", "render", "diagnose", "validate", "report"}},
 };
 
 /// C libraries that live behind one file (a header and its source) each, by how their headers start.

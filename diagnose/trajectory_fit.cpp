@@ -1,0 +1,324 @@
+#include "diagnose/trajectory_fit.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/errors.h"
+#include "sim/sensitivity.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr int kMostIterations = 60;
+constexpr double kConverged = 1e-10;      // relative change of the cost
+constexpr double kLeastVariance = 1e-24;  // m²: positions without noise
+constexpr double kCondition = 1e-13;      // reciprocal, of the scaled normal matrix
+constexpr std::size_t kFewestPieces = 8;
+
+/// One block's residuals (measured - model) and their derivatives by the common parameters and by (x0, v0).
+struct Linearised {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd common;  // n x 3
+  Eigen::MatrixX2d start;
+};
+
+Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const Eigen::Vector2d& start) {
+  const core::FreeBlock& block = *fit.block;
+  std::vector<double> times;
+  for (const double t : block.t_s) times.push_back(t - block.t_s.front());
+  const sim::TrackLaw law(common[0], common[1], common[2]);
+  const std::vector<sim::SensitiveState> states = sim::simulate_sensitive(law, start[0], start[1], times);
+  const auto n = static_cast<Eigen::Index>(times.size());
+  Linearised result{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixX2d(n, 2)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const sim::SensitiveState& state = states[static_cast<std::size_t>(i)];
+    result.residual[i] = block.x_m[static_cast<std::size_t>(i)] - state.x_m;
+    result.common.row(i) = state.by_parameter.row(0).head(3);
+    result.start.row(i) = state.by_parameter.row(0).tail(2);
+  }
+  return result;
+}
+
+double variance_of(const FitBlock& fit) {
+  return std::max(fit.autocovariance_m2.front(), kLeastVariance);
+}
+
+struct Point {
+  Eigen::Vector3d common;
+  std::vector<Eigen::Vector2d> starts;
+};
+
+class Problem {
+ public:
+  Problem(const std::vector<FitBlock>& blocks, int free) : blocks_(blocks), free_(free) {}
+
+  /// Infinite where the motion cannot be moved.
+  double cost(const Point& at, std::vector<Linearised>& linearised) const {
+    linearised.clear();
+    double cost = 0.0;
+    try {
+      for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        linearised.push_back(linearise(blocks_[b], at.common, at.starts[b]));
+        cost += linearised.back().residual.squaredNorm() / variance_of(blocks_[b]);
+      }
+    } catch (const base::NumericalError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+    return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+  }
+
+  /// The step of Levenberg and Marquardt, each block's start eliminated.
+  Point step(const Point& at, const std::vector<Linearised>& linearised, double damping) const {
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free_, free_);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(free_);
+    Eigen::VectorXd diagonal = right;
+    std::vector<Eigen::Matrix2d> own;
+    std::vector<Eigen::MatrixXd> cross;
+    std::vector<Eigen::Vector2d> own_right;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const double weight = 1.0 / variance_of(blocks_[b]);
+      const auto common = linearised[b].common.leftCols(free_);
+      const auto& start = linearised[b].start;
+      Eigen::Matrix2d c = weight * start.transpose() * start;
+      c.diagonal() *= 1.0 + damping;
+      const Eigen::MatrixXd x = weight * common.transpose() * start;
+      const Eigen::Vector2d r = weight * start.transpose() * linearised[b].residual;
+      const Eigen::MatrixXd a = weight * common.transpose() * common;
+      diagonal += a.diagonal();
+      const Eigen::Matrix2d inverse = c.inverse();
+      normal += a - x * inverse * x.transpose();
+      right += weight * common.transpose() * linearised[b].residual - x * (inverse * r);
+      own.push_back(inverse);
+      cross.push_back(x);
+      own_right.push_back(r);
+    }
+    normal.diagonal() += damping * diagonal;
+    const Eigen::VectorXd change = normal.ldlt().solve(right);
+    Point next = at;
+    next.common.head(free_) += change;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      next.starts[b] += own[b] * (own_right[b] - cross[b].transpose() * change);
+    }
+    return next;
+  }
+
+ private:
+  const std::vector<FitBlock>& blocks_;
+  int free_;
+};
+
+/// x0 and v0 of a parabola through the first points, or of a line through fewer.
+Eigen::Vector2d start_of(const core::FreeBlock& block) {
+  const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(block.t_s.size(), 15));
+  Eigen::MatrixX3d design(n, 3);
+  Eigen::VectorXd x(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double t = block.t_s[static_cast<std::size_t>(i)] - block.t_s.front();
+    design.row(i) << 1.0, t, t * t;
+    x[i] = block.x_m[static_cast<std::size_t>(i)];
+  }
+  const Eigen::Vector3d fit = design.colPivHouseholderQr().solve(x);
+  // A block that moves one way starts that way, whatever the noise says.
+  const double least = 1e-6;
+  const double v = block.directions.front() * std::max(least, block.directions.front() * fit[1]);
+  return {fit[0], v};
+}
+
+struct Found {
+  Point at;
+  std::vector<Linearised> linearised;
+  double cost = std::numeric_limits<double>::infinity();
+  bool converged = false;
+  int iterations = 0;
+};
+
+Found minimise(const Problem& problem, Point at) {
+  Found found;
+  found.at = std::move(at);
+  found.cost = problem.cost(found.at, found.linearised);
+  double damping = 1e-4;
+  while (std::isfinite(found.cost) && found.iterations < kMostIterations && !found.converged) {
+    ++found.iterations;
+    const Point next = problem.step(found.at, found.linearised, damping);
+    std::vector<Linearised> linearised;
+    const double cost = problem.cost(next, linearised);
+    if (cost <= found.cost) {
+      found.converged = found.cost - cost <= kConverged * found.cost;
+      found.at = next;
+      found.linearised = std::move(linearised);
+      found.cost = cost;
+      damping = std::max(1e-12, 0.1 * damping);
+    } else {
+      damping *= 10.0;
+      // No step goes down any more: rounding is all that is left.
+      found.converged = damping > 1e8;
+    }
+  }
+  return found;
+}
+
+/// Autocovariance of lag i times the vector: Gamma w.
+Eigen::VectorXd times_noise(const std::vector<double>& autocovariance, const Eigen::VectorXd& w) {
+  Eigen::VectorXd product = autocovariance.front() * w;
+  for (Eigen::Index lag = 1; lag < static_cast<Eigen::Index>(autocovariance.size()) && lag < w.size(); ++lag) {
+    const double gamma = autocovariance[static_cast<std::size_t>(lag)];
+    product.tail(w.size() - lag) += gamma * w.head(w.size() - lag);
+    product.head(w.size() - lag) += gamma * w.tail(w.size() - lag);
+  }
+  return product;
+}
+
+/// Number of points worth an independent one, from the noise's autocovariance.
+double independent(const FitBlock& fit, double points) {
+  double sum = 1.0;
+  for (std::size_t lag = 1; lag < fit.autocovariance_m2.size(); ++lag) {
+    sum += 2.0 * std::pow(fit.autocovariance_m2[lag] / fit.autocovariance_m2.front(), 2);
+  }
+  return points / sum;
+}
+
+class Uncertainty {
+ public:
+  Uncertainty(const std::vector<FitBlock>& blocks, const Found& found, int free) : blocks_(blocks), found_(found) {
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free, free);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Linearised& of = found.linearised[b];
+      const auto common = of.common.leftCols(free);
+      // The part of the derivatives that no start x0, v0 can take up.
+      const Eigen::MatrixXd projected =
+          common - of.start * of.start.colPivHouseholderQr().solve(Eigen::MatrixXd(common));
+      normal += projected.transpose() * projected / variance_of(blocks[b]);
+      projected_.push_back(projected);
+    }
+    const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+    if (!scale.allFinite()) return;
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+    if (!(eigen.eigenvalues()[0] > kCondition)) return;
+    inverse_ = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  }
+
+  bool determined() const { return inverse_.size() > 0; }
+
+  void fill(TrajectoryFit& fit) const {
+    const Eigen::Index free = inverse_.rows();
+    Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(free, free);
+    double chi2 = 0.0, count = 0.0, worth = 0.0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const double weight = 1.0 / variance_of(blocks_[b]);
+      for (Eigen::Index i = 0; i < free; ++i) {
+        const Eigen::VectorXd noisy = times_noise(blocks_[b].autocovariance_m2, projected_[b].col(i));
+        middle.col(i) += weight * weight * projected_[b].transpose() * noisy;
+      }
+      chi2 += weight * found_.linearised[b].residual.squaredNorm();
+      const auto points = static_cast<double>(found_.linearised[b].residual.size());
+      count += points;
+      worth += independent(blocks_[b], points);
+    }
+    fit.covariance = inverse_ * middle * inverse_;
+    fit.degrees = std::numeric_limits<double>::infinity();
+    const double freedom = std::max(1.0, count - static_cast<double>(free) - 2.0 * static_cast<double>(blocks_.size()));
+    const double ratio = chi2 / freedom;
+    fit.scatter = std::sqrt(ratio);
+    fit.points = static_cast<std::size_t>(count);
+    if (ratio > 1.0 + 3.0 * std::sqrt(2.0 / std::max(1.0, worth))) add_misfit(count, ratio, fit);
+    add_shared(fit);
+  }
+
+ private:
+  /// The scores of pieces of the motion, so long that they are as good as independent.
+  void add_misfit(double count, double ratio, TrajectoryFit& fit) const {
+    const auto length = static_cast<Eigen::Index>(std::max(1.0, std::ceil(count / static_cast<double>(kFewestPieces))));
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(inverse_.rows(), inverse_.rows());
+    double pieces = 0.0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Eigen::VectorXd& residual = found_.linearised[b].residual;
+      for (Eigen::Index from = 0; from < residual.size(); from += length) {
+        const Eigen::Index n = std::min(length, residual.size() - from);
+        const Eigen::VectorXd score =
+            projected_[b].middleRows(from, n).transpose() * residual.segment(from, n) / variance_of(blocks_[b]);
+        sum += score * score.transpose();
+        pieces += 1.0;
+      }
+    }
+    // The parameters that were fitted take their share out of the scores.
+    const double freedom = std::max(1.0, pieces - static_cast<double>(inverse_.rows()));
+    const Eigen::MatrixXd wider = inverse_ * sum * inverse_ * ((1.0 - 1.0 / ratio) * pieces / freedom);
+    // Not below what white residuals of that size would give.
+    Eigen::VectorXd growth(inverse_.rows());
+    for (Eigen::Index i = 0; i < growth.size(); ++i) {
+      growth[i] = std::max(1.0, std::sqrt((ratio - 1.0) * inverse_(i, i) / std::max(wider(i, i), 1e-300)));
+    }
+    fit.covariance += growth.asDiagonal() * wider * growth.asDiagonal();
+    fit.degrees = freedom;
+  }
+
+  void add_shared(TrajectoryFit& fit) const {
+    std::size_t modes = 0;
+    for (const FitBlock& block : blocks_) modes = std::max(modes, block.block->shared_m.size());
+    fit.shared.assign(modes + 1, Eigen::VectorXd::Zero(inverse_.rows()));
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const core::FreeBlock& block = *blocks_[b].block;
+      const Eigen::MatrixXd gain = inverse_ * projected_[b].transpose() / variance_of(blocks_[b]);
+      for (std::size_t mode = 0; mode < block.shared_m.size(); ++mode) {
+        if (block.shared_m[mode].empty()) continue;
+        fit.shared[mode] += gain * Eigen::Map<const Eigen::VectorXd>(block.shared_m[mode].data(), gain.cols());
+      }
+      fit.shared[modes] +=
+          blocks_[b].scale_sd_relative * gain * Eigen::Map<const Eigen::VectorXd>(block.x_m.data(), gain.cols());
+    }
+  }
+
+  const std::vector<FitBlock>& blocks_;
+  const Found& found_;
+  std::vector<Eigen::MatrixXd> projected_;
+  Eigen::MatrixXd inverse_;
+};
+
+/// The only direction that occurs, or 0.
+int only_direction(const std::vector<FitBlock>& blocks) {
+  int only = 0;
+  for (const FitBlock& block : blocks) {
+    for (const int direction : block.block->directions) {
+      if (only != 0 && direction != only) return 0;
+      only = direction;
+    }
+  }
+  return only;
+}
+
+}  // namespace
+
+std::optional<TrajectoryFit> fit_trajectories(const std::vector<FitBlock>& blocks, const Eigen::Vector3d& start) {
+  if (blocks.empty()) return {};
+  const int direction = only_direction(blocks);
+  const int free = direction == 0 ? 3 : 2;
+  Point first{start, {}};
+  if (direction != 0) first.common = {start[0], start[1] - direction * start[2], 0.0};
+  for (const FitBlock& block : blocks) first.starts.push_back(start_of(*block.block));
+  const Problem problem(blocks, free);
+  // The cost is not convex where the motion turns: from the start given, and with other dampings.
+  Found best;
+  for (const double share : {1.0, 0.3, 2.0}) {
+    Point at = first;
+    at.common[0] *= share;
+    Found found = minimise(problem, at);
+    if (found.converged && (!best.converged || found.cost < best.cost)) best = std::move(found);
+  }
+  if (!best.converged) return {};
+  const Uncertainty uncertainty(blocks, best, free);
+  if (!uncertainty.determined()) return {};
+  TrajectoryFit fit;
+  fit.parameters = best.at.common.head(free);
+  fit.direction = direction;
+  fit.starts = best.at.starts;
+  fit.iterations = best.iterations;
+  uncertainty.fill(fit);
+  return fit;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,124 @@
+#include "diagnose/trajectory_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/estimate.h"
+#include "diagnose/trajectory_fit.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
+constexpr double kSignificant = 1.959963984540054;  // two-sided 95 %
+
+core::Estimate estimate_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient) {
+  double variance = gradient.dot(fit.covariance * gradient);
+  for (const Eigen::VectorXd& shift : fit.shared) variance += std::pow(gradient.dot(shift), 2);
+  return core::estimate(value, std::sqrt(variance), fit.degrees);
+}
+
+core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k, double a0,
+                              const Eigen::VectorXd& by_a0) {
+  if (fit.direction < 0) return core::undetermined("no motion with v > 0");
+  const core::Estimate intercept = estimate_of(fit, a0, by_a0);
+  if (k.value - kSignificant * k.sd <= 0.0) {
+    return core::undetermined("K/m is not above zero by more than its uncertainty");
+  }
+  if (a0 - kSignificant * intercept.sd <= 0.0) {
+    return core::undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
+  }
+  Eigen::VectorXd gradient = by_a0 / k.value;
+  gradient[0] = -a0 / (k.value * k.value);
+  return core::determined(estimate_of(fit, a0 / k.value, gradient));
+}
+
+void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResult& result) {
+  const double k = fit.parameters[0];
+  Eigen::VectorXd by_k = Eigen::VectorXd::Zero(fit.parameters.size());
+  by_k[0] = 1.0;
+  const core::Estimate k_estimate = estimate_of(fit, k, by_k);
+  result.k_over_m_1_s = core::determined(k_estimate);
+  if (fit.direction != 0) {
+    Eigen::VectorXd by_a0 = Eigen::Vector2d(0.0, 1.0);
+    const core::Estimate a0 = estimate_of(fit, fit.parameters[1], by_a0);
+    const std::string why = fmt::format(
+        "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not the two "
+        "apart",
+        fit.direction > 0 ? ">" : "<", fit.direction > 0 ? "-" : "+", a0.value, a0.sd);
+    result.alpha_deg = result.mu = core::undetermined(why);
+    result.v_lim_m_s = limit_velocity(fit, k_estimate, a0.value, by_a0);
+    return;
+  }
+  const double drive = fit.parameters[1], friction = fit.parameters[2];
+  result.v_lim_m_s = limit_velocity(fit, k_estimate, drive - friction, Eigen::Vector3d(0.0, 1.0, -1.0));
+  if (!(std::abs(drive) < gravity_m_s2)) {
+    result.alpha_deg = result.mu = core::undetermined("the drive is more than gravity: no inclination has it");
+    return;
+  }
+  const double cosine = std::sqrt(1.0 - std::pow(drive / gravity_m_s2, 2));
+  const double alpha_by_drive = 1.0 / (gravity_m_s2 * cosine);
+  result.alpha_deg = core::determined(estimate_of(fit, std::asin(drive / gravity_m_s2) * kDegreesPerRad,
+                                                  Eigen::Vector3d(0.0, alpha_by_drive * kDegreesPerRad, 0.0)));
+  // mu = f / (g cos(alpha)); d mu / d alpha = mu tan(alpha)
+  const double mu = friction / (gravity_m_s2 * cosine);
+  const double mu_by_drive = mu * drive / gravity_m_s2 / cosine * alpha_by_drive;
+  result.mu = core::determined(estimate_of(fit, mu, Eigen::Vector3d(0.0, mu_by_drive, 1.0 / (gravity_m_s2 * cosine))));
+}
+
+/// k, d, f from the lines; where there are none, a glider without friction.
+Eigen::Vector3d start_of(const core::ConfigurationResult& result) {
+  double k = 0.0;
+  for (const core::LineFit& line : result.lines) {
+    k += line.k_over_m_1_s.value / static_cast<double>(result.lines.size());
+  }
+  if (result.lines.size() == 2) {
+    const double minus = result.lines[0].a0_m_s2.value, plus = result.lines[1].a0_m_s2.value;
+    return {k, 0.5 * (minus + plus), 0.5 * (minus - plus)};
+  }
+  return {k, result.lines.empty() ? 0.0 : result.lines.front().a0_m_s2.value, 0.0};
+}
+
+void leave_out(const std::string& why, core::ConfigurationResult& result) {
+  result.k_over_m_1_s = result.mu = result.alpha_deg = result.v_lim_m_s = core::undetermined(why);
+}
+
+}  // namespace
+
+core::AnalysisResults with_trajectory_fits(core::AnalysisResults results) {
+  results.estimator = "trajectory";
+  for (core::ConfigurationResult& configuration : results.configurations) {
+    std::vector<FitBlock> blocks;
+    bool forced = false;
+    for (const core::ClipResult& clip : results.clips) {
+      if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {
+        continue;
+      }
+      forced = forced || clip.forced;
+      for (const core::FreeBlock& block : clip.blocks) {
+        blocks.push_back({&block, clip.noise_autocovariance_m2, clip.scale_sd_relative});
+      }
+    }
+    if (forced) {
+      leave_out("a known force acts: the fit of the whole motion does not take it; use the phase diagram",
+                configuration);
+      continue;
+    }
+    if (blocks.empty()) {
+      leave_out("no free motion", configuration);
+      continue;
+    }
+    const auto fit = fit_trajectories(blocks, start_of(configuration));
+    if (!fit) {
+      leave_out("the fit of the whole motion does not converge, or the motion does not determine it", configuration);
+      continue;
+    }
+    fill(*fit, results.gravity_m_s2, configuration);
+  }
+  return results;
+}
+
+}  // namespace glidelab::diagnose
