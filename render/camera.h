@@ -1,56 +1,26 @@
-/// The true camera: a pinhole with a pose, seen through a lens with Brown-Conrady distortion.
+/// The true camera: a pinhole with a pose, seen through a lens.
 ///
 /// Frames (CONVENTIONS.md): W world, C camera (x right, y down, z forward); p_W = X_WC * p_C. A point at (X, Y, Z)_C
-/// has the undistorted coordinates (x, y) = (X/Z, Y/Z); with r² = x² + y² the lens moves it to
-///
-///     x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²)
-///     y_d = y (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 y²) + 2 p2 x y
-///
-/// and it appears at the pixel (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0).
-/// Source: D. C. Brown, "Close-range camera calibration", Photogrammetric Engineering 37 (1971), in the order of terms
-/// that calibration programs print. Everything here is in double; validity ends where the mapping folds over.
+/// has the undistorted coordinates (x, y) = (X/Z, Y/Z), the lens moves it to (x_d, y_d) (render/lens.h), and it appears
+/// at the pixel (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0).
 #pragma once
 
 #include <Eigen/Geometry>
 #include <optional>
 #include <string>
 
-namespace glidelab::render {
+#include "render/lens.h"
 
-struct BrownConrady {
-  double k1 = 0.0;
-  double k2 = 0.0;
-  double k3 = 0.0;
-  double p1 = 0.0;
-  double p2 = 0.0;
-};
+namespace glidelab::render {
 
 struct Camera {
   int width_px = 0;
   int height_px = 0;
   Eigen::Vector2d focal_px = Eigen::Vector2d::Zero();   ///< fx, fy
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();  ///< principal point cx, cy
-  BrownConrady lens;
+  Lens lens;
   Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
 };
-
-/// Where the lens moves the undistorted point (x, y).
-Eigen::Vector2d distort(const BrownConrady& lens, const Eigen::Vector2d& undistorted);
-
-/// d(x_d, y_d) / d(x, y).
-Eigen::Matrix2d distortion_jacobian(const BrownConrady& lens, const Eigen::Vector2d& undistorted);
-
-/// The radius sqrt(x² + y²) at which the radial part stops growing; infinity where it never does. Beyond it the formula
-/// maps points back into the picture that no lens would show there.
-double fold_radius(const BrownConrady& lens);
-
-/// The undistorted point that the lens moves to `distorted`, by Newton's method to 1e-14 of the focal length. Nothing
-/// where there is none inside the fold radius.
-std::optional<Eigen::Vector2d> undistort(const BrownConrady& lens, const Eigen::Vector2d& distorted);
-
-/// The same with `largest_radius` in place of the fold radius, for a caller who asks many times.
-std::optional<Eigen::Vector2d> undistort(const BrownConrady& lens, const Eigen::Vector2d& distorted,
-                                         double largest_radius);
 
 /// Undistorted coordinates of a pixel, or nothing (see above).
 std::optional<Eigen::Vector2d> undistorted_at(const Camera& camera, const Eigen::Vector2d& pixel);

@@ -14,20 +14,23 @@ std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const
                                                  const FrameMotion& frame) {
   const Camera& camera = scenario.camera;
   const Recording& recording = scenario.recording;
-  const auto center_C = [&](double x_m) -> Eigen::Vector3d {
-    return camera.X_WC.inverse() * marker_position_W(scenario, body.incline_rad, x_m);
+  const auto center_C = [&](double x_m, double t_s) -> Eigen::Vector3d {
+    const Eigen::Vector3d at_rest = camera.X_WC.inverse() * marker_position_W(scenario, body.incline_rad, x_m);
+    return scenario.mount.moves() ? mount_at(scenario.mount, t_s).inverse() * at_rest : at_rest;
   };
   MarkerInPicture marker;
   marker.x_m = frame.middle.x_m;
   marker.t_s = frame.middle.t_s;
   const double middle_row = 0.5 * (camera.height_px - 1);
+  double sim_s = mid_exposure_s(recording, frame, middle_row);
   if (recording.shutter.rolling) {
     // The row's time and the centre's row depend on one another: t = mid-exposure of the row v(t), a contraction where
     // the marker moves by less than a row in a line time.
     double row = middle_row;
     for (int i = 0;; ++i) {
-      marker.x_m = frame.path.x_m(mid_exposure_s(recording, frame, row));
-      const auto pixel = pixel_of(camera, center_C(marker.x_m).hnormalized());
+      sim_s = mid_exposure_s(recording, frame, row);
+      marker.x_m = frame.path.x_m(sim_s);
+      const auto pixel = pixel_of(camera, center_C(marker.x_m, sim_s).hnormalized());
       if (!pixel) return std::nullopt;
       const double change = pixel->y() - row;
       row = pixel->y();
@@ -38,7 +41,7 @@ std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const
     }
     marker.t_s += recording.shutter.delay_s(row) - recording.shutter.delay_s(middle_row);
   }
-  const Eigen::Vector3d c = center_C(marker.x_m);
+  const Eigen::Vector3d c = center_C(marker.x_m, sim_s);
   const auto pixel = c.z() > 0.0 ? pixel_of(camera, c.hnormalized()) : std::nullopt;
   const auto outline = image_of_sphere(c, 0.5 * scenario.marker.diameter_m);
   if (!pixel || !outline || !in_picture(camera, *pixel)) return std::nullopt;

@@ -299,26 +299,23 @@ class RowPainter {
   std::vector<double> buffer_;
 };
 
-void include(PixelRect& whole, const PixelRect& rect) {
-  if (rect.empty()) return;
-  if (whole.empty()) {
-    whole = rect;
-    return;
-  }
-  const int left = std::min(whole.x, rect.x);
-  const int top = std::min(whole.y, rect.y);
-  whole = {left, top, std::max(whole.x + whole.width, rect.x + rect.width) - left,
-           std::max(whole.y + whole.height, rect.y + rect.height) - top};
-}
-
 void include(PixelRect& whole, const Shapes& shapes) {
-  for (const Polygon& polygon : shapes.polygons()) include(whole, polygon.rect);
-  if (shapes.sphere()) include(whole, shapes.sphere()->rect);
+  for (const Polygon& polygon : shapes.polygons()) whole = united(whole, polygon.rect);
+  if (shapes.sphere()) whole = united(whole, shapes.sphere()->rect);
 }
 
 MovingLayer empty_layer(const PixelRect& rect) {
   const std::size_t size = rect.empty() ? 0 : static_cast<std::size_t>(rect.width) * rect.height;
   return {rect, std::vector<float>(size, 0.0f), std::vector<float>(size, 0.0f)};
+}
+
+void darken(const RayTable& rays, MovingLayer& layer) {
+  if (rays.gain.empty()) return;
+  for (int y = 0; y < layer.rect.height; ++y) {
+    const float* const gain = rays.gain.data() + static_cast<std::size_t>(layer.rect.y + y) * rays.width + layer.rect.x;
+    float* const row = layer.radiance.data() + static_cast<std::size_t>(y) * layer.rect.width;
+    for (int x = 0; x < layer.rect.width; ++x) row[x] *= gain[x];
+  }
 }
 
 }  // namespace
@@ -347,6 +344,7 @@ MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& 
       painter.add(shapes, x - middle, share, rect.y + y, layer.radiance.data() + at, layer.coverage.data() + at);
     }
   }
+  darken(rays, layer);
   return layer;
 }
 
@@ -370,6 +368,7 @@ MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& 
                   layer.coverage.data() + at);
     }
   }
+  darken(rays, layer);
   return layer;
 }
 

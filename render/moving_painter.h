@@ -24,7 +24,7 @@ namespace glidelab::render {
 /// What the body adds to the picture: pixel = radiance + (1 - coverage) * what stands behind.
 struct MovingLayer {
   PixelRect rect;               ///< within the picture; empty where the body is not seen
-  std::vector<float> radiance;  ///< times coverage; rect.width * rect.height, row by row
+  std::vector<float> radiance;  ///< times coverage and the table's gain; rect.width * rect.height, row by row
   std::vector<float> coverage;
 };
 

@@ -26,6 +26,15 @@ inline PixelRect intersection(const PixelRect& a, const PixelRect& b) {
   return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
 }
 
+/// The smallest rectangle that holds both; an empty one holds nothing.
+inline PixelRect united(const PixelRect& a, const PixelRect& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  const int left = std::min(a.x, b.x);
+  const int top = std::min(a.y, b.y);
+  return {left, top, std::max(a.x + a.width, b.x + b.width) - left, std::max(a.y + a.height, b.y + b.height) - top};
+}
+
 /// Row by row from the top, no padding. Radiance (1 is a white wall in the scene's light) or electrons, as said where
 /// it is used.
 struct FloatPicture {

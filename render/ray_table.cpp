@@ -6,7 +6,7 @@
 
 namespace glidelab::render {
 
-RayTable make_ray_table(const Camera& camera) {
+RayTable make_ray_table(const Camera& camera, const Vignetting& vignetting) {
   RayTable table;
   table.width = camera.width_px;
   table.height = camera.height_px;
@@ -26,6 +26,9 @@ RayTable make_ray_table(const Camera& camera) {
         table.x_y_dxdu_dxdv.push_back(static_cast<float>(value));
       }
       for (const double value : {slope(1, 0), slope(1, 1)}) table.dydu_dydv.push_back(static_cast<float>(value));
+      if (!vignetting.none()) {
+        table.gain.push_back(static_cast<float>(gain_at(vignetting, camera, Eigen::Vector2d(u, v), *ray)));
+      }
     }
   }
   return table;

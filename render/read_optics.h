@@ -1,4 +1,5 @@
-/// Reads what a scenario says of the camera's optics and timing: [camera], [shutter].
+/// Reads what a scenario says of the camera's optics and timing: [camera], [vignetting], [focus], [shutter], [light],
+/// [mount].
 #pragma once
 
 #include "base/strict_toml.h"
@@ -6,7 +7,8 @@
 
 namespace glidelab::render {
 
-/// Fills `scenario.camera` and `scenario.recording`. What is wrong is recorded in the table's file.
+/// Fills camera, vignetting, focus, recording, light and mount of the scenario. What is wrong is recorded in the
+/// table's file.
 void read_optics(const base::TomlTable& root, Scenario& scenario);
 
 }  // namespace glidelab::render

@@ -31,6 +31,7 @@ struct Still {
 struct SetUp {
   StaticScene scene;
   FloatPicture background_e;
+  std::optional<FinePicture> fine;  ///< for a camera that moves
 };
 
 struct Clip {
@@ -120,6 +121,14 @@ struct ClipTruth {
   }
 };
 
+double longest_clip_s(const Scenario& scenario) {
+  double longest = 0.0;
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) longest = std::max(longest, motion.duration_s);
+  }
+  return longest;
+}
+
 template <typename Code>
 void write_frame(VideoWriter& writer, std::span<const Code> codes, const std::optional<double>& stamp_s) {
   if constexpr (sizeof(Code) == 1) {
@@ -165,7 +174,12 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   make_folder(experiment_dir / "calibration");
   make_folder(truth_dir);
 
-  const RayTable rays = make_ray_table(scenario.camera);
+  const RayTable rays = make_ray_table(scenario.camera, scenario.vignetting);
+  // The clips are taken after the calibration, perhaps with another focus.
+  const Scenario in_clips = as_in_clips(scenario);
+  const bool refocused = scenario.mount.focal_change != 0.0;
+  const RayTable refocused_rays = refocused ? make_ray_table(in_clips.camera, scenario.vignetting) : RayTable{};
+  const RayTable& clip_rays = refocused ? refocused_rays : rays;
   const double white_e = electrons_of_white(scenario);
   const std::vector<Still> stills = stills_of(scenario, options.seed);
   std::map<std::string, SetUp> set_ups;
@@ -198,12 +212,18 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   const Readout still_readout(with_8_bits(scenario.sensor), scenario.recording.exposure_s, options.seed,
                               scenario.camera.width_px, scenario.camera.height_px);
   in_parallel(options.jobs, stills.size() + backgrounds.size(), [&](const auto& next) {
-    StaticPainter painter(scenario.camera, rays);
+    StaticPainter painter(scenario.camera, rays, scenario.focus);
     const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
     std::vector<std::uint8_t> codes(static_cast<std::size_t>(all.width) * all.height);
     for (std::size_t i = next(); i < stills.size() + backgrounds.size(); i = next()) {
       if (i < backgrounds.size()) {
-        backgrounds[i]->background_e = scaled(painter.paint(backgrounds[i]->scene), white_e);
+        SetUp& set_up = *backgrounds[i];
+        StaticPainter clip_painter(in_clips.camera, clip_rays, scenario.focus);
+        set_up.background_e = scaled(clip_painter.paint(set_up.scene), white_e);
+        if (scenario.mount.moves()) {
+          set_up.fine =
+              fine_picture(in_clips.camera, scenario.mount, scenario.focus, set_up.scene, longest_clip_s(scenario));
+        }
       } else {
         const std::size_t number = i - backgrounds.size();
         const FloatPicture expected_e = scaled(painter.paint(stills[number].scene), white_e);
@@ -218,8 +238,8 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   in_parallel(options.jobs, clips.size(), [&](const auto& next) {
     for (std::size_t i = next(); i < clips.size(); i = next()) {
       const Clip& clip = clips[i];
-      ClipRenderer renderer(scenario, *clip.configuration, clip.set_up->scene, rays, clip.set_up->background_e,
-                            options.seed, clip.stream);
+      ClipRenderer renderer(in_clips, *clip.configuration, clip.set_up->scene, clip_rays, clip.set_up->background_e,
+                            options.seed, clip.stream, clip.set_up->fine ? &*clip.set_up->fine : nullptr);
       const VideoFormat format{scenario.codec,
                                scenario.camera.width_px,
                                scenario.camera.height_px,
@@ -233,9 +253,9 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
       ClipTruth truth;
       const auto frame_done = [&] { advance(1.0); };
       if (scenario.sensor.bit_depth > 8) {
-        render_frames<std::uint16_t>(scenario, clip, clock, renderer, *writer, truth, frame_done);
+        render_frames<std::uint16_t>(in_clips, clip, clock, renderer, *writer, truth, frame_done);
       } else {
-        render_frames<std::uint8_t>(scenario, clip, clock, renderer, *writer, truth, frame_done);
+        render_frames<std::uint8_t>(in_clips, clip, clock, renderer, *writer, truth, frame_done);
       }
       writer->finish();
       const std::string& name = clip.motion->name;

@@ -9,10 +9,14 @@
 #include <vector>
 
 #include "render/camera.h"
+#include "render/focus.h"
 #include "render/frame_clock.h"
+#include "render/light.h"
+#include "render/mount.h"
 #include "render/sensor.h"
 #include "render/shutter.h"
 #include "render/video_writer.h"
+#include "render/vignetting.h"
 #include "sim/scenario.h"
 
 namespace glidelab::render {
@@ -74,7 +78,11 @@ struct Scenario {
   sim::MotionScenario motion;
   std::string camera_name;  ///< of the camera file; empty without one
   Camera camera;
+  Vignetting vignetting;
+  std::optional<Focus> focus;  ///< without it all is sharp
   Recording recording;
+  Light light;
+  Mount mount;
   Sensor sensor;
   Exposure exposure;
   Codec codec = Codec::ffv1;

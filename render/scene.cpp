@@ -51,6 +51,7 @@ StaticScene empty_track(const Scenario& scenario, double incline_rad) {
   scene.wall_z_m = -scenario.scene.wall_distance_m;
   scene.wall_albedo = scenario.scene.wall_albedo;
   scene.light_falloff = scenario.scene.light_falloff;
+  scene.light_gradient_per_m = scenario.light.gradient_per_m;
   const TrackFrame frame = track_frame(scenario.track, incline_rad);
   const double half_length = 0.5 * scenario.track.length_m;
   // The board of a plane view stands at z = 0 before the track; the glider's front overhangs it.
@@ -147,6 +148,13 @@ MovingBody glider(const Scenario& scenario, const StaticScene& scene, const sim:
   }
   moving.marker = MarkerSphere{place(0.0, 0.0, scenario.marker.height_m), 0.5 * scenario.marker.diameter_m,
                                scenario.marker.reflectance * light};
+  if (scenario.light.ring_light > 0.0) {
+    // A lamp at the lens: what it lights falls with the square of the distance.
+    const Eigen::Vector3d eye = scenario.camera.X_WC.translation();
+    const double near2 = eye.squaredNorm();
+    const double far2 = (eye - marker_position_W(scenario, body.incline_rad, x_m)).squaredNorm();
+    moving.marker->radiance += scenario.light.ring_light * near2 / far2;
+  }
   return moving;
 }
 
@@ -208,13 +216,21 @@ std::optional<PixelRect> plumb_region(const Scenario& scenario) {
                       {0, 0, camera.width_px, camera.height_px});
 }
 
+Scenario as_in_clips(const Scenario& scenario) {
+  Scenario changed = scenario;
+  changed.camera.focal_px *= 1.0 + scenario.mount.focal_change;
+  return changed;
+}
+
 double electrons_of_white(const Scenario& scenario) {
   const Sensor& sensor = scenario.sensor;
   const Exposure& exposure = scenario.exposure;
   if (exposure.white_photons_s) {
-    return *exposure.white_photons_s * exposure.quantum_efficiency * scenario.recording.exposure_s;
+    return scenario.light.level * *exposure.white_photons_s * exposure.quantum_efficiency *
+           scenario.recording.exposure_s;
   }
-  return (converter_code(sensor, exposure.white_level * sensor.largest_code()) - sensor.offset_dn) /
+  return scenario.light.level *
+         (converter_code(sensor, exposure.white_level * sensor.largest_code()) - sensor.offset_dn) /
          sensor.gain_dn_per_e;
 }
 

@@ -39,6 +39,9 @@ PlumbLine plumb_line(const PlumbSetup& setup, const Camera& camera);
 /// configuration; nothing where less than 40 px of it are in the picture, or there is no plumb.
 std::optional<PixelRect> plumb_region(const Scenario& scenario);
 
+/// The scenario as its clips see it: with the focal length after the calibration (render/mount.h).
+Scenario as_in_clips(const Scenario& scenario);
+
 /// Electrons that a relative radiance of 1 gives in one exposure.
 double electrons_of_white(const Scenario& scenario);
 

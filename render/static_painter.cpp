@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <string>
 
 namespace glidelab::render {
 namespace {
@@ -16,7 +20,11 @@ constexpr int kMostBoxes = 24;
 const Eigen::Vector3d kToLight = Eigen::Vector3d(-0.35, 0.62, 0.70).normalized();
 constexpr double kAmbient = 0.45;
 
-constexpr const char* kShader = R"(#version 330 core
+constexpr int kFocusRays = 256;
+
+constexpr const char* kVersion = "#version 330 core\n";
+constexpr const char* kWithFocus = "#define FOCUS\n";
+constexpr const char* kShader = R"(
 const int kRays = 64;
 const int kMostBoxes = 24;
 uniform sampler2D rays;    // x, y, dx/du, dx/dv
@@ -29,6 +37,7 @@ uniform vec3 eye;          // the camera's position
 uniform vec3 to_light;
 uniform float ambient;
 uniform vec3 light;        // its middle (x, y), falloff
+uniform vec2 gradient;     // of the light, per metre
 uniform vec2 wall;         // z, albedo
 uniform int boxes;         // of this tile
 uniform int casters;       // of the scene
@@ -45,6 +54,12 @@ uniform vec3 board_normal; // world
 uniform vec3 board_origin;
 uniform vec3 board_size;   // inner columns, inner rows, border in squares
 uniform vec2 board_albedo; // white, black
+#ifdef FOCUS
+uniform sampler2D lens;    // of each ray: a point of the aperture (m), the core; and in row 1 the place in the pixel
+uniform float focus_distance;
+uniform vec3 board_x;      // world, one square long in its coordinates
+uniform vec3 board_y;
+#endif
 out vec2 result;            // radiance, largest difference between rays
 
 float hash(vec2 p) {
@@ -128,17 +143,29 @@ void main() {
   float share = inversesqrt(float(max(count, 1)));  // of the pixel's side that a ray stands for
   for (int i = 0; i < count; ++i) {
     vec2 within = first_pass == 1 ? vec2((i & 1) == 0 ? -0.25 : 0.25, (i & 2) == 0 ? -0.25 : 0.25) : offset[i] + 0.5 / float(count) - 0.5;
+    vec3 from = eye;
+#ifdef FOCUS
+    vec4 through = vec4(0.0);
+    if (first_pass == 0) {
+      through = texelFetch(lens, ivec2(i, 0), 0);
+      within = texelFetch(lens, ivec2(i, 1), 0).xy;
+      from = eye + rotation * vec3(through.xy, 0.0);
+    }
+    vec3 d_C = vec3(ray.xy + within.x * du + within.y * dv + through.zw, 1.0);
+    vec3 d = rotation * (d_C - vec3(through.xy / focus_distance, 0.0));
+#else
     vec3 d_C = vec3(ray.xy + within.x * du + within.y * dv, 1.0);
     vec3 d = rotation * d_C;
-    float t = (wall.x - eye.z) / d.z;  // the wall is behind everything
-    vec3 at = eye + t * d;
+#endif
+    float t = (wall.x - from.z) / d.z;  // the wall is behind everything
+    vec3 at = from + t * d;
     vec3 normal = vec3(0, 0, 1);
     float albedo = wall.y * (0.97 + 0.06 * noise(at.xy * 7.0) + 0.03 * (noise(at.xy * 160.0) - 0.5));
     int found = -1;
     vec3 found_normal = vec3(0.0);
     for (int k = 0; k < boxes; ++k) {
       vec3 n;
-      float hit = hit_box(eye, d, box_center[k], box_half[k], n);
+      float hit = hit_box(from, d, box_center[k], box_half[k], n);
       if (hit > 0.0 && hit < t) {
         t = hit;
         found = k;
@@ -148,7 +175,7 @@ void main() {
     if (found >= 0) {
       vec4 center = box_center[found];
       vec4 half_size = box_half[found];
-      at = eye + t * d;
+      at = from + t * d;
       vec3 o = at - center.xyz;
       vec3 local = vec3(center.w * o.x + half_size.w * o.y, -half_size.w * o.x + center.w * o.y, o.z);
       albedo = albedo_on(box_look[found], local, found_normal, half_size.xyz);
@@ -156,13 +183,13 @@ void main() {
     }
     if (bob.x > 0.0) {
       // The thread: a vertical cylinder, met in the plane of x and z.
-      vec2 o = eye.xz - thread.xy;
+      vec2 o = from.xz - thread.xy;
       float a = dot(d.xz, d.xz);
       float b = dot(o, d.xz);
       float cross_z = (o.x * d.z - o.y * d.x);
       float under_root = a * bob.x * bob.x - cross_z * cross_z;
       float hit = (-b - sqrt(max(under_root, 0.0))) / a;
-      vec3 p = eye + hit * d;
+      vec3 p = from + hit * d;
       if (under_root > 0.0 && hit > 0.0 && hit < t && p.y < thread.z && p.y > thread.w) {
         t = hit;
         at = p;
@@ -170,7 +197,7 @@ void main() {
         albedo = bob.z;
       }
       vec3 c = vec3(thread.x, thread.w - bob.y, thread.y);
-      vec3 oc = eye - c;
+      vec3 oc = from - c;
       float dd = dot(d, d);
       float bb = dot(oc, d);
       vec3 turned = cross(oc, d);
@@ -178,15 +205,20 @@ void main() {
       hit = (-bb - sqrt(max(root, 0.0))) / dd;
       if (root > 0.0 && hit > 0.0 && hit < t) {
         t = hit;
-        at = eye + t * d;
+        at = from + t * d;
         normal = (at - c) / bob.y;
         albedo = 0.35;
       }
     }
     if (has_board == 1) {
-      float hit = dot(board_normal, board_origin - eye) / dot(board_normal, d);
+      float hit = dot(board_normal, board_origin - from) / dot(board_normal, d);
       vec3 h = to_board * d_C;
+#ifdef FOCUS
+      vec3 off_origin = from + hit * d - board_origin;
+      vec2 p = vec2(dot(off_origin, board_x), dot(off_origin, board_y));
+#else
       vec2 p = h.xy / h.z;
+#endif
       // The board's extent within this ray's share of the pixel.
       vec3 hu = to_board * vec3(du, 0.0) * share;
       vec3 hv = to_board * vec3(dv, 0.0) * share;
@@ -196,7 +228,7 @@ void main() {
       bool on_plate = p.x > -1.0 - border && p.y > -1.0 - border && p.x < last.x + border && p.y < last.y + border;
       if (on_plate && hit > 0.0 && hit < t && dot(board_normal, d) > 0.0) {
         t = hit;
-        at = eye + t * d;
+        at = from + t * d;
         normal = -board_normal;
         // The square at (-1, -1) is black; black where the product of the two waves is positive.
         vec2 row = row_of_squares(p.x + 1.0, last.x + 1.0, w.x);
@@ -215,6 +247,7 @@ void main() {
     vec2 off = at.xy - light.xy;
     float level = (ambient + (1.0 - ambient) * seen) / (ambient + (1.0 - ambient) * to_light.z);
     float radiance = albedo * level / (1.0 + light.z * dot(off, off));
+    if (gradient != vec2(0.0)) radiance *= exp(dot(gradient, at.xy));
     sum += radiance;
     range = vec2(min(range.x, radiance), max(range.y, radiance));
   }
@@ -272,6 +305,27 @@ std::vector<Eigen::Vector2f> sobol() {
   return points;
 }
 
+/// Of each ray: its point of the aperture in metres and its part of the core in undistorted coordinates; then, in a
+/// second row, its place in the pixel (a Kronecker sequence of two further roots).
+std::vector<float> lens_rays(const Focus& focus, const Camera& camera) {
+  const double aperture_m = aperture_radius_m(focus, camera);
+  const double core = core_sigma_px(focus, camera);
+  std::vector<float> values;
+  for (const FocusSample& sample : focus_samples(kFocusRays)) {
+    const Eigen::Vector2d a = aperture_m * sample.aperture;
+    const Eigen::Vector2d g = core * sample.core.cwiseQuotient(camera.focal_px);
+    for (const double value : {a.x(), a.y(), g.x(), g.y()}) values.push_back(static_cast<float>(value));
+  }
+  for (int i = 0; i < kFocusRays; ++i) {
+    const double u = (i + 0.5) * std::numbers::sqrt2;
+    const double v = (i + 0.5) * std::numbers::sqrt3;
+    for (const double value : {u - std::floor(u) - 0.5, v - std::floor(v) - 0.5, 0.0, 0.0}) {
+      values.push_back(static_cast<float>(value));
+    }
+  }
+  return values;
+}
+
 /// The pixels that a box may touch; the whole picture where part of it has no picture of its own.
 PixelRect pixels_of(const Camera& camera, const StaticBox& box) {
   const PixelRect all{0, 0, camera.width_px, camera.height_px};
@@ -326,11 +380,15 @@ std::vector<Eigen::Vector3d> outline_of(const Chessboard& board) {
           board.X_WP * Eigen::Vector3d(right, bottom, 0), board.X_WP * Eigen::Vector3d(low, bottom, 0)};
 }
 
-StaticPainter::StaticPainter(const Camera& camera, const RayTable& rays)
-    : camera_(camera), canvas_(camera.width_px, camera.height_px, 2) {
+StaticPainter::StaticPainter(const Camera& camera, const RayTable& rays, const std::optional<Focus>& focus)
+    : camera_(camera), focus_(focus), canvas_(camera.width_px, camera.height_px, 2), gain_(rays.gain) {
   const int rays_unit = canvas_.add_texture(rays.width, rays.height, 4, rays.x_y_dxdu_dxdv);
   const int slopes_unit = canvas_.add_texture(rays.width, rays.height, 2, rays.dydu_dydv);
-  canvas_.add_program(kShader);
+  canvas_.add_program(std::string(kVersion) + (focus_ ? kWithFocus : "") + kShader);
+  if (focus_) {
+    canvas_.set("lens", canvas_.add_texture(kFocusRays, 2, 4, lens_rays(*focus_, camera_)));
+    canvas_.set("focus_distance", static_cast<float>(focus_->focus_distance_m));
+  }
   canvas_.set("rays", rays_unit);
   canvas_.set("slopes", slopes_unit);
   wanted_unit_ = canvas_.add_texture(1, 1, 1, std::vector<float>{0.0f});
@@ -342,6 +400,36 @@ StaticPainter::StaticPainter(const Camera& camera, const RayTable& rays)
   canvas_.set("ambient", static_cast<float>(kAmbient));
 }
 
+int StaticPainter::blur_reach_px(const StaticScene& scene) const {
+  const Eigen::Isometry3d X_CW = camera_.X_WC.inverse();
+  double nearest = std::numeric_limits<double>::infinity();
+  double farthest = 0.0;
+  const auto add = [&](const Eigen::Vector3d& p_W) {
+    constexpr double kBefore = 0.2;  // m; what is nearer is hardly in the picture
+    const double depth = std::max((X_CW * p_W).z(), kBefore);
+    nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+  };
+  for (const double side : {-0.5, 0.5}) {
+    for (const double up : {-0.5, 0.5}) {
+      const Eigen::Vector3d ray(side * camera_.width_px / camera_.focal_px.x(),
+                                up * camera_.height_px / camera_.focal_px.y(), 1.0);
+      const Eigen::Vector3d along = camera_.X_WC.linear() * ray;
+      if (along.z() < 0.0) {
+        add(camera_.X_WC.translation() + (scene.wall_z_m - camera_.X_WC.translation().z()) / along.z() * along);
+      }
+    }
+  }
+  // Of boxes the middle of what is before the camera: a table may reach under it.
+  for (const StaticBox& box : scene.boxes) add(box.center_W + Eigen::Vector3d(0.0, 0.0, box.half_m.z()));
+  if (scene.board) {
+    for (const Eigen::Vector3d& corner : outline_of(*scene.board)) add(corner);
+  }
+  if (scene.plumb) add({scene.plumb->x_m, scene.plumb->top_y_m, scene.plumb->z_m});
+  const double disc = std::max(disc_radius_px(*focus_, camera_, nearest), disc_radius_px(*focus_, camera_, farthest));
+  return static_cast<int>(std::ceil(std::min(disc + 3.0 * core_sigma_px(*focus_, camera_), 500.0)));
+}
+
 FloatPicture StaticPainter::paint(const StaticScene& scene) {
   if (scene.boxes.size() > kMostBoxes) throw std::logic_error("too many boxes for the shader");
   canvas_.use(0);
@@ -349,6 +437,7 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
       "light",
       Eigen::Vector3f(
           Eigen::Vector3d(scene.light_middle_m.x(), scene.light_middle_m.y(), scene.light_falloff).cast<float>()));
+  canvas_.set("gradient", Eigen::Vector2f(scene.light_gradient_per_m.cast<float>()));
   canvas_.set("wall", Eigen::Vector2f(Eigen::Vector2d(scene.wall_z_m, scene.wall_albedo).cast<float>()));
   canvas_.set("has_board", scene.board ? 1 : 0);
   if (scene.board) {
@@ -362,6 +451,10 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
     canvas_.set("to_board", Eigen::Matrix3f(to_board.cast<float>()));
     canvas_.set("board_normal", Eigen::Vector3f(Eigen::Vector3d(board.X_WP.linear().col(2)).cast<float>()));
     canvas_.set("board_origin", Eigen::Vector3f(Eigen::Vector3d(board.X_WP.translation()).cast<float>()));
+    if (focus_) {
+      canvas_.set("board_x", Eigen::Vector3f((board.X_WP.linear().col(0) / board.square_m).cast<float>()));
+      canvas_.set("board_y", Eigen::Vector3f((board.X_WP.linear().col(1) / board.square_m).cast<float>()));
+    }
     canvas_.set("board_size",
                 Eigen::Vector3f(static_cast<float>(board.inner_columns), static_cast<float>(board.inner_rows),
                                 static_cast<float>(board.border_squares)));
@@ -425,7 +518,14 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
     picture.values[i] = values[2 * i];
     spread.values[i] = values[2 * i + 1];
   }
-  const FloatPicture wanted = wanted_rays(picture, spread);
+  FloatPicture wanted = wanted_rays(picture, spread);
+  if (focus_) {
+    // All that a blurred edge may reach.
+    const int reach = blur_reach_px(scene);
+    cv::Mat rays(all.height, all.width, CV_32F, wanted.values.data());
+    cv::dilate(rays, rays, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+    for (float& count : wanted.values) count = count > 0.0f ? static_cast<float>(kFocusRays) : 0.0f;
+  }
   canvas_.update_texture(wanted_unit_, all.width, all.height, 1, wanted.values);
   canvas_.set("first_pass", 0);
   draw_tiles([&](const PixelRect& tile) {
@@ -439,6 +539,7 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
   for (std::size_t i = 0; i < picture.values.size(); ++i) {
     if (wanted.values[i] > 0.5f) picture.values[i] = values[2 * i];
   }
+  for (std::size_t i = 0; i < gain_.size(); ++i) picture.values[i] *= gain_[i];
   return picture;
 }
 

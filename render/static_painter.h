@@ -6,7 +6,10 @@
 /// own share of the pixel, so that its edges are exact to about 1e-3 of their contrast.
 #pragma once
 
+#include <optional>
+
 #include "render/float_canvas.h"
+#include "render/focus.h"
 #include "render/ray_table.h"
 #include "render/static_scene.h"
 
@@ -14,15 +17,20 @@ namespace glidelab::render {
 
 class StaticPainter {
  public:
-  /// `rays` belongs to `camera`. One painter a thread.
-  StaticPainter(const Camera& camera, const RayTable& rays);
+  /// `rays` belongs to `camera`. One painter a thread. With `focus`, pixels near anything that changes are the mean of
+  /// 256 rays, from all over the lens's aperture and the core's Gaussian (the same in each pixel).
+  StaticPainter(const Camera& camera, const RayTable& rays, const std::optional<Focus>& focus = std::nullopt);
 
-  /// Relative radiance, in the size of the picture.
+  /// Relative radiance, times the table's gain, in the size of the picture.
   FloatPicture paint(const StaticScene& scene);
 
  private:
+  int blur_reach_px(const StaticScene& scene) const;
+
   Camera camera_;
+  std::optional<Focus> focus_;
   FloatCanvas canvas_;
+  std::vector<float> gain_;
   int wanted_unit_ = 0;  ///< the texture that says which pixels get all rays
 };
 

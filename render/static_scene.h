@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -50,14 +51,17 @@ struct StaticScene {
   double wall_albedo = 0.4;
   double light_falloff = 0.12;  ///< how much darker the light is 1 m off its middle
   Eigen::Vector2d light_middle_m = Eigen::Vector2d(-0.2, 0.3);
+  Eigen::Vector2d light_gradient_per_m = Eigen::Vector2d::Zero();
   std::vector<StaticBox> boxes;
   std::optional<Chessboard> board;
   std::optional<PlumbLine> plumb;
 };
 
-/// light(position) of the scene, for what is drawn elsewhere: 1 / (1 + falloff * distance²) over x and y.
+/// light(position) of the scene, for what is drawn elsewhere: exp(gradient · (x, y)) / (1 + falloff * distance²), the
+/// distance over x and y.
 inline double light_at(const StaticScene& scene, const Eigen::Vector3d& p_W) {
-  return 1.0 / (1.0 + scene.light_falloff * (p_W.head<2>() - scene.light_middle_m).squaredNorm());
+  return std::exp(scene.light_gradient_per_m.dot(p_W.head<2>())) /
+         (1.0 + scene.light_falloff * (p_W.head<2>() - scene.light_middle_m).squaredNorm());
 }
 
 /// The factor of a surface with this outward normal, 1 where it faces the camera side.

@@ -12,7 +12,7 @@ using namespace glidelab::render;
 
 namespace {
 
-Camera some_camera(const BrownConrady& lens) {
+Camera some_camera(const Lens& lens) {
   Camera camera;
   camera.width_px = 640;
   camera.height_px = 480;
@@ -23,14 +23,34 @@ Camera some_camera(const BrownConrady& lens) {
   return camera;
 }
 
-const std::array<BrownConrady, 4> kLenses = {
-    {{}, {-0.3, 0.12, -0.02, 0.001, -0.002}, {0.25, 0.1, 0.0, -0.002, 0.001}, {-0.15, 0.0, 0.0, 0.0, 0.0}}};
+Lens rational_lens() {
+  Lens lens{0.12, -0.31, 0.05, 0.0007, -0.0004};
+  lens.k4 = 0.45;
+  lens.k5 = -0.2;
+  lens.k6 = 0.08;
+  lens.model = LensModel::rational;
+  return lens;
+}
+
+Lens fisheye_lens() {
+  Lens lens{-0.03, 0.012, -0.008, 0.0, 0.0};
+  lens.k4 = 0.0015;
+  lens.model = LensModel::fisheye;
+  return lens;
+}
+
+const std::array<Lens, 6> kLenses = {{{},
+                                      {-0.3, 0.12, -0.02, 0.001, -0.002},
+                                      {0.25, 0.1, 0.0, -0.002, 0.001},
+                                      {-0.15, 0.0, 0.0, 0.0, 0.0},
+                                      rational_lens(),
+                                      fisheye_lens()}};
 
 }  // namespace
 
 TEST_CASE("A pixel's ray leads back to the pixel, over the whole picture") {
   // Newton's method ends within 1e-14 of the focal length; the mapping magnifies by less than 10.
-  for (const BrownConrady& lens : kLenses) {
+  for (const Lens& lens : kLenses) {
     const Camera camera = some_camera(lens);
     for (double u = -0.5; u <= 639.5; u += 40.0) {
       for (double v = -0.5; v <= 479.5; v += 40.0) {
@@ -42,9 +62,9 @@ TEST_CASE("A pixel's ray leads back to the pixel, over the whole picture") {
   }
 }
 
-TEST_CASE("Points project as OpenCV's projectPoints says") {
+TEST_CASE("Points project as OpenCV's projectPoints and fisheye::projectPoints say") {
   // Both are in double: 1e-9 px is some thousand roundings of a value of 640.
-  for (const BrownConrady& lens : kLenses) {
+  for (const Lens& lens : kLenses) {
     const Camera camera = some_camera(lens);
     const Eigen::Isometry3d X_CW = camera.X_WC.inverse();
     cv::Matx33d rotation;
@@ -54,13 +74,18 @@ TEST_CASE("Points project as OpenCV's projectPoints says") {
     const cv::Vec3d translation(X_CW.translation().x(), X_CW.translation().y(), X_CW.translation().z());
     const cv::Matx33d matrix(camera.focal_px.x(), 0, camera.center_px.x(), 0, camera.focal_px.y(), camera.center_px.y(),
                              0, 0, 1);
-    const std::vector<double> coefficients{lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+    const std::vector<double> coefficients{lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, lens.k4, lens.k5, lens.k6};
     std::vector<cv::Point3d> points;
     for (double x = -0.6; x <= 0.6; x += 0.15) {
       for (double y = -0.4; y <= 0.4; y += 0.1) points.emplace_back(x, y, 0.3 * x - 0.2 * y);
     }
     std::vector<cv::Point2d> pixels;
-    cv::projectPoints(points, rotation_vector, translation, matrix, coefficients, pixels);
+    if (lens.model == LensModel::fisheye) {
+      cv::fisheye::projectPoints(points, pixels, rotation_vector, translation, matrix,
+                                 cv::Vec4d(lens.k1, lens.k2, lens.k3, lens.k4));
+    } else {
+      cv::projectPoints(points, rotation_vector, translation, matrix, coefficients, pixels);
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto pixel = project(camera, {points[i].x, points[i].y, points[i].z});
       REQUIRE(pixel);
@@ -72,7 +97,7 @@ TEST_CASE("Points project as OpenCV's projectPoints says") {
 TEST_CASE("The distortion's Jacobian is the limit of its differences") {
   // Central differences with h = 1e-5 err by h² f'''/6 ~ 1e-10 and by rounding, 1e-16 / 1e-5.
   constexpr double kStep = 1e-5;
-  for (const BrownConrady& lens : kLenses) {
+  for (const Lens& lens : kLenses) {
     const Eigen::Vector2d at(0.31, -0.22);
     const Eigen::Matrix2d jacobian = distortion_jacobian(lens, at);
     for (int axis = 0; axis < 2; ++axis) {
@@ -94,6 +119,41 @@ TEST_CASE("A barrel lens with k1 alone folds at 1/sqrt(-3 k1), and one without b
   CHECK(std::isinf(fold_radius({-0.5, 0.2, 0, 0, 0})));
   // 1 + 7 k3 s³ with k3 = -1/7: s = 1.
   CHECK(std::abs(fold_radius({0, 0, -1.0 / 7.0, 0, 0}) - 1.0) < 1e-12);
+}
+
+TEST_CASE("A rational lens folds where its radius stops growing or has a pole, a fisheye where its angle does") {
+  // r / (1 + s) grows until s = 1; r / (1 - s/4) has a pole at s = 4; the companion's eigenvalues are polished by
+  // bisection to the last bits.
+  Lens lens;
+  lens.model = LensModel::rational;
+  lens.k4 = 1.0;
+  CHECK(std::abs(fold_radius(lens) - 1.0) < 1e-12);
+  lens.k4 = -0.25;
+  CHECK(std::abs(fold_radius(lens) - 2.0) < 1e-12);
+  // With the denominator 1 it is the polynomial.
+  lens = {-0.5, 0.1, 0, 0, 0};
+  lens.model = LensModel::rational;
+  CHECK(std::abs(fold_radius(lens) - 1.0) < 1e-12);
+  // theta (1 - theta²/3) grows until theta = 1.
+  lens = {-1.0 / 3.0, 0, 0, 0, 0};
+  lens.model = LensModel::fisheye;
+  CHECK(std::abs(fold_radius(lens) - std::tan(1.0)) < 1e-12);
+  lens.k1 = -0.1;  // until theta = 1.83, beyond a right angle
+  CHECK(std::isinf(fold_radius(lens)));
+}
+
+TEST_CASE("A fisheye's rays come back from far off its axis") {
+  // At 80 degrees tan is 5.7 and its slope 33: the angle's 1e-16 become some 1e-14.
+  Lens lens = fisheye_lens();
+  lens.k4 = 0.0;
+  for (const double degrees : {1e-6, 0.01, 1.0, 30.0, 60.0, 80.0}) {
+    const double radius = std::tan(degrees * std::numbers::pi / 180.0);
+    const Eigen::Vector2d at(0.6 * radius, -0.8 * radius);
+    const auto back = undistort(lens, distort(lens, at));
+    CAPTURE(degrees);
+    REQUIRE(back);
+    CHECK((*back - at).norm() < 1e-13 * (1.0 + 10.0 * radius * radius));
+  }
 }
 
 TEST_CASE("Beyond the fold nothing is projected, though the formula would give a pixel") {

@@ -11,7 +11,7 @@ using namespace glidelab::render;
 
 namespace {
 
-Camera paper_like_camera(const BrownConrady& lens) {
+Camera paper_like_camera(const Lens& lens) {
   Camera camera;
   camera.width_px = 800;
   camera.height_px = 600;
@@ -22,9 +22,9 @@ Camera paper_like_camera(const BrownConrady& lens) {
   return camera;
 }
 
-constexpr BrownConrady kNoLens{};
-constexpr BrownConrady kBarrel{-0.22, 0.09, -0.01, 0.0006, -0.0009};
-constexpr BrownConrady kPincushion{0.18, 0.05, 0.0, -0.001, 0.0007};
+constexpr Lens kNoLens{};
+constexpr Lens kBarrel{-0.22, 0.09, -0.01, 0.0006, -0.0009};
+constexpr Lens kPincushion{0.18, 0.05, 0.0, -0.001, 0.0007};
 
 /// A marker whose centre appears near `pixel`, at `depth` before the camera, of about `radius_px`.
 MovingBody marker_at(const Camera& camera, const Eigen::Vector2d& pixel, double depth_m, double radius_px) {
@@ -86,7 +86,7 @@ TEST_CASE("The photometric centre of a still marker is the centroid of its exact
   // direction, at most sqrt(2) 0.16 / 40 = 0.0057 px at R = 4. The renderer's own error is an order below (next test).
   double worst = 0.0;
   double worst_area = 0.0;
-  for (const BrownConrady& lens : {kNoLens, kBarrel, kPincushion}) {
+  for (const Lens& lens : {kNoLens, kBarrel, kPincushion}) {
     const Camera camera = paper_like_camera(lens);
     REQUIRE_FALSE(why_not_one_to_one(camera));
     const RayTable rays = make_ray_table(camera);
