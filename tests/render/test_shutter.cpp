@@ -41,43 +41,22 @@ Scenario moving_marker(const std::string& sections, double y_m = 0.0) {
   return read_scenario(dir / "s.toml");
 }
 
-struct Seen {
-  std::size_t frame = 0;
-  MarkerInPicture truth;
-  FloatPicture picture;  ///< expected electrons
-};
-
-/// All frames that have the glider's middle well in the picture.
-std::vector<Seen> frames_of(const Scenario& scenario) {
-  const sim::ConfigurationSetup& configuration = scenario.motion.configurations.front();
-  const RayTable rays = make_ray_table(scenario.camera);
-  const StaticScene scene = empty_track(scenario, 0.0);
-  const FloatPicture black(scenario.camera.width_px, scenario.camera.height_px);
-  ClipRenderer renderer(scenario, configuration, scene, rays, black, 1, 0);
-  std::vector<Seen> seen;
-  const auto visit = [&](const FrameMotion& frame) {
-    const auto marker = marker_in_picture(scenario, configuration.body, frame);
-    if (!marker || !in_picture(scenario.camera, marker->center_px, 30.0)) return;
-    seen.push_back({frame.frame, *marker, renderer.expected(frame)});
-  };
-  for_each_frame(configuration.body, configuration.motions.front(), scenario.recording, renderer.longest_step_m(),
-                 visit, renderer.detail());
-  return seen;
-}
-
 struct Moments {
   double sum = 0.0, u = 0.0, v = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;  // the last three central
 };
 
+struct Seen {
+  std::size_t frame = 0;
+  MarkerInPicture truth;
+  Moments moments;
+};
+
 /// Of the marker alone: within 14 px of it; the glider's magnets begin at 20 px.
-Moments moments_of(const Seen& seen) {
+Moments moments_of(const FloatPicture& picture, const PixelRect& near) {
   Moments m;
-  constexpr int kReach = 14;
-  const int left = static_cast<int>(std::lround(seen.truth.center_px.x())) - kReach;
-  const int top = static_cast<int>(std::lround(seen.truth.center_px.y())) - kReach;
   const auto each = [&](const auto& add) {
-    for (int y = top; y <= top + 2 * kReach; ++y) {
-      for (int x = left; x <= left + 2 * kReach; ++x) add(static_cast<double>(seen.picture.at(x, y)), x, y);
+    for (int y = near.y; y < near.y + near.height; ++y) {
+      for (int x = near.x; x < near.x + near.width; ++x) add(static_cast<double>(picture.at(x, y)), x, y);
     }
   };
   each([&](double value, int x, int y) {
@@ -93,6 +72,27 @@ Moments moments_of(const Seen& seen) {
     m.vv += value * (y - m.v) * (y - m.v) / m.sum;
   });
   return m;
+}
+
+/// All frames that have the glider's middle well in the picture.
+std::vector<Seen> frames_of(const Scenario& scenario) {
+  const sim::ConfigurationSetup& configuration = scenario.motion.configurations.front();
+  const RayTable rays = make_ray_table(scenario.camera);
+  const StaticScene scene = empty_track(scenario, 0.0);
+  const FloatPicture black(scenario.camera.width_px, scenario.camera.height_px);
+  ClipRenderer renderer(scenario, configuration, scene, rays, black, 1, 0);
+  std::vector<Seen> seen;
+  const auto visit = [&](const FrameMotion& frame) {
+    const auto marker = marker_in_picture(scenario, configuration.body, frame);
+    if (!marker || !in_picture(scenario.camera, marker->center_px, 30.0)) return;
+    constexpr int kReach = 14;
+    const PixelRect near{static_cast<int>(std::lround(marker->center_px.x())) - kReach,
+                         static_cast<int>(std::lround(marker->center_px.y())) - kReach, 2 * kReach + 1, 2 * kReach + 1};
+    seen.push_back({frame.frame, *marker, moments_of(renderer.expected(frame, near), near)});
+  };
+  for_each_frame(configuration.body, configuration.motions.front(), scenario.recording, renderer.longest_step_m(),
+                 visit, renderer.detail());
+  return seen;
 }
 
 /// The second moments of the resting marker's picture at this place: those of the ellipse that a sphere is seen as, a
@@ -125,7 +125,7 @@ TEST_CASE("A marker at constant speed is smeared by v T f / Z, about its place a
     const auto seen = frames_of(scenario);
     REQUIRE(seen.size() > 20);
     for (const Seen& frame : seen) {
-      const Moments m = moments_of(frame);
+      const Moments& m = frame.moments;
       const double still = resting(scenario, frame)(0, 0);
       CAPTURE(exposure_s, frame.frame, smear_px);
       const double x_m = -0.4 + kSpeed * (static_cast<double>(frame.frame) / kRate + 0.5 * exposure_s);
@@ -151,7 +151,7 @@ TEST_CASE("A rolling shutter shifts and shears a marker that moves along the row
     const auto seen = frames_of(scenario);
     REQUIRE(seen.size() > 20);
     for (const Seen& frame : seen) {
-      const Moments m = moments_of(frame);
+      const Moments& m = frame.moments;
       CAPTURE(bottom, frame.frame);
       const double row = 299.5 + 0.15 * kPxPerM;
       const double delay_s = kLine * (bottom ? 599.0 - row : row);
@@ -184,7 +184,7 @@ TEST_CASE("In portrait a rolling shutter stretches a marker that moves with the 
     const auto seen = frames_of(scenario);
     REQUIRE(seen.size() > 20);
     for (const Seen& frame : seen) {
-      const Moments m = moments_of(frame);
+      const Moments& m = frame.moments;
       CAPTURE(bottom, frame.frame);
       const double t0 = static_cast<double>(frame.frame) / kRate + 0.5 * kExposure;
       const double v0 = 299.5 - kPxPerM * (-0.4 + kSpeed * t0);
