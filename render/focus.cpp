@@ -49,9 +49,9 @@ double core_sigma_px(const Focus& focus, const Camera& camera) {
 
 std::vector<FocusSample> focus_samples(std::size_t count) {
   if (count < 8 || count % 2 != 0) throw std::logic_error("focus_samples: an even number from 8");
-  // The root of x^5 = x + 1: powers of its inverse are the steps of the sequence in four dimensions.
+  // The root of x^7 = x + 1: powers of its inverse are the steps of the sequence in six dimensions.
   double phi = 1.2;
-  for (int i = 0; i < 60; ++i) phi = std::pow(1.0 + phi, 0.2);
+  for (int i = 0; i < 60; ++i) phi = std::pow(1.0 + phi, 1.0 / 7.0);
   const auto part = [&](std::size_t i, int dimension) {
     const double at = 0.5 + static_cast<double>(i + 1) * std::pow(phi, -dimension);
     return at - std::floor(at);
@@ -65,8 +65,9 @@ std::vector<FocusSample> focus_samples(std::size_t count) {
     FocusSample sample;
     sample.aperture = radius * Eigen::Vector2d(std::cos(turn), std::sin(turn));
     sample.core = core_radius * Eigen::Vector2d(std::cos(core_turn), std::sin(core_turn));
+    sample.place = {part(i, 5) - 0.5, part(i, 6) - 0.5};
     samples.push_back(sample);
-    samples.push_back({-sample.aperture, -sample.core});
+    samples.push_back({-sample.aperture, -sample.core, -sample.place});
   }
   whiten(
       samples, [](FocusSample& s) -> Eigen::Vector2d& { return s.aperture; }, 0.25);

@@ -36,10 +36,11 @@ double core_sigma_px(const Focus& focus, const Camera& camera);
 struct FocusSample {
   Eigen::Vector2d aperture = Eigen::Vector2d::Zero();  ///< in the unit disc
   Eigen::Vector2d core = Eigen::Vector2d::Zero();      ///< of a normal distribution with variance 1
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();     ///< in the pixel, -1/2 to 1/2
 };
 
-/// `count` samples, evenly spread in all four dimensions (Roberts' R4 sequence); both parts have mean 0 and the exact
-/// covariance, 1/4 and 1 on the diagonal. `count` is even: samples come in opposite pairs.
+/// `count` samples, evenly spread in all six dimensions (Roberts' R6 sequence); aperture and core have mean 0 and the
+/// exact covariance, 1/4 and 1 on the diagonal. `count` is even: samples come in opposite pairs.
 std::vector<FocusSample> focus_samples(std::size_t count);
 
 }  // namespace glidelab::render

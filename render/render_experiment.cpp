@@ -218,8 +218,10 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
     for (std::size_t i = next(); i < stills.size() + backgrounds.size(); i = next()) {
       if (i < backgrounds.size()) {
         SetUp& set_up = *backgrounds[i];
-        StaticPainter clip_painter(in_clips.camera, clip_rays, scenario.focus);
-        set_up.background_e = scaled(clip_painter.paint(set_up.scene), white_e);
+        set_up.background_e =
+            scaled(refocused ? StaticPainter(in_clips.camera, clip_rays, scenario.focus).paint(set_up.scene)
+                             : painter.paint(set_up.scene),
+                   white_e);
         if (scenario.mount.moves()) {
           set_up.fine =
               fine_picture(in_clips.camera, scenario.mount, scenario.focus, set_up.scene, longest_clip_s(scenario));

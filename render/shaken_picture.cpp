@@ -62,6 +62,15 @@ FloatPicture box_means(const FloatPicture& fine) {
   return means;
 }
 
+/// The same lens before pixels that are kFine times smaller.
+std::optional<Focus> as_fine(std::optional<Focus> focus) {
+  if (focus) {
+    focus->pixel_pitch_m /= kFine;
+    focus->core_px *= kFine;
+  }
+  return focus;
+}
+
 /// The pixel position of the still camera that shows what the moved one shows at a pixel.
 Eigen::Vector2d source_of(const FinePicture& fine, const Eigen::Isometry3d& moved, int u, int v) {
   const std::size_t at = static_cast<std::size_t>(v) * fine.rays.width + u;
@@ -117,14 +126,29 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
         fmt::format("mount: the picture moves by {:.0f} px; up to {:.0f} px can be drawn", shift, kMost));
   }
   fine.margin_px = static_cast<int>(std::ceil(shift));
-  Camera wide = camera;
-  wide.width_px = (camera.width_px + 2 * fine.margin_px) * kFine;
-  wide.height_px = (camera.height_px + 2 * fine.margin_px) * kFine;
-  wide.focal_px = kFine * camera.focal_px;
-  const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);
-  wide.center_px = kFine * (camera.center_px + half + Eigen::Vector2d::Constant(fine.margin_px)) - half;
-  const RayTable rays = make_ray_table(wide);
-  fine.means = box_means(StaticPainter(wide, rays, focus).paint(scene));
+  const int columns = (camera.width_px + 2 * fine.margin_px) * kFine;
+  const int rows = (camera.height_px + 2 * fine.margin_px) * kFine;
+  FloatPicture cast(columns, rows);
+  // In strips, for memory. A strip sees what a blurred edge beyond it may reach.
+  constexpr int kStrip = 512;
+  const int overlap = focus ? 128 : 8;
+  for (int top = 0; top < rows; top += kStrip) {
+    const int first = std::max(0, top - overlap);
+    const int last = std::min(rows, top + kStrip + overlap);
+    Camera strip = camera;
+    strip.width_px = columns;
+    strip.height_px = last - first;
+    strip.focal_px = kFine * camera.focal_px;
+    const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);
+    strip.center_px = kFine * (camera.center_px + half + Eigen::Vector2d::Constant(fine.margin_px)) - half;
+    strip.center_px.y() -= first;
+    const FloatPicture seen = StaticPainter(strip, make_ray_table(strip), as_fine(focus)).paint(scene);
+    for (int y = top; y < std::min(rows, top + kStrip); ++y) {
+      const std::span<const float> from = seen.row(y - first, 0, columns);
+      std::copy(from.begin(), from.end(), cast.row(y, 0, columns).begin());
+    }
+  }
+  fine.means = box_means(cast);
   if (moves_sideways(mount)) {
     fine.depth_m = FloatPicture(camera.width_px + 2 * fine.margin_px, camera.height_px + 2 * fine.margin_px);
     for (int y = 0; y < fine.depth_m.height; ++y) {

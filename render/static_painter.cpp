@@ -306,7 +306,7 @@ std::vector<Eigen::Vector2f> sobol() {
 }
 
 /// Of each ray: its point of the aperture in metres and its part of the core in undistorted coordinates; then, in a
-/// second row, its place in the pixel (a Kronecker sequence of two further roots).
+/// second row, its place in the pixel.
 std::vector<float> lens_rays(const Focus& focus, const Camera& camera) {
   const double aperture_m = aperture_radius_m(focus, camera);
   const double core = core_sigma_px(focus, camera);
@@ -316,10 +316,8 @@ std::vector<float> lens_rays(const Focus& focus, const Camera& camera) {
     const Eigen::Vector2d g = core * sample.core.cwiseQuotient(camera.focal_px);
     for (const double value : {a.x(), a.y(), g.x(), g.y()}) values.push_back(static_cast<float>(value));
   }
-  for (int i = 0; i < kFocusRays; ++i) {
-    const double u = (i + 0.5) * std::numbers::sqrt2;
-    const double v = (i + 0.5) * std::numbers::sqrt3;
-    for (const double value : {u - std::floor(u) - 0.5, v - std::floor(v) - 0.5, 0.0, 0.0}) {
+  for (const FocusSample& sample : focus_samples(kFocusRays)) {
+    for (const double value : {sample.place.x(), sample.place.y(), 0.0, 0.0}) {
       values.push_back(static_cast<float>(value));
     }
   }

@@ -100,7 +100,7 @@ TEST_CASE("The lens's samples have the mean and the covariance of what they stan
 }
 
 TEST_CASE("A board's edge that is out of focus spreads as theory says") {
-  // Depth 2 m, square on. 256 rays, the same in each pixel: within 0.02 of the contrast anywhere, and 0.006 rms.
+  // Depth 2 m, square on. 256 rays, the same in each pixel: within 0.03 of the contrast anywhere, and 0.006 rms.
   const Camera camera = slanted_camera();
   const RayTable rays = make_ray_table(camera);
   StaticScene scene;
@@ -142,14 +142,14 @@ TEST_CASE("A board's edge that is out of focus spreads as theory says") {
     }
     CAPTURE(disc, sigma, bright, other, worst, std::sqrt(squares / count));
     CHECK(std::abs(bright - other) > 0.5);
-    CHECK(worst < 0.02);
+    CHECK(worst < 0.03);
     CHECK(std::sqrt(squares / count) < 0.006);
   }
 }
 
 TEST_CASE("The glider's edge spreads likewise, and its marker keeps its centre") {
   // The carriage's right side at 2 m, between its chamfer and its magnets; before black. The samples lie a quarter of a
-  // pixel apart across the edge: within 0.03 of the contrast anywhere, and 0.01 rms.
+  // pixel apart across the edge: within 0.04 of the contrast anywhere, and 0.01 rms.
   for (const double focus_m : {2.0, 1.5, 1.2}) {
     const MadeClip clip(scenario_of(fmt::format(
         "[camera]\nwidth_px = 640\nheight_px = 200\nframe_rate_hz = 100.0\nexposure_s = 1e-6\nfocal_px = [1200.0, "
@@ -187,7 +187,7 @@ TEST_CASE("The glider's edge spreads likewise, and its marker keeps its centre")
         }
       }
       CAPTURE(focus_m, frame.frame, disc, sigma, worst, std::sqrt(squares / count));
-      CHECK(worst < 0.03);
+      CHECK(worst < 0.04);
       CHECK(std::sqrt(squares / count) < 0.01);
       // The marker over the body, which is even around it: its centroid, less the body.
       const MarkerInPicture truth = marker_in_picture(clip.scenario, clip.configuration.body, frame).value();
