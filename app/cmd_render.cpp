@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 struct RenderCommandOptions {
   CommonOptions common;
   std::string scenario;
+  bool ideal = false;
 };
 
 void render_command(const RenderCommandOptions& options) {
@@ -35,9 +36,9 @@ void render_command(const RenderCommandOptions& options) {
 
   ProgressDisplay display(options.common.quiet);
   const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
-  const render::RenderSummary summary =
-      render::render_experiment(scenario, staged_experiment.dir(), staged_truth.dir(),
-                                {.seed = seed, .jobs = options.common.jobs}, display.callback());
+  const render::RenderSummary summary = render::render_experiment(
+      scenario, staged_experiment.dir(), staged_truth.dir(),
+      {.seed = seed, .jobs = options.common.jobs, .ideal = options.ideal}, display.callback());
   throw_if_interrupted();
   // The truth first: where it stands, the folder beside it is known as one that may be replaced.
   staged_truth.publish_whole();
@@ -63,6 +64,8 @@ void add_render(CLI::App& app, Command& chosen) {
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
+  command->add_flag("--ideal", options->ideal,
+                    "Write sharp, noise-free, distortion-free frames and the marker's centre in them beside the truth");
   add_common_options(*command, options->common, "glidelab-out/render-<name of the scenario file>",
                      "Seed of the camera's noise; default: the scenario's");
   command->callback([options, &chosen] { chosen = [options] { render_command(*options); }; });

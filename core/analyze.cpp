@@ -69,7 +69,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   std::size_t modes = 0;  // of the cameras so far: folders share none
   std::vector<const Experiment*> experiment_of;
   for (const Experiment& experiment : experiments) {
-    PictureResults seen = tracks_of(experiment, options.jobs, progress);
+    PictureResults seen = tracks_of(experiment, options.jobs, progress, options.open);
     for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));

@@ -11,6 +11,7 @@
 
 #include "base/progress.h"
 #include "core/experiment.h"
+#include "core/frame_source.h"
 #include "core/results.h"
 
 namespace glidelab::core {
@@ -18,6 +19,7 @@ namespace glidelab::core {
 struct AnalysisOptions {
   std::optional<double> bandwidth_s;  ///< given; otherwise chosen for each clip by the documented rule (bandwidth.h)
   int jobs = 1;                       ///< clips analysed at the same time
+  FrameOpener open = open_frames;     ///< where the clips' frames come from
 };
 
 /// Reads and analyses all folders together: they share the glider and the track, and nothing of the camera.

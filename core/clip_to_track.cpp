@@ -148,9 +148,10 @@ class FrameCounter {
   std::atomic<double> done_ = 0.0;
 };
 
-SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Setting& setting, FrameCounter& counter) {
+SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Setting& setting, const FrameOpener& open,
+                 FrameCounter& counter) {
   const bool with_color = signal_kind(*experiment.marker) == SignalKind::colored;
-  const auto source = open_frames(clip.file, *experiment.camera, with_color, setting.size);
+  const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
   // Where no ray belongs to a pixel (far outside the calibrated field) the marker is as large as elsewhere.
   double usual_px = 0.0;
@@ -222,7 +223,8 @@ void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string
 
 }  // namespace
 
-PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress) {
+PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress,
+                         const FrameOpener& open) {
   PictureResults results;
   results.tracks.resize(experiment.clips.size());
   std::vector<std::size_t> pictures;
@@ -242,7 +244,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, pictures.size());
   for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
-    seen[pictures[k]] = look_at(experiment, experiment.clips[pictures[k]], setting, counter);
+    seen[pictures[k]] = look_at(experiment, experiment.clips[pictures[k]], setting, open, counter);
   });
 
   for (const auto& [name, restitution] : setting.restitutions) {

@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "core/experiment.h"
+#include "core/frame_source.h"
 #include "core/results.h"
 #include "core/track_data.h"
 
@@ -23,6 +24,7 @@ struct PictureResults {
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of
 /// motion, x positive downhill. Clips that are tracks (CSV) are read with read_track_csv. Frames stream; `jobs` clips
 /// at a time. InputError for pictures that cannot be used (no pattern, no marker, truncated, of another size, …).
-PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress);
+PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
+                         const FrameOpener& open = open_frames);
 
 }  // namespace glidelab::core

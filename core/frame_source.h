@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,10 @@ class FrameSource {
 /// pictures). InputError where it is neither a video nor a folder with pictures.
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& file, const CameraSettings& camera,
                                          bool with_color, std::optional<cv::Size> size);
+
+/// How an analysis comes by a clip's frames: open_frames, or what gives the same from elsewhere.
+using FrameOpener = std::function<std::unique_ptr<FrameSource>(
+    const std::filesystem::path& file, const CameraSettings& camera, bool with_color, std::optional<cv::Size> size)>;
 
 /// Orders names as people number files: "2.png" before "10.png".
 bool natural_less(const std::string& a, const std::string& b);

@@ -80,75 +80,94 @@ void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const
   for_each_frame(body, motion, recording, even, longest_step_m, visit, detail);
 }
 
+FrameMotions::FrameMotions(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
+                           const FrameClock& clock, double longest_step_m, MotionDetail detail)
+    : body_(body),
+      recording_(recording),
+      clock_(clock),
+      longest_step_m_(longest_step_m),
+      with_path_(detail == MotionDetail::path || recording.shutter.rolling),
+      frames_(frame_count(recording, motion)),
+      x0_m_(motion.x0_m),
+      v0_m_s_(motion.v0_m_s) {}
+
+std::optional<FrameMotion> FrameMotions::next() {
+  if (waiting_.empty() && first_ < frames_) simulate_chunk();
+  if (waiting_.empty()) return std::nullopt;
+  FrameMotion frame = std::move(waiting_.front());
+  waiting_.pop_front();
+  return frame;
+}
+
+void FrameMotions::simulate_chunk() {
+  constexpr std::size_t kChunk = 1024;
+  constexpr double kLongestStep = 0.001;  // s, between the knots of a path
+  const double open_s = recording_.exposure_s + recording_.shutter.readout_s();
+  const auto pieces = static_cast<std::size_t>(std::max(1.0, std::ceil(open_s / kLongestStep - 1e-9)));
+  const double step_s = open_s / static_cast<double>(pieces);
+  const auto start_of = [&](std::size_t i) { return clock_.between_s(first_, first_ + i); };
+  const std::size_t count = std::min(kChunk, frames_ - first_);
+  // Once for the middles, which say how fast the glider is; then for the instants of each exposure.
+  std::vector<double> times;
+  for (std::size_t i = 0; i < count; ++i) {
+    times.push_back(start_of(i) + 0.5 * recording_.exposure_s + 0.5 * recording_.shutter.readout_s());
+  }
+  // A frame that is read for longer than the frame time may have its middle after the next chunk's start.
+  if (times.back() < start_of(count)) times.push_back(start_of(count));
+  const sim::Trajectory middles = sim::simulate(body_, x0_m_, v0_m_s_, times);
+
+  std::vector<double> part_times;
+  std::vector<std::size_t> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (with_path_) {
+      // The last knot of a frame may be the first of the next one, or lie a rounding behind it.
+      for (std::size_t k = 0; k <= pieces; ++k) part_times.push_back(start_of(i) + static_cast<double>(k) * step_s);
+      parts.push_back(pieces + 1);
+      continue;
+    }
+    const double length = std::abs(middles.states[i].v_m_s) * recording_.exposure_s;
+    const std::size_t n = exposure_instants(length, longest_step_m_);
+    parts.push_back(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      part_times.push_back(start_of(i) + exposure_instant(k, n) * recording_.exposure_s);
+    }
+  }
+  part_times.push_back(start_of(count));
+  // sim wants times that rise.
+  std::vector<double> rising = part_times;
+  std::sort(rising.begin(), rising.end());
+  rising.erase(std::unique(rising.begin(), rising.end()), rising.end());
+  const sim::Trajectory inside = sim::simulate(body_, x0_m_, v0_m_s_, rising);
+  const auto state_at = [&](double t_s) -> const sim::State& {
+    return inside
+        .states[static_cast<std::size_t>(std::lower_bound(rising.begin(), rising.end(), t_s) - rising.begin())];
+  };
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    FrameMotion frame;
+    frame.frame = first_ + i;
+    frame.start_s = clock_.start_s(first_ + i);
+    frame.middle = middles.states[i];
+    frame.middle.t_s = frame.start_s;
+    if (with_path_) {
+      std::vector<sim::State> knots;
+      for (std::size_t k = 0; k < parts[i]; ++k) knots.push_back(state_at(part_times[at++]));
+      frame.path = MotionPath(frame.start_s, step_s, std::move(knots));
+    } else {
+      for (std::size_t k = 0; k < parts[i]; ++k) frame.x_m.push_back(state_at(part_times[at++]).x_m);
+    }
+    waiting_.push_back(std::move(frame));
+  }
+  x0_m_ = state_at(start_of(count)).x_m;
+  v0_m_s_ = state_at(start_of(count)).v_m_s;
+  first_ += count;
+}
+
 void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
                     const FrameClock& clock, double longest_step_m,
                     const std::function<void(const FrameMotion&)>& visit, MotionDetail detail) {
-  constexpr std::size_t kChunk = 1024;
-  constexpr double kLongestStep = 0.001;  // s, between the knots of a path
-  const bool with_path = detail == MotionDetail::path || recording.shutter.rolling;
-  const std::size_t frames = frame_count(recording, motion);
-  const double open_s = recording.exposure_s + recording.shutter.readout_s();
-  const auto pieces = static_cast<std::size_t>(std::max(1.0, std::ceil(open_s / kLongestStep - 1e-9)));
-  const double step_s = open_s / static_cast<double>(pieces);
-  double x0_m = motion.x0_m;
-  double v0_m_s = motion.v0_m_s;
-  for (std::size_t first = 0; first < frames; first += kChunk) {
-    const std::size_t count = std::min(kChunk, frames - first);
-    const auto start_of = [&](std::size_t i) { return clock.between_s(first, first + i); };
-    // Once for the middles, which say how fast the glider is; then for the parts of each exposure.
-    std::vector<double> times;
-    for (std::size_t i = 0; i < count; ++i) {
-      times.push_back(start_of(i) + 0.5 * recording.exposure_s + 0.5 * recording.shutter.readout_s());
-    }
-    // A frame that is read for longer than the frame time may have its middle after the next chunk's start.
-    if (times.back() < start_of(count)) times.push_back(start_of(count));
-    const sim::Trajectory middles = sim::simulate(body, x0_m, v0_m_s, times);
-
-    std::vector<double> part_times;
-    std::vector<std::size_t> parts;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (with_path) {
-        // The last knot of a frame may be the first of the next one, or lie a rounding behind it.
-        for (std::size_t k = 0; k <= pieces; ++k) part_times.push_back(start_of(i) + static_cast<double>(k) * step_s);
-        parts.push_back(pieces + 1);
-        continue;
-      }
-      const double length = std::abs(middles.states[i].v_m_s) * recording.exposure_s;
-      const std::size_t n = exposure_instants(length, longest_step_m);
-      parts.push_back(n);
-      for (std::size_t k = 0; k < n; ++k) {
-        part_times.push_back(start_of(i) + exposure_instant(k, n) * recording.exposure_s);
-      }
-    }
-    part_times.push_back(start_of(count));
-    // sim wants times that rise.
-    std::vector<double> rising = part_times;
-    std::sort(rising.begin(), rising.end());
-    rising.erase(std::unique(rising.begin(), rising.end()), rising.end());
-    const sim::Trajectory inside = sim::simulate(body, x0_m, v0_m_s, rising);
-    const auto state_at = [&](double t_s) -> const sim::State& {
-      return inside
-          .states[static_cast<std::size_t>(std::lower_bound(rising.begin(), rising.end(), t_s) - rising.begin())];
-    };
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      FrameMotion frame;
-      frame.frame = first + i;
-      frame.start_s = clock.start_s(first + i);
-      frame.middle = middles.states[i];
-      frame.middle.t_s = frame.start_s;
-      if (with_path) {
-        std::vector<sim::State> knots;
-        for (std::size_t k = 0; k < parts[i]; ++k) knots.push_back(state_at(part_times[at++]));
-        frame.path = MotionPath(frame.start_s, step_s, std::move(knots));
-      } else {
-        for (std::size_t k = 0; k < parts[i]; ++k) frame.x_m.push_back(state_at(part_times[at++]).x_m);
-      }
-      visit(frame);
-    }
-    x0_m = state_at(start_of(count)).x_m;
-    v0_m_s = state_at(start_of(count)).v_m_s;
-  }
+  FrameMotions motions(body, motion, recording, clock, longest_step_m, detail);
+  while (const std::optional<FrameMotion> frame = motions.next()) visit(*frame);
 }
 
 }  // namespace glidelab::render

@@ -6,7 +6,9 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "render/scenario.h"
@@ -63,8 +65,30 @@ std::size_t exposure_instants(double length_m, double longest_step_m);
 /// that their variance is that of the whole, 1/12 (for n = 1: 0). A smear so has its length to the second moment.
 double exposure_instant(std::size_t i, std::size_t n);
 
-/// Calls `visit` for every slot of the clock in order, simulating in chunks so that no clip is held in memory. Without
-/// a clock, frames come at the stated rate.
+/// The slots of a clip's clock, one after the other, simulated in chunks so that no clip is held in memory. Body
+/// outlives it.
+class FrameMotions {
+ public:
+  FrameMotions(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
+               const FrameClock& clock, double longest_step_m, MotionDetail detail = MotionDetail::parts);
+  /// Nothing after the last slot.
+  std::optional<FrameMotion> next();
+
+ private:
+  void simulate_chunk();
+
+  const sim::Body& body_;
+  Recording recording_;
+  FrameClock clock_;
+  double longest_step_m_;
+  bool with_path_;
+  std::size_t frames_;
+  std::size_t first_ = 0;  ///< slot of the next chunk
+  double x0_m_, v0_m_s_;   ///< there
+  std::deque<FrameMotion> waiting_;
+};
+
+/// Calls `visit` for every slot of the clock in order. Without a clock, frames come at the stated rate.
 void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
                     const FrameClock& clock, double longest_step_m,
                     const std::function<void(const FrameMotion&)>& visit, MotionDetail detail = MotionDetail::parts);

@@ -10,6 +10,7 @@
 #include "base/staged_output.h"
 #include "render/clip_renderer.h"
 #include "render/folders.h"
+#include "render/ideal_frames.h"
 #include "render/marker_truth.h"
 #include "render/parallel.h"
 #include "render/readout.h"
@@ -267,6 +268,7 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
     }
   });
 
+  if (options.ideal) write_ideal_frames(scenario, truth_dir, options.jobs);
   base::write_file(experiment_dir / "experiment.toml", experiment_toml(scenario));
   base::write_file(truth_dir / "truth.json", truth_json(scenario, options.seed));
   return summary;

@@ -11,7 +11,8 @@ namespace glidelab::render {
 
 struct RenderOptions {
   std::uint64_t seed = 1;
-  int jobs = 1;  ///< clips rendered at the same time; every pixel is the same for any number
+  int jobs = 1;        ///< clips rendered at the same time; every pixel is the same for any number
+  bool ideal = false;  ///< write ideal frames to the truth folder besides (ideal_frames.h)
 };
 
 struct RenderSummary {

@@ -1,0 +1,67 @@
+#include "render/clip_set.h"
+
+#include "render/parallel.h"
+#include "render/static_painter.h"
+
+namespace glidelab::render {
+
+ClipSet::ClipSet(const Scenario& scenario, int jobs)
+    : scenario_(as_in_clips(scenario)), rays_(make_ray_table(scenario_.camera, scenario_.vignetting)) {
+  double longest_s = 0.0;
+  for (const sim::ConfigurationSetup& configuration : scenario_.motion.configurations) {
+    SetUp& set_up = set_ups_[configuration.group];
+    if (set_up.scene.boxes.empty()) set_up.scene = empty_track(scenario_, configuration.body.incline_rad);
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      clips_.push_back({&configuration, &motion, &set_up});
+      longest_s = std::max(longest_s, motion.duration_s);
+    }
+  }
+  std::vector<SetUp*> set_ups;
+  for (auto& [name, set_up] : set_ups_) set_ups.push_back(&set_up);
+  const double white_e = electrons_of_white(scenario_);
+  in_parallel(jobs, set_ups.size(), [&](const auto& next) {
+    StaticPainter painter(scenario_.camera, rays_, scenario_.focus);
+    for (std::size_t i = next(); i < set_ups.size(); i = next()) {
+      SetUp& set_up = *set_ups[i];
+      set_up.background_e = painter.paint(set_up.scene);
+      for (float& value : set_up.background_e.values) {
+        value = static_cast<float>(static_cast<double>(value) * white_e);
+      }
+      if (scenario_.mount.moves()) {
+        set_up.fine = fine_picture(scenario_.camera, scenario_.mount, scenario_.focus, set_up.scene, longest_s);
+      }
+    }
+  });
+}
+
+ClipRenderer ClipSet::renderer(std::size_t clip, std::uint64_t seed) const {
+  const Clip& one = clips_.at(clip);
+  return ClipRenderer(scenario_, *one.configuration, one.set_up->scene, rays_, one.set_up->background_e, seed,
+                      static_cast<std::uint32_t>(clip), one.set_up->fine ? &*one.set_up->fine : nullptr);
+}
+
+FrameClock ClipSet::clock(std::size_t clip, std::uint64_t seed) const {
+  return FrameClock(scenario_.recording.clock, scenario_.recording.frame_rate_hz, seed,
+                    static_cast<std::uint32_t>(clip));
+}
+
+ClipStream::ClipStream(std::shared_ptr<const ClipSet> set, std::size_t clip, std::uint64_t seed)
+    : set_(std::move(set)),
+      renderer_(set_->renderer(clip, seed)),
+      clock_(set_->clock(clip, seed)),
+      motions_(set_->configuration(clip).body, set_->motion(clip), set_->scenario().recording, clock_,
+               renderer_.longest_step_m(), renderer_.detail()) {}
+
+std::optional<ClipStream::Next> ClipStream::next() {
+  while (std::optional<FrameMotion> slot = motions_.next()) {
+    const FrameFate fate = clock_.fate(slot->frame);
+    if (fate == FrameFate::dropped) continue;
+    const double stamp_s = clock_.stamp_s(slot->frame);
+    const bool repeated = fate == FrameFate::duplicated;
+    if (!repeated) shown_ = std::move(slot);
+    return Next{*shown_, repeated, stamp_s};
+  }
+  return std::nullopt;
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,81 @@
+/// The clips of a scenario, to be drawn by anybody: what they share is made once.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "render/clip_renderer.h"
+
+namespace glidelab::render {
+
+/// Draws what stands still for every set-up of the track, on up to `jobs` threads, and keeps it. Not to be moved or
+/// copied: renderers refer to it.
+class ClipSet {
+ public:
+  explicit ClipSet(const Scenario& scenario, int jobs = 1);
+  ClipSet(const ClipSet&) = delete;
+  ClipSet& operator=(const ClipSet&) = delete;
+
+  std::size_t size() const { return clips_.size(); }
+  const sim::MotionSetup& motion(std::size_t clip) const { return *clips_.at(clip).motion; }
+  const sim::ConfigurationSetup& configuration(std::size_t clip) const { return *clips_.at(clip).configuration; }
+  /// Of the file that render_experiment writes with this seed.
+  std::size_t frames(std::size_t clip, std::uint64_t seed) const {
+    return clock(clip, seed).frames_of(frame_count(scenario_.recording, motion(clip)));
+  }
+  FrameClock clock(std::size_t clip, std::uint64_t seed) const;
+  /// As in the clips (render/mount.h).
+  const Scenario& scenario() const { return scenario_; }
+
+  /// One for each thread; the frames of a clip are the same as in the file that render_experiment writes with this
+  /// seed.
+  ClipRenderer renderer(std::size_t clip, std::uint64_t seed) const;
+
+ private:
+  struct SetUp {
+    StaticScene scene;
+    FloatPicture background_e;
+    std::optional<FinePicture> fine;
+  };
+  struct Clip {
+    const sim::ConfigurationSetup* configuration;
+    const sim::MotionSetup* motion;
+    const SetUp* set_up;
+  };
+
+  Scenario scenario_;
+  RayTable rays_;
+  std::map<std::string, SetUp> set_ups_;
+  std::vector<Clip> clips_;
+};
+
+/// One clip's frames in order, in memory, as its file has them.
+class ClipStream {
+ public:
+  ClipStream(std::shared_ptr<const ClipSet> set, std::size_t clip, std::uint64_t seed);
+
+  struct Next {
+    const FrameMotion& shown;
+    bool repeated;   ///< the picture before once more
+    double stamp_s;  ///< what a container would say of its time
+  };
+  /// The next frame, or nothing at the end.
+  std::optional<Next> next();
+  /// The codes of the frame that next() gave, within `rect`.
+  template <typename Code>
+  void read(const PixelRect& rect, std::span<Code> codes) {
+    renderer_.read(*shown_, rect, codes);
+  }
+
+ private:
+  std::shared_ptr<const ClipSet> set_;
+  ClipRenderer renderer_;
+  FrameClock clock_;
+  FrameMotions motions_;
+  std::optional<FrameMotion> shown_;
+};
+
+}  // namespace glidelab::render

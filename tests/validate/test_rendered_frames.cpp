@@ -1,0 +1,110 @@
+#include "validate/rendered_frames.h"
+
+#include "base/csv.h"
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "catch.h"
+#include "core/analyze.h"
+#include "render/render_experiment.h"
+#include "temp_dir.h"
+
+using namespace glidelab;
+
+namespace {
+
+// A glider that crosses a small picture once in each direction, on a slope that brings it back.
+constexpr const char* kScenario = R"(
+format = 1
+name = "small"
+[camera]
+width_px = 320
+height_px = 200
+frame_rate_hz = 200.0
+exposure_s = 0.001
+focal_px = [480.0, 480.0]
+position_m = [0.0, 0.05, 2.0]
+distortion = { k1 = -0.08 }
+[calibration]
+inner_corners = [7, 4]
+square_m = 0.05
+views = 6
+[marker]
+diameter_m = 0.04
+[[configuration]]
+name = "m1"
+mass_kg = 0.335
+incline_deg = 3.0
+[[configuration.force]]
+law = "viscous"
+k_over_m_1_s = 1.5
+[[configuration.force]]
+law = "coulomb"
+mu = 0.006
+[[configuration.clip]]
+name = "m1-up"
+launched = "up"
+x0_m = 0.4
+v0_m_s = -0.9
+duration_s = 1.2
+[[configuration.clip]]
+name = "m1-down"
+launched = "down"
+x0_m = -0.4
+v0_m_s = 0.5
+duration_s = 1.0
+)";
+
+}  // namespace
+
+TEST_CASE("Frames in memory are those of the lossless file, and an analysis of them gives the same to the last bit") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", kScenario);
+  const render::Scenario scenario = render::read_scenario(dir / "s.toml");
+  std::filesystem::create_directories(dir / "e");
+  std::filesystem::create_directories(dir / "e.truth");
+  render::render_experiment(scenario, dir / "e", dir / "e.truth", {.seed = 4, .jobs = 2});
+  const auto set = std::make_shared<const render::ClipSet>(scenario, 2);
+
+  const core::Experiment experiment = core::read_experiment(dir / "e");
+  const auto file = core::open_frames(experiment.clips[0].file, *experiment.camera, false, std::nullopt);
+  const auto memory = validate::rendered_frames(set, 0, 4);
+  CHECK(memory->stated_frames() == file->stated_frames());
+  std::size_t frames = 0;
+  while (const auto from_file = file->next()) {
+    const auto from_memory = memory->next();
+    REQUIRE(from_memory);
+    CHECK(from_memory->index == from_file->index);
+    CHECK(from_memory->t_s == from_file->t_s);
+    REQUIRE(from_memory->grey.size() == from_file->grey.size());
+    CHECK(cv::countNonZero(from_memory->grey != from_file->grey) == 0);
+    ++frames;
+  }
+  CHECK_FALSE(memory->next());
+  CHECK(frames == set->frames(0, 4));
+
+  core::AnalysisOptions options;
+  options.jobs = 2;
+  const core::AnalysisResults by_file = core::analyze({dir / "e"}, options);
+  // The clips' files are gone but for their names.
+  for (const core::ClipSetup& clip : experiment.clips) base::write_file(clip.file, "");
+  options.open = validate::rendered_opener(set, 4);
+  const core::AnalysisResults by_memory = core::analyze({dir / "e"}, options);
+  REQUIRE(by_memory.clips.size() == by_file.clips.size());
+  for (std::size_t i = 0; i < by_file.clips.size(); ++i) {
+    const core::ClipResult& a = by_file.clips[i];
+    const core::ClipResult& b = by_memory.clips[i];
+    CHECK(a.detected == b.detected);
+    REQUIRE(a.motion.size() == b.motion.size());
+    for (std::size_t k = 0; k < a.motion.size(); ++k) {
+      CHECK(a.motion[k].t_s == b.motion[k].t_s);
+      CHECK(a.motion[k].measured_m == b.motion[k].measured_m);
+      CHECK(a.motion[k].a_m_s2 == b.motion[k].a_m_s2);
+    }
+    REQUIRE(a.segments.size() == b.segments.size());
+    for (std::size_t k = 0; k < a.segments.size(); ++k) {
+      CHECK(a.segments[k].k_over_m_1_s.value == b.segments[k].k_over_m_1_s.value);
+    }
+  }
+  // A file of which the scenario knows nothing.
+  CHECK_THROWS_AS(options.open(dir / "other.mkv", *experiment.camera, false, std::nullopt), base::InputError);
+}

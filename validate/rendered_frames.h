@@ -1,0 +1,20 @@
+/// Frames that come from the renderer, in memory, where the analysis expects a file's: the same codes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/frame_source.h"
+#include "render/clip_set.h"
+
+namespace glidelab::validate {
+
+/// The frames of one clip of the set. With colour wanted they are grey in all three channels, as a grey file gives
+/// them.
+std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render::ClipSet> set, std::size_t clip,
+                                                   std::uint64_t seed, bool with_color = false);
+
+/// The same for an analysis (core/analyze.h): a clip's frames by the name of its file in the experiment folder.
+core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, std::uint64_t seed);
+
+}  // namespace glidelab::validate
