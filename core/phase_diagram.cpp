@@ -52,7 +52,10 @@ std::vector<MotionPoint> smooth_frames(const TrackData& track, const Motion& mot
                                        double bandwidth_s, double mass_kg) {
   std::vector<MotionPoint> frames(track.frame_t_s.size());
   for (std::size_t f = 0; f < frames.size(); ++f) frames[f].t_s = track.frame_t_s[f];
-  for (std::size_t i = 0; i < track.t_s.size(); ++i) frames[track.frame[i]].measured_m = track.x_m[i];
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) {
+    frames[track.frame[i]].t_s = track.t_s[i];  // of the marker's row, with a rolling shutter
+    frames[track.frame[i]].measured_m = track.x_m[i];
+  }
   RowVariance variance(noise.autocovariance);
   std::size_t f = 0;
   for (const Piece& piece : pieces_of(stretches, motion.t_s.size())) {

@@ -43,7 +43,7 @@ std::string describe(LeftOut reason);
 
 /// One frame of a clip: as measured, and as smoothed by the local cubic (equations 10 to 12).
 struct MotionPoint {
-  double t_s = 0.0;                  ///< middle of the exposure, from the first frame
+  double t_s = 0.0;                  ///< middle of the exposure (of the marker's row), from the first frame
   std::optional<double> measured_m;  ///< nothing where no marker was found
   double x_m = 0.0;
   double v_m_s = 0.0;
