@@ -78,8 +78,7 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
       kHead + "gravity_m_s2 = 9.81\n" + kCamera +
       "shutter = \"rolling\"\nline_readout_s = 1e-5\nfirst_row = \"bottom\"\nbit_depth = 12\ntime = "
       "\"container\"\n" +
-      kCalibration +
-      "[plumb]\nview = \"plumb.png\"\nregion = [40, 0, 120, 500]\n" + kMarker +
+      kCalibration + "[plumb]\nview = \"plumb.png\"\nregion = [40, 0, 120, 500]\n" + kMarker +
       "height_m = 0.03\ncolor = \"#10f0A0\"\nstart_px = [400, 120.5]\n" + kTrack + "length_m = 2.0\n" + kClip +
       "incline_sd_deg = 0.3\nmass_sd_kg = 0.0005\nstart_s = 0.1\nend_s = 1.8\ngroup = \"flat\"\n" +
       "[[clip]]\nname = \"b\"\nfile = \"clips/frames\"\nmass_kg = 1\nincline_deg = 0\nlaunched = \"released\"\n" +
