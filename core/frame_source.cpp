@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <set>
@@ -39,6 +40,37 @@ class SizeCheck {
  private:
   std::optional<cv::Size> size_;
   bool given_;
+};
+
+/// Counts frames that are the picture before them once more, bit by bit: noise does not repeat itself.
+class RepeatCounter {
+ public:
+  void operator()(const cv::Mat& grey) {
+    if (!before_.empty() && same_bits(grey)) ++repeated_;
+    before_ = grey;
+    ++count_;
+  }
+  void tell(std::vector<std::string>& notes) const {
+    if (repeated_ == 0) return;
+    notes.push_back(fmt::format(
+        "{} of {} frames are the very picture before them once more: duplicates (a camera or converter that "
+        "repeats frames), or a scene at rest without any noise",
+        repeated_, count_));
+  }
+
+ private:
+  bool same_bits(const cv::Mat& grey) const {
+    if (grey.size() != before_.size() || grey.type() != before_.type()) return false;
+    const std::size_t bytes = static_cast<std::size_t>(grey.cols) * grey.elemSize();
+    for (int row = 0; row < grey.rows; ++row) {
+      if (std::memcmp(grey.ptr(row), before_.ptr(row), bytes) != 0) return false;
+    }
+    return true;
+  }
+
+  cv::Mat before_;
+  std::size_t repeated_ = 0;
+  std::size_t count_ = 0;
 };
 
 Frame make_frame(const cv::Mat& picture, bool with_color, std::size_t index) {
@@ -76,6 +108,7 @@ class VideoFrames final : public FrameSource {
     }
     check_size_(picture, count_, file_);
     Frame frame = make_frame(picture, with_color_, count_);
+    repeats_(frame.grey);
     const double stamp_s = capture_.get(cv::CAP_PROP_POS_MSEC) * 1e-3;
     if (count_ == 0) first_stamp_s_ = stamp_s;
     // OpenCV says 0 of a frame without a stamp: the last ones of a clip, which it gets by emptying the decoder.
@@ -109,6 +142,7 @@ class VideoFrames final : public FrameSource {
     if (unstamped_ > 0 && camera_.time == TimeSource::container) {
       notes.emplace_back("the last frames have no time stamp and are left out");
     }
+    repeats_.tell(notes);
     if (irregular_ > 0) {
       notes.push_back(fmt::format(
           "the container's time stamps are irregular: {} of {} steps differ from the median step of {:.4g} ms, the "
@@ -177,6 +211,7 @@ class VideoFrames final : public FrameSource {
   bool ended_ = false;
   double first_stamp_s_ = 0.0;
   std::vector<double> stamps_s_;
+  RepeatCounter repeats_;
   std::size_t unstamped_ = 0;
   std::size_t irregular_ = 0;
   double median_step_s_ = 0.0;

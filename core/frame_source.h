@@ -37,7 +37,8 @@ class FrameSource {
   /// How many frames the container says there are; 0 where it does not.
   virtual std::size_t stated_frames() const = 0;
 
-  /// What a reader should know, once the end is reached: a container with another rate, irregular stamps.
+  /// What a reader should know, once the end is reached: a container with another rate, irregular stamps,
+  /// repeated frames.
   virtual std::vector<std::string> notes() const = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "core/frame_source.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
@@ -151,6 +152,50 @@ TEST_CASE("the container's time stamps count where that is asked") {
   tests::write_folder(folder, some_frames(), 0.0, CV_8U);
   CHECK_THROWS_WITH(core::open_frames(folder, camera(core::TimeSource::container), false, std::nullopt),
                     Catch::Contains("no time stamps"));
+}
+
+TEST_CASE("frames that are written twice are reported, and frames that are not are not") {
+  const TempDir dir;
+  std::vector<cv::Mat> frames = some_frames();
+  frames[7] = frames[6];
+  frames[20] = frames[19];
+  frames[21] = frames[19];
+  tests::write_video(dir / "a.mkv", frames, kRate, 0.0);
+  const auto source = core::open_frames(dir / "a.mkv", camera(), false, std::nullopt);
+  while (source->next()) {
+  }
+  REQUIRE(source->notes().size() == 1);
+  CHECK_THAT(source->notes()[0], Catch::Contains("3 of 40 frames") && Catch::Contains("duplicates"));
+}
+
+TEST_CASE("stamps with dropped frames give their own times, and are reported") {
+  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) {
+    WARN("skipped: no ffmpeg program");
+    return;
+  }
+  const TempDir dir;
+  tests::write_video(dir / "whole.mkv", some_frames(), 50.0, 0.0);
+  // Frames 10 and 11, and 25, are taken out; the others keep their stamps.
+  const std::string command = "ffmpeg -v error -i '" + (dir / "whole.mkv").string() +
+                              "' -vf \"select='not(between(n,10,11)+eq(n,25))'\" -vsync vfr -c:v ffv1 '" +
+                              (dir / "dropped.mkv").string() + "'";
+  REQUIRE(std::system(command.c_str()) == 0);
+  core::CameraSettings settings = camera(core::TimeSource::container);
+  settings.frame_rate_hz = 50.0;
+  const auto source = core::open_frames(dir / "dropped.mkv", settings, false, std::nullopt);
+  std::vector<double> times;
+  while (const auto frame = source->next()) times.push_back(frame->t_s);
+  REQUIRE(times.size() >= kFrames - 4);  // the last one may come without a stamp
+  double expected = 0.0;
+  for (std::size_t k = 0, n = 0; k < times.size(); ++k, ++n) {
+    if (n == 10) n = 12;
+    if (n == 25) n = 26;
+    expected = static_cast<double>(n) / 50.0;
+    CHECK(std::abs(times[k] - expected) < 1.1e-3);  // Matroska's millisecond
+  }
+  bool told = false;
+  for (const std::string& note : source->notes()) told |= contains(note, "irregular") && contains(note, "2 of ");
+  CHECK(told);
 }
 
 TEST_CASE("clips that cannot be used are errors that name the file and the frame") {
