@@ -2,7 +2,11 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "core/local_cubic.h"
@@ -51,6 +55,37 @@ BENCHMARK(local_cubic_uniform)
     ->Args({1000000, 100})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(local_cubic_irregular)->ArgNames({"points", "h_ms"})->Args({100000, 43})->Unit(benchmark::kMillisecond);
+
+/// What a user of R would take: KernSmooth's locpoly(drv = 2, degree = 3) on a grid of as many points. The time is R's
+/// own count of processor time.
+void r_locpoly(benchmark::State& state) {
+  const std::filesystem::path script = std::filesystem::temp_directory_path() / "glidelab-bench-locpoly.R";
+  std::ofstream(script) << "suppressMessages(library(KernSmooth)); n <- " << state.range(0)
+                        << "; t <- 0.005 * (0:(n - 1)); x <- 0.24 * t - 0.35 * expm1(-2.77 * t) + 1e-5 * rnorm(n);"
+                        << "took <- system.time(locpoly(t, x, drv = 2, degree = 3, bandwidth = "
+                        << 0.001 * static_cast<double>(state.range(1))
+                        << ", gridsize = n, range.x = range(t))); cat(took[[1]] + took[[2]])\n";
+  for (auto _ : state) {
+    double seconds = 0.0;
+    FILE* const out = popen(("Rscript " + script.string() + " 2>/dev/null").c_str(), "r");
+    const bool timed = out != nullptr && std::fscanf(out, "%lf", &seconds) == 1;
+    if (out != nullptr) pclose(out);
+    if (!timed) {
+      state.SkipWithError("no Rscript with KernSmooth");
+      break;
+    }
+    state.SetIterationTime(seconds);
+  }
+  std::filesystem::remove(script);
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(r_locpoly)
+    ->ArgNames({"points", "h_ms"})
+    ->Args({1000000, 43})
+    ->Args({1000000, 100})
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(1);
 
 void analyze_clip(benchmark::State& state) {
   const Series made = series(341, 0.0);

@@ -1,0 +1,215 @@
+#include "core/local_polynomial.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kSmallestNorm = 1e-11;  // of p_k over that of u^k at which the points carry no such power
+constexpr double kUniform = 1e-9;        // steps that differ by less than this part are one step
+
+/// One orthogonal polynomial: its values at the points, and its value and first two derivatives at u = 0.
+struct Orthogonal {
+  std::vector<double> at;
+  std::array<double, 3> zero{};
+  double norm = 0.0;
+};
+
+/// The weights of points at u (in bandwidths) with the kernel's values K; false where they do not determine the
+/// polynomial.
+bool polynomial_weights(int order, const std::vector<double>& u, const std::vector<double>& kernel, double bandwidth_s,
+                        KernelWeights& weights) {
+  const std::size_t n = u.size();
+  weights.x.assign(n, 0.0);
+  weights.v.assign(n, 0.0);
+  weights.a.assign(order >= 2 ? n : 0, 0.0);
+  const double per_h = 1.0 / bandwidth_s;
+  Orthogonal last, now;
+  last.at.assign(n, 0.0);
+  now.at.assign(n, 1.0);
+  now.zero = {1.0, 0.0, 0.0};
+  std::vector<double> power(kernel);  // K u^(2k)
+  for (int k = 0;; ++k) {
+    double of_power = 0.0, first = 0.0;
+    now.norm = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double square = kernel[i] * now.at[i] * now.at[i];
+      now.norm += square;
+      first += square * u[i];
+      of_power += power[i];
+      power[i] *= u[i] * u[i];
+    }
+    if (!(now.norm > kSmallestNorm * of_power)) return false;
+    const double x = now.zero[0] / now.norm, v = per_h * now.zero[1] / now.norm,
+                 a = per_h * per_h * now.zero[2] / now.norm;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double value = kernel[i] * now.at[i];
+      weights.x[i] += x * value;
+      weights.v[i] += v * value;
+    }
+    for (std::size_t i = 0; i < weights.a.size(); ++i) weights.a[i] += a * kernel[i] * now.at[i];
+    if (k == order) return true;
+    // p_(k+1) = (u - alpha) p_k - beta p_(k-1), and its derivatives.
+    const double alpha = first / now.norm, beta = k == 0 ? 0.0 : now.norm / last.norm;
+    for (std::size_t i = 0; i < n; ++i) last.at[i] = (u[i] - alpha) * now.at[i] - beta * last.at[i];
+    const std::array<double, 3> p = now.zero;
+    last.zero = {-alpha * p[0] - beta * last.zero[0], p[0] - alpha * p[1] - beta * last.zero[1],
+                 2.0 * p[1] - alpha * p[2] - beta * last.zero[2]};
+    std::swap(last, now);
+  }
+}
+
+}  // namespace
+
+double kernel_value(Kernel kernel, double s) {
+  const double r = std::abs(s);
+  switch (kernel) {
+    case Kernel::gaussian:
+      return std::exp(-0.5 * s * s);
+    case Kernel::epanechnikov:
+      return r < 1.0 ? 1.0 - s * s : 0.0;
+    case Kernel::tricube:
+      return r < 1.0 ? std::pow(1.0 - r * r * r, 3) : 0.0;
+    case Kernel::uniform:
+      return r <= 1.0 + kUniform ? 1.0 : 0.0;
+  }
+  assert(false);
+  return 0.0;
+}
+
+LocalPolynomial::LocalPolynomial(std::span<const double> t_s, PolynomialOptions options)
+    : t_s_(t_s.begin(), t_s.end()), options_(std::move(options)) {
+  assert(options_.bandwidth_s > 0.0 && options_.order >= 1 && options_.order <= 5 && options_.reach > 0.0);
+  assert(options_.weights.empty() || options_.weights.size() == t_s.size());
+  const double bandwidth = options_.bandwidth_s;
+  reach_s_ = (options_.kernel == Kernel::gaussian ? options_.reach : 1.0) * bandwidth * (1.0 + kUniform);
+  if (t_s_.size() < static_cast<std::size_t>(options_.order) + 2 || !options_.weights.empty()) return;
+  const double step = median_step(t_s_);
+  if (!(step > 0.0)) return;
+  const auto half = static_cast<std::size_t>(std::min(reach_s_ / step, 1e9));
+  run_.assign(t_s_.size(), 0);
+  std::size_t longest = 0;
+  for (std::size_t j = 1; j < t_s_.size(); ++j) {
+    if (std::abs(t_s_[j] - t_s_[j - 1] - step) <= kUniform * step) run_[j] = run_[j - 1] + 1;
+    longest = std::max(longest, run_[j]);
+  }
+  if (half < 2 || longest < 2 * half) return;
+  std::vector<double> u(2 * half + 1), kernel(2 * half + 1);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[i] = (static_cast<double>(i) - static_cast<double>(half)) * step / bandwidth;
+    kernel[i] = kernel_value(options_.kernel, u[i]);
+  }
+  auto weights = std::make_shared<KernelWeights>();
+  if (std::count_if(kernel.begin(), kernel.end(), [](double k) { return k > 0.0; }) < options_.order + 2) return;
+  if (!polynomial_weights(options_.order, u, kernel, bandwidth, *weights)) return;
+  half_ = half;
+  filter_ = std::move(weights);
+}
+
+bool LocalPolynomial::interior(std::size_t j) const {
+  return half_ > 0 && j >= half_ && j + half_ < t_s_.size() && run_[j + half_] >= 2 * half_;
+}
+
+std::optional<KernelRow> LocalPolynomial::general_row(double at_s) const {
+  const auto from = std::lower_bound(t_s_.begin(), t_s_.end(), at_s - reach_s_);
+  const auto to = std::upper_bound(from, t_s_.end(), at_s + reach_s_);
+  const auto first = static_cast<std::size_t>(from - t_s_.begin());
+  std::vector<double> u(static_cast<std::size_t>(to - from)), kernel(u.size());
+  int within = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[i] = (t_s_[first + i] - at_s) / options_.bandwidth_s;
+    kernel[i] = kernel_value(options_.kernel, u[i]);
+    if (kernel[i] > 0.0) ++within;
+    if (!options_.weights.empty()) kernel[i] *= options_.weights[first + i];
+  }
+  if (within < options_.order + 2) return {};
+  auto weights = std::make_shared<KernelWeights>();
+  if (!polynomial_weights(options_.order, u, kernel, options_.bandwidth_s, *weights)) return {};
+  return KernelRow{first, std::move(weights)};
+}
+
+std::optional<KernelRow> LocalPolynomial::row(double at_s) const {
+  const auto found = std::lower_bound(t_s_.begin(), t_s_.end(), at_s);
+  if (found != t_s_.end() && *found == at_s) return row_of_point(static_cast<std::size_t>(found - t_s_.begin()));
+  return general_row(at_s);
+}
+
+std::optional<KernelRow> LocalPolynomial::row_of_point(std::size_t j) const {
+  assert(j < t_s_.size());
+  if (interior(j)) return KernelRow{j - half_, filter_};
+  return general_row(t_s_[j]);
+}
+
+void LocalPolynomial::filter(std::span<const double> values, std::size_t from, std::size_t to,
+                             std::vector<std::optional<SmoothedPoint>>& out) const {
+  constexpr std::size_t kBlock = 512;  // outputs at a time: the three sums stay in the cache while the taps go by
+  std::array<double, kBlock> x{}, v{}, a{};
+  const bool has_a = !filter_->a.empty();
+  const double* const wx = filter_->x.data() + half_;
+  const double* const wv = filter_->v.data() + half_;
+  const double* const wa = has_a ? filter_->a.data() + half_ : wx;
+  for (std::size_t start = from; start < to; start += kBlock) {
+    const std::size_t count = std::min(kBlock, to - start);
+    const double* const centre = values.data() + start;
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = wx[0] * centre[i];
+      v[i] = 0.0;
+      a[i] = wa[0] * centre[i];
+    }
+    for (std::size_t k = 1; k <= half_; ++k) {  // x and a are even in the lag, v is odd
+      const double* const right = centre + k;
+      const double* const left = centre - k;
+      const double cx = wx[k], cv = wv[k], ca = wa[k];
+      for (std::size_t i = 0; i < count; ++i) {
+        const double sum = right[i] + left[i];
+        x[i] += cx * sum;
+        v[i] += cv * (right[i] - left[i]);
+        a[i] += ca * sum;
+      }
+    }
+    if (!has_a) a.fill(std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < count; ++i) out[start + i] = SmoothedPoint{x[i], v[i], a[i]};
+  }
+}
+
+std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<const double> values) const {
+  assert(values.size() == t_s_.size());
+  std::vector<std::optional<SmoothedPoint>> out(t_s_.size());
+  for (std::size_t j = 0; j < t_s_.size();) {
+    if (interior(j)) {
+      std::size_t to = j + 1;
+      while (to < t_s_.size() && interior(to)) ++to;
+      filter(values, j, to, out);
+      j = to;
+      continue;
+    }
+    if (const auto row = general_row(t_s_[j])) out[j] = weighted_sums(*row, values);
+    ++j;
+  }
+  return out;
+}
+
+SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values) {
+  const KernelWeights& weights = *row.weights;
+  assert(row.first + weights.x.size() <= values.size());
+  // About the first value, so that a far origin costs no digits.
+  const double origin = values[row.first];
+  SmoothedPoint point;
+  for (std::size_t i = 0; i < weights.x.size(); ++i) {
+    const double value = values[row.first + i] - origin;
+    point.x_m += weights.x[i] * value;
+    point.v_m_s += weights.v[i] * value;
+  }
+  for (std::size_t i = 0; i < weights.a.size(); ++i) point.a_m_s2 += weights.a[i] * (values[row.first + i] - origin);
+  if (weights.a.empty()) point.a_m_s2 = std::numeric_limits<double>::quiet_NaN();
+  point.x_m += origin;
+  return point;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,136 @@
+/// Local polynomials: x, v and a at a time from measured positions, by a kernel (paper, equations 10 to 12, for any
+/// order and kernel).
+///
+/// At a time t the polynomial  sum_k b_k u^k / k!,  u = t_i - t,  k = 0 … order,  is fitted to the positions x_i with
+/// the weights  w_i K(u / h); then x = b_0, v = b_1, a = b_2. All three are linear in the x_i, and the weights of the
+/// sums are exact for any times: not uniform, with gaps, at an end. Kernels (unnormalised; s = u / h):
+///
+///     gaussian      exp(-s^2 / 2)      cut off at `reach` bandwidths (6: a weight of 1.5e-8)
+///     epanechnikov  1 - s^2            |s| < 1
+///     tricube       (1 - |s|^3)^3      |s| < 1
+///     uniform       1                  |s| <= 1
+///
+/// The weights come from the polynomials p_k that are orthogonal over the points under these weights (Forsythe 1957),
+///
+///     b_d = sum_k p_k^(d)(0) sum_i K_i p_k(u_i) x_i / sum_i K_i p_k(u_i)^2,
+///
+/// a three-term recurrence that needs no matrix and loses no digits at an end, where powers of u nearly agree.
+/// Where many points of uniform step and weight are smoothed, the weights are one filter, applied as such.
+///
+/// Covariances are exact for noise of a given autocovariance, white or not, times a factor of each point's own.
+/// Asymptotic variance and bias: docs/bandwidth.md; Fan and Gijbels 1996, section 3.2.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace glidelab::core {
+
+/// Bandwidths at which the Gaussian kernel is cut off.
+inline constexpr double kKernelReach = 6.0;
+
+enum class Kernel { gaussian, epanechnikov, tricube, uniform };
+
+/// K(s), 0 outside of the kernel's support; the Gaussian is not cut off here.
+double kernel_value(Kernel kernel, double s);
+
+struct PolynomialOptions {
+  int order = 3;  ///< 1 to 5
+  Kernel kernel = Kernel::gaussian;
+  double bandwidth_s = 0.0;     ///< above 0
+  double reach = kKernelReach;  ///< of the Gaussian, in bandwidths
+  std::vector<double> weights;  ///< of each point, above 0; empty: all the same
+};
+
+/// x = sum_i x[i] x_(first+i), and v and a likewise; all three of one length, a empty for order 1.
+struct KernelWeights {
+  std::vector<double> x, v, a;
+};
+struct KernelRow {
+  std::size_t first = 0;
+  std::shared_ptr<const KernelWeights> weights;
+};
+
+struct SmoothedPoint {
+  double x_m = 0.0;
+  double v_m_s = 0.0;
+  double a_m_s2 = 0.0;  ///< NaN for order 1, which has none
+};
+
+/// The smoother of one set of times. Units are those of a position; any other series over the same times will do.
+class LocalPolynomial {
+ public:
+  /// Times that rise strictly; options in their range (asserted).
+  LocalPolynomial(std::span<const double> t_s, PolynomialOptions options);
+
+  /// The weights at any time; nothing where fewer than order + 2 points lie within reach or they do not determine the
+  /// polynomial.
+  std::optional<KernelRow> row(double at_s) const;
+  /// The same at the time of point j, cheap where the filter serves.
+  std::optional<KernelRow> row_of_point(std::size_t j) const;
+
+  /// At the times of all points; values.size() is that of the times (asserted).
+  std::vector<std::optional<SmoothedPoint>> smooth(std::span<const double> values) const;
+
+  double bandwidth_s() const { return options_.bandwidth_s; }
+  const PolynomialOptions& options() const { return options_; }
+  std::span<const double> times() const { return t_s_; }
+
+ private:
+  std::optional<KernelRow> general_row(double at_s) const;
+  bool interior(std::size_t j) const;
+  void filter(std::span<const double> values, std::size_t from, std::size_t to,
+              std::vector<std::optional<SmoothedPoint>>& out) const;
+
+  std::vector<double> t_s_;
+  PolynomialOptions options_;
+  double reach_s_ = 0.0;
+  std::size_t half_ = 0;                         // taps to each side of the filter; 0 where there is none
+  std::vector<std::size_t> run_;                 // run_[j]: points before j that follow each other at the uniform step
+  std::shared_ptr<const KernelWeights> filter_;  // weights of 2 half_ + 1 points
+};
+
+/// The sums of a row over `values`, which are those of all points.
+SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values);
+
+/// Noise of the positions: cov(n_i, n_j) = factor_i factor_j gamma(|i - j|), gamma 0 beyond its last lag.
+struct SeriesNoise {
+  std::vector<double> autocovariance;  ///< at lags of 0, 1, … points; a single number where the noise is white
+  std::vector<double> factor;          ///< of every point; empty: 1
+};
+
+/// Covariance of sum_i w_i n_(first+i) for two rows of weights.
+double noise_covariance(std::size_t first, std::span<const double> weights, std::size_t other_first,
+                        std::span<const double> other, const SeriesNoise& noise);
+
+/// Covariance of (x, v, a) at one time (rows) with (x, v, a) at another (columns). Needs order 2 or more (asserted).
+Eigen::Matrix3d point_covariance(const KernelRow& row, const KernelRow& other, const SeriesNoise& noise);
+
+/// Variance of sum_i w_i n_i for noise n with the autocovariance gamma[0], gamma[1], … at lags of 0, 1, … points.
+double noise_variance(std::span<const double> weights, std::span<const double> autocovariance);
+
+/// The variances of rows by one noise; points that share a filter share the work.
+class RowVariance {
+ public:
+  explicit RowVariance(std::vector<double> autocovariance) : autocovariance_(std::move(autocovariance)) {}
+  double of_x(const KernelRow& row) { return of(row).x; }
+  double of_v(const KernelRow& row) { return of(row).v; }
+  double of_a(const KernelRow& row) { return of(row).a; }
+
+ private:
+  struct Variances {
+    double x = 0.0, v = 0.0, a = 0.0;
+  };
+  const Variances& of(const KernelRow& row);
+  std::vector<double> autocovariance_;
+  std::shared_ptr<const KernelWeights> known_;
+  Variances variances_;
+};
+
+}  // namespace glidelab::core
