@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "base/dense.h"
 #include "base/errors.h"
 #include "core/parallel.h"
 #include "core/picture.h"
@@ -112,8 +113,9 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
       view.residual[static_cast<Eigen::Index>(2 * k + 1)] = corners.points[k].y - projected[k].y;
     }
     const Eigen::MatrixXd terms = jacobian.rightCols<9>()(Eigen::all, free);
-    const Eigen::Matrix<double, 6, 6> of_pose = view.by_pose.transpose() * view.by_pose;
-    by_terms.push_back(terms - view.by_pose * of_pose.ldlt().solve(view.by_pose.transpose() * terms));
+    const Eigen::MatrixXd of_pose = base::transposed_product(view.by_pose, view.by_pose);
+    const Eigen::MatrixXd taken_up = base::solve_positive(of_pose, base::transposed_product(view.by_pose, terms));
+    by_terms.push_back(terms - base::product(view.by_pose, taken_up));
     residuals.push_back(std::move(view));
   }
   Uncertainty uncertainty;
@@ -121,12 +123,13 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
   const auto size = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size), scatter = information;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    information += by_terms[i].transpose() * by_terms[i];
-    scatter += by_terms[i].transpose() * times_covariance(uncertainty.noise, residuals[i].grid, by_terms[i]);
+    information += base::transposed_product(by_terms[i], by_terms[i]);
+    scatter +=
+        base::transposed_product(by_terms[i], times_covariance(uncertainty.noise, residuals[i].grid, by_terms[i]));
   }
-  const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd inverse = base::inverse_positive(information);
   uncertainty.covariance.setZero();
-  uncertainty.covariance(free, free) = inverse * scatter * inverse;
+  uncertainty.covariance(free, free) = base::product(base::product(inverse, scatter), inverse);
   return uncertainty;
 }
 

@@ -7,10 +7,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <cmath>
 #include <optional>
+
+#include "base/dense.h"
 
 namespace glidelab::core {
 
@@ -67,7 +68,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     Eigen::Matrix<double, N, N> damped = here->jtj;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-12 * here->jtj.diagonal().maxCoeff();
-    const Vector delta = -damped.ldlt().solve(here->jtr);
+    const Vector delta = -base::solve_positive(damped, here->jtr);
     if (!delta.allFinite()) {
       fit.stop = FitStop::singular;
       return fit;
@@ -96,12 +97,12 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     return fit;
   }
   fit.rms = std::sqrt(here->cost / freedom);
-  const Eigen::FullPivLU<Eigen::Matrix<double, N, N>> lu(here->jtj);
-  if (!lu.isInvertible()) {
+  const std::optional<Eigen::MatrixXd> inverse = base::regular_inverse(here->jtj);
+  if (!inverse) {
     fit.stop = FitStop::singular;
     return fit;
   }
-  fit.covariance = lu.inverse() * (fit.rms * fit.rms);
+  fit.covariance = *inverse * (fit.rms * fit.rms);
   return fit;
 }
 

@@ -1,11 +1,10 @@
 #include "core/restitution.h"
 
-#include <Eigen/Dense>
-
 #include <cmath>
 #include <numbers>
 #include <opencv2/calib3d.hpp>
 
+#include "base/dense.h"
 #include "base/errors.h"
 
 namespace glidelab::core {
@@ -113,8 +112,7 @@ Eigen::VectorXd fit_poses(const CameraModel& camera, const std::vector<BoardCorn
   double cost = residuals_of(camera, views, square_m, parameters).squaredNorm();
   for (int iteration = 0; iteration < 50; ++iteration) {
     const Eigen::VectorXd residuals = residuals_of(camera, views, square_m, parameters);
-    const Eigen::VectorXd step =
-        jacobian_of(camera, views, square_m, parameters).colPivHouseholderQr().solve(-residuals);
+    const Eigen::VectorXd step = base::least_squares(jacobian_of(camera, views, square_m, parameters), -residuals);
     double share = 1.0;
     for (; share > 1e-4; share *= 0.5) {
       const double trial = residuals_of(camera, views, square_m, parameters + share * step).squaredNorm();
@@ -141,10 +139,9 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& covariance) {
     sd[k] = std::sqrt(covariance(free[static_cast<std::size_t>(k)], free[static_cast<std::size_t>(k)]));
   const Eigen::MatrixXd part = covariance(free, free);
   const Eigen::MatrixXd correlations = sd.cwiseInverse().asDiagonal() * part * sd.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlations);
+  const base::SymmetricEigen eigen = base::symmetric_eigen(correlations);
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(covariance.rows(), size);
-  root(free, Eigen::all) =
-      sd.asDiagonal() * solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  root(free, Eigen::all) = sd.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   return root;
 }
 
@@ -179,8 +176,9 @@ PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& v
     spread.middleRows(row, rows) = times_covariance(noise, view.grid, jacobian.middleRows(row, rows));
     row += rows;
   }
-  const Eigen::MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
-  const Eigen::MatrixXd covariance = inverse * (jacobian.transpose() * spread) * inverse;
+  const Eigen::MatrixXd inverse = base::inverse_positive(base::transposed_product(jacobian, jacobian));
+  const Eigen::MatrixXd middle = base::transposed_product(jacobian, spread);
+  const Eigen::MatrixXd covariance = base::product(base::product(inverse, middle), inverse);
   fit.covariance = covariance.topLeftCorner<6, 6>();
   double sum = 0.0;
   double count = 0.0;

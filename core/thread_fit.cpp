@@ -1,10 +1,11 @@
 #include "core/thread_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/dense.h"
 #include "core/least_squares.h"
 #include "core/median.h"
 #include "core/pixel_edge.h"
@@ -14,7 +15,6 @@ namespace {
 
 enum Parameter { kShift, kTurn, kLogWidth, kLogBlur, kParameters };
 using Vector = Eigen::Matrix<double, kParameters, 1>;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, kParameters>;
 
 constexpr double kPriorSd = 1.5;  // of ln(width) and ln(blur)
 constexpr std::size_t kFewestRows = 10;
@@ -31,7 +31,7 @@ struct Setting {
 /// One row's residuals with its own background and strength taken out, and their derivatives.
 struct RowFit {
   Eigen::VectorXd residual;
-  Rows jacobian;
+  Eigen::MatrixXd jacobian;
 };
 
 std::optional<RowFit> fit_row(const ThreadRow& row, const Setting& setting, const Vector& p) {
@@ -43,7 +43,7 @@ std::optional<RowFit> fit_row(const ThreadRow& row, const Setting& setting, cons
   const int to = std::min(static_cast<int>(row.values.size()) - 1, static_cast<int>(std::lround(row.middle)) + reach);
   if (to - from < 7 || middle < from + 1 || middle > to - 1) return std::nullopt;
   const Eigen::Index count = to - from + 1;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> design(count, 3);
+  Eigen::MatrixXd design(count, 3);
   Eigen::VectorXd seen(count), by_shift(count), by_width(count), by_blur(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const double d = static_cast<double>(from + i) - middle, s = d * setting.nu;
@@ -55,15 +55,15 @@ std::optional<RowFit> fit_row(const ThreadRow& row, const Setting& setting, cons
     by_blur[i] = blur * blur * (left.bend - right.bend) / width;
     seen[i] = row.values[static_cast<std::size_t>(from + i)];
   }
-  const Eigen::LDLT<Eigen::Matrix3d> normal((design.transpose() * design).eval());
-  if (normal.info() != Eigen::Success) return std::nullopt;
-  const Eigen::Vector3d own = normal.solve(design.transpose() * seen);
+  const Eigen::MatrixXd normal = base::transposed_product(design, design);
+  const Eigen::Vector3d own = base::solve_positive(normal, base::transposed_product(design, seen));
   if (!own.allFinite()) return std::nullopt;
-  Rows jacobian(count, static_cast<Eigen::Index>(kParameters));
+  Eigen::MatrixXd jacobian(count, static_cast<Eigen::Index>(kParameters));
   jacobian << own[2] * by_shift, own[2] * arm * by_shift, own[2] * by_width, own[2] * by_blur;
   RowFit fit;
-  fit.residual = design * own - seen;
-  fit.jacobian = jacobian - design * normal.solve(design.transpose() * jacobian);
+  fit.residual = base::product(design, own) - seen;
+  fit.jacobian =
+      jacobian - base::product(design, base::solve_positive(normal, base::transposed_product(design, jacobian)));
   return fit;
 }
 
@@ -120,7 +120,7 @@ double excess_of_blocks(const std::vector<ThreadRow>& rows, const Setting& setti
     double sum = 0.0;
     for (std::size_t k = block * rows.size() / kBlocks; k < (block + 1) * rows.size() / kBlocks; ++k) {
       const auto fit = fit_row(rows[k], setting, found.parameters);
-      if (fit) sum += gain.dot(fit->jacobian.transpose() * fit->residual);
+      if (fit) sum += gain.dot(Vector(base::transposed_product(fit->jacobian, fit->residual)));
     }
     scatter += sum * sum;
   }

@@ -1,17 +1,21 @@
 #include "diagnose/trajectory_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "base/dense.h"
 #include "base/errors.h"
 #include "sim/sensitivity.h"
 
 namespace glidelab::diagnose {
 namespace {
+
+using base::product;
+using base::transposed_product;
 
 constexpr int kMostIterations = 60;
 constexpr double kConverged = 1e-10;      // relative change of the cost
@@ -23,7 +27,7 @@ constexpr std::size_t kFewestPieces = 8;
 struct Linearised {
   Eigen::VectorXd residual;
   Eigen::MatrixXd common;  // n x 3
-  Eigen::MatrixX2d start;
+  Eigen::MatrixXd start;   // n x 2
 };
 
 Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const Eigen::Vector2d& start) {
@@ -33,7 +37,7 @@ Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const E
   const sim::TrackLaw law(common[0], common[1], common[2]);
   const std::vector<sim::SensitiveState> states = sim::simulate_sensitive(law, start[0], start[1], times);
   const auto n = static_cast<Eigen::Index>(times.size());
-  Linearised result{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixX2d(n, 2)};
+  Linearised result{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixXd(n, 2)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const sim::SensitiveState& state = states[static_cast<std::size_t>(i)];
     result.residual[i] = block.x_m[static_cast<std::size_t>(i)] - state.x_m;
@@ -82,26 +86,27 @@ class Problem {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const double weight = 1.0 / variance_of(blocks_[b]);
       const auto common = linearised[b].common.leftCols(free_);
-      const auto& start = linearised[b].start;
-      Eigen::Matrix2d c = weight * start.transpose() * start;
+      const Eigen::MatrixXd& start = linearised[b].start;
+      Eigen::Matrix2d c = weight * transposed_product(start, start);
       c.diagonal() *= 1.0 + damping;
-      const Eigen::MatrixXd x = weight * common.transpose() * start;
-      const Eigen::Vector2d r = weight * start.transpose() * linearised[b].residual;
-      const Eigen::MatrixXd a = weight * common.transpose() * common;
+      const Eigen::MatrixXd x = weight * transposed_product(common, start);
+      const Eigen::Vector2d r = weight * transposed_product(start, linearised[b].residual);
+      const Eigen::MatrixXd a = weight * transposed_product(common, common);
       diagonal += a.diagonal();
       const Eigen::Matrix2d inverse = c.inverse();
-      normal += a - x * inverse * x.transpose();
-      right += weight * common.transpose() * linearised[b].residual - x * (inverse * r);
+      const Eigen::MatrixXd taken = product(x, inverse);
+      normal += a - product(taken, x.transpose());
+      right += weight * transposed_product(common, linearised[b].residual) - product(taken, r);
       own.push_back(inverse);
       cross.push_back(x);
       own_right.push_back(r);
     }
     normal.diagonal() += damping * diagonal;
-    const Eigen::VectorXd change = normal.ldlt().solve(right);
+    const Eigen::VectorXd change = base::solve_positive(normal, right);
     Point next = at;
     next.common.head(free_) += change;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      next.starts[b] += own[b] * (own_right[b] - cross[b].transpose() * change);
+      next.starts[b] += own[b] * (own_right[b] - Eigen::Vector2d(transposed_product(cross[b], change)));
     }
     return next;
   }
@@ -114,14 +119,14 @@ class Problem {
 /// x0 and v0 of a parabola through the first points, or of a line through fewer.
 Eigen::Vector2d start_of(const core::FreeBlock& block) {
   const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(block.t_s.size(), 15));
-  Eigen::MatrixX3d design(n, 3);
+  Eigen::MatrixXd design(n, 3);
   Eigen::VectorXd x(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double t = block.t_s[static_cast<std::size_t>(i)] - block.t_s.front();
     design.row(i) << 1.0, t, t * t;
     x[i] = block.x_m[static_cast<std::size_t>(i)];
   }
-  const Eigen::Vector3d fit = design.colPivHouseholderQr().solve(x);
+  const Eigen::Vector3d fit = base::least_squares(design, x);
   // A block that moves one way starts that way, whatever the noise says.
   const double least = 1e-6;
   const double v = block.directions.front() * std::max(least, block.directions.front() * fit[1]);
@@ -189,17 +194,15 @@ class Uncertainty {
       const Linearised& of = found.linearised[b];
       const auto common = of.common.leftCols(free);
       // The part of the derivatives that no start x0, v0 can take up.
-      const Eigen::MatrixXd projected =
-          common - of.start * of.start.colPivHouseholderQr().solve(Eigen::MatrixXd(common));
-      normal += projected.transpose() * projected / variance_of(blocks[b]);
+      const Eigen::MatrixXd projected = common - product(of.start, base::least_squares(of.start, common));
+      normal += transposed_product(projected, projected) / variance_of(blocks[b]);
       projected_.push_back(projected);
     }
     const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
     if (!scale.allFinite()) return;
     const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-    if (!(eigen.eigenvalues()[0] > kCondition)) return;
-    inverse_ = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+    if (!(base::symmetric_eigen(scaled).values[0] > kCondition)) return;
+    inverse_ = scale.asDiagonal() * base::inverse_positive(scaled) * scale.asDiagonal();
   }
 
   bool determined() const { return inverse_.size() > 0; }
@@ -212,14 +215,14 @@ class Uncertainty {
       const double weight = 1.0 / variance_of(blocks_[b]);
       for (Eigen::Index i = 0; i < free; ++i) {
         const Eigen::VectorXd noisy = times_noise(blocks_[b].autocovariance_m2, projected_[b].col(i));
-        middle.col(i) += weight * weight * projected_[b].transpose() * noisy;
+        middle.col(i) += weight * weight * transposed_product(projected_[b], noisy);
       }
       chi2 += weight * found_.linearised[b].residual.squaredNorm();
       const auto points = static_cast<double>(found_.linearised[b].residual.size());
       count += points;
       worth += independent(blocks_[b], points);
     }
-    fit.covariance = inverse_ * middle * inverse_;
+    fit.covariance = product(product(inverse_, middle), inverse_);
     fit.degrees = std::numeric_limits<double>::infinity();
     const double freedom = std::max(1.0, count - static_cast<double>(free) - 2.0 * static_cast<double>(blocks_.size()));
     const double ratio = chi2 / freedom;
@@ -240,14 +243,14 @@ class Uncertainty {
       for (Eigen::Index from = 0; from < residual.size(); from += length) {
         const Eigen::Index n = std::min(length, residual.size() - from);
         const Eigen::VectorXd score =
-            projected_[b].middleRows(from, n).transpose() * residual.segment(from, n) / variance_of(blocks_[b]);
-        sum += score * score.transpose();
+            transposed_product(projected_[b].middleRows(from, n), residual.segment(from, n)) / variance_of(blocks_[b]);
+        sum += product(score, score.transpose());
         pieces += 1.0;
       }
     }
     // The parameters that were fitted take their share out of the scores.
     const double freedom = std::max(1.0, pieces - static_cast<double>(inverse_.rows()));
-    const Eigen::MatrixXd wider = inverse_ * sum * inverse_ * ((1.0 - 1.0 / ratio) * pieces / freedom);
+    const Eigen::MatrixXd wider = product(product(inverse_, sum), inverse_) * ((1.0 - 1.0 / ratio) * pieces / freedom);
     // Not below what white residuals of that size would give.
     Eigen::VectorXd growth(inverse_.rows());
     for (Eigen::Index i = 0; i < growth.size(); ++i) {
@@ -263,13 +266,13 @@ class Uncertainty {
     fit.shared.assign(modes + 1, Eigen::VectorXd::Zero(inverse_.rows()));
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const core::FreeBlock& block = *blocks_[b].block;
-      const Eigen::MatrixXd gain = inverse_ * projected_[b].transpose() / variance_of(blocks_[b]);
+      const Eigen::MatrixXd gain = product(inverse_, projected_[b].transpose()) / variance_of(blocks_[b]);
       for (std::size_t mode = 0; mode < block.shared_m.size(); ++mode) {
         if (block.shared_m[mode].empty()) continue;
-        fit.shared[mode] += gain * Eigen::Map<const Eigen::VectorXd>(block.shared_m[mode].data(), gain.cols());
+        fit.shared[mode] += product(gain, Eigen::Map<const Eigen::VectorXd>(block.shared_m[mode].data(), gain.cols()));
       }
-      fit.shared[modes] +=
-          blocks_[b].scale_sd_relative * gain * Eigen::Map<const Eigen::VectorXd>(block.x_m.data(), gain.cols());
+      fit.shared[modes] += blocks_[b].scale_sd_relative *
+                           product(gain, Eigen::Map<const Eigen::VectorXd>(block.x_m.data(), gain.cols()));
     }
   }
 

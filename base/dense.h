@@ -1,0 +1,44 @@
+/// Dense linear algebra of run-time size, compiled once.
+///
+/// Eigen instantiates its kernels in every file that multiplies or decomposes a dynamic matrix, which costs a compiler
+/// a minute a file. These functions do the same work behind one object file; small fixed-size geometry stays in Eigen.
+/// Shapes that do not fit are a programmer's mistake: std::invalid_argument with both shapes.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace glidelab::base {
+
+using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
+
+/// A B.
+Eigen::MatrixXd product(const MatrixView& a, const MatrixView& b);
+
+/// A' B.
+Eigen::MatrixXd transposed_product(const MatrixView& a, const MatrixView& b);
+
+/// X in A X = B for a symmetric positive definite A, by Cholesky's LDL'. Only the lower triangle of A is read.
+Eigen::MatrixXd solve_positive(const MatrixView& a, const MatrixView& b);
+
+/// Inverse of a symmetric positive definite matrix; only its lower triangle is read.
+Eigen::MatrixXd inverse_positive(const MatrixView& a);
+
+/// Inverse of a square matrix; nothing where its rank is not full to rounding (pivots below eps n of the largest).
+std::optional<Eigen::MatrixXd> regular_inverse(const MatrixView& a);
+
+/// L of A = L L' for a symmetric positive definite A; NumericalError where a pivot is not positive.
+Eigen::MatrixXd cholesky_lower(const MatrixView& a);
+
+/// X that minimises |A X - B|, by Householder's QR with column pivoting.
+Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b);
+
+/// A = V diag(values) V' of a symmetric A (its lower triangle), values ascending, vectors in columns.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigen symmetric_eigen(const MatrixView& a);
+
+}  // namespace glidelab::base
