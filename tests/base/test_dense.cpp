@@ -82,7 +82,7 @@ TEST_CASE("eigenvalues come in ascending order with their vectors") {
   const SymmetricEigen eigen = symmetric_eigen(a);
   CHECK(std::abs(eigen.values(0) - 1.0) < kRounding);
   CHECK(std::abs(eigen.values(1) - 3.0) < kRounding);
-  CHECK(largest(product(a, eigen.vectors) - product(eigen.vectors, eigen.values.asDiagonal())) < kRounding);
+  CHECK(largest(product(a, eigen.vectors) - eigen.vectors * eigen.values.asDiagonal()) < kRounding);
 }
 
 TEST_CASE("shapes that do not fit are named") {
