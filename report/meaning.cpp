@@ -125,8 +125,9 @@ std::string meaning_of(const validate::Comparison& comparison) {
     text += fmt::format("<p>{} of {} recovered values lie within two of their standard deviations of the truth", within,
                         compared);
     if (worst_quantity != nullptr) {
-      text += fmt::format("; the farthest off is {} of {}, by {} standard deviations",
+      text += fmt::format("; the farthest off is {} of {} by {}, by {} standard deviations",
                           escape(symbol_of(worst_quantity->quantity)), escape(worst_quantity->configuration),
+                          worst_quantity->estimator == "trajectory" ? "the fit of the whole motion" : "the lines",
                           number_text(worst, 2));
     }
     text += ".</p>\n";

@@ -84,23 +84,28 @@ std::string analysis_text(const core::AnalysisResults& results) {
 
 std::string comparison_text(const validate::Comparison& comparison) {
   std::vector<std::vector<std::string>> rows = {
-      {"configuration", "quantity", "truth", "recovered", "sd", "error", "error/sd"}};
+      {"configuration", "estimator", "quantity", "truth", "recovered", "sd", "error", "error/sd", "least sd"}};
+  std::string estimator;
   std::string previous;
   for (const validate::QuantityComparison& q : comparison.quantities) {
     const double sd = q.sd.value_or(0.0);
     const bool first = q.configuration != previous;
+    const bool other = first || q.estimator != estimator;
     previous = q.configuration;
+    estimator = q.estimator;
     rows.push_back({first ? fmt::format("{} ({:.6g} kg, {:.4g}°)", q.configuration, q.mass_kg, q.incline_deg) : "",
-                    with_unit(symbol_of(q.quantity), unit_of(q.quantity)), q.truth ? value_text(*q.truth, sd) : "–",
-                    q.value ? value_text(*q.value, sd) : "–", q.sd ? sd_text(*q.sd) : "–",
-                    q.error ? error_text(*q.error, sd) : "–",
-                    q.error && sd > 0.0 ? fmt::format("{:+.2f}", *q.error / sd) : "–"});
+                    other ? q.estimator : "", with_unit(symbol_of(q.quantity), unit_of(q.quantity)),
+                    q.truth ? value_text(*q.truth, sd) : "–", q.value ? value_text(*q.value, sd) : "–",
+                    q.sd ? sd_text(*q.sd) : "–", q.error ? error_text(*q.error, sd) : "–",
+                    q.error && sd > 0.0 ? fmt::format("{:+.2f}", *q.error / sd) : "–",
+                    q.cramer_rao_sd ? sd_text(*q.cramer_rao_sd) : "–"});
   }
-  std::string text = text_table(rows, 2);
+  std::string text = text_table(rows, 3);
   std::string reasons;
   for (const validate::QuantityComparison& q : comparison.quantities) {
     if (!q.value && q.truth) {
-      reasons += fmt::format("{}: no {}: {}\n", q.configuration, symbol_of(q.quantity), printable(q.why));
+      reasons +=
+          fmt::format("{}, {}: no {}: {}\n", q.configuration, q.estimator, symbol_of(q.quantity), printable(q.why));
     }
   }
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);

@@ -15,23 +15,31 @@ namespace {
 
 constexpr std::size_t kRestitutionPoints = 2000;
 
-/// One row a quantity, one colour a kind of quantity; the page's reader looks for points beyond the band of ±2.
+/// One row a quantity, one colour a kind of quantity, filled for the lines' values and open for the whole motion's;
+/// the page's reader looks for points beyond the band of ±2.
 std::vector<Plot> error_plot(const validate::Comparison& comparison) {
   std::map<std::string, PlotData> by_quantity;
   std::vector<std::string> order;
   std::string tics;
-  double row = 0.0;
+  std::map<std::pair<std::string, std::string>, double> row_of;  // configuration and quantity
+  std::map<std::string, bool> open;                              // by the name of the data
   double widest = 3.0;
   for (const validate::QuantityComparison& quantity : comparison.quantities) {
     if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
-    if (!by_quantity.contains(quantity.quantity)) {
-      order.push_back(quantity.quantity);
-      by_quantity[quantity.quantity].name = fmt::format("q{}", order.size());
+    const bool whole_motion = quantity.estimator == "trajectory";
+    const std::string kind = quantity.quantity + (whole_motion ? " whole" : "");
+    if (!by_quantity.contains(kind)) {
+      order.push_back(kind);
+      by_quantity[kind].name = fmt::format("q{}", order.size());
+      open[kind] = whole_motion;
     }
-    row += 1.0;
+    const auto [place, added] =
+        row_of.try_emplace({quantity.configuration, quantity.quantity}, static_cast<double>(row_of.size() + 1));
+    const double row = place->second;
     const double in_sd = *quantity.error / *quantity.sd;
     widest = std::max(widest, 1.1 * std::abs(in_sd));
-    by_quantity[quantity.quantity].rows.push_back({in_sd, row});
+    by_quantity[kind].rows.push_back({in_sd, row});
+    if (!added) continue;
     tics +=
         fmt::format("{}{} {}", tics.empty() ? "" : ", ",
                     gnuplot_quoted(fmt::format("{}  {}", quantity.configuration, symbol_of(quantity.quantity))), row);
@@ -43,16 +51,17 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
       "set xlabel 'error / standard deviation'\nunset key\n"
       "set object rectangle from -2, graph 0 to 2, graph 1 behind fillcolor rgb '#e3eef6' fillstyle solid noborder\n"
       "set arrow from 0, graph 0 to 0, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
-      -widest, widest, row + 0.7, tics);
+      -widest, widest, static_cast<double>(row_of.size()) + 0.7, tics);
   std::vector<PlotData> data;
   for (std::size_t n = 0; n < order.size(); ++n) {
     data.push_back(by_quantity[order[n]]);
-    script += fmt::format("{}${} using 1:2 with points pt 7 ps 0.9 lc rgb '{}'", n == 0 ? "" : ", ", data.back().name,
-                          color(n));
+    script += fmt::format("{}${} using 1:2 with points pt {} ps 0.9 lw 1.5 lc rgb '{}'", n == 0 ? "" : ", ",
+                          data.back().name, open[order[n]] ? 6 : 7, color(n % 4));
   }
-  const int height = std::max(330, 80 + static_cast<int>(row) * 22);
+  const int height = std::max(330, 80 + static_cast<int>(row_of.size()) * 22);
   return {{gnuplot_svg(script, data, {480, height}),
-           "Error of each recovered value in units of its own standard deviation; about 95 % belong within the band",
+           "Error of each recovered value in units of its own standard deviation; about 95 % belong within the band. "
+           "Filled: from the lines; open: from the whole motion",
            "Errors in units of their standard deviation"}};
 }
 

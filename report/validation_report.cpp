@@ -20,14 +20,17 @@ std::string cell(const std::optional<double>& value, std::string (*text)(double,
 }
 
 std::string comparison_table(const validate::Comparison& comparison) {
-  HtmlTable table({"quantity", "truth", "recovered", "sd", "error", "error / sd", "relative"});
-  std::string previous;
+  HtmlTable table(
+      {"quantity", "truth", "recovered", "sd", "error", "error / sd", "relative", "least sd", "efficiency"});
+  std::string previous, estimator;
   for (const validate::QuantityComparison& q : comparison.quantities) {
     const double sd = q.sd.value_or(0.0);
-    if (q.configuration != previous) {
-      table.heading(fmt::format("{}: {:.6g} kg, stated {:.4g}°", escape(q.configuration), q.mass_kg, q.incline_deg));
+    if (q.configuration != previous || q.estimator != estimator) {
+      table.heading(fmt::format("{}: {:.6g} kg, stated {:.4g}°, {}", escape(q.configuration), q.mass_kg, q.incline_deg,
+                                q.estimator == "trajectory" ? "fit of the whole motion" : escape(q.estimator)));
     }
     previous = q.configuration;
+    estimator = q.estimator;
     const std::string unit = unit_of(q.quantity);
     std::string in_sd = "–";
     if (q.error && sd > 0.0) {
@@ -40,7 +43,8 @@ std::string comparison_table(const validate::Comparison& comparison) {
                cell(q.truth, value_text, sd),
                q.value ? value_text(*q.value, sd) : fmt::format("<span title=\"{}\">–</span>", escape(q.why)),
                q.sd ? sd_text(*q.sd) : "–", cell(q.error, error_text, sd), in_sd,
-               relative ? fmt::format("{:+.3f} %", 100.0 * *q.error / *q.truth) : ""});
+               relative ? fmt::format("{:+.3f} %", 100.0 * *q.error / *q.truth) : "",
+               q.cramer_rao_sd ? sd_text(*q.cramer_rao_sd) : "–", q.efficiency ? number_text(*q.efficiency, 2) : "–"});
   }
   return table.str();
 }
@@ -55,8 +59,8 @@ std::string validation_report(const std::string& title, const core::AnalysisResu
   const validate::RestitutionComparison& restitution = comparison.restitution;
   std::string body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the pictures alone "
-      "(estimator {}), and compared with the truth.</p>\n",
-      escape(title), escape(results.estimator));
+      "by the lines of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n",
+      escape(title));
   body += fmt::format(
       "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>frames with the marker found</span></div>"
       "<div class=\"tile\"><b>{} mm</b><span>position error (rms)</span></div>"
@@ -66,7 +70,10 @@ std::string validation_report(const std::string& title, const core::AnalysisResu
       restitution.points.empty() ? "–" : number_text(restitution.rms_m * 1e3, 2),
       comparison.lines.empty() ? "–" : r2_text(lowest_r2), comparison.wall_s);
   body += "<h2 id=\"comparison\">Truth and recovered values</h2>\n" + comparison_table(comparison);
-  body += "<p class=\"soft\">sd is the standard deviation that the analysis itself states.</p>\n";
+  body +=
+      "<p class=\"soft\">sd is the standard deviation that the analysis itself states, camera and scale included; "
+      "least sd is what "
+      "the noise of the positions alone allows at all (Cramér-Rao bound), and efficiency (least sd / sd)².</p>\n";
   body += meaning_of(comparison);
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);

@@ -29,6 +29,8 @@ bool share_a_clip(const std::vector<std::string>& a, const std::vector<std::stri
                      [&](const std::string& name) { return std::find(b.begin(), b.end(), name) != b.end(); });
 }
 
+}  // namespace
+
 std::vector<QuantityComparison> compare_quantities(const core::AnalysisResults& results, const Truth& truth) {
   std::vector<QuantityComparison> quantities;
   for (const TrueConfiguration& expected : truth.configurations) {
@@ -48,6 +50,36 @@ std::vector<QuantityComparison> compare_quantities(const core::AnalysisResults& 
   }
   return quantities;
 }
+
+std::vector<QuantityComparison> with_bounds(std::vector<QuantityComparison> quantities,
+                                            const std::vector<LeastSd>& bounds) {
+  for (QuantityComparison& compared : quantities) {
+    const auto bound = std::find_if(bounds.begin(), bounds.end(), [&](const LeastSd& candidate) {
+      return candidate.configuration == compared.configuration;
+    });
+    if (bound == bounds.end()) continue;
+    compared.cramer_rao_sd = compared.quantity == "k_over_m_1_s" ? bound->k_over_m_1_s
+                             : compared.quantity == "mu"         ? bound->mu
+                             : compared.quantity == "alpha_deg"  ? bound->alpha_deg
+                                                                 : bound->v_lim_m_s;
+    if (!compared.cramer_rao_sd || !compared.sd || !(*compared.sd > 0.0)) continue;
+    compared.efficiency = std::pow(*compared.cramer_rao_sd / *compared.sd, 2);
+  }
+  return quantities;
+}
+
+std::vector<QuantityComparison> join_estimators(std::vector<QuantityComparison> first,
+                                                const std::vector<QuantityComparison>& second) {
+  for (const QuantityComparison& compared : second) {
+    const auto same = std::find_if(first.rbegin(), first.rend(), [&](const QuantityComparison& candidate) {
+      return candidate.configuration == compared.configuration;
+    });
+    first.insert(same == first.rend() ? first.end() : same.base(), compared);
+  }
+  return first;
+}
+
+namespace {
 
 const TrueClip& truth_of(const core::ClipResult& clip, const Truth& truth) {
   const auto found = std::find_if(truth.clips.begin(), truth.clips.end(),

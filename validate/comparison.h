@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/results.h"
+#include "validate/cramer_rao.h"
 #include "validate/truth.h"
 
 namespace glidelab::validate {
@@ -21,8 +22,10 @@ struct QuantityComparison {
   std::optional<double> truth;
   std::optional<double> value;
   std::optional<double> sd;
-  std::optional<double> error;  ///< value - truth
-  std::string why;              ///< why there is no value
+  std::optional<double> error;               ///< value - truth
+  std::string why;                           ///< why there is no value
+  std::optional<double> cramer_rao_sd = {};  ///< least that the positions' noise allows (cramer_rao.h)
+  std::optional<double> efficiency = {};     ///< (cramer_rao_sd / sd)²
 };
 
 struct LineComparison {
@@ -55,6 +58,17 @@ struct Comparison {
   std::size_t detected = 0;
   double wall_s = 0.0;  ///< of simulation, rendering and analysis; set by who measures it
 };
+
+/// The quantities of one estimator, configuration by configuration: K/m, mu, alpha, v_lim.
+std::vector<QuantityComparison> compare_quantities(const core::AnalysisResults& results, const Truth& truth);
+
+/// The same with the bounds of their configurations, and the efficiency where there is a sd.
+std::vector<QuantityComparison> with_bounds(std::vector<QuantityComparison> quantities,
+                                            const std::vector<LeastSd>& bounds);
+
+/// Quantities of several estimators, those of one configuration together.
+std::vector<QuantityComparison> join_estimators(std::vector<QuantityComparison> first,
+                                                const std::vector<QuantityComparison>& second);
 
 /// Compares the results with the truth. Configurations are matched through their clips, frames by their number. The
 /// field is the range of the true positions and not the width of the view, so that an error relative to it is never

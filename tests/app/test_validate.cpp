@@ -41,7 +41,7 @@ TEST_CASE("validate writes all its files, prints comparison.json with --json, an
 
   const json document = json::parse(result.out);
   CHECK(result.out == base::read_file(temp / "out/comparison.json"));
-  REQUIRE(document.at("quantities").size() == 4);
+  REQUIRE(document.at("quantities").size() == 8);
   for (const json& quantity : document.at("quantities")) {
     for (const char* key :
          {"configuration", "mass_kg", "incline_deg", "estimator", "quantity", "truth", "value", "sd", "error"}) {

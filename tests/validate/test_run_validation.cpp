@@ -49,12 +49,21 @@ TEST_CASE("the closed loop of a small scenario recovers its truth within the sta
   const validate::Comparison& comparison = result.comparison;
   CHECK(comparison.frames == 290);
   CHECK(comparison.detected == 290);
-  REQUIRE(comparison.quantities.size() == 4);
+  REQUIRE(comparison.quantities.size() == 8);  // of the lines, and of the whole motion
   for (const validate::QuantityComparison& quantity : comparison.quantities) {
     INFO(quantity.quantity << ": " << quantity.why);
     REQUIRE(quantity.error);
     // Fixed seed; four standard deviations of a normal error are exceeded once in 16,000 draws.
     CHECK(std::abs(*quantity.error) < 4.0 * *quantity.sd);
+    // No estimator states less than the bound of independent noise; what it estimates of the noise itself is known
+    // to a tenth with 290 frames.
+    REQUIRE(quantity.efficiency);
+    CHECK(*quantity.efficiency < 1.2);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(comparison.quantities[i].estimator == "phase-diagram");
+    CHECK(comparison.quantities[i + 4].estimator == "trajectory");
+    CHECK(comparison.quantities[i + 4].quantity == comparison.quantities[i].quantity);
   }
   // The paper's figure for the restitution, 0.1 % of the field of view (section 2.2): 400 px of 4 mm.
   CHECK(comparison.restitution.max_m < 1e-3 * 1.6);
