@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -12,6 +13,7 @@
 #include "app/progress_display.h"
 #include "base/staged_output.h"
 #include "core/analyze.h"
+#include "core/bandwidth_rule.h"
 #include "core/experiment.h"
 #include "diagnose/trajectory_results.h"
 #include "report/analysis_report.h"
@@ -27,9 +29,22 @@ namespace fs = std::filesystem;
 struct AnalyzeOptions {
   CommonOptions common;
   std::vector<std::string> experiments;
-  std::optional<double> bandwidth_s;
+  std::string bandwidth = "lines";
   std::string estimator = "phase-diagram";
 };
+
+constexpr const char* kLines = "lines";  // the default: what serves the lines best (core/bandwidth.h)
+
+/// A checked text: a number of seconds or the name of a rule.
+void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
+  double value = 0.0;
+  if (text == kLines) return;
+  if (CLI::detail::lexical_cast(text, value)) {
+    how.bandwidth_s = value;
+  } else {
+    how.bandwidth_rule = text;
+  }
+}
 
 std::string title_of(const std::vector<fs::path>& folders) {
   std::string title = core::read_experiment(folders.front()).name;
@@ -47,8 +62,10 @@ void analyze(const AnalyzeOptions& options) {
 
   ProgressDisplay display(options.common.quiet);
   const base::Progress progress = display.callback();
-  core::AnalysisResults results =
-      core::analyze(folders, {.bandwidth_s = options.bandwidth_s, .jobs = options.common.jobs}, progress);
+  core::AnalysisOptions how;
+  how.jobs = options.common.jobs;
+  read_bandwidth(options.bandwidth, how);
+  core::AnalysisResults results = core::analyze(folders, how, progress);
   if (options.estimator == "trajectory") results = diagnose::with_trajectory_fits(std::move(results));
   write_analysis_files(results, staged.dir());
   const std::vector<core::Preview> previews = previews_of(folders, results, progress);
@@ -62,11 +79,12 @@ void analyze(const AnalyzeOptions& options) {
 }
 
 std::string check_bandwidth(const std::string& text) {
+  const auto& rules = core::bandwidth_rule_names();
   double value = 0.0;
-  if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value) || !(value > 0.0)) {
-    return fmt::format("\"{}\" is not a number of seconds above 0", text);
-  }
-  return {};
+  if (text == kLines || std::find(rules.begin(), rules.end(), text) != rules.end()) return {};
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
+  return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}, {}", text, kLines,
+                     fmt::join(rules, ", "));
 }
 
 }  // namespace
@@ -81,10 +99,13 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("DIR")
       ->required();
   command
-      ->add_option("--bandwidth", options->bandwidth_s,
-                   "Width of the smoothing kernel in seconds; default: chosen for each clip")
-      ->type_name("SECONDS")
-      ->check(check_bandwidth);
+      ->add_option("--bandwidth", options->bandwidth,
+                   fmt::format("Width of the smoothing kernel in seconds, or the rule that chooses it for each clip: "
+                               "{}, {} (docs/bandwidth.md)",
+                               kLines, fmt::join(core::bandwidth_rule_names(), ", ")))
+      ->type_name("SECONDS|RULE")
+      ->check(check_bandwidth)
+      ->capture_default_str();
   command
       ->add_option("--estimator", options->estimator,
                    "Method; \"phase-diagram\" fits lines in a(v), \"trajectory\" the whole motion to the positions")

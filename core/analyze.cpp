@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/errors.h"
+#include "core/bandwidth_rule.h"
 #include "core/clip_to_track.h"
 #include "core/parallel.h"
 #include "core/phase_diagram.h"
@@ -62,6 +63,10 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     throw base::InputError(
         base::Issue{"", 0, "bandwidth", fmt::format("{}", *options.bandwidth_s), "a time in seconds above 0"});
   }
+  if (!options.bandwidth_rule.empty() && !make_bandwidth_rule(options.bandwidth_rule)) {
+    throw base::InputError(base::Issue{"", 0, "bandwidth", options.bandwidth_rule,
+                                       fmt::format("{}", fmt::join(bandwidth_rule_names(), ", "))});
+  }
   const std::vector<Experiment> experiments = read_all(folders);
   AnalysisResults results;
   std::vector<ClipSetup> setups;
@@ -84,7 +89,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   results.clips.resize(setups.size());
   std::atomic<std::size_t> done = 0;
   for_each_parallel(setups.size(), options.jobs, [&](std::size_t i) {
-    results.clips[i] = analyze_motion(setups[i], tracks[i], options.bandwidth_s, experiments.front().gravity_m_s2);
+    results.clips[i] = analyze_motion(setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule});
     results.clips[i].experiment = experiment_of[i]->name;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/progress.h"
@@ -18,6 +19,7 @@ namespace glidelab::core {
 
 struct AnalysisOptions {
   std::optional<double> bandwidth_s;  ///< given; otherwise chosen for each clip by the documented rule (bandwidth.h)
+  std::string bandwidth_rule;         ///< a name of bandwidth_rule.h instead; empty: that of bandwidth.h
   int jobs = 1;                       ///< clips analysed at the same time
   FrameOpener open = open_frames;     ///< where the clips' frames come from
 };

@@ -6,63 +6,43 @@
 #include <cmath>
 #include <limits>
 
+#include "core/orthogonal_polynomials.h"
 #include "core/quantile.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kSmallestNorm = 1e-11;  // of p_k over that of u^k at which the points carry no such power
-constexpr double kUniform = 1e-9;        // steps that differ by less than this part are one step
+constexpr double kUniform = 1e-9;  // steps that differ by less than this part are one step
 
-/// One orthogonal polynomial: its values at the points, and its value and first two derivatives at u = 0.
-struct Orthogonal {
-  std::vector<double> at;
-  std::array<double, 3> zero{};
-  double norm = 0.0;
-};
+bool has_tails(Kernel kernel) {
+  return kernel == Kernel::gaussian || kernel == Kernel::bimodal;
+}
 
-/// The weights of points at u (in bandwidths) with the kernel's values K; false where they do not determine the
+/// The weights of points at u (in bandwidths) with the kernel's values; false where they do not determine the
 /// polynomial.
 bool polynomial_weights(int order, const std::vector<double>& u, const std::vector<double>& kernel, double bandwidth_s,
                         KernelWeights& weights) {
+  const auto basis = OrthogonalPolynomials::make(order, u, kernel);
+  if (!basis) return false;
   const std::size_t n = u.size();
+  const std::vector<double> at_zero = basis->derivatives(0.0, 2);
   weights.x.assign(n, 0.0);
   weights.v.assign(n, 0.0);
   weights.a.assign(order >= 2 ? n : 0, 0.0);
-  const double per_h = 1.0 / bandwidth_s;
-  Orthogonal last, now;
-  last.at.assign(n, 0.0);
-  now.at.assign(n, 1.0);
-  now.zero = {1.0, 0.0, 0.0};
-  std::vector<double> power(kernel);  // K u^(2k)
-  for (int k = 0;; ++k) {
-    double of_power = 0.0, first = 0.0;
-    now.norm = 0.0;
+  for (int k = 0; k <= order; ++k) {
+    const double* const d = at_zero.data() + 3 * k;
+    const double per_norm = 1.0 / basis->norm(k);
+    const double x = d[0] * per_norm, v = d[1] * per_norm / bandwidth_s,
+                 a = d[2] * per_norm / (bandwidth_s * bandwidth_s);
+    const auto p = basis->at_points(k);
     for (std::size_t i = 0; i < n; ++i) {
-      const double square = kernel[i] * now.at[i] * now.at[i];
-      now.norm += square;
-      first += square * u[i];
-      of_power += power[i];
-      power[i] *= u[i] * u[i];
-    }
-    if (!(now.norm > kSmallestNorm * of_power)) return false;
-    const double x = now.zero[0] / now.norm, v = per_h * now.zero[1] / now.norm,
-                 a = per_h * per_h * now.zero[2] / now.norm;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double value = kernel[i] * now.at[i];
+      const double value = kernel[i] * p[i];
       weights.x[i] += x * value;
       weights.v[i] += v * value;
+      if (order >= 2) weights.a[i] += a * value;
     }
-    for (std::size_t i = 0; i < weights.a.size(); ++i) weights.a[i] += a * kernel[i] * now.at[i];
-    if (k == order) return true;
-    // p_(k+1) = (u - alpha) p_k - beta p_(k-1), and its derivatives.
-    const double alpha = first / now.norm, beta = k == 0 ? 0.0 : now.norm / last.norm;
-    for (std::size_t i = 0; i < n; ++i) last.at[i] = (u[i] - alpha) * now.at[i] - beta * last.at[i];
-    const std::array<double, 3> p = now.zero;
-    last.zero = {-alpha * p[0] - beta * last.zero[0], p[0] - alpha * p[1] - beta * last.zero[1],
-                 2.0 * p[1] - alpha * p[2] - beta * last.zero[2]};
-    std::swap(last, now);
   }
+  return true;
 }
 
 }  // namespace
@@ -78,6 +58,8 @@ double kernel_value(Kernel kernel, double s) {
       return r < 1.0 ? std::pow(1.0 - r * r * r, 3) : 0.0;
     case Kernel::uniform:
       return r <= 1.0 + kUniform ? 1.0 : 0.0;
+    case Kernel::bimodal:
+      return s * s * std::exp(-s * s);
   }
   assert(false);
   return 0.0;
@@ -88,7 +70,7 @@ LocalPolynomial::LocalPolynomial(std::span<const double> t_s, PolynomialOptions 
   assert(options_.bandwidth_s > 0.0 && options_.order >= 1 && options_.order <= 5 && options_.reach > 0.0);
   assert(options_.weights.empty() || options_.weights.size() == t_s.size());
   const double bandwidth = options_.bandwidth_s;
-  reach_s_ = (options_.kernel == Kernel::gaussian ? options_.reach : 1.0) * bandwidth * (1.0 + kUniform);
+  reach_s_ = (has_tails(options_.kernel) ? options_.reach : 1.0) * bandwidth * (1.0 + kUniform);
   if (t_s_.size() < static_cast<std::size_t>(options_.order) + 2 || !options_.weights.empty()) return;
   const double step = median_step(t_s_);
   if (!(step > 0.0)) return;

@@ -9,12 +9,14 @@
 ///     epanechnikov  1 - s^2            |s| < 1
 ///     tricube       (1 - |s|^3)^3      |s| < 1
 ///     uniform       1                  |s| <= 1
+///     bimodal       s^2 exp(-s^2)      cut off likewise; a point has no weight in its own value (for bandwidth rules)
 ///
-/// The weights come from the polynomials p_k that are orthogonal over the points under these weights (Forsythe 1957),
+/// The weights come from the polynomials p_k that are orthogonal over the points under these weights
+/// (orthogonal_polynomials.h),
 ///
 ///     b_d = sum_k p_k^(d)(0) sum_i K_i p_k(u_i) x_i / sum_i K_i p_k(u_i)^2,
 ///
-/// a three-term recurrence that needs no matrix and loses no digits at an end, where powers of u nearly agree.
+/// which needs no matrix and loses no digits at an end, where powers of u nearly agree.
 /// Where many points of uniform step and weight are smoothed, the weights are one filter, applied as such.
 ///
 /// Covariances are exact for noise of a given autocovariance, white or not, times a factor of each point's own.
@@ -35,7 +37,7 @@ namespace glidelab::core {
 /// Bandwidths at which the Gaussian kernel is cut off.
 inline constexpr double kKernelReach = 6.0;
 
-enum class Kernel { gaussian, epanechnikov, tricube, uniform };
+enum class Kernel { gaussian, epanechnikov, tricube, uniform, bimodal };
 
 /// K(s), 0 outside of the kernel's support; the Gaussian is not cut off here.
 double kernel_value(Kernel kernel, double s);
@@ -44,7 +46,7 @@ struct PolynomialOptions {
   int order = 3;  ///< 1 to 5
   Kernel kernel = Kernel::gaussian;
   double bandwidth_s = 0.0;     ///< above 0
-  double reach = kKernelReach;  ///< of the Gaussian, in bandwidths
+  double reach = kKernelReach;  ///< of the Gaussian and the bimodal kernel, in bandwidths
   std::vector<double> weights;  ///< of each point, above 0; empty: all the same
 };
 

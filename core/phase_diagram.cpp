@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/bandwidth.h"
+#include "core/bandwidth_rule.h"
 #include "core/free_blocks.h"
 #include "core/free_motion.h"
 #include "core/line_fit.h"
@@ -138,10 +140,32 @@ void note_findings(const Motion& motion, std::size_t outliers, const PositionNoi
   }
 }
 
+/// A rule sees y, which is x without the known force's part, in the stretches that count.
+BandwidthChoice by_rule(const std::string& name, const Motion& motion, const FreeMotion& free,
+                        const PositionNoise& noise) {
+  BandwidthProblem problem;
+  problem.noise = noise;
+  problem.step_s = motion.step_s;
+  for (const FreeStretch& stretch : free.stretches) {
+    if (stretch.whole != LeftOut::used) continue;
+    problem.parts.push_back({std::span(motion.t_s).subspan(stretch.first, stretch.count),
+                             std::span(motion.y_m).subspan(stretch.first, stretch.count)});
+  }
+  const auto rule = make_bandwidth_rule(name);
+  assert(rule);
+  const auto pick = rule->choose(problem);
+  if (pick) return {pick->bandwidth_s, pick->method, 0.0};
+  return {free.pilot_bandwidth_s, "that of the first smoothing: the motion is too short for the rule " + name, 0.0};
+}
+
 }  // namespace
 
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s,
                           double /*gravity_m_s2*/) {
+  return analyze_motion(setup, track, MotionOptions{bandwidth_s, {}});
+}
+
+ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options) {
   ClipResult clip;
   clip.name = setup.name;
   clip.frames = track.frame_t_s.size();
@@ -155,12 +179,14 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::o
   const Motion motion = without(measured, outliers);
   const FreeMotion free = find_free_motion(motion, setup);
   clip.notes.insert(clip.notes.end(), free.notes.begin(), free.notes.end());
-  if (bandwidth_s) {
-    clip.bandwidth_s = *bandwidth_s;
+  if (options.bandwidth_s) {
+    clip.bandwidth_s = *options.bandwidth_s;
     clip.bandwidth_method = "given";
   } else {
     const PositionNoise first = noise_at(motion, free.stretches, free.pilot_bandwidth_s);
-    const BandwidthChoice choice = choose_bandwidth(motion, free.stretches, first, free.pilot_bandwidth_s);
+    const BandwidthChoice choice = options.bandwidth_rule.empty()
+                                       ? choose_bandwidth(motion, free.stretches, first, free.pilot_bandwidth_s)
+                                       : by_rule(options.bandwidth_rule, motion, free, first);
     clip.bandwidth_s = choice.bandwidth_s;
     clip.bandwidth_method = choice.method;
   }

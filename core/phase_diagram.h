@@ -16,6 +16,14 @@ namespace glidelab::core {
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s,
                           double gravity_m_s2);
 
+struct MotionOptions {
+  std::optional<double> bandwidth_s;  ///< given; otherwise chosen
+  std::string bandwidth_rule;         ///< a name of bandwidth_rule.h (asserted); empty: choose_bandwidth()
+};
+
+/// The same with a choice of how.
+ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
+
 /// Joins clips of one mass, stated inclination and group: lines through the points of all of them, alpha and mu by
 /// (13).
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,

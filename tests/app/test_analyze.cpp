@@ -43,6 +43,22 @@ TEST_CASE("analyze writes its files, and --json prints exactly results.json") {
   CHECK(entries(temp.path()) == 2);  // made, out: no staging folder is left
 }
 
+TEST_CASE("analyze takes the bandwidth from the rule that is named, and says so") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const auto clip_of = [&](const std::string& bandwidth) {
+    const tests::ProcessResult result = tests::glidelab({"analyze", (temp / "made").string(), "--bandwidth", bandwidth,
+                                                         "--out", (temp / bandwidth).string(), "--json"});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    return json::parse(result.out).at("clips").at(0);
+  };
+  CHECK(clip_of("plug-in").at("bandwidth_method").get<std::string>().starts_with("plug-in"));
+  CHECK(clip_of("ebbs").at("bandwidth_method").get<std::string>().starts_with("empirical bias"));
+  CHECK(clip_of("0.05").at("bandwidth_s") == 0.05);
+  CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("least mean squared error"));
+}
+
 TEST_CASE("analyze without --json prints a table, and the same files for any number of jobs") {
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");

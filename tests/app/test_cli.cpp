@@ -61,6 +61,7 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
       {"analyze", "folder", "--bandwidth", "0"},
       {"analyze", "folder", "--bandwidth", "nan"},
       {"analyze", "folder", "--bandwidth", "inf"},
+      {"analyze", "folder", "--bandwidth", "silverman"},
       {"analyze", "folder", "--estimator", "magic"},
       {"analyze", "folder", "--out", ""},
       {"simulate", "a.toml", "--rate", "-200"},

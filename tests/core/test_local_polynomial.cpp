@@ -12,11 +12,12 @@ using namespace glidelab::core;
 
 namespace {
 
-constexpr Kernel kKernels[] = {Kernel::gaussian, Kernel::epanechnikov, Kernel::tricube, Kernel::uniform};
+constexpr Kernel kKernels[] = {Kernel::gaussian, Kernel::epanechnikov, Kernel::tricube, Kernel::uniform,
+                               Kernel::bimodal};
 
 /// The reach of a compact kernel is one bandwidth, of a Gaussian six: these bandwidths smooth about the same.
 double bandwidth_of(Kernel kernel) {
-  return kernel == Kernel::gaussian ? 0.05 : 0.14;
+  return kernel == Kernel::gaussian || kernel == Kernel::bimodal ? 0.05 : 0.14;
 }
 
 PolynomialOptions options(int order, Kernel kernel, double bandwidth_s) {
@@ -63,6 +64,8 @@ Eigen::Vector3d by_qr(const std::vector<double>& t, const std::vector<double>& x
     if (how.kernel == Kernel::epanechnikov && s < 1.0) k = 0.75 * (1.0 - s * s);
     if (how.kernel == Kernel::tricube && s < 1.0) k = 70.0 / 81.0 * std::pow(1.0 - s * s * s, 3);
     if (how.kernel == Kernel::uniform && s < 1.0 + 1e-9) k = 0.5;
+    if (how.kernel == Kernel::bimodal && s < 6.0 + 1e-8)
+      k = 2.0 * s * s * std::exp(-s * s) / std::sqrt(std::numbers::pi);
     root[i] = std::sqrt(k * (how.weights.empty() ? 1.0 : how.weights[i]));
   }
   Eigen::MatrixXd design(t.size(), how.order + 1);
@@ -212,7 +215,7 @@ TEST_CASE("a local polynomial agrees with R's KernSmooth::locpoly") {
 TEST_CASE("uniform times with a frame missing are filtered where the window is full, and fitted elsewhere") {
   const auto t = times_with_missing_frames();
   for (const Kernel kernel : kKernels) {
-    const LocalPolynomial smoother(t, options(3, kernel, kernel == Kernel::gaussian ? 0.015 : 0.09));
+    const LocalPolynomial smoother(t, options(3, kernel, bandwidth_of(kernel) == 0.05 ? 0.015 : 0.09));
     CHECK(smoother.row_of_point(20)->weights == smoother.row_of_point(30)->weights);
     CHECK(smoother.row_of_point(20)->weights != smoother.row_of_point(70)->weights);
     CHECK(smoother.row_of_point(20)->weights != smoother.row_of_point(2)->weights);
