@@ -65,6 +65,7 @@ void analyze(const AnalyzeOptions& options) {
   core::AnalysisOptions how;
   how.jobs = options.common.jobs;
   read_bandwidth(options.bandwidth, how);
+  if (options.estimator == "phase-diagram-gls") how.lines = core::LineMethod::generalised;
   core::AnalysisResults results = core::analyze(folders, how, progress);
   if (options.estimator == "trajectory") results = diagnose::with_trajectory_fits(std::move(results));
   write_analysis_files(results, staged.dir());
@@ -107,10 +108,13 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->check(check_bandwidth)
       ->capture_default_str();
   command
-      ->add_option("--estimator", options->estimator,
-                   "Method; \"phase-diagram\" fits lines in a(v), \"trajectory\" the whole motion to the positions")
+      ->add_option(
+          "--estimator", options->estimator,
+          "Method; \"phase-diagram\" fits lines in a(v) as the paper does, \"phase-diagram-gls\" with the points' "
+          "covariance, errors in v and a, and no bias by the kernel, \"trajectory\" the whole motion to the "
+          "positions")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"phase-diagram", "trajectory"}))
+      ->check(CLI::IsMember({"phase-diagram", "phase-diagram-gls", "trajectory"}))
       ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted as by every command; an analysis draws no random numbers");

@@ -89,12 +89,14 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   results.clips.resize(setups.size());
   std::atomic<std::size_t> done = 0;
   for_each_parallel(setups.size(), options.jobs, [&](std::size_t i) {
-    results.clips[i] = analyze_motion(setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule});
+    results.clips[i] =
+        analyze_motion(setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule, options.lines});
     results.clips[i].experiment = experiment_of[i]->name;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });
   results.gravity_m_s2 = experiments.front().gravity_m_s2;
-  results.configurations = join_configurations(setups, results.clips, experiments.front().gravity_m_s2);
+  results.configurations = join_configurations(setups, results.clips, experiments.front().gravity_m_s2, options.lines);
+  if (options.lines == LineMethod::generalised) results.estimator = "phase-diagram-gls";
   return results;
 }
 

@@ -13,15 +13,17 @@
 #include "base/progress.h"
 #include "core/experiment.h"
 #include "core/frame_source.h"
+#include "core/phase_diagram.h"
 #include "core/results.h"
 
 namespace glidelab::core {
 
 struct AnalysisOptions {
   std::optional<double> bandwidth_s;  ///< given; otherwise chosen for each clip by the documented rule (bandwidth.h)
-  std::string bandwidth_rule;         ///< a name of bandwidth_rule.h instead; empty: that of bandwidth.h
   int jobs = 1;                       ///< clips analysed at the same time
   FrameOpener open = open_frames;     ///< where the clips' frames come from
+  std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: that of bandwidth.h
+  LineMethod lines = LineMethod::ordinary;
 };
 
 /// Reads and analyses all folders together: they share the glider and the track, and nothing of the camera.

@@ -33,14 +33,15 @@ Eigen::Matrix2d random_part(const LineUncertainty& parts) {
   return covariance;
 }
 
-/// One direction of one clip: the moments of its points, and its own line.
+/// One direction of one clip: the weight of its line (the moments of its points, or the line's inverse covariance), and
+/// the line.
 struct Part {
   const LineFit* line = nullptr;
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   std::vector<double> v, a;
 };
 
-std::vector<Part> parts_of(const std::vector<Member>& members, int direction) {
+std::vector<Part> parts_of(const std::vector<Member>& members, int direction, LineMethod lines) {
   std::vector<Part> parts;
   for (const Member& member : members) {
     for (const LineFit& line : member.clip->segments) {
@@ -54,6 +55,8 @@ std::vector<Part> parts_of(const std::vector<Member>& members, int direction) {
         const Eigen::Vector2d design(-point.v_m_s, 1.0);
         part.normal += design * design.transpose();
       }
+      const Eigen::Matrix2d random = random_part(line.parts);
+      if (lines == LineMethod::generalised && random.determinant() > 0.0) part.normal = random.inverse();
       parts.push_back(std::move(part));
     }
   }
@@ -94,7 +97,7 @@ double squared_correlation(const std::vector<Part>& parts) {
   return vv > 0.0 && aa > 0.0 ? va * va / (vv * aa) : 0.0;
 }
 
-/// Ordinary least squares through the points of all parts, every point with the same weight. The parts' noise is
+/// Least squares through the points of all parts; ordinary: every point with the same weight. The parts' noise is
 /// independent: cov = N^-1 (sum N_c cov_c N_c) N^-1 with the normal matrices N_c of the parts.
 LineFit join(const std::vector<Part>& parts, int direction) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero(), random = Eigen::Matrix2d::Zero();
@@ -207,14 +210,14 @@ void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_
       of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus));
 }
 
-ConfigurationResult join_members(const std::vector<Member>& members, double gravity_m_s2) {
+ConfigurationResult join_members(const std::vector<Member>& members, double gravity_m_s2, LineMethod lines) {
   ConfigurationResult result;
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
   result.group = members.front().setup->group;
   for (const Member& member : members) result.clips.push_back(member.clip->name);
   for (const int direction : {-1, 1}) {
-    const std::vector<Part> parts = parts_of(members, direction);
+    const std::vector<Part> parts = parts_of(members, direction, lines);
     if (!parts.empty()) result.lines.push_back(join(parts, direction));
   }
   result.k_over_m_1_s = mean_k(result.lines);
@@ -234,7 +237,8 @@ ConfigurationResult join_members(const std::vector<Member>& members, double grav
 }  // namespace
 
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
-                                                     const std::vector<ClipResult>& clips, double gravity_m_s2) {
+                                                     const std::vector<ClipResult>& clips, double gravity_m_s2,
+                                                     LineMethod lines) {
   std::vector<std::vector<Member>> configurations;
   for (std::size_t i = 0; i < setups.size(); ++i) {
     const auto same = [&](const std::vector<Member>& members) {
@@ -247,7 +251,9 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
     members.push_back({&setups[i], &clips[i]});
   }
   std::vector<ConfigurationResult> results;
-  for (const std::vector<Member>& members : configurations) results.push_back(join_members(members, gravity_m_s2));
+  for (const std::vector<Member>& members : configurations) {
+    results.push_back(join_members(members, gravity_m_s2, lines));
+  }
   return results;
 }
 

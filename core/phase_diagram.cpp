@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/bandwidth.h"
 #include "core/bandwidth_rule.h"
 #include "core/free_blocks.h"
 #include "core/free_motion.h"
+#include "core/gls_line.h"
 #include "core/line_fit.h"
 #include "core/line_input.h"
 #include "core/motion.h"
@@ -140,6 +142,28 @@ void note_findings(const Motion& motion, std::size_t outliers, const PositionNoi
   }
 }
 
+/// Replaces the clip's lines by generalised ones, which may exist where the others do not, and the other way round.
+void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput& input, ClipResult& clip) {
+  const std::vector<FreePiece> pieces = free_pieces(motion, free, input.bandwidth_s, input.autocovariance);
+  const std::vector<LineFit> ordinary = std::exchange(clip.segments, {});
+  for (const int direction : {-1, 1}) {
+    const auto start = std::find_if(ordinary.begin(), ordinary.end(),
+                                    [&](const LineFit& line) { return line.direction == direction; });
+    input.k_start_1_s = start != ordinary.end() ? start->k_over_m_1_s.value : 0.0;
+    auto line = fit_line_gls(direction, motion, pieces, input);
+    if (line) {
+      clip.notes.push_back(
+          fmt::format("v {} 0: the line rests on {} positions of free motion, up to its ends and reversals",
+                      direction > 0 ? ">" : "<", line->points));
+      if (start != ordinary.end()) line->r2 = start->r2;  // of the diagram as it is shown
+      clip.segments.push_back(std::move(*line));
+    } else if (start != ordinary.end()) {
+      clip.notes.push_back(fmt::format("v {} 0: the generalised least squares did not settle; there is no line",
+                                       direction > 0 ? ">" : "<"));
+    }
+  }
+}
+
 /// A rule sees y, which is x without the known force's part, in the stretches that count.
 BandwidthChoice by_rule(const std::string& name, const Motion& motion, const FreeMotion& free,
                         const PositionNoise& noise) {
@@ -205,6 +229,17 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const 
     input.calibration = calibration_shifts(motion, input, track.shared_m);
     const auto line = fit_line(direction, input, noise.autocovariance, track.scale_sd_relative);
     if (line) clip.segments.push_back(*line);
+  }
+  if (options.lines == LineMethod::generalised) {
+    GlsInput input;
+    input.bandwidth_s = clip.bandwidth_s;
+    input.autocovariance = noise.autocovariance;
+    input.scale_sd_relative = track.scale_sd_relative;
+    input.mass_kg = setup.mass_kg;
+    input.mass_sd_kg = setup.mass_sd_kg;
+    input.law_m_s2 = law;
+    input.shared_m = track.shared_m;
+    generalise_lines(motion, free, input, clip);
   }
   clip.v_lim_m_s = limit_velocity(clip.segments);
   clip.motion = smooth_frames(track, motion, free.stretches, noise, clip.bandwidth_s, setup.mass_kg);

@@ -16,17 +16,23 @@ namespace glidelab::core {
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s,
                           double gravity_m_s2);
 
+/// How a line is fitted: by ordinary least squares as the paper does (line_fit.h), or by generalised least squares with
+/// the points' covariance (gls_line.h).
+enum class LineMethod { ordinary, generalised };
+
 struct MotionOptions {
   std::optional<double> bandwidth_s;  ///< given; otherwise chosen
-  std::string bandwidth_rule;         ///< a name of bandwidth_rule.h (asserted); empty: choose_bandwidth()
+  std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h (asserted); empty: choose_bandwidth()
+  LineMethod lines = LineMethod::ordinary;
 };
 
 /// The same with a choice of how.
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 
 /// Joins clips of one mass, stated inclination and group: lines through the points of all of them, alpha and mu by
-/// (13).
+/// (13). With generalised lines the clips' own lines are weighed by their inverse covariances.
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
-                                                     const std::vector<ClipResult>& clips, double gravity_m_s2);
+                                                     const std::vector<ClipResult>& clips, double gravity_m_s2,
+                                                     LineMethod lines = LineMethod::ordinary);
 
 }  // namespace glidelab::core

@@ -59,6 +59,29 @@ TEST_CASE("analyze takes the bandwidth from the rule that is named, and says so"
   CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("least mean squared error"));
 }
 
+TEST_CASE("analyze fits generalised lines where they are asked for, in the same form") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  json found[2];
+  int at = 0;
+  for (const std::string estimator : {"phase-diagram", "phase-diagram-gls"}) {
+    const tests::ProcessResult result = tests::glidelab({"analyze", (temp / "made").string(), "--estimator", estimator,
+                                                         "--out", (temp / estimator).string(), "--json"});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    found[at] = json::parse(result.out);
+    CHECK(found[at].at("estimator") == estimator);
+    ++at;
+  }
+  const auto sd = [](const json& of) {
+    return of.at("configurations").at(0).at("k_over_m_1_s").at("sd").get<double>();
+  };
+  CHECK(sd(found[1]) < sd(found[0]));
+  const json &plain = found[0].at("clips").at(0).at("segments").at(0),
+             &better = found[1].at("clips").at(0).at("segments").at(0);
+  for (const auto& [key, value] : plain.items()) CHECK(better.contains(key));
+}
+
 TEST_CASE("analyze without --json prints a table, and the same files for any number of jobs") {
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");
