@@ -24,6 +24,7 @@ constexpr int kDone = 0;
 constexpr int kWrongInput = 1;
 constexpr int kWrongCommandLine = 2;
 constexpr int kEnvironmentFailed = 3;
+constexpr int kNotMet = 4;
 constexpr int kInterrupted = 130;  // as a shell says it of SIGINT
 
 /// One line of standard error for each line of the message.
@@ -53,6 +54,8 @@ int run_command(const Command& command) {
       return fail(kWrongInput, error.what());
     } catch (const base::NumericalError& error) {
       return fail(kWrongInput, error.what());
+    } catch (const base::NotMet& error) {
+      return fail(kNotMet, error.what());
     } catch (const base::EnvironmentError& error) {
       return fail(kEnvironmentFailed, error.what());
     } catch (const std::filesystem::filesystem_error& error) {
@@ -104,6 +107,7 @@ int run(int argc, char** argv) {
   add_render(app, command);
   add_analyze(app, command);
   add_validate(app, command);
+  add_coverage(app, command);
   add_characterize(app, command);
   try {
     app.parse(argc, argv);

@@ -13,6 +13,7 @@ void add_simulate(CLI::App& app, Command& chosen);
 void add_render(CLI::App& app, Command& chosen);
 void add_analyze(CLI::App& app, Command& chosen);
 void add_validate(CLI::App& app, Command& chosen);
+void add_coverage(CLI::App& app, Command& chosen);
 void add_characterize(CLI::App& app, Command& chosen);
 
 }  // namespace glidelab::app

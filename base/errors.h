@@ -43,6 +43,12 @@ class NumericalError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What was asked to hold does not: a baseline, a target, a coverage (exit status 4). The results are written all the
+/// same.
+class NotMet : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// The user interrupted the work (exit status 130); thrown from Progress.
 class Interrupted : public std::runtime_error {
  public:

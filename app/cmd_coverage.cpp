@@ -1,0 +1,84 @@
+/// glidelab coverage SCENARIO.toml --noise-m SD: do the stated intervals hold the truth as often as they say?
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/analysis_files.h"
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "render/scenario.h"
+#include "report/coverage_report.h"
+#include "report/gnuplot.h"
+#include "validate/coverage.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CoverageCommand {
+  CommonOptions common;
+  std::string scenario;
+  validate::CoverageOptions coverage;
+  double bandwidth_s = 0.0;
+};
+
+void coverage_command(const CoverageCommand& options, bool bandwidth_given) {
+  const render::Scenario scenario = render::read_scenario(options.scenario);
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "coverage", options.scenario);
+  check_writable(out);
+  base::StagedOutput staged(out);
+  ProgressDisplay display(options.common.quiet);
+  validate::CoverageOptions wanted = options.coverage;
+  wanted.seed = options.common.seed.value_or(scenario.seed);
+  wanted.jobs = options.common.jobs;
+  if (bandwidth_given) wanted.bandwidth_s = options.bandwidth_s;
+  const validate::Coverage coverage = validate::measure_coverage(scenario, wanted, display.callback());
+  const std::string json = report::coverage_json(coverage);
+  base::write_file(staged.dir() / "coverage.json", json);
+  base::write_file(staged.dir() / "report.html",
+                   report::coverage_page(fmt::format("Coverage: {}", scenario.motion.name), coverage));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+  print_result(options.common.json ? json : report::coverage_text(coverage));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+  const std::size_t failing = validate::failing_rows(coverage).size();
+  if (failing > 0) {
+    throw base::NotMet(fmt::format(
+        "{} of the stated intervals do not hold the truth as often as they say (exact binomial test at 1 %, "
+        "corrected for their number); {} has the table",
+        failing, (out / "report.html").string()));
+  }
+}
+
+}  // namespace
+
+void add_coverage(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<CoverageCommand>();
+  CLI::App* command = app.add_subcommand(
+      "coverage", "Analyse many replicates of a scenario's motions, and count how often the intervals hold the truth");
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--noise-m", options->coverage.noise_sd_m,
+                   "Standard deviation of the noise of every position, in metres (no pictures are made)")
+      ->required();
+  command->add_option("--replicates", options->coverage.replicates, "How many")->capture_default_str();
+  CLI::Option* bandwidth = command->add_option(
+      "--bandwidth", options->bandwidth_s, "Bandwidth of the phase diagram in seconds; default: chosen clip by clip");
+  add_common_options(*command, options->common, "glidelab-out/coverage-<name of the scenario file>",
+                     "Seed of the noise; default: the scenario's");
+  command->callback([options, bandwidth, &chosen] {
+    chosen = [options, bandwidth] { coverage_command(*options, bandwidth->count() > 0); };
+  });
+}
+
+}  // namespace glidelab::app

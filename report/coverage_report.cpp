@@ -1,0 +1,169 @@
+#include "report/coverage_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "report/gnuplot.h"
+#include "report/html.h"
+#include "report/json_numbers.h"
+#include "report/number_text.h"
+#include "report/quantity_names.h"
+#include "report/text_table.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string with_unit(const validate::CoverageRow& row) {
+  const std::string unit(unit_of(row.quantity));
+  return std::string(symbol_of(row.quantity)) + (unit.empty() ? "" : fmt::format(" ({})", unit));
+}
+
+std::string estimator_name(const std::string& estimator) {
+  if (estimator == "trajectory") return "fit of the whole motion";
+  if (estimator == "phase-diagram") return "lines of the phase diagram";
+  if (estimator == "naive-lines") return "naive lines (for contrast)";
+  return estimator;
+}
+
+std::vector<std::string> cells_of(const validate::CoverageRow& row) {
+  if (row.determined == 0) return {with_unit(row), value_text(row.truth, 0.0), "–", "–", "–", "–", "–", "–", "0"};
+  return {with_unit(row),
+          value_text(row.truth, row.sd),
+          error_text(row.bias, row.sd),
+          sd_text(row.sd),
+          sd_text(row.stated_sd),
+          row.cramer_rao_sd ? sd_text(*row.cramer_rao_sd) : "–",
+          row.efficiency ? number_text(*row.efficiency, 2) : "–",
+          fmt::format("{:.1f} % ({:.1f} – {:.1f})", 100.0 * row.coverage, 100.0 * row.low95, 100.0 * row.high95),
+          fmt::format("{}", row.determined)};
+}
+
+/// Coverage of every row with its binomial interval, a line at 95 %.
+Plot coverage_plot(const validate::Coverage& coverage) {
+  std::string tics, script(kFrame);
+  std::vector<PlotData> data;
+  const std::vector<std::string> estimators = {"phase-diagram", "trajectory", "naive-lines"};
+  for (std::size_t e = 0; e < estimators.size(); ++e) data.push_back({fmt::format("e{}", e), {}});
+  double row_number = 0.0, lowest = 90.0;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    if (row.determined == 0) continue;
+    row_number += 1.0;
+    const auto place =
+        static_cast<std::size_t>(std::find(estimators.begin(), estimators.end(), row.estimator) - estimators.begin());
+    if (place == estimators.size()) continue;
+    lowest = std::min(lowest, 100.0 * row.low95 - 2.0);
+    data[place].rows.push_back({100.0 * row.coverage, row_number, 100.0 * row.low95, 100.0 * row.high95});
+    tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ",
+                        gnuplot_quoted(fmt::format("{}  {}", row.configuration, symbol_of(row.quantity))), row_number);
+  }
+  script += fmt::format(
+      "unset offsets\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
+      "set xlabel 'intervals of 95 % that hold the truth  (%)'\nset key bottom left\n"
+      "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
+      lowest, row_number + 3.5, tics);
+  for (std::size_t e = 0; e < estimators.size(); ++e) {
+    if (data[e].rows.empty()) continue;
+    script += fmt::format("{}${} using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}' title {}",
+                          script.ends_with("plot ") ? "" : ", ", data[e].name, color(e),
+                          gnuplot_quoted(estimator_name(estimators[e])));
+  }
+  const int height = std::max(330, 110 + static_cast<int>(row_number) * 18);
+  return {gnuplot_svg(script, data, {560, height}), "Coverage of the stated intervals, with its own 95 % interval",
+          "Coverage of each quantity by each estimator"};
+}
+
+std::string meaning(const validate::Coverage& coverage) {
+  const std::vector<validate::CoverageRow> failing = validate::failing_rows(coverage);
+  std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
+  if (failing.empty()) {
+    text +=
+        "<p>The intervals of both estimators hold the truth as often as they say, as far as this many replicates "
+        "can tell.</p>\n";
+  } else {
+    text += "<p>These intervals do not hold the truth as often as they say: ";
+    for (std::size_t i = 0; i < failing.size(); ++i) {
+      text += fmt::format("{}{} of {} by the {} ({:.1f} %)", i == 0 ? "" : ", ", escape(symbol_of(failing[i].quantity)),
+                          escape(failing[i].configuration), escape(estimator_name(failing[i].estimator)),
+                          100.0 * failing[i].coverage);
+    }
+    text += ".</p>\n";
+  }
+  text +=
+      "<p>The naive lines treat smoothed points as if they were independent. They are shown so that one sees what "
+      "that does to an interval.</p>\n";
+  return text;
+}
+
+}  // namespace
+
+std::string coverage_json(const validate::Coverage& coverage) {
+  Json document;
+  document["format"] = 1;
+  document["replicates"] = coverage.replicates;
+  put(document, "noise_sd_m", coverage.noise_sd_m);
+  document["quantities"] = Json::array();
+  for (const validate::CoverageRow& row : coverage.rows) {
+    Json object{{"configuration", row.configuration}, {"estimator", row.estimator}, {"quantity", row.quantity}};
+    put(object, "truth", row.truth);
+    object["determined"] = row.determined;
+    object["covered"] = row.covered;
+    if (row.determined > 0) {
+      put(object, "bias", row.bias);
+      put(object, "sd", row.sd);
+      put(object, "stated_sd", row.stated_sd);
+      put(object, "coverage", row.coverage);
+      object["coverage_interval95"] = {row.low95, row.high95};
+      put(object, "p_value", row.p_value);
+    }
+    put(object, "cramer_rao_sd", row.cramer_rao_sd, "the motion does not determine it, or the law is not equation (8)");
+    put(object, "efficiency", row.efficiency, "no bound, or no value");
+    document["quantities"].push_back(std::move(object));
+  }
+  return json_text(document);
+}
+
+std::string coverage_text(const validate::Coverage& coverage) {
+  std::vector<std::vector<std::string>> rows = {{"configuration", "estimator", "quantity", "truth", "bias", "sd",
+                                                 "stated sd", "least sd", "efficiency", "coverage (95 % interval)",
+                                                 "values"}};
+  std::string configuration, estimator;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    const bool first = row.configuration != configuration, other = first || row.estimator != estimator;
+    configuration = row.configuration;
+    estimator = row.estimator;
+    std::vector<std::string> cells = {first ? row.configuration : "", other ? row.estimator : ""};
+    for (std::string& cell : cells_of(row)) cells.push_back(std::move(cell));
+    rows.push_back(std::move(cells));
+  }
+  return text_table(rows, 3);
+}
+
+std::string coverage_page(const std::string& title, const validate::Coverage& coverage) {
+  std::string body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} µm of independent "
+      "noise in every position, analysed by each estimator.</p>\n",
+      escape(title), coverage.replicates, number_text(coverage.noise_sd_m * 1e6, 3));
+  body += meaning(coverage);
+  body += figures({coverage_plot(coverage)});
+  HtmlTable table({"quantity", "truth", "bias", "sd", "stated sd", "least sd", "efficiency", "coverage", "values"});
+  std::string configuration, estimator;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    if (row.configuration != configuration || row.estimator != estimator)
+      table.heading(fmt::format("{}: {}", escape(row.configuration), escape(estimator_name(row.estimator))));
+    configuration = row.configuration;
+    estimator = row.estimator;
+    std::vector<std::string> cells = cells_of(row);
+    cells[0] = escape(cells[0]);
+    table.row(cells);
+  }
+  body += "<h2 id=\"table\">Every quantity</h2>\n" + table.str();
+  body +=
+      "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
+      "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the part "
+      "of the intervals of 95 % that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
+  return page(title, body);
+}
+
+}  // namespace glidelab::report

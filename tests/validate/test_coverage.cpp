@@ -1,0 +1,78 @@
+#include "validate/coverage.h"
+
+#include <algorithm>
+
+#include "base/errors.h"
+#include "catch.h"
+#include "test_paths.h"
+
+using namespace glidelab;
+using namespace glidelab::validate;
+
+namespace {
+
+/// The first mass of the paper's inclined track: one clip up, which turns, and one down.
+render::Scenario one_mass() {
+  render::Scenario scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/paper/inclined.toml");
+  scenario.motion.configurations.resize(1);
+  return scenario;
+}
+
+const CoverageRow& row_of(const Coverage& coverage, const std::string& estimator, const std::string& quantity) {
+  return *std::find_if(coverage.rows.begin(), coverage.rows.end(),
+                       [&](const CoverageRow& row) { return row.estimator == estimator && row.quantity == quantity; });
+}
+
+}  // namespace
+
+TEST_CASE("intervals of the estimators hold the truth in most of 60 replicates, those of the naive lines do not") {
+  const Coverage coverage = measure_coverage(one_mass(), {.replicates = 60, .noise_sd_m = 5e-5, .seed = 3, .jobs = 2});
+  REQUIRE(coverage.rows.size() == 12);
+  for (const char* quantity : {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"}) {
+    INFO(quantity);
+    const CoverageRow& lines = row_of(coverage, "phase-diagram", quantity);
+    const CoverageRow& whole = row_of(coverage, "trajectory", quantity);
+    CHECK(lines.determined == 60);
+    CHECK(whole.determined == 60);
+    // Of 60 intervals of 95 % fewer than 50 hold the truth once in 20,000.
+    CHECK(lines.covered >= 50);
+    CHECK(whole.covered >= 50);
+    REQUIRE((lines.efficiency && whole.efficiency));
+    // A variance of 60 values is known to 18 %; three of these below 1.
+    CHECK(*whole.efficiency > 0.55);
+    CHECK(*whole.efficiency < 1.9);
+    CHECK(*lines.efficiency < *whole.efficiency);
+  }
+  // Smoothed neighbours are not independent: a textbook interval of the slope is several times too short.
+  CHECK(row_of(coverage, "naive-lines", "k_over_m_1_s").covered < 50);
+}
+
+TEST_CASE("coverage is the same for any number of jobs, and another for another seed") {
+  const CoverageOptions options{.replicates = 4, .noise_sd_m = 5e-5, .seed = 3, .jobs = 1};
+  const Coverage one = measure_coverage(one_mass(), options);
+  CoverageOptions again = options;
+  again.jobs = 3;
+  CHECK(row_of(measure_coverage(one_mass(), again), "trajectory", "mu").bias == row_of(one, "trajectory", "mu").bias);
+  again.seed = 1000;
+  CHECK(row_of(measure_coverage(one_mass(), again), "trajectory", "mu").bias != row_of(one, "trajectory", "mu").bias);
+}
+
+TEST_CASE("a noise or a number of replicates of nothing is refused") {
+  CHECK_THROWS_AS(measure_coverage(one_mass(), {.replicates = 4, .noise_sd_m = 0.0}), base::InputError);
+  CHECK_THROWS_AS(measure_coverage(one_mass(), {.replicates = 0, .noise_sd_m = 1e-5}), base::InputError);
+}
+
+TEST_CASE("rows fail where the count is far from 95 %, not where it is near, and never for the naive lines") {
+  Coverage coverage;
+  coverage.rows.resize(3);
+  for (CoverageRow& row : coverage.rows) row.determined = 1000;
+  coverage.rows[0].estimator = "trajectory";
+  coverage.rows[0].p_value = 1e-3;
+  coverage.rows[1].estimator = "phase-diagram";
+  coverage.rows[1].p_value = 0.006;  // above 1 % of two
+  coverage.rows[2].estimator = "naive-lines";
+  coverage.rows[2].p_value = 0.0;
+  const auto failing = failing_rows(coverage);
+  REQUIRE(failing.size() == 1);
+  CHECK(failing[0].estimator == "trajectory");
+}

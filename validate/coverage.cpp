@@ -1,0 +1,149 @@
+#include "validate/coverage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/errors.h"
+#include "core/parallel.h"
+#include "diagnose/trajectory_results.h"
+#include "validate/binomial.h"
+#include "validate/comparison.h"
+#include "validate/cramer_rao.h"
+#include "validate/made_tracks.h"
+#include "validate/naive_lines.h"
+
+namespace glidelab::validate {
+namespace {
+
+constexpr double kLevel = 0.95;
+
+/// What one estimator said of one quantity in one replicate.
+using Outcome = std::optional<core::Estimate>;
+
+const core::Quantity& quantity_of(const core::ConfigurationResult& found, int which) {
+  switch (which) {
+    case 0:
+      return found.k_over_m_1_s;
+    case 1:
+      return found.mu;
+    case 2:
+      return found.alpha_deg;
+    default:
+      return found.v_lim_m_s;
+  }
+}
+
+constexpr const char* kNames[] = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"};
+
+std::optional<double> truth_of(const TrueConfiguration& truth, int which) {
+  return which == 0 ? truth.k_over_m_1_s : which == 1 ? truth.mu : which == 2 ? truth.alpha_deg : truth.v_lim_m_s;
+}
+
+std::optional<double> bound_of(const LeastSd& least, int which) {
+  return which == 0 ? least.k_over_m_1_s : which == 1 ? least.mu : which == 2 ? least.alpha_deg : least.v_lim_m_s;
+}
+
+/// Which of the results' configurations each true one is: by its first clip.
+std::vector<std::size_t> places_of(const Truth& truth, const core::AnalysisResults& results) {
+  std::vector<std::size_t> places;
+  for (const TrueConfiguration& configuration : truth.configurations) {
+    for (std::size_t i = 0; i < results.configurations.size(); ++i) {
+      const std::vector<std::string>& clips = results.configurations[i].clips;
+      if (std::find(clips.begin(), clips.end(), configuration.clips.front()) != clips.end()) places.push_back(i);
+    }
+  }
+  return places;
+}
+
+void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t place, CoverageRow& row) {
+  double sum = 0.0, squares = 0.0, stated = 0.0;
+  for (const std::vector<Outcome>& replicate : outcomes) {
+    const std::optional<core::Estimate>& estimate = replicate[place];
+    if (!estimate) continue;
+    ++row.determined;
+    if (estimate->low95 <= row.truth && row.truth <= estimate->high95) ++row.covered;
+    const double error = estimate->value - row.truth;
+    sum += error;
+    squares += error * error;
+    stated += estimate->sd * estimate->sd;
+  }
+  if (row.determined == 0) return;
+  const auto n = static_cast<double>(row.determined);
+  row.bias = sum / n;
+  row.sd = row.determined > 1 ? std::sqrt(std::max(0.0, squares - n * row.bias * row.bias) / (n - 1.0)) : 0.0;
+  row.stated_sd = std::sqrt(stated / n);
+  row.coverage = static_cast<double>(row.covered) / n;
+  const ProportionInterval interval = proportion_interval(row.covered, row.determined, kLevel);
+  row.low95 = interval.low;
+  row.high95 = interval.high;
+  row.p_value = binomial_p_value(row.covered, row.determined, kLevel);
+  const double mean_square = row.sd * row.sd + row.bias * row.bias;
+  if (row.cramer_rao_sd && mean_square > 0.0) row.efficiency = *row.cramer_rao_sd * *row.cramer_rao_sd / mean_square;
+}
+
+}  // namespace
+
+Coverage measure_coverage(const render::Scenario& scenario, const CoverageOptions& options,
+                          const base::Progress& progress) {
+  if (!(std::isfinite(options.noise_sd_m) && options.noise_sd_m > 0.0)) {
+    throw base::InputError(
+        base::Issue{"", 0, "noise", fmt::format("{}", options.noise_sd_m), "a length in metres above 0"});
+  }
+  if (options.replicates == 0) {
+    throw base::InputError(base::Issue{"", 0, "replicates", "0", "a whole number above 0"});
+  }
+  const MadeTracks clean = make_tracks(scenario, options.seed);
+  const std::vector<LeastSd> bounds =
+      least_sds(clean.truth, std::vector<double>(clean.tracks.size(), options.noise_sd_m), clean.gravity_m_s2);
+  const std::vector<std::string> estimators = {"phase-diagram", "trajectory", "naive-lines"};
+  const std::size_t configurations = clean.truth.configurations.size();
+  std::vector<std::vector<Outcome>> outcomes(options.replicates);
+  std::atomic<std::size_t> done = 0;
+  core::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
+    const core::AnalysisResults lines =
+        analyze_tracks(with_noise(clean, options.noise_sd_m, options.seed + r), options.bandwidth_s);
+    const core::AnalysisResults results[] = {lines, diagnose::with_trajectory_fits(lines), with_naive_lines(lines)};
+    const std::vector<std::size_t> places = places_of(clean.truth, lines);
+    for (const core::AnalysisResults& by : results) {
+      for (std::size_t c = 0; c < configurations; ++c) {
+        for (int which = 0; which < 4; ++which)
+          outcomes[r].push_back(quantity_of(by.configurations[places[c]], which).estimate);
+      }
+    }
+    progress("replicates", static_cast<double>(++done) / static_cast<double>(options.replicates));
+  });
+  Coverage coverage{options.replicates, options.noise_sd_m, {}};
+  for (std::size_t c = 0; c < configurations; ++c) {
+    for (std::size_t e = 0; e < estimators.size(); ++e) {
+      for (int which = 0; which < 4; ++which) {
+        const std::optional<double> truth = truth_of(clean.truth.configurations[c], which);
+        if (!truth) continue;
+        CoverageRow row;
+        row.configuration = clean.truth.configurations[c].name;
+        row.estimator = estimators[e];
+        row.quantity = kNames[which];
+        row.truth = *truth;
+        row.cramer_rao_sd = bound_of(bounds[c], which);
+        summarise(outcomes, (e * configurations + c) * 4 + static_cast<std::size_t>(which), row);
+        coverage.rows.push_back(std::move(row));
+      }
+    }
+  }
+  return coverage;
+}
+
+std::vector<CoverageRow> failing_rows(const Coverage& coverage) {
+  std::vector<CoverageRow> judged, failing;
+  for (const CoverageRow& row : coverage.rows) {
+    if (row.estimator != "naive-lines" && row.determined > 0) judged.push_back(row);
+  }
+  for (const CoverageRow& row : judged) {
+    if (row.p_value < 0.01 / static_cast<double>(judged.size())) failing.push_back(row);
+  }
+  return failing;
+}
+
+}  // namespace glidelab::validate

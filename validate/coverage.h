@@ -1,0 +1,59 @@
+/// Do the stated intervals hold the truth as often as they say, and how near is each estimator to the bound?
+///
+/// A scenario's motions are made once, and analysed in many replicates that differ in the positions' noise alone
+/// (made_tracks.h); each estimator sees the same ones. Of n intervals of 95 % the number that hold the truth is
+/// binomial.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "render/scenario.h"
+
+namespace glidelab::validate {
+
+struct CoverageOptions {
+  std::size_t replicates = 1000;
+  double noise_sd_m = 0.0;  ///< of each position, white and normal; above 0
+  std::optional<double> bandwidth_s = {};
+  std::uint64_t seed = 1;
+  int jobs = 1;
+};
+
+/// One quantity of one configuration by one estimator ("phase-diagram", "trajectory", "naive-lines").
+struct CoverageRow {
+  std::string configuration;
+  std::string estimator;
+  std::string quantity;
+  double truth = 0.0;
+  std::size_t determined = 0;  ///< replicates in which the estimator gave a value
+  std::size_t covered = 0;     ///< of these, intervals that hold the truth
+  double bias = 0.0;           ///< mean error
+  double sd = 0.0;             ///< of the values over the replicates
+  double stated_sd = 0.0;      ///< root mean square of the sd that the estimator states
+  double coverage = 0.0;       ///< covered / determined
+  double low95 = 0.0;          ///< exact binomial interval of the coverage (Clopper and Pearson 1934)
+  double high95 = 0.0;
+  double p_value = 1.0;  ///< of a count as far from 0.95, two-sided
+  std::optional<double> cramer_rao_sd;
+  std::optional<double> efficiency;  ///< cramer_rao_sd² / (sd² + bias²)
+};
+
+struct Coverage {
+  std::size_t replicates = 0;
+  double noise_sd_m = 0.0;
+  std::vector<CoverageRow> rows;
+};
+
+/// InputError for a noise or a number of replicates that is not above 0.
+Coverage measure_coverage(const render::Scenario& scenario, const CoverageOptions& options,
+                          const base::Progress& progress = base::no_progress);
+
+/// Estimators other than the naive one whose intervals fail at the 1 % level, corrected for the number of rows
+/// (Bonferroni).
+std::vector<CoverageRow> failing_rows(const Coverage& coverage);
+
+}  // namespace glidelab::validate
