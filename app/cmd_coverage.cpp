@@ -49,12 +49,12 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given) {
   display.clear();
   print_result(options.common.json ? json : report::coverage_text(coverage));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
-  const std::size_t failing = validate::failing_rows(coverage).size();
+  const std::size_t failing = validate::too_narrow(coverage).size();
   if (failing > 0) {
-    throw base::NotMet(fmt::format(
-        "{} of the stated intervals do not hold the truth as often as they say (exact binomial test at 1 %, "
-        "corrected for their number); {} has the table",
-        failing, (out / "report.html").string()));
+    throw base::NotMet(
+        fmt::format("{} of the stated intervals hold the truth less often than they say (exact binomial test at 1 %, "
+                    "corrected for their number); {} has the table",
+                    failing, (out / "report.html").string()));
   }
 }
 

@@ -22,6 +22,7 @@ std::string with_unit(const validate::CoverageRow& row) {
 
 std::string estimator_name(const std::string& estimator) {
   if (estimator == "trajectory") return "fit of the whole motion";
+  if (estimator == "phase-diagram-gls") return "generalised lines";
   if (estimator == "phase-diagram") return "lines of the phase diagram";
   if (estimator == "naive-lines") return "naive lines (for contrast)";
   return estimator;
@@ -44,7 +45,7 @@ std::vector<std::string> cells_of(const validate::CoverageRow& row) {
 Plot coverage_plot(const validate::Coverage& coverage) {
   std::string tics, script(kFrame);
   std::vector<PlotData> data;
-  const std::vector<std::string> estimators = {"phase-diagram", "trajectory", "naive-lines"};
+  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
   for (std::size_t e = 0; e < estimators.size(); ++e) data.push_back({fmt::format("e{}", e), {}});
   double row_number = 0.0, lowest = 90.0;
   for (const validate::CoverageRow& row : coverage.rows) {
@@ -79,7 +80,8 @@ std::string meaning(const validate::Coverage& coverage) {
   std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
   if (failing.empty()) {
     text +=
-        "<p>The intervals of both estimators hold the truth as often as they say, as far as this many replicates "
+        "<p>The intervals of all estimators but the naive one hold the truth as often as they say, as far as this many "
+        "replicates "
         "can tell.</p>\n";
   } else {
     text += "<p>These intervals do not hold the truth as often as they say: ";

@@ -98,14 +98,16 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   const MadeTracks clean = make_tracks(scenario, options.seed);
   const std::vector<LeastSd> bounds =
       least_sds(clean.truth, std::vector<double>(clean.tracks.size(), options.noise_sd_m), clean.gravity_m_s2);
-  const std::vector<std::string> estimators = {"phase-diagram", "trajectory", "naive-lines"};
+  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
   const std::size_t configurations = clean.truth.configurations.size();
   std::vector<std::vector<Outcome>> outcomes(options.replicates);
   std::atomic<std::size_t> done = 0;
   core::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
-    const core::AnalysisResults lines =
-        analyze_tracks(with_noise(clean, options.noise_sd_m, options.seed + r), options.bandwidth_s);
-    const core::AnalysisResults results[] = {lines, diagnose::with_trajectory_fits(lines), with_naive_lines(lines)};
+    const MadeTracks noisy = with_noise(clean, options.noise_sd_m, options.seed + r);
+    const core::AnalysisResults lines = analyze_tracks(noisy, options.bandwidth_s);
+    const core::MotionOptions generalised{.bandwidth_s = options.bandwidth_s, .lines = core::LineMethod::generalised};
+    const core::AnalysisResults results[] = {lines, analyze_tracks(noisy, generalised),
+                                             diagnose::with_trajectory_fits(lines), with_naive_lines(lines)};
     const std::vector<std::size_t> places = places_of(clean.truth, lines);
     for (const core::AnalysisResults& by : results) {
       for (std::size_t c = 0; c < configurations; ++c) {
@@ -135,15 +137,28 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   return coverage;
 }
 
-std::vector<CoverageRow> failing_rows(const Coverage& coverage) {
+namespace {
+
+std::vector<CoverageRow> significant(const Coverage& coverage, bool below) {
   std::vector<CoverageRow> judged, failing;
   for (const CoverageRow& row : coverage.rows) {
     if (row.estimator != "naive-lines" && row.determined > 0) judged.push_back(row);
   }
   for (const CoverageRow& row : judged) {
-    if (row.p_value < 0.01 / static_cast<double>(judged.size())) failing.push_back(row);
+    if (row.p_value < 0.01 / static_cast<double>(judged.size()) && (row.coverage < kLevel) == below)
+      failing.push_back(row);
   }
   return failing;
+}
+
+}  // namespace
+
+std::vector<CoverageRow> too_narrow(const Coverage& coverage) {
+  return significant(coverage, true);
+}
+
+std::vector<CoverageRow> too_wide(const Coverage& coverage) {
+  return significant(coverage, false);
 }
 
 }  // namespace glidelab::validate

@@ -23,7 +23,8 @@ struct CoverageOptions {
   int jobs = 1;
 };
 
-/// One quantity of one configuration by one estimator ("phase-diagram", "trajectory", "naive-lines").
+/// One quantity of one configuration by one estimator ("phase-diagram", "phase-diagram-gls", "trajectory",
+/// "naive-lines").
 struct CoverageRow {
   std::string configuration;
   std::string estimator;
@@ -52,8 +53,9 @@ struct Coverage {
 Coverage measure_coverage(const render::Scenario& scenario, const CoverageOptions& options,
                           const base::Progress& progress = base::no_progress);
 
-/// Estimators other than the naive one whose intervals fail at the 1 % level, corrected for the number of rows
-/// (Bonferroni).
-std::vector<CoverageRow> failing_rows(const Coverage& coverage);
+/// Intervals of estimators other than the naive one that hold the truth less often than they say, or more often (they
+/// are wider than they need be), at the 1 % level corrected for the number of rows (Bonferroni).
+std::vector<CoverageRow> too_narrow(const Coverage& coverage);
+std::vector<CoverageRow> too_wide(const Coverage& coverage);
 
 }  // namespace glidelab::validate

@@ -136,14 +136,19 @@ MadeTracks with_noise(const MadeTracks& clean, double noise_sd_m, std::uint64_t 
 }
 
 core::AnalysisResults analyze_tracks(const MadeTracks& made, std::optional<double> bandwidth_s, int jobs) {
+  return analyze_tracks(made, core::MotionOptions{.bandwidth_s = bandwidth_s}, jobs);
+}
+
+core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionOptions& how, int jobs) {
   core::AnalysisResults results;
+  if (how.lines == core::LineMethod::generalised) results.estimator = "phase-diagram-gls";
   results.gravity_m_s2 = made.gravity_m_s2;
   results.clips.resize(made.tracks.size());
   core::for_each_parallel(made.tracks.size(), jobs, [&](std::size_t c) {
-    results.clips[c] = core::analyze_motion(made.setups[c], made.tracks[c], bandwidth_s, made.gravity_m_s2);
+    results.clips[c] = core::analyze_motion(made.setups[c], made.tracks[c], how);
     results.clips[c].experiment = made.truth.name;
   });
-  results.configurations = core::join_configurations(made.setups, results.clips, made.gravity_m_s2);
+  results.configurations = core::join_configurations(made.setups, results.clips, made.gravity_m_s2, how.lines);
   return results;
 }
 

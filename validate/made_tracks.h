@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/experiment.h"
+#include "core/phase_diagram.h"
 #include "core/results.h"
 #include "core/track_data.h"
 #include "render/scenario.h"
@@ -33,6 +34,7 @@ MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed);
 MadeTracks with_noise(const MadeTracks& clean, double noise_sd_m, std::uint64_t seed);
 
 /// The phase diagram of every clip and the configurations, as core::analyze() does it with tracks from files.
+core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionOptions& how, int jobs = 1);
 core::AnalysisResults analyze_tracks(const MadeTracks& made, std::optional<double> bandwidth_s, int jobs = 1);
 
 }  // namespace glidelab::validate

@@ -27,7 +27,7 @@ const CoverageRow& row_of(const Coverage& coverage, const std::string& estimator
 
 TEST_CASE("intervals of the estimators hold the truth in most of 60 replicates, those of the naive lines do not") {
   const Coverage coverage = measure_coverage(one_mass(), {.replicates = 60, .noise_sd_m = 5e-5, .seed = 3, .jobs = 2});
-  REQUIRE(coverage.rows.size() == 12);
+  REQUIRE(coverage.rows.size() == 16);
   for (const char* quantity : {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"}) {
     INFO(quantity);
     const CoverageRow& lines = row_of(coverage, "phase-diagram", quantity);
