@@ -75,22 +75,30 @@ Plot coverage_plot(const validate::Coverage& coverage) {
           "Coverage of each quantity by each estimator"};
 }
 
+std::string list_of(const std::vector<validate::CoverageRow>& rows) {
+  std::string text;
+  for (const validate::CoverageRow& row : rows) {
+    text += fmt::format("{}{} of {} by the {} ({:.1f} %)", text.empty() ? "" : ", ", escape(symbol_of(row.quantity)),
+                        escape(row.configuration), escape(estimator_name(row.estimator)), 100.0 * row.coverage);
+  }
+  return text;
+}
+
 std::string meaning(const validate::Coverage& coverage) {
-  const std::vector<validate::CoverageRow> failing = validate::failing_rows(coverage);
+  const std::vector<validate::CoverageRow> narrow = validate::too_narrow(coverage), wide = validate::too_wide(coverage);
   std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
-  if (failing.empty()) {
+  if (narrow.empty()) {
     text +=
-        "<p>The intervals of all estimators but the naive one hold the truth as often as they say, as far as this many "
-        "replicates "
-        "can tell.</p>\n";
+        "<p>No estimator but the naive one claims more than it can: its intervals hold the truth as often as they "
+        "say, as far as this many replicates can tell.</p>\n";
   } else {
-    text += "<p>These intervals do not hold the truth as often as they say: ";
-    for (std::size_t i = 0; i < failing.size(); ++i) {
-      text += fmt::format("{}{} of {} by the {} ({:.1f} %)", i == 0 ? "" : ", ", escape(symbol_of(failing[i].quantity)),
-                          escape(failing[i].configuration), escape(estimator_name(failing[i].estimator)),
-                          100.0 * failing[i].coverage);
-    }
-    text += ".</p>\n";
+    text += fmt::format("<p>These intervals hold the truth less often than they say: {}.</p>\n", list_of(narrow));
+  }
+  if (!wide.empty()) {
+    text += fmt::format(
+        "<p>These are wider than they need be: {}. The lines of the phase diagram count the estimated bias of their "
+        "kernel as an uncertainty and do not subtract it.</p>\n",
+        list_of(wide));
   }
   text +=
       "<p>The naive lines treat smoothed points as if they were independent. They are shown so that one sees what "

@@ -64,15 +64,21 @@ TEST_CASE("a noise or a number of replicates of nothing is refused") {
 
 TEST_CASE("rows fail where the count is far from 95 %, not where it is near, and never for the naive lines") {
   Coverage coverage;
-  coverage.rows.resize(3);
+  coverage.rows.resize(4);
   for (CoverageRow& row : coverage.rows) row.determined = 1000;
   coverage.rows[0].estimator = "trajectory";
   coverage.rows[0].p_value = 1e-3;
   coverage.rows[1].estimator = "phase-diagram";
-  coverage.rows[1].p_value = 0.006;  // above 1 % of two
+  coverage.rows[1].p_value = 0.006;  // above a third of 1 %
   coverage.rows[2].estimator = "naive-lines";
   coverage.rows[2].p_value = 0.0;
-  const auto failing = failing_rows(coverage);
-  REQUIRE(failing.size() == 1);
-  CHECK(failing[0].estimator == "trajectory");
+  coverage.rows[3].estimator = "phase-diagram";
+  coverage.rows[3].p_value = 1e-6;
+  for (CoverageRow& row : coverage.rows) row.coverage = 0.93;
+  coverage.rows[3].coverage = 1.0;
+  const auto narrow = too_narrow(coverage), wide = too_wide(coverage);
+  REQUIRE(narrow.size() == 1);
+  CHECK(narrow[0].estimator == "trajectory");
+  REQUIRE(wide.size() == 1);
+  CHECK(wide[0].estimator == "phase-diagram");
 }
