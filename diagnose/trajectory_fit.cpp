@@ -9,7 +9,7 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
-#include "sim/sensitivity.h"
+#include "sim/track_sensitivity.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -34,8 +34,8 @@ Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const E
   const core::FreeBlock& block = *fit.block;
   std::vector<double> times;
   for (const double t : block.t_s) times.push_back(t - block.t_s.front());
-  const sim::TrackLaw law(common[0], common[1], common[2]);
-  const std::vector<sim::SensitiveState> states = sim::simulate_sensitive(law, start[0], start[1], times);
+  const std::vector<sim::SensitiveState> states =
+      sim::track_motion_sensitive(common[0], common[1], common[2], start[0], start[1], times);
   const auto n = static_cast<Eigen::Index>(times.size());
   Linearised result{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixXd(n, 2)};
   for (Eigen::Index i = 0; i < n; ++i) {
