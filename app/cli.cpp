@@ -108,6 +108,9 @@ int run(int argc, char** argv) {
   add_analyze(app, command);
   add_validate(app, command);
   add_coverage(app, command);
+  add_sweep(app, command);
+  add_require(app, command);
+  add_laws(app, command);
   add_characterize(app, command);
   try {
     app.parse(argc, argv);

@@ -14,6 +14,9 @@ void add_render(CLI::App& app, Command& chosen);
 void add_analyze(CLI::App& app, Command& chosen);
 void add_validate(CLI::App& app, Command& chosen);
 void add_coverage(CLI::App& app, Command& chosen);
+void add_sweep(CLI::App& app, Command& chosen);
+void add_require(CLI::App& app, Command& chosen);
+void add_laws(CLI::App& app, Command& chosen);
 void add_characterize(CLI::App& app, Command& chosen);
 
 }  // namespace glidelab::app

@@ -71,7 +71,7 @@ void check_sources(const TomlTable& root) {
 
 }  // namespace
 
-CameraFile take_camera_file(const std::filesystem::path& path, TomlFile& scenario) {
+CameraFile read_camera_name(const std::filesystem::path& path) {
   TomlFile file = TomlFile::load(path);
   const TomlTable root = file.root();
   root.integer_or("format", 1, 1, 1);
@@ -80,9 +80,14 @@ CameraFile take_camera_file(const std::filesystem::path& path, TomlFile& scenari
   for (const char* section : kSections) root.ignore(section);
   check_sources(root);
   file.finish();
+  return camera;
+}
+
+CameraFile take_camera_file(const std::filesystem::path& path, TomlFile& scenario, std::string_view scenario_text) {
+  const CameraFile camera = read_camera_name(path);
   // Asking marks a key as known, so what is asked here is another copy of both files.
   TomlFile values = TomlFile::load(path);
-  const TomlFile own = TomlFile::load(scenario.name());
+  const TomlFile own = TomlFile::parse(scenario_text, scenario.name());
   for (const char* section : kSections) {
     const std::optional<TomlTable> table = own.root().maybe_table(section);
     scenario.add_missing(section, values, table ? left_out(*table, section) : std::vector<std::string>{});

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "base/strict_toml.h"
 
@@ -20,6 +21,11 @@ struct CameraFile {
 ///
 /// Where the file has a [source], every value of it must have its kind ("measured", "data sheet", "derived",
 /// "assumed") and where it comes from. InputError for that, a missing file, and unknown keys outside the sections.
-CameraFile take_camera_file(const std::filesystem::path& path, base::TomlFile& scenario);
+/// `scenario_text` is what `scenario` was read from.
+CameraFile take_camera_file(const std::filesystem::path& path, base::TomlFile& scenario,
+                            std::string_view scenario_text);
+
+/// The name and the price class of the camera file at `path` alone.
+CameraFile read_camera_name(const std::filesystem::path& path);
 
 }  // namespace glidelab::render

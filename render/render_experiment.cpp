@@ -241,6 +241,12 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   in_parallel(options.jobs, clips.size(), [&](const auto& next) {
     for (std::size_t i = next(); i < clips.size(); i = next()) {
       const Clip& clip = clips[i];
+      const fs::path file =
+          experiment_dir / "clips" / file_name_of(scenario.codec, scenario.compression, clip.motion->name);
+      if (!options.clips) {
+        base::write_file(file, "");
+        continue;
+      }
       ClipRenderer renderer(in_clips, *clip.configuration, clip.set_up->scene, clip_rays, clip.set_up->background_e,
                             options.seed, clip.stream, clip.set_up->fine ? &*clip.set_up->fine : nullptr);
       const VideoFormat format{scenario.codec,
@@ -250,8 +256,7 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
                                1,
                                scenario.compression,
                                scenario.recording.clock.variable};
-      const auto writer = open_video(
-          experiment_dir / "clips" / file_name_of(scenario.codec, scenario.compression, clip.motion->name), format);
+      const auto writer = open_video(file, format);
       const FrameClock clock = clock_of(scenario, clip, options.seed);
       ClipTruth truth;
       const auto frame_done = [&] { advance(1.0); };

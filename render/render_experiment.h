@@ -13,6 +13,7 @@ struct RenderOptions {
   std::uint64_t seed = 1;
   int jobs = 1;        ///< clips rendered at the same time; every pixel is the same for any number
   bool ideal = false;  ///< write ideal frames to the truth folder besides (ideal_frames.h)
+  bool clips = true;   ///< false: empty files in their place, for who draws them in memory, and no trajectories
 };
 
 struct RenderSummary {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/errors.h"
+#include "base/staged_output.h"
 #include "base/strict_toml.h"
 #include "render/camera_file.h"
 #include "render/clip_motion.h"
@@ -135,11 +136,15 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path) {
-  base::TomlFile file = base::TomlFile::load(path);
+  return read_scenario(base::read_file(path), path);
+}
+
+Scenario read_scenario(std::string_view text, const std::filesystem::path& path, ScenarioChecks checks) {
+  base::TomlFile file = base::TomlFile::parse(text, path.string());
   const TomlTable root = file.root();
   Scenario scenario;
   if (const auto camera = root.maybe_text("camera_file")) {
-    scenario.camera_name = take_camera_file(path.parent_path() / *camera, file).name;
+    scenario.camera_name = take_camera_file(path.parent_path() / *camera, file, text).name;
   }
   scenario.file = path;
   scenario.motion = sim::read_motions(root);
@@ -151,7 +156,7 @@ Scenario read_scenario(const std::filesystem::path& path) {
   read_pattern(root, scenario.pattern);
   read_laboratory(root, scenario);
   file.finish();
-  check_pictures(root, scenario);
+  if (checks == ScenarioChecks::all) check_pictures(root, scenario);
   file.finish();
   return scenario;
 }

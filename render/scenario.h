@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/camera.h"
@@ -98,5 +99,13 @@ struct Scenario {
 /// sense: an exposure longer than the frame time, a lens that folds the picture over, a marker that gets behind the
 /// camera or is never seen, a pattern that does not fit into the picture.
 Scenario read_scenario(const std::filesystem::path& path);
+
+/// How much of a scenario's text is checked: everything, or all but what the camera sees of it (for who makes no
+/// pictures of it).
+enum class ScenarioChecks { all, values };
+
+/// The same of a text, as if it stood in the file `path`.
+Scenario read_scenario(std::string_view text, const std::filesystem::path& path,
+                       ScenarioChecks checks = ScenarioChecks::all);
 
 }  // namespace glidelab::render

@@ -33,8 +33,9 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"diagnose", {"base", "core", "sim"}},
     {"validate", {"base", "core", "sim", "render", "diagnose"}},
     {"report",
-     {"base", "core/results.h", "core/preview.h", "core/camera_measurement.h",
-      "validate/comparison.h"}},  // the result types
+     {"base", "core/results.h", "core/preview.h", "core/camera_measurement.h", "validate/comparison.h",
+      "validate/sweep_summary.h", "validate/requirement.h", "validate/law_study.h",
+      "validate/coverage.h"}},  // the result types
     {"app", {"base", "core", "sim", "render", "diagnose", "validate", "report"}},
 };
 

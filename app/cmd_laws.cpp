@@ -1,0 +1,77 @@
+/// glidelab laws scenarios/laws: one page of the laws of friction, to be shown in a lecture.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "report/gnuplot.h"
+#include "report/laws_report.h"
+#include "validate/law_study.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LawsOptions {
+  CommonOptions common;
+  std::vector<std::string> scenarios;
+};
+
+std::vector<fs::path> files_of(const std::vector<std::string>& names) {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) {
+    if (!fs::is_directory(name)) {
+      files.emplace_back(name);
+      continue;
+    }
+    std::set<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(name)) {
+      if (entry.path().extension() == ".toml") found.insert(entry.path());
+    }
+    if (found.empty()) throw base::InputError(base::Issue{name, 0, "", "no scenario", "a folder with scenario files"});
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+void laws(const LawsOptions& options) {
+  const std::vector<fs::path> files = files_of(options.scenarios);
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "laws", options.scenarios.front());
+  check_writable(out);
+  base::StagedOutput staged(out);
+  ProgressDisplay display(options.common.quiet);
+  std::vector<validate::LawStudy> studies;
+  for (const fs::path& file : files) studies.push_back(validate::study_law(file));
+  base::write_file(staged.dir() / "laws.html", report::laws_report(studies, display.callback()));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+  const std::string page = (out / "laws.html").string();
+  print_result(options.common.json ? fmt::format("{{\"laws\": {}}}\n", studies.size()) : page + "\n");
+}
+
+}  // namespace
+
+void add_laws(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<LawsOptions>();
+  CLI::App* command =
+      app.add_subcommand("laws", "Make one page of laws of friction: animation, x(t) and a(v) with its equilibrium");
+  command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders with some (scenarios/laws)")
+      ->type_name("PATH")
+      ->required();
+  add_common_options(*command, options->common, "glidelab-out/laws-<name of the first>",
+                     "Accepted as by every command; nothing here is random");
+  command->callback([options, &chosen] { chosen = [options] { laws(*options); }; });
+}
+
+}  // namespace glidelab::app

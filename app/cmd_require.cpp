@@ -1,0 +1,91 @@
+/// glidelab require SWEEP.toml --target mu=0.0005: which cameras and settings reach a target, the cheapest first.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "report/gnuplot.h"
+#include "report/requirement_report.h"
+#include "validate/requirement.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RequireOptions {
+  CommonOptions common;
+  std::string sweep;
+  std::vector<std::string> targets;
+  std::string confirm = "tracks";
+  std::uint64_t runs = 12;
+};
+
+void require_command(const RequireOptions& options) {
+  validate::RequirementOptions how;
+  for (const std::string& target : options.targets) how.targets.push_back(validate::parse_target(target));
+  how.confirm = options.confirm == "none"    ? validate::Confirm::none
+                : options.confirm == "clips" ? validate::Confirm::clips
+                                             : validate::Confirm::tracks;
+  how.runs = options.runs;
+  how.jobs = options.common.jobs;
+  validate::Sweep sweep = validate::read_sweep(options.sweep);
+  if (options.common.seed) sweep.seed = *options.common.seed;
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "require", options.sweep);
+  check_writable(out);
+  base::StagedOutput staged(out);
+  ProgressDisplay display(options.common.quiet);
+  const validate::Requirement requirement = validate::find_requirement(sweep, how, display.callback());
+  const std::string json = report::requirement_json(requirement);
+  base::write_file(staged.dir() / "require.json", json);
+  base::write_file(staged.dir() / "report.html", report::requirement_report(requirement));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+  print_result(options.common.json ? json : report::requirement_text(requirement));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+  if (!requirement.any_reached()) {
+    throw base::NotMet(fmt::format("{}: nothing reaches {}", options.sweep, fmt::join(options.targets, ", ")));
+  }
+}
+
+}  // namespace
+
+void add_require(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<RequireOptions>();
+  CLI::App* command = app.add_subcommand(
+      "require",
+      "Which cameras and settings of a sweep reach a target, the cheapest first, and what limits the others");
+  command->add_option("SWEEP", options->sweep, "A sweep over cameras or settings (docs/sweep.md)")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--target", options->targets,
+                   "QUANTITY=VALUE (standard deviation), QUANTITY:error95=VALUE or QUANTITY:bias=VALUE; quantities are "
+                   "k_over_m_1_s, mu, alpha_deg, v_lim_m_s")
+      ->type_name("TARGET")
+      ->required();
+  command
+      ->add_option(
+          "--confirm", options->confirm,
+          "How what is close is confirmed: \"tracks\" with the predicted noise, rendered \"clips\", or \"none\"")
+      ->type_name("HOW")
+      ->check(CLI::IsMember({"tracks", "clips", "none"}))
+      ->capture_default_str();
+  command->add_option("--runs", options->runs, "Runs that confirm one camera")
+      ->type_name("N")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  add_common_options(*command, options->common, "glidelab-out/require-<name of the sweep file>",
+                     "Seed of the runs; default: the sweep's");
+  command->callback([options, &chosen] { chosen = [options] { require_command(*options); }; });
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,156 @@
+/// glidelab sweep SWEEP.toml: many scenarios, one database; run again, it goes on where it stopped.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "report/gnuplot.h"
+#include "report/sweep_report.h"
+#include "validate/run_sweep.h"
+#include "validate/sweep_design.h"
+#include "validate/sweep_scenario.h"
+#include "validate/sweep_summary.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kManyRuns = 1000000;
+
+struct SweepOptions {
+  CommonOptions common;
+  std::string sweep;
+  std::string shard;
+  std::vector<std::string> merge;
+  std::optional<std::uint64_t> show;
+  bool many = false;
+  bool dry_run = false;
+};
+
+std::string check_shard(const std::string& text) {
+  unsigned long index = 0, count = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lu/%lu%c", &index, &count, &rest) == 2 && index >= 1 && index <= count) return {};
+  return fmt::format("\"{}\" is not a part such as 2/8", text);
+}
+
+validate::Shard shard_of(const std::string& text) {
+  validate::Shard shard;
+  if (!text.empty()) std::sscanf(text.c_str(), "%lu/%lu", &shard.index, &shard.count);
+  return shard;
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  if (seconds < 172800.0) return fmt::format("{:.1f} h", seconds / 3600.0);
+  return fmt::format("{:.0f} days", seconds / 86400.0);
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", bytes / 1e3);
+  if (bytes < 1e9) return fmt::format("{:.0f} MB", bytes / 1e6);
+  return fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+void show_run(const validate::Sweep& sweep, std::uint64_t run) {
+  if (run >= validate::run_count(sweep)) {
+    throw base::InputError(base::Issue{sweep.file.string(), 0, "--show", fmt::format("run {}", run),
+                                       fmt::format("one of the runs 0 to {}", validate::run_count(sweep) - 1)});
+  }
+  const validate::RunScenario scenario = validate::scenario_with(sweep, validate::values_of(sweep, run));
+  print_result(fmt::format("# run {} of {}, seed {}, noise of tracks {} m\n{}", run, sweep.file.string(),
+                           validate::seed_of(sweep, run), scenario.noise_m, scenario.text));
+}
+
+void check_size(const SweepOptions& options, const validate::Sweep& sweep) {
+  const std::uint64_t runs = validate::run_count(sweep);
+  if (runs > kManyRuns && !options.many) {
+    throw base::InputError(base::Issue{options.sweep, 0, "", fmt::format("{} runs", runs),
+                                       fmt::format("at most {}, or the option --many-runs", kManyRuns)});
+  }
+}
+
+void finish(const SweepOptions& options, const validate::Sweep& sweep, validate::SweepDatabase& database,
+            const fs::path& out, const base::Progress& progress, ProgressDisplay& display) {
+  const validate::SweepSummary summary = validate::summarize(sweep, database.database());
+  base::StagedOutput staged(out);
+  base::write_file(staged.dir() / "report.html", report::sweep_report(summary, progress));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+  print_result(options.common.json ? report::sweep_json(summary) : report::sweep_text(summary));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+}
+
+void sweep_command(const SweepOptions& options) {
+  validate::Sweep sweep = validate::read_sweep(options.sweep);
+  if (options.common.seed) sweep.seed = *options.common.seed;
+  if (options.show) return show_run(sweep, *options.show);
+  check_size(options, sweep);
+  const validate::Shard shard = shard_of(options.shard);
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "sweep", options.sweep);
+  check_writable(out);
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) base::throw_system_error(out.string(), "cannot be made", error.value());
+
+  const std::string name =
+      shard.count == 1 ? "sweep.sqlite" : fmt::format("sweep-{}-of-{}.sqlite", shard.index, shard.count);
+  validate::SweepDatabase database(out / name, sweep, GLIDELAB_VERSION, shard);
+  ProgressDisplay display(options.common.quiet);
+  const base::Progress progress = display.callback();
+  for (const std::string& other : options.merge) {
+    progress("merging", 0.0);
+    database.take(fs::absolute(other));
+  }
+  const validate::SweepEstimate estimate = validate::estimate_sweep(sweep, database, shard, options.common.jobs);
+  say(options.common, fmt::format("{} runs, {} of them to do: about {} on {} threads, {} of disk in the end ({} free)",
+                                  estimate.runs, estimate.missing, duration_text(estimate.seconds), options.common.jobs,
+                                  bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
+  if (options.dry_run) return;
+  if (estimate.missing > 0 && estimate.bytes > estimate.free_bytes) {
+    throw base::EnvironmentError(fmt::format("{}: the sweep needs about {}, and {} are free", out.string(),
+                                             bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
+  }
+  if (options.merge.empty()) {
+    const validate::SweepOutcome outcome = validate::run_sweep(sweep, database, shard, options.common.jobs, progress);
+    display.clear();
+    if (outcome.done > 0) {
+      say(options.common, fmt::format("{} runs in {}: {:.3g} runs/s", outcome.done, duration_text(outcome.wall_s),
+                                      static_cast<double>(outcome.done) / outcome.wall_s));
+    }
+  }
+  finish(options, sweep, database, out, progress, display);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<SweepOptions>();
+  CLI::App* command = app.add_subcommand(
+      "sweep", "Run a scenario many times with varied values, and see how errors depend on them (docs/sweep.md)");
+  command->add_option("SWEEP", options->sweep, "A sweep file (docs/sweep.md)")->type_name("FILE")->required();
+  command->add_option("--shard", options->shard, "Only part i of n of the runs, into a database of its own")
+      ->type_name("I/N")
+      ->check(check_shard);
+  command->add_option("--merge", options->merge, "Put databases of shards together into sweep.sqlite; runs nothing")
+      ->type_name("FILE");
+  command->add_option("--show", options->show, "Print the whole scenario of one run, and do nothing else")
+      ->type_name("RUN");
+  command->add_flag("--many-runs", options->many, fmt::format("Allow more than {} runs", kManyRuns));
+  command->add_flag("--dry-run", options->dry_run, "Say how many runs, how long and how much disk, and stop");
+  add_common_options(*command, options->common, "glidelab-out/sweep-<name of the sweep file>",
+                     "Seed of the sweep; default: the file's");
+  command->callback([options, &chosen] { chosen = [options] { sweep_command(*options); }; });
+}
+
+}  // namespace glidelab::app

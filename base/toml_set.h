@@ -1,0 +1,33 @@
+/// Values put into a TOML document at dotted paths, before anybody reads it.
+///
+///     camera.exposure_s                               a key, made with its table where it is missing
+///     configuration[2].mass_kg                        of the second [[configuration]]; [N] counts from 1
+///     configuration[*].force[law=viscous].k_over_m_1_s   of all, and of those whose `law` is "viscous"
+///     camera.position_m[3]                            an element of an array
+///
+/// A key that nobody knows is found by whoever reads the document (strict_toml.h), not here.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace glidelab::base {
+
+using TomlScalar = std::variant<double, bool, std::string>;
+
+struct TomlAssignment {
+  std::string path;
+  TomlScalar value;
+};
+
+/// "0.001", "true", "\"global\"": a whole number has no decimal point, so that it serves for integers as well.
+std::string toml_text(const TomlScalar& value);
+
+/// The document with the values put in, as TOML. InputError, named `shown_as`, where the text is no TOML, a path is not
+/// of the form above, leads through something that is no table, or an array has no such element.
+std::string with_values(std::string_view toml, const std::string& shown_as,
+                        const std::vector<TomlAssignment>& assignments);
+
+}  // namespace glidelab::base

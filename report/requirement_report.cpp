@@ -1,0 +1,220 @@
+#include "report/requirement_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "report/gnuplot.h"
+#include "report/html.h"
+#include "report/json_numbers.h"
+#include "report/number_text.h"
+#include "report/quantity_names.h"
+#include "report/text_table.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::Candidate;
+using validate::Requirement;
+using validate::Target;
+using validate::Verdict;
+
+bool reached(const Candidate& candidate) {
+  return candidate.verdict == Verdict::reached || candidate.verdict == Verdict::by_bound;
+}
+
+std::string target_name(const Target& target) {
+  const std::string unit = unit_of(target.quantity);
+  const char* measure = target.measure == Target::Measure::sd        ? "sd"
+                        : target.measure == Target::Measure::error95 ? "95 % error"
+                                                                     : "bias";
+  return fmt::format("{} of {}{}", measure, symbol_of(target.quantity), unit.empty() ? "" : fmt::format(" ({})", unit));
+}
+
+std::string bound_text(const std::optional<double>& bound) {
+  return bound && std::isfinite(*bound) ? number_text(*bound, 3) : "–";
+}
+
+std::string found_text(const validate::TargetResult& result) {
+  if (!result.found || !std::isfinite(*result.found)) return result.found ? "no answer" : "–";
+  return fmt::format("{} ± {}", number_text(*result.found, 3), number_text(result.found_sd, 1));
+}
+
+std::string cost_text(const Requirement& requirement, const Candidate& candidate) {
+  if (!candidate.price_class.empty()) return candidate.price_class;
+  return requirement.by_price ? "–" : fmt::format("{} Mpx/s", number_text(candidate.pixels_s * 1e-6, 3));
+}
+
+std::string limit_text(const Candidate& candidate) {
+  std::string text;
+  for (const validate::Limit& limit : candidate.limits) {
+    if (limit.gain < 1.05) break;
+    text += fmt::format("{}{} {:.2g}x", text.empty() ? "" : "; ", limit.name, limit.gain);
+  }
+  return text;
+}
+
+double cost_of(const Requirement& requirement, const Candidate& candidate) {
+  return requirement.by_price ? *candidate.price : candidate.pixels_s * 1e-6;
+}
+
+/// What the plot and the front are about: the first target, by runs where there are some, else by its bound.
+double reach_of(const Candidate& candidate) {
+  if (candidate.verdict == Verdict::refused || candidate.results.empty())
+    return std::numeric_limits<double>::quiet_NaN();
+  const validate::TargetResult& result = candidate.results.front();
+  const double value = result.found.value_or(result.bound.value_or(std::numeric_limits<double>::quiet_NaN()));
+  return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+Plot front_plot(const Requirement& requirement) {
+  const Target& target = requirement.targets.front();
+  PlotData met{"met", {}}, missed{"missed", {}}, front{"front", {}};
+  double best = std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : requirement.candidates) {  // the cheapest first
+    const double value = reach_of(candidate), cost = cost_of(requirement, candidate);
+    if (!std::isfinite(value)) continue;
+    (reached(candidate) ? met : missed).rows.push_back({cost, value});
+    if (value < best) {
+      if (!front.rows.empty()) front.rows.push_back({cost, best});
+      front.rows.push_back({cost, value});
+      best = value;
+    }
+  }
+  std::vector<PlotData> data;
+  std::string script = std::string(kFrame) + "set logscale xy\nset format x '%g'\nset format y '%.0e'\n";
+  script +=
+      fmt::format("set xlabel {}\nset ylabel {}\n",
+                  gnuplot_quoted(requirement.by_price ? "price, middle of its class (EUR)" : "million pixels a second"),
+                  gnuplot_quoted(target_name(target)));
+  script +=
+      fmt::format("set offsets 0,0,0,0\nplot {:.9g} with lines dt 2 lc rgb '#555555' title 'target'", target.value);
+  const auto add = [&](const PlotData& block, const std::string& how) {
+    if (block.rows.empty()) return;
+    script += fmt::format(", ${} using 1:2 {}", block.name, how);
+    data.push_back(block);
+  };
+  add(front, fmt::format("with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
+  add(met, fmt::format("with points pt 7 ps 0.8 lc rgb '{}' title 'reaches all targets'", kColors[2]));
+  add(missed, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' title 'does not'", kColors[1]));
+  return {gnuplot_svg(script, data, {620, 420}),
+          "What each camera reaches over what it costs; the line joins those that no cheaper one beats",
+          "Reached accuracy over cost"};
+}
+
+}  // namespace
+
+std::string requirement_report(const Requirement& requirement) {
+  std::string body = fmt::format("<h1>{}</h1>\n<p>What reaches ", escape(requirement.name));
+  for (std::size_t t = 0; t < requirement.targets.size(); ++t) {
+    body += fmt::format("{}{} at most {}", t == 0 ? "" : ", ", escape(target_name(requirement.targets[t])),
+                        number_text(requirement.targets[t].value, 4));
+  }
+  body += fmt::format(" on the worst configuration; {} first.</p>\n",
+                      requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)");
+  std::vector<std::string> header = {"camera", "cost", "verdict", "Hz", "position noise (µm)"};
+  for (const Target& target : requirement.targets) {
+    header.push_back("bound: " + escape(target_name(target)));
+    header.push_back("by runs");
+  }
+  HtmlTable good(header, 3);
+  header.push_back("what limits it");
+  HtmlTable others(header, 3);
+  for (const Candidate& candidate : requirement.candidates) {
+    std::vector<std::string> row = {escape(candidate.name), escape(cost_text(requirement, candidate)),
+                                    escape(describe(candidate.verdict)), number_text(candidate.frame_rate_hz, 4),
+                                    std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"};
+    for (const validate::TargetResult& result : candidate.results) {
+      row.push_back(bound_text(result.bound));
+      row.push_back(found_text(result));
+    }
+    if (reached(candidate)) {
+      good.row(row);
+    } else {
+      row.push_back(fmt::format("<span style=\"white-space:normal\">{}</span>",
+                                escape(candidate.why.empty() ? limit_text(candidate) : candidate.why)));
+      others.row(row);
+    }
+  }
+  body += good.empty() ? "<p class=\"note bad\">None reaches it.</p>\n" : "<h2>These do</h2>\n" + good.str();
+  body += figures({front_plot(requirement)});
+  if (!others.empty()) body += "<h2>The others</h2>\n" + others.str();
+  body += fmt::format(
+      "<p class=\"soft\">The bound is that of Cramér and Rao for the motion seen at this rate with this noise of a "
+      "position, which is itself the bound of the marker's centre for the camera's light and noise. {} \"What limits "
+      "it\" "
+      "says how many times smaller the bound of the hardest target is with one limitation thought away. A lens, a "
+      "codec, a "
+      "rolling shutter and the calibration are in rendered runs only (--confirm clips).</p>\n",
+      requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
+      : requirement.confirm == validate::Confirm::clips
+          ? fmt::format("Where it allows the target, {} rendered runs judge, by the better estimator.",
+                        requirement.runs)
+          : fmt::format("Where it is below the target by less than {} times, {} runs of tracks with that noise "
+                        "judge, by the better estimator.",
+                        validate::kClear, requirement.runs));
+  return page(requirement.name, body);
+}
+
+std::string requirement_text(const Requirement& requirement) {
+  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "Hz", "noise (µm)"}};
+  for (const Target& target : requirement.targets) {
+    rows.front().push_back("bound " + target_name(target));
+    rows.front().push_back("by runs");
+  }
+  std::string below;
+  for (const Candidate& candidate : requirement.candidates) {
+    rows.push_back({candidate.name, cost_text(requirement, candidate), describe(candidate.verdict),
+                    number_text(candidate.frame_rate_hz, 4),
+                    std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"});
+    for (const validate::TargetResult& result : candidate.results) {
+      rows.back().push_back(bound_text(result.bound));
+      rows.back().push_back(found_text(result));
+    }
+    if (reached(candidate)) continue;
+    const std::string limits = candidate.why.empty() ? limit_text(candidate) : candidate.why;
+    if (!limits.empty()) below += fmt::format("{}: {}\n", candidate.name, limits);
+  }
+  std::string text = text_table(rows, 3);
+  if (!below.empty()) text += "\nWhat limits the others (how many times smaller the bound is without it)\n" + below;
+  return text;
+}
+
+std::string requirement_json(const Requirement& requirement) {
+  Json document;
+  document["format"] = 1;
+  document["name"] = requirement.name;
+  document["order"] = requirement.by_price ? "price" : "pixels_s";
+  for (const Target& target : requirement.targets) document["targets"].push_back(target.name());
+  document["candidates"] = Json::array();
+  for (const Candidate& candidate : requirement.candidates) {
+    Json object;
+    object["name"] = candidate.name;
+    object["reached"] = reached(candidate);
+    object["verdict"] = describe(candidate.verdict);
+    if (!candidate.why.empty()) object["why_refused"] = candidate.why;
+    if (!candidate.price_class.empty()) object["price_class"] = candidate.price_class;
+    put(object, "price_eur", candidate.price, "no price");
+    put(object, "pixels_s", candidate.pixels_s);
+    put(object, "frame_rate_hz", candidate.frame_rate_hz);
+    put(object, "noise_m", candidate.noise_m);
+    for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+      const validate::TargetResult& result = candidate.results[t];
+      Json of;
+      of["target"] = requirement.targets[t].name();
+      put(of, "bound", result.bound, "the motion does not determine it");
+      put(of, "found", result.found, "not run");
+      if (result.found) put(of, "found_sd", result.found_sd);
+      if (!result.estimator.empty()) of["estimator"] = result.estimator;
+      object["targets"].push_back(std::move(of));
+    }
+    for (const validate::Limit& limit : candidate.limits) {
+      object["limits"].push_back({{"without", limit.name}, {"bound_smaller_by", limit.gain}});
+    }
+    document["candidates"].push_back(std::move(object));
+  }
+  return json_text(document);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,106 @@
+#include "report/sweep_plots.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "report/gnuplot.h"
+#include "report/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::AxisSummary;
+using validate::Series;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} ({})", name, unit);
+}
+
+/// The axis of the varied key: numbers, or the words one beside the other.
+std::string x_axis(const AxisSummary& axis) {
+  std::string script = fmt::format("set xlabel {} offset 0,0.3\n", gnuplot_quoted(with_unit(axis.name, axis.unit)));
+  if (axis.words) {
+    script += "set xtics rotate by -35 left font ',10'\nset xtics (";
+    for (std::size_t i = 0; i < axis.labels.size(); ++i) {
+      script += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_quoted(axis.labels[i]), i);
+    }
+    script += fmt::format(")\nset xrange [-0.5:{}]\nset bmargin 8\n", static_cast<double>(axis.labels.size()) - 0.5);
+  } else if (axis.logarithmic) {
+    script += "set logscale x\nset format x '%g'\nset xrange [*:*] noextend\n";
+  }
+  return script;
+}
+
+/// Columns: position, rms, sd, least sd, bias, two standard errors of it, coverage, two standard errors of it.
+std::vector<PlotData> data_of(const AxisSummary& axis, std::string_view quantity, std::vector<std::string>& titles) {
+  std::vector<PlotData> data;
+  for (const Series& series : axis.series) {
+    if (series.quantity != quantity) continue;
+    PlotData block{fmt::format("series{}", data.size()), {}};
+    for (const validate::GroupStatistics& group : series.groups) {
+      const validate::ErrorStatistics& of = group.statistics;
+      if (of.answered == 0) continue;
+      // Where all or no intervals hold the truth the binomial error is that of one more run each way.
+      const double n = static_cast<double>(of.answered), p = (of.coverage * n + 1.0) / (n + 2.0);
+      block.rows.push_back({group.position, of.rms > 0.0 ? of.rms : kNone, of.sd > 0.0 ? of.sd : kNone,
+                            of.least_sd.value_or(kNone), of.bias, 2.0 * of.bias_sd, 100.0 * of.coverage,
+                            200.0 * std::sqrt(p * (1.0 - p) / n)});
+    }
+    if (block.rows.empty()) continue;
+    titles.push_back(series.estimator);
+    data.push_back(std::move(block));
+  }
+  return data;
+}
+
+}  // namespace
+
+std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity) {
+  std::vector<std::string> titles;
+  const std::vector<PlotData> data = data_of(axis, quantity, titles);
+  if (data.empty()) return {};
+  const std::string symbol = symbol_of(quantity), unit = unit_of(quantity);
+  const std::string frame = std::string(kFrame) + "set key font ',11' maxrows 4 samplen 1\n" + x_axis(axis);
+  std::string errors = frame + fmt::format(
+                                   "set ylabel {}\nset logscale y\nset format y '%.0e'\nset offsets 0,0,0,0\n"
+                                   "set yrange [*:*] noextend\nplot ",
+                                   gnuplot_quoted(with_unit("error of " + symbol, unit)));
+  std::string bias = frame + fmt::format("set ylabel {}\nset xzeroaxis lt 1 lc rgb '#555555'\nplot ",
+                                         gnuplot_quoted(with_unit("mean error of " + symbol, unit)));
+  std::string coverage = frame +
+                         "set ylabel 'coverage (%)'\nset offsets graph 0.02, graph 0.02, 0, 0\nset yrange [0:102]\n"
+                         "plot 95 with lines dt 3 lc rgb '#555555' title 'nominal'";
+  const std::string line = axis.words ? "points" : "linespoints";
+  bool bound = false;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const std::string ink = color(i), title = gnuplot_quoted(titles[i]), comma = i == 0 ? "" : ", ";
+    errors += fmt::format(
+        "{0}${1} using 1:2 with {2} pt 7 ps 0.5 lw 1.6 lc rgb '{3}' title {4}, "
+        "${1} using 1:3 with {2} pt 6 ps 0.5 dt 2 lc rgb '{3}' title 'stated sd'",
+        comma, data[i].name, line, ink, title);
+    bias += fmt::format(
+        "{0}${1} using 1:5 with {2} pt 7 ps 0.5 lc rgb '{3}' title {4}, "
+        "${1} using 1:5:6 with yerrorbars pt 7 ps 0.3 lc rgb '{3}' notitle",
+        comma, data[i].name, line, ink, title);
+    coverage +=
+        fmt::format(", ${0} using 1:7:8 with yerrorbars pt 7 ps 0.5 lc rgb '{1}' title {2}", data[i].name, ink, title);
+    for (const auto& row : data[i].rows) bound = bound || std::isfinite(row[3]);
+  }
+  if (bound) {
+    errors += fmt::format(", ${} using 1:4 with {} pt 2 ps 0.6 dt 3 lc rgb '#000000' title 'least possible sd'",
+                          data[0].name, line);
+  }
+  const PlotSize size{480, axis.words ? 460 : 350};
+  const std::string over = fmt::format("{} over {}", symbol, axis.name);
+  return {{gnuplot_svg(errors, data, size), "Root mean square error (solid) and stated standard deviation (dashed)",
+           "Error and standard deviation of " + over},
+          {gnuplot_svg(bias, data, size), "Mean error with two standard errors", "Bias of " + over},
+          {gnuplot_svg(coverage, data, size), "Coverage of the stated intervals, with two standard errors",
+           "Coverage of " + over}};
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,138 @@
+#include "report/sweep_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "report/html.h"
+#include "report/json_numbers.h"
+#include "report/number_text.h"
+#include "report/quantity_names.h"
+#include "report/sweep_plots.h"
+#include "report/text_table.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::ErrorStatistics;
+using validate::SweepSummary;
+
+std::vector<std::string> cells_of(const ErrorStatistics& of) {
+  return {fmt::format("{} / {}", of.answered, of.runs),
+          of.answered == 0 ? "–" : number_text(of.bias, 3),
+          of.answered == 0 ? "–" : number_text(of.rms, 3),
+          of.answered == 0 ? "–" : number_text(of.sd, 3),
+          of.least_sd ? number_text(*of.least_sd, 3) : "–",
+          of.answered == 0 ? "–" : fmt::format("{:.1f} %", 100.0 * of.coverage)};
+}
+
+std::string name_of(const std::string& quantity) {
+  const std::string unit = unit_of(quantity);
+  return symbol_of(quantity) + (unit.empty() ? "" : fmt::format(" ({})", unit));
+}
+
+std::string overall_table(const SweepSummary& summary) {
+  HtmlTable table({"quantity", "estimator", "answers", "mean error", "rms error", "stated sd", "least sd", "coverage"},
+                  2);
+  for (const validate::Series& series : summary.overall) {
+    std::vector<std::string> row = {escape(name_of(series.quantity)), escape(series.estimator)};
+    for (std::string& cell : cells_of(series.groups.front().statistics)) row.push_back(std::move(cell));
+    table.row(row);
+  }
+  return table.str();
+}
+
+Json statistics_json(const ErrorStatistics& of) {
+  Json object;
+  object["runs"] = of.runs;
+  object["answered"] = of.answered;
+  if (of.answered == 0) return object;
+  put(object, "mean_error", of.bias);
+  put(object, "mean_error_sd", of.bias_sd);
+  put(object, "rms_error", of.rms);
+  put(object, "stated_sd", of.sd);
+  put(object, "least_sd", of.least_sd, "known for tracks only, whose noise is known");
+  put(object, "coverage", of.coverage);
+  return object;
+}
+
+}  // namespace
+
+std::string sweep_report(const SweepSummary& summary, const base::Progress& progress) {
+  std::string body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">Sweep by Glidelab. Errors are recovered minus true "
+      "values, over all configurations of the scenario.</p>\n",
+      escape(summary.name));
+  body += fmt::format(
+      "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>runs</span></div><div class=\"tile\"><b{}>{}</b>"
+      "<span>failed</span></div><div class=\"tile\"><b>{}</b><span>processor seconds</span></div></div>\n",
+      summary.runs, summary.planned, summary.failed > 0 ? " class=\"bad\"" : "", summary.failed,
+      number_text(summary.cpu_s, 3));
+  for (const std::string& failure : summary.failures)
+    body += fmt::format("<p class=\"note\">{}</p>\n", escape(failure));
+  body += "<h2>All runs</h2>\n" + overall_table(summary);
+  body +=
+      "<p class=\"soft\">sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares over "
+      "the "
+      "runs; coverage is the part of the stated 95 % intervals that hold the truth.</p>\n";
+  double done = 0.0;
+  for (const validate::AxisSummary& axis : summary.axes) {
+    body += fmt::format("<h2>Over {}</h2>\n", escape(axis.name));
+    for (const QuantityName& quantity : kQuantities) {
+      progress("drawing", done++ / static_cast<double>(summary.axes.size() * kQuantities.size()));
+      const std::vector<Plot> plots = sweep_plots(axis, quantity.key);
+      if (plots.empty()) continue;
+      body += fmt::format("<h3>{}</h3>\n{}", escape(name_of(std::string(quantity.key))), figures(plots));
+    }
+  }
+  return page(summary.name, body);
+}
+
+std::string sweep_text(const SweepSummary& summary) {
+  std::vector<std::vector<std::string>> rows = {
+      {"quantity", "estimator", "answers", "mean error", "rms error", "stated sd", "least sd", "coverage"}};
+  for (const validate::Series& series : summary.overall) {
+    rows.push_back({name_of(series.quantity), series.estimator});
+    for (std::string& cell : cells_of(series.groups.front().statistics)) rows.back().push_back(std::move(cell));
+  }
+  std::string text = text_table(rows, 2);
+  text += fmt::format("{} of {} runs, {} failed\n", summary.runs, summary.planned, summary.failed);
+  for (const std::string& failure : summary.failures) text += fmt::format("  {}\n", failure);
+  return text;
+}
+
+std::string sweep_json(const SweepSummary& summary) {
+  Json document;
+  document["format"] = 1;
+  document["name"] = summary.name;
+  document["runs"] = summary.runs;
+  document["planned"] = summary.planned;
+  document["failed"] = summary.failed;
+  document["failures"] = summary.failures;
+  document["overall"] = Json::array();
+  for (const validate::Series& series : summary.overall) {
+    Json object = statistics_json(series.groups.front().statistics);
+    object["quantity"] = series.quantity;
+    object["estimator"] = series.estimator;
+    document["overall"].push_back(std::move(object));
+  }
+  document["axes"] = Json::array();
+  for (const validate::AxisSummary& axis : summary.axes) {
+    Json of_axis;
+    of_axis["name"] = axis.name;
+    of_axis["groups"] = Json::array();
+    for (const validate::Series& series : axis.series) {
+      for (const validate::GroupStatistics& group : series.groups) {
+        Json object = statistics_json(group.statistics);
+        object["quantity"] = series.quantity;
+        object["estimator"] = series.estimator;
+        object["at"] = group.label;
+        of_axis["groups"].push_back(std::move(object));
+      }
+    }
+    document["axes"].push_back(std::move(of_axis));
+  }
+  return json_text(document);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,148 @@
+/// glidelab sweep as a user of the shell sees it: killed and continued, in shards, wrong.
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <random>
+#include <thread>
+
+#include "base/staged_output.h"
+#include "catch.h"
+#include "run_process.h"
+#include "temp_dir.h"
+#include "test_paths.h"
+#include "validate/small_sweep.h"
+#include "validate/sqlite.h"
+
+using namespace glidelab;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// All that a sweep stores, but the times that runs took.
+std::string contents(const fs::path& file) {
+  validate::Database database(file, validate::Database::Mode::read);
+  std::string text;
+  for (const char* select : {"SELECT * FROM run ORDER BY run", "SELECT * FROM result ORDER BY 1, 2, 3, 4",
+                             "SELECT * FROM clip ORDER BY 1, 2, 3", "SELECT * FROM \"schema\" ORDER BY 1, 2"}) {
+    validate::SqlStatement rows = database.prepare(select);
+    while (rows.step()) {
+      for (int column = 0; column < 4; ++column) text += rows.text(column) + "|";
+      for (int column = 4; column < 10; ++column) text += fmt::format("{:a}|", rows.number(column));
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+std::int64_t runs_in(const fs::path& file) {
+  if (!fs::exists(file)) return 0;
+  validate::Database database(file, validate::Database::Mode::read);
+  validate::SqlStatement table = database.prepare("SELECT count(*) FROM sqlite_master WHERE name = 'run'");
+  table.step();
+  if (table.integer(0) == 0) return 0;
+  validate::SqlStatement rows = database.prepare("SELECT count(*) FROM run");
+  rows.step();
+  return rows.integer(0);
+}
+
+}  // namespace
+
+TEST_CASE("A sweep that is killed at random instants and continued ends as one that was not", "[slow]") {
+  const tests::TempDir dir;
+  const std::string sweep =
+      tests::write_sweep(dir.path(), "replicates = 60\nestimators = [\"phase-diagram\"]", tests::kTwoKeys);
+  const tests::ProcessResult whole = tests::glidelab({"sweep", sweep, "-q", "-o", dir / "whole"});
+  REQUIRE(whole.status == 0);
+  std::mt19937 random(3);
+  std::int64_t before = 0;
+  int kills = 0, in_the_middle = 0;
+  const fs::path database = dir / "killed" / "sweep.sqlite";
+  while (kills < 50) {
+    tests::Process process({tests::kBinary, "sweep", sweep, "-q", "-o", dir / "killed", "--jobs", "2"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(10, 400)(random)));
+    if (!process.running()) break;
+    process.send(SIGKILL);
+    process.wait();
+    ++kills;
+    const std::int64_t now = runs_in(database);
+    CHECK(now >= before);  // nothing that was finished is lost
+    if (now > before && now < 360) ++in_the_middle;
+    before = now;
+  }
+  CHECK(in_the_middle >= 3);
+  const tests::ProcessResult rest = tests::glidelab({"sweep", sweep, "-q", "-o", dir / "killed"});
+  CHECK(rest.status == 0);
+  CHECK(runs_in(database) == 360);
+  CHECK(contents(database) == contents(dir / "whole" / "sweep.sqlite"));
+  CHECK(rest.out == whole.out);
+}
+
+TEST_CASE("Shards merged are the sweep as a whole, and a page says what came out") {
+  const tests::TempDir dir;
+  const std::string sweep = tests::write_sweep(dir.path(), "", tests::kTwoKeys);
+  const fs::path out = dir / "out";
+  REQUIRE(tests::glidelab({"sweep", sweep, "-o", out / "whole"}).status == 0);
+  for (const char* shard : {"1/2", "2/2"}) {
+    REQUIRE(tests::glidelab({"sweep", sweep, "-q", "-o", out / "parts", "--shard", shard}).status == 0);
+  }
+  const tests::ProcessResult merged =
+      tests::glidelab({"sweep", sweep, "-o", out / "merged", "--merge", out / "parts" / "sweep-1-of-2.sqlite",
+                       out / "parts" / "sweep-2-of-2.sqlite"});
+  CHECK(merged.status == 0);
+  CHECK(contents(out / "merged" / "sweep.sqlite") == contents(out / "whole" / "sweep.sqlite"));
+  const std::string page = base::read_file(out / "merged" / "report.html");
+  CHECK(page.find("<svg") == std::string::npos);  // as pictures of their own
+  CHECK(page.find("data:image/svg+xml") != std::string::npos);
+  CHECK(page.find("6 / 6") != std::string::npos);
+}
+
+TEST_CASE("What a sweep refuses is one clear message with the right status") {
+  const tests::TempDir dir;
+  const std::string sweep = tests::write_sweep(dir.path(), "", tests::kTwoKeys);
+  const fs::path out = dir / "out";
+  SECTION("1e9 runs without being told to") {
+    const std::string many = tests::write_sweep(dir.path(), "replicates = 200000000", tests::kTwoKeys);
+    const tests::ProcessResult result = tests::glidelab({"sweep", many, "-o", out});
+    CHECK(result.status == 1);
+    CHECK(result.err.find("1200000000 runs") != std::string::npos);
+    CHECK(result.err.find("--many-runs") != std::string::npos);
+    CHECK_FALSE(fs::exists(out / "sweep.sqlite"));
+  }
+  SECTION("a database of another sweep") {
+    REQUIRE(tests::glidelab({"sweep", sweep, "-q", "-o", out}).status == 0);
+    tests::write_sweep(dir.path(), "seed = 9", tests::kTwoKeys);
+    const tests::ProcessResult result = tests::glidelab({"sweep", sweep, "-o", out});
+    CHECK(result.status == 1);
+    CHECK(result.err.find("sweep.sqlite") != std::string::npos);
+  }
+  SECTION("a part that there is not") {
+    CHECK(tests::glidelab({"sweep", sweep, "-o", out, "--shard", "3/2"}).status == 2);
+  }
+  SECTION("two processes on one database") {
+    const std::string long_one = tests::write_sweep(dir.path(), "replicates = 10000", tests::kTwoKeys);
+    tests::Process first({tests::kBinary, "sweep", long_one, "-q", "-o", out});
+    for (int i = 0; i < 600 && runs_in(out / "sweep.sqlite") == 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    const tests::ProcessResult second = tests::glidelab({"sweep", long_one, "-o", out});
+    CHECK(second.status == 3);
+    CHECK(second.err.find("another process") != std::string::npos);
+    first.send(SIGINT);
+    CHECK(first.wait().status == 130);
+  }
+}
+
+TEST_CASE("The size is said before a sweep starts, and a run's whole scenario can be had") {
+  const tests::TempDir dir;
+  const std::string sweep = tests::write_sweep(dir.path(), "replicates = 3", tests::kTwoKeys);
+  const tests::ProcessResult dry = tests::glidelab({"sweep", sweep, "-o", dir / "out", "--dry-run"});
+  CHECK(dry.status == 0);
+  CHECK(dry.err.find("18 runs, 18 of them to do") != std::string::npos);
+  const tests::ProcessResult shown = tests::glidelab({"sweep", sweep, "--show", "17"});
+  CHECK(shown.status == 0);
+  base::write_file(dir / "run17.toml", shown.out);
+  CHECK(shown.out.find("frame_rate_hz = 80") != std::string::npos);
+  CHECK(tests::glidelab({"simulate", dir / "run17.toml", "-o", dir / "simulated"}).status == 0);
+}

@@ -1,0 +1,87 @@
+#include "base/toml_set.h"
+
+#include "base/errors.h"
+#include "base/strict_toml.h"
+#include "catch.h"
+
+using namespace glidelab;
+using base::with_values;
+
+namespace {
+
+constexpr const char* kText = R"(
+name = "a"
+[camera]
+rate = 200.0
+place = [1.0, 2.0, 3.0]
+[[group]]
+name = "g1"
+[[group.force]]
+law = "viscous"
+k = 1.0
+[[group.force]]
+law = "coulomb"
+mu = 0.01
+[[group]]
+name = "g.2"
+[[group.force]]
+law = "viscous"
+k = 2.0
+)";
+
+base::TomlFile parsed(const std::vector<base::TomlAssignment>& assignments) {
+  return base::TomlFile::parse(with_values(kText, "t.toml", assignments), "t.toml");
+}
+
+std::string message(const std::string& path) {
+  try {
+    with_values(kText, "t.toml", {{path, 1.0}});
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("Values reach keys of tables, elements of arrays, and the tables of an array by number, text or all") {
+  const base::TomlFile file = parsed({{"camera.rate", 50.0},
+                                      {"camera.place[3]", 7.5},
+                                      {"camera.shutter", std::string("global")},
+                                      {"light.on", true},
+                                      {"group[*].mass", 0.5},
+                                      {"group[1].force[law=viscous].k", 3.25},
+                                      {"group[name=g.2].force[1].k", 4.0}});
+  const base::TomlTable root = file.root();
+  CHECK(root.text("name") == "a");
+  const base::TomlTable camera = root.table("camera");
+  CHECK(camera.number("rate") == 50.0);
+  CHECK(camera.numbers("place", 3) == std::vector<double>{1.0, 2.0, 7.5});
+  CHECK(camera.text("shutter") == "global");
+  CHECK(root.table("light").boolean_or("on", false));
+  const auto groups = root.tables("group");
+  CHECK(groups[0].number("mass") == 0.5);
+  CHECK(groups[1].number("mass") == 0.5);
+  CHECK(groups[0].tables("force")[0].number("k") == 3.25);
+  CHECK(groups[0].tables("force")[1].number("mu") == 0.01);
+  CHECK(groups[1].tables("force")[0].number("k") == 4.0);
+}
+
+TEST_CASE("A whole number serves for integers and for numbers, and a fraction keeps every bit") {
+  const base::TomlFile file = parsed({{"bits", 12.0}, {"x", 0.1 + 0.2}});
+  CHECK(file.root().integer("bits", 0, 20) == 12);
+  CHECK(file.root().number("bits") == 12.0);
+  CHECK(file.root().number("x") == 0.1 + 0.2);
+}
+
+TEST_CASE("A path that leads nowhere is an error that names it") {
+  using Catch::Matchers::Contains;
+  CHECK_THAT(message("group.name"), Contains("group.name") && Contains("of which there are 2"));
+  CHECK_THAT(message("group[3].name"), Contains("number 3 of 2"));
+  CHECK_THAT(message("group[*].force[law=magic].k"), Contains("nothing that it picks"));
+  CHECK_THAT(message("name.x"), Contains("which is no table"));
+  CHECK_THAT(message("camera..rate"), Contains("an empty part"));
+  CHECK_THAT(message("camera.place[0]"), Contains("[0]"));
+  CHECK_THAT(message("camera.place[9]"), Contains("number 9 of 3"));
+  CHECK_THAT(message("camera.rate[1]"), Contains("no array"));
+}

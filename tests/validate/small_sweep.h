@@ -1,0 +1,58 @@
+/// A sweep of track-level runs of milliseconds: one glider, one clip, few frames.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/staged_output.h"
+
+namespace glidelab::tests {
+
+inline constexpr const char* kSweptScenario = R"(format = 1
+name = "swept"
+[camera]
+width_px = 320
+height_px = 240
+frame_rate_hz = 60.0
+focal_px = [480.0, 480.0]
+position_m = [0.0, 0.1, 2.4]
+[[configuration]]
+name = "m1"
+mass_kg = 0.335
+incline_deg = 4.0
+[[configuration.force]]
+law = "viscous"
+k_over_m_1_s = 2.768
+[[configuration.force]]
+law = "coulomb"
+mu = 0.0071
+[[configuration.clip]]
+name = "up"
+launched = "up"
+x0_m = 0.2
+v0_m_s = -1.2
+duration_s = 1.2
+)";
+
+/// `more` is appended: the [[vary]] tables.
+inline std::filesystem::path write_sweep(const std::filesystem::path& folder, const std::string& head,
+                                         const std::string& more) {
+  base::write_file(folder / "scenario.toml", kSweptScenario);
+  base::write_file(folder / "sweep.toml",
+                   "format = 1\nname = \"small\"\nscenario = \"scenario.toml\"\n" + head + "\n" + more);
+  return folder / "sweep.toml";
+}
+
+inline constexpr const char* kTwoKeys = R"(
+[tracks]
+noise_m = 2e-5
+[[vary]]
+key = "camera.frame_rate_hz"
+values = [50, 80]
+[[vary]]
+name = "K/m"
+keys = ["configuration[*].force[law=viscous].k_over_m_1_s"]
+range = { from = 2.0, to = 3.0, count = 3 }
+)";
+
+}  // namespace glidelab::tests

@@ -1,0 +1,217 @@
+#include "validate/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "catch.h"
+#include "temp_dir.h"
+#include "test_paths.h"
+#include "validate/run_sweep.h"
+#include "validate/small_sweep.h"
+#include "validate/sweep_scenario.h"
+#include "validate/sweep_summary.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// All tables but the times, in order.
+std::string contents(const std::filesystem::path& file) {
+  validate::Database database(file, validate::Database::Mode::read);
+  std::string text;
+  for (const char* select : {"SELECT * FROM run ORDER BY run", "SELECT * FROM result ORDER BY 1, 2, 3, 4",
+                             "SELECT * FROM clip ORDER BY 1, 2, 3"}) {
+    validate::SqlStatement rows = database.prepare(select);
+    while (rows.step()) {
+      for (int column = 0; column < 9; ++column) text += rows.text(column) + "|";
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+std::string message(const std::string& head, const std::string& more) {
+  const tests::TempDir dir;
+  try {
+    validate::read_sweep(tests::write_sweep(dir.path(), head, more));
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+const std::string kNoise = "[tracks]\nnoise_m = 1e-5\n";
+
+}  // namespace
+
+TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and at once or in parts") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 2", tests::kTwoKeys));
+  validate::SweepOutcome outcome;
+  {
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    CHECK(validate::estimate_sweep(sweep, database, {}, 1).missing == 12);
+    outcome = validate::run_sweep(sweep, database, {}, 1);
+    CHECK(outcome.done == 12);
+    CHECK(outcome.failed == 0);
+    CHECK(validate::run_sweep(sweep, database, {}, 1).done == 0);
+  }
+  {
+    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {});
+    CHECK_THROWS_AS(validate::run_sweep(sweep, database, {}, 2,
+                                        [](std::string_view, double fraction) {
+                                          if (fraction > 0.3) throw base::Interrupted();
+                                        }),
+                    base::Interrupted);
+    CHECK(database.runs() >= 4);
+    CHECK(database.runs() <= 6);
+  }
+  {
+    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {});
+    validate::run_sweep(sweep, database, {}, 2);
+  }
+  for (const std::uint64_t part : {1u, 2u, 3u}) {
+    validate::SweepDatabase database(dir / fmt::format("c{}.sqlite", part), sweep, "1", {part, 3});
+    CHECK(validate::run_sweep(sweep, database, {part, 3}, 1).done == 4);
+  }
+  validate::SweepDatabase merged(dir / "c.sqlite", sweep, "1", {});
+  for (const char* part : {"c3.sqlite", "c1.sqlite", "c2.sqlite"}) merged.take(dir / part);
+  CHECK_THROWS_WITH(merged.take(dir / "c2.sqlite"), Contains("run 1"));
+  const std::string all = contents(dir / "a.sqlite");
+  // 12 runs; 1 configuration x 2 estimators x 4 quantities; 1 clip
+  CHECK(std::count(all.begin(), all.end(), '\n') == 12 + 12 * 8 + 12);
+  CHECK(contents(dir / "b.sqlite") == all);
+  CHECK(contents(dir / "c.sqlite") == all);
+}
+
+TEST_CASE("Rows hold the truth that was varied, and the bound shrinks as noise and frames say") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 4", tests::kTwoKeys));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::run_sweep(sweep, database, {}, 2);
+  validate::SqlStatement rows = database.database().prepare(
+      "SELECT r.\"K/m\", s.truth, s.value, s.sd, s.least_sd FROM run r JOIN result s ON s.run = r.run "
+      "WHERE quantity = 'k_over_m_1_s' AND estimator = 'trajectory'");
+  int count = 0;
+  while (rows.step()) {
+    ++count;
+    CHECK(rows.number(0) == rows.number(1));
+    // Five stated standard deviations: 24 draws of fixed seeds.
+    CHECK(std::abs(rows.number(2) - rows.number(1)) < 5.0 * rows.number(3));
+    CHECK(rows.number(4) > 0.0);
+  }
+  CHECK(count == 24);
+  const validate::SweepSummary summary = validate::summarize(sweep, database.database());
+  REQUIRE(summary.axes.size() == 2);
+  const auto series = std::find_if(summary.axes[0].series.begin(), summary.axes[0].series.end(), [](const auto& s) {
+    return s.quantity == "k_over_m_1_s" && s.estimator == "trajectory";
+  });
+  REQUIRE(series != summary.axes[0].series.end());
+  REQUIRE(series->groups.size() == 2);
+  CHECK(series->groups[0].statistics.runs == 12);
+  // The same motion seen at 50 and 80 Hz: the bound falls with the square root, but for the clip's ends (one frame of
+  // 60).
+  const double ratio = *series->groups[0].statistics.least_sd / *series->groups[1].statistics.least_sd;
+  CHECK(std::abs(ratio - std::sqrt(80.0 / 50.0)) < 0.03);
+}
+
+TEST_CASE("A run that the scenario refuses is a failed row with its reason, and the others go on") {
+  const tests::TempDir dir;
+  // Alone each value passes; an exposure of 15 ms does not fit into 1/80 s.
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", kNoise + R"(
+[[vary]]
+key = "camera.frame_rate_hz"
+values = [50, 80]
+[[vary]]
+key = "camera.exposure_s"
+values = [0.001, 0.015]
+)"));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  const validate::SweepOutcome outcome = validate::run_sweep(sweep, database, {}, 1);
+  CHECK(outcome.done == 4);
+  CHECK(outcome.failed == 1);
+  validate::SqlStatement why = database.database().prepare("SELECT why FROM run WHERE status = 'failed'");
+  REQUIRE(why.step());
+  CHECK_THAT(why.text(0), Contains("exposure_s"));
+}
+
+TEST_CASE("What is wrong with a sweep is said before the first run, by its key") {
+  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"camera.frame_rate\"\nvalues = [30]\n"),
+             Contains("camera.frame_rate") && Contains("did you mean \"frame_rate_hz\""));
+  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [30, -1]\n"),
+             Contains("camera.frame_rate_hz = -1"));
+  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\nrange = { from = 2, to = 2, count = 3 }\n"),
+             Contains("an empty range"));
+  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\nvalues = []\n"), Contains("an empty list"));
+  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\n"), Contains("exactly one of values"));
+  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\nlog_range = { from = 0, to = 2, count = 3 }\n"),
+             Contains("log_range.from"));
+  CHECK_THAT(message("", ""), Contains("tracks"));
+  CHECK_THAT(message("estimators = [\"magic\"]", kNoise), Contains("magic"));
+  CHECK_THAT(message("samples = 3", kNoise), Contains("samples"));
+  CHECK_THAT(message("level = \"clips\"", kNoise), Contains("tracks"));
+  CHECK_THAT(message("level = \"clips\"", "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n"),
+             Contains("tracks.noise_m"));
+  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"
+                                  "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"),
+             Contains("twice"));
+  CHECK_THAT(message("colour = 3", kNoise), Contains("colour"));
+}
+
+TEST_CASE("A database of another sweep, another version or no sweep at all is refused, and so is a second writer") {
+  const tests::TempDir dir;
+  const std::filesystem::path file = tests::write_sweep(dir.path(), "replicates = 2", tests::kTwoKeys);
+  const validate::Sweep sweep = validate::read_sweep(file);
+  {
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    CHECK_THROWS_AS(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {}), base::EnvironmentError);
+  }
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "2", {}),
+                    Contains("program version") && Contains("\"1\""));
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {1, 2}), Contains("shard"));
+  validate::Sweep other = sweep;
+  other.scenario_text += "\n# another\n";
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", other, "1", {}), Contains("scenario's text"));
+  base::write_file(dir / "b.sqlite", "this is a text and certainly no database, however long one makes it");
+  CHECK_THROWS_AS(validate::SweepDatabase(dir / "b.sqlite", sweep, "1", {}), base::InputError);
+}
+
+TEST_CASE("A full disk is an error of the environment that keeps what is finished, and the sweep goes on later") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep =
+      validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 20", tests::kTwoKeys));
+  std::uint64_t kept = 0;
+  {
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    database.database().run("PRAGMA max_page_count = 24");  // what a full disk is to SQLite, for this connection
+    CHECK_THROWS_WITH(validate::run_sweep(sweep, database, {}, 1), Contains("disk is full"));
+    kept = database.runs();
+    CHECK(kept > 0);
+    CHECK(kept < 120);
+  }
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  CHECK(validate::run_sweep(sweep, database, {}, 2).done == 120 - kept);
+}
+
+TEST_CASE("A sweep over cameras takes each one over, and refuses a scenario that writes the camera itself") {
+  const tests::TempDir dir;
+  const std::string vary =
+      kNoise + "[[vary]]\ncameras = [\"" + std::string(tests::kSourceDir) + "/scenarios/cameras\"]\n";
+  tests::write_sweep(dir.path(), "", vary);
+  CHECK_THROWS_WITH(validate::read_sweep(dir / "sweep.toml"), Contains("camera.frame_rate_hz"));
+  std::string scenario = tests::kSweptScenario;
+  for (const char* key : {"width_px", "height_px", "frame_rate_hz", "focal_px"}) {
+    const std::size_t at = scenario.find(key);
+    scenario.erase(at, scenario.find('\n', at) - at + 1);
+  }
+  base::write_file(dir / "scenario.toml", scenario);
+  const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
+  REQUIRE(sweep.axes.size() == 1);
+  CHECK(sweep.axes[0].source.values.size() >= 16);
+  const validate::RunScenario run = validate::scenario_with(sweep, {sweep.axes[0].source.values[0]});
+  CHECK(run.scenario.recording.frame_rate_hz != 60.0);
+}

@@ -1,0 +1,94 @@
+/// Which of a sweep's points (cameras, settings) reach a target: first by the Cramér-Rao bound, then by runs.
+///
+/// A target is on the worst configuration of the scenario: its standard deviation ("sd"), the half-width that holds 95
+/// % of the errors ("error95" = 1.96 rms error) or the mean error ("bias"). The bound takes the noise of the sweep's
+/// tracks, or predicts it from the camera (validate/camera_noise.h). A point whose bound is above the target cannot
+/// reach it. One whose bound is below it by less than kClear is run, as tracks with that noise or rendered, and judged
+/// by its errors (of the better estimator); one that has more room is taken at its bound. Rendered runs judge every
+/// point that the bound allows, for they have errors that the bound does not know: lens, shutter, codec, calibration.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "validate/sweep.h"
+
+namespace glidelab::validate {
+
+inline constexpr double kClear = 4.0;
+
+struct Target {
+  enum class Measure { sd, error95, bias };
+  std::string quantity;  ///< "mu"
+  Measure measure = Measure::sd;
+  double value = 0.0;
+  std::string name() const;  ///< "mu sd 0.0005"
+};
+
+/// "mu=0.0005", "k_over_m_1_s:error95=0.01"; InputError for anything else.
+Target parse_target(const std::string& text);
+
+enum class Confirm { none, tracks, clips };
+
+struct RequirementOptions {
+  std::vector<Target> targets;
+  Confirm confirm = Confirm::tracks;
+  std::uint64_t runs = 12;  ///< to confirm a point
+  int jobs = 1;
+};
+
+/// One target at one point; in the target's unit and measure.
+struct TargetResult {
+  std::optional<double> bound;  ///< empty where the motion does not determine the quantity
+  std::optional<double> found;  ///< by runs
+  double found_sd = 0.0;        ///< uncertainty of it
+  std::string estimator;
+};
+
+/// A limitation thought away: how many times smaller the bound of the hardest target then is.
+struct Limit {
+  std::string name;
+  double gain = 1.0;
+};
+
+enum class Verdict {
+  reached,      ///< by runs
+  by_bound,     ///< the bound has room of kClear
+  unconfirmed,  ///< the bound allows it, and nothing was run
+  missed,       ///< by runs
+  impossible,   ///< the bound is above the target
+  refused,      ///< the scenario or the analysis refuses it: `why`
+};
+std::string describe(Verdict verdict);
+
+struct Candidate {
+  std::string name;  ///< of the camera and the values
+  std::string price_class;
+  std::optional<double> price;  ///< middle of the range that the camera's file states
+  double pixels_s = 0.0;        ///< width x height x rate
+  double frame_rate_hz = 0.0;
+  double noise_m = 0.0;  ///< of a position: root mean square over the clips
+  Verdict verdict = Verdict::unconfirmed;
+  std::string why;
+  double need = 0.0;                  ///< bound over target, of the hardest target
+  std::vector<TargetResult> results;  ///< one for each target
+  std::vector<Limit> limits;          ///< the largest gain first
+};
+
+struct Requirement {
+  std::string name;
+  std::vector<Target> targets;
+  Confirm confirm = Confirm::none;
+  std::uint64_t runs = 0;
+  bool by_price = false;              ///< all have a price; else by pixels a second
+  std::vector<Candidate> candidates;  ///< the cheapest first
+  bool any_reached() const;
+};
+
+Requirement find_requirement(const Sweep& sweep, const RequirementOptions& options,
+                             const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::validate

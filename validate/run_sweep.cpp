@@ -1,0 +1,112 @@
+#include "validate/run_sweep.h"
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <optional>
+
+#include "base/errors.h"
+#include "core/parallel.h"
+#include "validate/sweep_design.h"
+
+namespace glidelab::validate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Hands out the missing runs in order, asking the database for what it has a piece at a time. One caller at a time.
+class MissingRuns {
+ public:
+  MissingRuns(SweepDatabase& database, const Shard& shard, std::uint64_t runs)
+      : database_(database), shard_(shard), runs_(runs) {}
+
+  std::optional<std::uint64_t> next() {
+    while (true) {
+      if (at_ >= end_ && !next_piece()) return std::nullopt;
+      const std::uint64_t run = at_;
+      at_ += shard_.count;
+      if (!std::binary_search(there_.begin(), there_.end(), run)) return run;
+    }
+  }
+
+ private:
+  bool next_piece() {
+    constexpr std::uint64_t kPiece = 4096;  // runs of the shard
+    if (at_ == 0) at_ = shard_.index - 1;
+    if (at_ >= runs_) return false;
+    end_ = std::min(runs_, at_ + kPiece * shard_.count);
+    there_ = database_.runs_within(at_, end_);
+    return true;
+  }
+
+  SweepDatabase& database_;
+  Shard shard_;
+  std::uint64_t runs_;
+  std::uint64_t at_ = 0, end_ = 0;
+  std::vector<std::uint64_t> there_;
+};
+
+std::uint64_t runs_of(const Sweep& sweep, const Shard& shard) {
+  const std::uint64_t all = run_count(sweep);
+  return all < shard.index ? 0 : (all - shard.index) / shard.count + 1;
+}
+
+}  // namespace
+
+SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs) {
+  SweepEstimate estimate;
+  estimate.runs = runs_of(sweep, shard);
+  estimate.missing = estimate.runs - std::min(estimate.runs, database.runs());
+  const std::filesystem::path folder = std::filesystem::absolute(database.database().file()).parent_path();
+  estimate.free_bytes = static_cast<double>(std::filesystem::space(folder).available);
+  const std::optional<std::uint64_t> first = MissingRuns(database, shard, run_count(sweep)).next();
+  if (!first) return estimate;
+  const Clock::time_point start = Clock::now();
+  const RunRecord record = RunWorker(sweep).evaluate(*first);
+  estimate.seconds = seconds_since(start) * static_cast<double>(estimate.missing) / std::max(1, jobs);
+  estimate.bytes = bytes_of(record) * static_cast<double>(estimate.runs);
+  return estimate;
+}
+
+SweepOutcome run_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs,
+                       const base::Progress& progress) {
+  const Clock::time_point start = Clock::now();
+  const std::uint64_t missing = runs_of(sweep, shard) - std::min(runs_of(sweep, shard), database.runs());
+  MissingRuns runs(database, shard, run_count(sweep));
+  SweepOutcome outcome;
+  std::mutex mutex;  // of the database, the list of runs and the outcome
+  progress("runs", 0.0);
+  core::for_each_parallel(static_cast<std::size_t>(std::max(1, jobs)), jobs, [&](std::size_t) {
+    RunWorker worker(sweep);
+    while (true) {
+      std::optional<std::uint64_t> run;
+      {
+        const std::lock_guard lock(mutex);
+        run = runs.next();
+      }
+      if (!run) return;
+      const Clock::time_point began = Clock::now();
+      const RunRecord record = worker.evaluate(*run);
+      const double wall_s = seconds_since(began);
+      double fraction = 0.0;
+      {
+        const std::lock_guard lock(mutex);
+        database.add(record, wall_s);
+        ++outcome.done;
+        fraction = static_cast<double>(outcome.done) / static_cast<double>(std::max<std::uint64_t>(1, missing));
+      }
+      progress("runs", fraction);
+    }
+  });
+  SqlStatement failed = database.database().prepare("SELECT count(*) FROM run WHERE status = 'failed'");
+  failed.step();
+  outcome.failed = static_cast<std::uint64_t>(failed.integer(0));
+  outcome.wall_s = seconds_since(start);
+  return outcome;
+}
+
+}  // namespace glidelab::validate

@@ -1,0 +1,37 @@
+/// Runs what is missing of a sweep, on several threads, into its database.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "base/progress.h"
+#include "validate/sweep.h"
+#include "validate/sweep_database.h"
+
+namespace glidelab::validate {
+
+/// What a sweep will take, from one run of it that was measured and thrown away.
+struct SweepEstimate {
+  std::uint64_t runs = 0;     ///< of the shard
+  std::uint64_t missing = 0;  ///< of these, not in the database yet
+  double seconds = 0.0;       ///< for what is missing, on `jobs` threads
+  double bytes = 0.0;         ///< of the database in the end
+  double free_bytes = 0.0;    ///< on its disk
+};
+
+/// Evaluates the first missing run.
+SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs);
+
+struct SweepOutcome {
+  std::uint64_t done = 0;    ///< runs of this call
+  std::uint64_t failed = 0;  ///< of all runs in the database
+  double wall_s = 0.0;
+};
+
+/// Every run of the shard that the database does not have. Memory does not grow with their number. The progress counts
+/// what was missing at the start; an exception from it ends the work, and what is finished stays.
+SweepOutcome run_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs,
+                       const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::validate

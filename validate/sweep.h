@@ -1,0 +1,80 @@
+/// A sweep: one scenario, the keys of it that vary, how their values are combined, and what analyses every run.
+///
+/// Read from one TOML file (docs/sweep.md). A point is one combination of values; every point is run `replicates`
+/// times with seeds of its own. Run r belongs to point r / replicates. What a run is depends on the sweep's seed and
+/// its number alone, so the order of the runs and the number of threads do not matter.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/toml_set.h"
+
+namespace glidelab::validate {
+
+enum class Level {
+  tracks,  ///< true positions at the frames' times and white noise, no pictures
+  clips,   ///< rendered in memory, calibrated and tracked
+};
+
+enum class Design { factorial, latin_hypercube, sobol };
+
+/// Where the values of a key come from.
+struct AxisSource {
+  enum class Kind {
+    list,         ///< `values`
+    linear,       ///< from `from` to `to`: `count` of them (factorial), or anywhere between
+    logarithmic,  ///< the same with equal ratios
+    uniform,      ///< the rest: drawn for every run
+    log_uniform,
+    normal,      ///< `mean`, `sd`
+    log_normal,  ///< `mean` is the median, `sd` that of the natural logarithm
+  };
+  Kind kind = Kind::list;
+  std::vector<base::TomlScalar> values;
+  double from = 0.0, to = 0.0;
+  std::size_t count = 0;
+  double mean = 0.0, sd = 0.0;
+  bool drawn() const { return kind >= Kind::uniform; }
+};
+
+struct Axis {
+  std::string name;               ///< its column in the database
+  std::vector<std::string> keys;  ///< dotted paths in the scenario, all with one value; or "tracks.noise_m"
+  AxisSource source;
+};
+
+/// One way to analyse a run's clips.
+struct Analysis {
+  std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory"
+  std::optional<double> bandwidth_s;        ///< given; else chosen
+  std::string bandwidth_rule = {};          ///< by a rule of core/bandwidth_rule.h; empty: the default one
+  std::string name() const;                 ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
+};
+
+struct Sweep {
+  std::filesystem::path file;
+  std::string text;  ///< of the file
+  std::string name;
+  std::filesystem::path scenario_file;
+  std::string scenario_text;
+  Level level = Level::tracks;
+  Design design = Design::factorial;
+  std::uint64_t seed = 1;
+  std::uint64_t samples = 0;  ///< points of a design other than factorial
+  std::uint64_t replicates = 1;
+  double noise_m = 0.0;           ///< standard deviation of a track's positions
+  std::optional<double> field_m;  ///< width of the plane that the picture shall show: sets the camera's distance
+  std::vector<Axis> axes;
+  std::vector<Analysis> analyses;
+  std::vector<std::string> camera_files;  ///< texts of the cameras that occur, as part of what the sweep is
+};
+
+/// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,
+/// a value that the scenario refuses (each value of each axis is tried, the others at their first ones).
+Sweep read_sweep(const std::filesystem::path& path);
+
+}  // namespace glidelab::validate

@@ -1,0 +1,274 @@
+#include "validate/sweep_database.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "base/errors.h"
+#include "validate/sweep_design.h"
+
+namespace glidelab::validate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTables = R"sql(
+CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE "schema" ("table" TEXT, "column" TEXT, unit TEXT, meaning TEXT, PRIMARY KEY ("table", "column")) WITHOUT ROWID;
+CREATE TABLE result (run INTEGER, configuration TEXT, estimator TEXT, quantity TEXT, truth REAL, value REAL, sd REAL,
+                     low95 REAL, high95 REAL, least_sd REAL, why TEXT,
+                     PRIMARY KEY (run, configuration, estimator, quantity)) WITHOUT ROWID;
+CREATE TABLE clip (run INTEGER, clip TEXT, estimator TEXT, frames INTEGER, detected INTEGER, bandwidth_s REAL,
+                   position_noise_m REAL, r2_up REAL, r2_down REAL, PRIMARY KEY (run, clip, estimator)) WITHOUT ROWID;
+CREATE TABLE timing (run INTEGER PRIMARY KEY, wall_s REAL);
+INSERT INTO "schema" VALUES
+ ('run', 'run', '', 'number of the run, from 0'), ('run', 'point', '', 'combination of values: run / replicates'),
+ ('run', 'replicate', '', 'which of the runs of its point'), ('run', 'seed', '', 'of all random numbers of the run'),
+ ('run', 'status', '', 'done or failed'), ('run', 'why', '', 'why a run failed'),
+ ('result', 'configuration', '', 'its name in the scenario'), ('result', 'estimator', '', 'how it was analysed'),
+ ('result', 'quantity', '', 'what was recovered, with its unit: k_over_m_1_s, mu, alpha_deg, v_lim_m_s'),
+ ('result', 'truth', 'of the quantity', 'what the scenario put in; null where it has no such thing'),
+ ('result', 'value', 'of the quantity', 'as recovered; null where the data do not determine it'),
+ ('result', 'sd', 'of the quantity', 'standard deviation as the analysis states it'),
+ ('result', 'low95', 'of the quantity', 'lower end of the stated 95 % interval'),
+ ('result', 'high95', 'of the quantity', 'upper end of the stated 95 % interval'),
+ ('result', 'least_sd', 'of the quantity', 'Cramer-Rao bound of the standard deviation; of tracks only'),
+ ('result', 'why', '', 'why there is no value'),
+ ('clip', 'estimator', '', 'how it was analysed'), ('clip', 'frames', '', 'of the clip'),
+ ('clip', 'detected', '', 'frames in which the marker was found'),
+ ('clip', 'bandwidth_s', 's', 'standard deviation of the smoothing kernel'),
+ ('clip', 'position_noise_m', 'm', 'standard deviation of a position, as estimated'),
+ ('clip', 'r2_up', '', 'of the line a(v) for v < 0'), ('clip', 'r2_down', '', 'of the line a(v) for v > 0'),
+ ('timing', 'wall_s', 's', 'wall time of the run on its thread');
+)sql";
+
+/// A key's unit is the end of its name.
+std::string unit_of_key(const std::string& key) {
+  static const std::vector<std::pair<const char*, const char*>> kUnits = {{"_over_m_1_s", "1/s"},
+                                                                          {"_m_s2", "m/s^2"},
+                                                                          {"_n_s_m", "N s/m"},
+                                                                          {"_e_s", "e-/s"},
+                                                                          {"_photons_s", "1/s"},
+                                                                          {"_m_s", "m/s"},
+                                                                          {"_kbit_s", "kbit/s"},
+                                                                          {"_kg_m", "kg/m"},
+                                                                          {"_kg", "kg"},
+                                                                          {"_deg", "deg"},
+                                                                          {"_hz", "Hz"},
+                                                                          {"_px", "px"},
+                                                                          {"_ppm", "1e-6"},
+                                                                          {"_s", "s"},
+                                                                          {"_m", "m"},
+                                                                          {"_n", "N"},
+                                                                          {"_e", "e-"}};
+  const std::size_t index = key.rfind('[');
+  const std::string bare = key.back() == ']' && index != std::string::npos ? key.substr(0, index) : key;
+  for (const auto& [ending, unit] : kUnits) {
+    if (bare.ends_with(ending)) return unit;
+  }
+  return {};
+}
+
+std::string run_table(const Sweep& sweep) {
+  std::string sql =
+      "CREATE TABLE run (run INTEGER PRIMARY KEY, point INTEGER NOT NULL, replicate INTEGER NOT NULL, seed INTEGER NOT "
+      "NULL, status TEXT NOT NULL, why TEXT";
+  for (const Axis& axis : sweep.axes) sql += ", " + sql_name(axis.name);
+  return sql + ")";
+}
+
+std::vector<std::pair<std::string, std::string>> identity_of(const Sweep& sweep, const std::string& version) {
+  std::vector<std::pair<std::string, std::string>> entries = {{"format", "1"},
+                                                              {"program version", version},
+                                                              {"sweep", sweep.name},
+                                                              {"sweep file's text", sweep.text},
+                                                              {"scenario's text", sweep.scenario_text},
+                                                              {"seed", fmt::format("{}", sweep.seed)},
+                                                              {"runs", fmt::format("{}", run_count(sweep))}};
+  for (std::size_t i = 0; i < sweep.camera_files.size(); ++i) {
+    entries.emplace_back(fmt::format("camera file {}", i + 1), sweep.camera_files[i]);
+  }
+  return entries;
+}
+
+std::string shorten(const std::string& text) {
+  constexpr std::size_t kShown = 60;
+  if (text.find('\n') != std::string::npos) return "another text";
+  return fmt::format("\"{}\"", text.size() > kShown ? text.substr(0, kShown) + "…" : text);
+}
+
+/// InputError where the database is not one of this sweep.
+void check_identity(Database& database, const std::vector<std::pair<std::string, std::string>>& expected) {
+  std::vector<std::pair<std::string, std::string>> found;
+  SqlStatement tables = database.prepare("SELECT count(*) FROM sqlite_master WHERE name IN ('sweep', 'run', 'result')");
+  tables.step();
+  if (tables.integer(0) == 3) found = sweep_entries(database);
+  for (const auto& wanted : expected) {
+    const auto entry =
+        std::find_if(found.begin(), found.end(), [&](const auto& pair) { return pair.first == wanted.first; });
+    if (entry != found.end() && entry->second == wanted.second) continue;
+    throw base::InputError(base::Issue{
+        database.file().string(), 0, wanted.first, entry == found.end() ? "nothing" : shorten(entry->second),
+        fmt::format("{}: a database goes on with the sweep and the program that began it; give another --out",
+                    wanted.second.find('\n') == std::string::npos ? shorten(wanted.second) : "that of this sweep")});
+  }
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> sweep_entries(Database& database) {
+  std::vector<std::pair<std::string, std::string>> entries;
+  SqlStatement select = database.prepare("SELECT key, value FROM sweep ORDER BY key");
+  while (select.step()) entries.emplace_back(select.text(0), select.text(1));
+  return entries;
+}
+
+WriterLock::WriterLock(const fs::path& database) {
+  const std::string name = database.string() + "-lock";
+  file_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0) base::throw_system_error(name, "cannot be made", errno);
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+  const int error = errno;
+  ::close(file_);
+  if (error == EWOULDBLOCK) {
+    throw base::EnvironmentError(
+        fmt::format("{}: another process is filling it; wait for it, or give another --out", database.string()));
+  }
+  base::throw_system_error(name, "cannot be locked", error);
+}
+
+WriterLock::~WriterLock() {
+  ::close(file_);  // the file stays: to remove it would let two processes lock two files of one name
+}
+
+SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std::string& version, const Shard& shard)
+    : lock_(file),
+      database_(file, Database::Mode::create),
+      identity_(identity_of(sweep, version)),
+      axes_(sweep.axes.size()) {
+  SqlStatement any = database_.prepare("SELECT count(*) FROM sqlite_master");
+  any.step();
+  const bool empty = any.integer(0) == 0;
+  any.reset();
+  identity_.emplace_back("shard", fmt::format("{}/{}", shard.index, shard.count));
+  if (empty) {
+    database_.run("PRAGMA journal_mode = WAL");
+    Transaction transaction(database_);
+    database_.run(kTables);
+    database_.run(run_table(sweep));
+    SqlStatement column = database_.prepare("INSERT INTO \"schema\" VALUES ('run', ?1, ?2, ?3)");
+    for (const Axis& axis : sweep.axes) {
+      column.bind(1, axis.name).bind(2, unit_of_key(axis.keys.front()));
+      column.bind(3, fmt::format("varied: {}", fmt::join(axis.keys, ", "))).run();
+    }
+    SqlStatement entry = database_.prepare("INSERT INTO sweep VALUES (?1, ?2)");
+    for (const auto& [key, value] : identity_) entry.bind(1, key).bind(2, value).run();
+    transaction.commit();
+  } else {
+    check_identity(database_, identity_);
+  }
+  database_.run("PRAGMA synchronous = NORMAL");  // a killed process loses nothing; a power cut at most the last runs
+  std::string marks;
+  for (std::size_t i = 0; i < axes_; ++i) marks += fmt::format(", ?{}", 7 + i);
+  add_run_ = database_.prepare(fmt::format("INSERT INTO run VALUES (?1, ?2, ?3, ?4, ?5, ?6{})", marks));
+  add_result_ = database_.prepare("INSERT INTO result VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)");
+  add_clip_ = database_.prepare("INSERT INTO clip VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
+  add_timing_ = database_.prepare("INSERT INTO timing VALUES (?1, ?2)");
+}
+
+std::vector<std::uint64_t> SweepDatabase::runs_within(std::uint64_t from, std::uint64_t to) {
+  std::vector<std::uint64_t> runs;
+  SqlStatement select = database_.prepare("SELECT run FROM run WHERE run >= ?1 AND run < ?2 ORDER BY run");
+  select.bind(1, static_cast<std::int64_t>(from)).bind(2, static_cast<std::int64_t>(to));
+  while (select.step()) runs.push_back(static_cast<std::uint64_t>(select.integer(0)));
+  return runs;
+}
+
+std::uint64_t SweepDatabase::runs() {
+  SqlStatement select = database_.prepare("SELECT count(*) FROM run");
+  select.step();
+  return static_cast<std::uint64_t>(select.integer(0));
+}
+
+void SweepDatabase::add(const RunRecord& record, double wall_s) {
+  Transaction transaction(database_);
+  const auto run = static_cast<std::int64_t>(record.run);
+  add_run_->bind(1, run).bind(2, static_cast<std::int64_t>(record.point));
+  add_run_->bind(3, static_cast<std::int64_t>(record.replicate)).bind(4, static_cast<std::int64_t>(record.seed));
+  add_run_->bind(5, record.failed ? "failed" : "done");
+  if (record.failed) add_run_->bind(6, std::string_view(record.why));
+  for (std::size_t i = 0; i < record.values.size(); ++i) {
+    const int parameter = 7 + static_cast<int>(i);
+    const base::TomlScalar& value = record.values[i];
+    if (const auto* number = std::get_if<double>(&value)) {
+      add_run_->bind(parameter, *number);
+    } else if (const auto* flag = std::get_if<bool>(&value)) {
+      add_run_->bind(parameter, std::int64_t{*flag ? 1 : 0});
+    } else {
+      add_run_->bind(parameter, std::string_view(std::get<std::string>(value)));
+    }
+  }
+  add_run_->run();
+  for (const QuantityRow& row : record.quantities) {
+    add_result_->bind(1, run).bind(2, std::string_view(row.configuration)).bind(3, std::string_view(row.estimator));
+    add_result_->bind(4, std::string_view(row.quantity)).bind(5, row.truth).bind(6, row.value).bind(7, row.sd);
+    add_result_->bind(8, row.low95).bind(9, row.high95).bind(10, row.least_sd);
+    if (!row.why.empty()) add_result_->bind(11, std::string_view(row.why));
+    add_result_->run();
+  }
+  for (const ClipRow& row : record.clips) {
+    add_clip_->bind(1, run).bind(2, std::string_view(row.clip)).bind(3, std::string_view(row.estimator));
+    add_clip_->bind(4, static_cast<std::int64_t>(row.frames)).bind(5, static_cast<std::int64_t>(row.detected));
+    add_clip_->bind(6, row.bandwidth_s).bind(7, row.position_noise_m).bind(8, row.r2_up).bind(9, row.r2_down);
+    add_clip_->run();
+  }
+  add_timing_->bind(1, run).bind(2, wall_s).run();
+  transaction.commit();
+}
+
+void SweepDatabase::take(const fs::path& other) {
+  {
+    Database there(other, Database::Mode::read);
+    std::vector<std::pair<std::string, std::string>> expected = identity_;
+    expected.pop_back();  // of any shard
+    check_identity(there, expected);
+  }
+  SqlStatement attach = database_.prepare("ATTACH ?1 AS other");
+  attach.bind(1, std::string_view(other.native())).run();
+  SqlStatement twice = database_.prepare("SELECT run FROM other.run WHERE run IN (SELECT run FROM main.run) LIMIT 1");
+  if (twice.step()) {
+    throw base::InputError(base::Issue{other.string(), 0, fmt::format("run {}", twice.integer(0)),
+                                       "a run that another of the databases has too", "shards that share no run"});
+  }
+  twice.reset();
+  {
+    Transaction transaction(database_);
+    for (const char* table : {"run", "result", "clip", "timing"}) {
+      database_.run(fmt::format("INSERT INTO main.{0} SELECT * FROM other.{0}", table));
+    }
+    transaction.commit();
+  }
+  database_.run("DETACH other");
+}
+
+double bytes_of(const RunRecord& record) {
+  constexpr std::size_t kRow = 12, kNumber = 9;  // record header and key; an 8-byte real with its type
+  std::size_t bytes = 2 * kRow + 6 * kNumber + record.why.size();
+  for (const base::TomlScalar& value : record.values) {
+    const auto* text = std::get_if<std::string>(&value);
+    bytes += text == nullptr ? kNumber : text->size() + 1;
+  }
+  for (const QuantityRow& row : record.quantities) {
+    bytes +=
+        kRow + 6 * kNumber + row.configuration.size() + row.estimator.size() + row.quantity.size() + row.why.size();
+  }
+  for (const ClipRow& row : record.clips) bytes += kRow + 5 * kNumber + row.clip.size() + row.estimator.size();
+  constexpr double kPacking = 1.25;  // pages of a tree that grows at its end are not full
+  return kPacking * static_cast<double>(bytes);
+}
+
+}  // namespace glidelab::validate

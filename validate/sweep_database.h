@@ -1,0 +1,76 @@
+/// The file that a sweep fills: sweep.sqlite.
+///
+///     sweep   key, value                what was swept: the sweep's and the scenario's text, the program's version
+///     schema  table, column, unit, meaning
+///     run     run, point, replicate, seed, status, why, and a column for each varied key
+///     result  run, configuration, estimator, quantity, truth, value, sd, low95, high95, least_sd, why
+///     clip    run, clip, estimator, frames, detected, bandwidth_s, position_noise_m, r2_up, r2_down
+///     timing  run, wall_s
+///
+/// All rows of a run are written in one transaction (WAL), so a run is there whole or not at all. But for `timing` the
+/// contents are a function of the sweep and the program alone.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validate/sqlite.h"
+#include "validate/sweep.h"
+#include "validate/sweep_run.h"
+
+namespace glidelab::validate {
+
+/// Part `index` (from 1) of `count`: the runs r with r mod count = index - 1.
+struct Shard {
+  std::uint64_t index = 1, count = 1;
+  bool has(std::uint64_t run) const { return run % count == index - 1; }
+};
+
+/// What is held for as long as a process writes a database. EnvironmentError where another one does.
+class WriterLock {
+ public:
+  explicit WriterLock(const std::filesystem::path& database);
+  ~WriterLock();
+  WriterLock(const WriterLock&) = delete;
+  WriterLock& operator=(const WriterLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
+
+class SweepDatabase {
+ public:
+  /// Makes the file, or opens one of the same sweep, version and shard. InputError, which says what differs, for
+  /// another one's; EnvironmentError where another process writes it.
+  SweepDatabase(const std::filesystem::path& file, const Sweep& sweep, const std::string& version, const Shard& shard);
+
+  /// Runs of [from, to) that are there, in order.
+  std::vector<std::uint64_t> runs_within(std::uint64_t from, std::uint64_t to);
+  std::uint64_t runs();
+  void add(const RunRecord& record, double wall_s);
+
+  /// Takes over all runs of another database of the same sweep and version (any shard). InputError for another sweep's,
+  /// and for a run that is there already.
+  void take(const std::filesystem::path& other);
+
+  Database& database() { return database_; }
+
+ private:
+  WriterLock lock_;
+  Database database_;
+  std::vector<std::pair<std::string, std::string>> identity_;
+  std::size_t axes_;
+  std::optional<SqlStatement> add_run_, add_result_, add_clip_, add_timing_;
+};
+
+/// Bytes that the rows of a run take, roughly: for the estimate before a sweep.
+double bytes_of(const RunRecord& record);
+
+/// The sweep that a database is of, for who has only the database: name and value of each entry of the table `sweep`.
+std::vector<std::pair<std::string, std::string>> sweep_entries(Database& database);
+
+}  // namespace glidelab::validate

@@ -1,0 +1,188 @@
+#include "validate/sweep_run.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+
+#include "base/errors.h"
+#include "core/clip_to_track.h"
+#include "diagnose/trajectory_results.h"
+#include "render/clip_set.h"
+#include "render/render_experiment.h"
+#include "validate/cramer_rao.h"
+#include "validate/rendered_frames.h"
+#include "validate/sweep_design.h"
+#include "validate/sweep_scenario.h"
+
+namespace glidelab::validate {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (fs::temp_directory_path() / "glidelab-run-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) base::throw_system_error(pattern, "cannot be made", errno);
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;  // a destructor has nobody to tell
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+QuantityRow row_of(const char* quantity, const std::optional<double>& truth, const core::Quantity& found,
+                   const std::optional<double>& least_sd) {
+  QuantityRow row;
+  row.quantity = quantity;
+  row.truth = truth;
+  row.least_sd = least_sd;
+  row.why = found.why;
+  if (!found.estimate) return row;
+  row.value = found.estimate->value;
+  row.sd = found.estimate->sd;
+  row.low95 = found.estimate->low95;
+  row.high95 = found.estimate->high95;
+  return row;
+}
+
+void add_quantities(const core::AnalysisResults& results, const Truth& truth, const std::vector<LeastSd>& least,
+                    const std::string& estimator, std::vector<QuantityRow>& rows) {
+  for (std::size_t c = 0; c < truth.configurations.size(); ++c) {
+    const TrueConfiguration& expected = truth.configurations[c];
+    const LeastSd bound = c < least.size() ? least[c] : LeastSd{};
+    const auto found =
+        std::find_if(results.configurations.begin(), results.configurations.end(), [&](const auto& result) {
+          return std::find(result.clips.begin(), result.clips.end(), expected.clips.front()) != result.clips.end();
+        });
+    if (found == results.configurations.end()) continue;
+    for (QuantityRow row : {row_of("k_over_m_1_s", expected.k_over_m_1_s, found->k_over_m_1_s, bound.k_over_m_1_s),
+                            row_of("mu", expected.mu, found->mu, bound.mu),
+                            row_of("alpha_deg", expected.alpha_deg, found->alpha_deg, bound.alpha_deg),
+                            row_of("v_lim_m_s", expected.v_lim_m_s, found->v_lim_m_s, bound.v_lim_m_s)}) {
+      row.configuration = expected.name;
+      row.estimator = estimator;
+      rows.push_back(std::move(row));
+    }
+  }
+}
+
+void add_clips(const core::AnalysisResults& results, const std::string& estimator, std::vector<ClipRow>& rows) {
+  for (const core::ClipResult& clip : results.clips) {
+    ClipRow row{clip.name,    estimator,   clip.frames, clip.detected, clip.bandwidth_s, clip.position_noise_m,
+                std::nullopt, std::nullopt};
+    for (const core::LineFit& line : clip.segments) (line.direction < 0 ? row.r2_up : row.r2_down) = line.r2;
+    rows.push_back(std::move(row));
+  }
+}
+
+bool same_for_all_seeds(const render::ClockSetup& clock) {
+  return clock.jitter_s == 0.0 && clock.dropped_fraction == 0.0 && clock.duplicated_fraction == 0.0;
+}
+
+}  // namespace
+
+MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs) {
+  const TemporaryFolder folder;
+  const fs::path pictures = folder.path() / "e", truth = folder.path() / "t";
+  fs::create_directory(pictures);
+  fs::create_directory(truth);
+  const bool lossy = scenario.codec == render::Codec::mjpeg || scenario.codec == render::Codec::h264;
+  render::render_experiment(scenario, pictures, truth, {.seed = seed, .jobs = jobs, .ideal = false, .clips = lossy});
+  core::FrameOpener open = core::open_frames;
+  if (!lossy) open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, jobs), seed);
+  MadeTracks made = make_tracks(scenario, seed);
+  const core::Experiment experiment = core::read_experiment(pictures);
+  made.setups = experiment.clips;
+  made.tracks = core::tracks_of(experiment, jobs, base::no_progress, open).tracks;
+  return made;
+}
+
+core::AnalysisResults phase_diagram_of(const MadeTracks& made, const core::MotionOptions& options) {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = made.gravity_m_s2;
+  for (std::size_t c = 0; c < made.tracks.size(); ++c) {
+    results.clips.push_back(core::analyze_motion(made.setups[c], made.tracks[c], options));
+  }
+  results.configurations = core::join_configurations(made.setups, results.clips, made.gravity_m_s2, options.lines);
+  if (options.lines == core::LineMethod::generalised) results.estimator = "phase-diagram-gls";
+  return results;
+}
+
+MadeTracks RunWorker::tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario) {
+  if (!same_for_all_seeds(scenario.recording.clock)) return make_tracks(scenario, record.seed);
+  if (made_of_ != text) {
+    made_ = make_tracks(scenario, record.seed);
+    made_of_ = text;
+  }
+  return made_;
+}
+
+void RunWorker::fill(RunRecord& record) {
+  const RunScenario run = scenario_with(sweep_, record.values);
+  MadeTracks made;
+  std::vector<LeastSd> least;
+  if (sweep_.level == Level::clips) {
+    made = film_tracks(run.scenario, record.seed, 1);
+  } else {
+    const MadeTracks clean = tracks_for(record, run.text, run.scenario);
+    made = with_noise(clean, run.noise_m, record.seed);
+    if (run.noise_m > 0.0) {
+      least = least_sds(clean.truth, std::vector<double>(clean.truth.clips.size(), run.noise_m), clean.gravity_m_s2);
+    }
+  }
+  std::optional<core::AnalysisResults> by_default;  // serves the fit of the whole motion as well
+  for (const Analysis& analysis : sweep_.analyses) {
+    const bool plain = !analysis.bandwidth_s && analysis.bandwidth_rule.empty();
+    if (analysis.estimator == "trajectory" || (analysis.estimator == "phase-diagram" && plain)) {
+      if (!by_default) by_default = phase_diagram_of(made, {});
+      if (analysis.estimator == "trajectory") {
+        add_quantities(diagnose::with_trajectory_fits(*by_default), made.truth, least, analysis.name(),
+                       record.quantities);
+        continue;
+      }
+    }
+    const core::LineMethod lines =
+        analysis.estimator == "phase-diagram-gls" ? core::LineMethod::generalised : core::LineMethod::ordinary;
+    const core::AnalysisResults results =
+        analysis.estimator == "phase-diagram" && plain
+            ? *by_default
+            : phase_diagram_of(made, {analysis.bandwidth_s, analysis.bandwidth_rule, lines});
+    add_clips(results, analysis.name(), record.clips);
+    add_quantities(results, made.truth, least, analysis.name(), record.quantities);
+  }
+}
+
+RunRecord RunWorker::evaluate(std::uint64_t run) {
+  RunRecord record;
+  record.run = run;
+  record.point = run / sweep_.replicates;
+  record.replicate = run % sweep_.replicates;
+  record.seed = seed_of(sweep_, run);
+  record.values = values_of(sweep_, run);
+  try {
+    fill(record);
+  } catch (const base::InputError& error) {
+    record.failed = true;
+    record.why = error.what();
+  } catch (const base::NumericalError& error) {
+    record.failed = true;
+    record.why = error.what();
+  }
+  if (record.failed) {
+    record.quantities.clear();
+    record.clips.clear();
+  }
+  return record;
+}
+
+}  // namespace glidelab::validate

@@ -1,0 +1,72 @@
+/// One run of a sweep: its scenario is simulated (and filmed), analysed in every way that the sweep names, and
+/// compared.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/phase_diagram.h"
+#include "validate/made_tracks.h"
+#include "validate/sweep.h"
+
+namespace glidelab::validate {
+
+/// A recovered quantity of one configuration beside its truth.
+struct QuantityRow {
+  std::string configuration;
+  std::string estimator;  ///< Analysis::name()
+  std::string quantity;   ///< "k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"
+  std::optional<double> truth, value, sd, low95, high95;
+  std::optional<double> least_sd;  ///< Cramér-Rao bound; only of tracks, whose noise is known
+  std::string why;                 ///< why there is no value
+};
+
+struct ClipRow {
+  std::string clip;
+  std::string estimator;
+  std::size_t frames = 0, detected = 0;
+  double bandwidth_s = 0.0;
+  double position_noise_m = 0.0;
+  std::optional<double> r2_up, r2_down;  ///< of the line for v < 0, v > 0
+};
+
+struct RunRecord {
+  std::uint64_t run = 0, point = 0, replicate = 0, seed = 0;
+  std::vector<base::TomlScalar> values;  ///< one for each axis
+  bool failed = false;                   ///< scenario, simulation or analysis refused it; `why` says what
+  std::string why;
+  std::vector<QuantityRow> quantities;
+  std::vector<ClipRow> clips;
+};
+
+/// Evaluates runs, one after the other; one worker for each thread. What a run gives does not depend on those before
+/// it.
+class RunWorker {
+ public:
+  explicit RunWorker(const Sweep& sweep) : sweep_(sweep) {}
+  /// InputError and NumericalError of a run are its outcome; EnvironmentError comes out.
+  RunRecord evaluate(std::uint64_t run);
+
+ private:
+  void fill(RunRecord& record);
+  MadeTracks tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
+
+  const Sweep& sweep_;
+  // The motion of replicates of one point is the same, but for a clock that errs at random.
+  std::string made_of_;
+  MadeTracks made_;
+};
+
+/// The clips of a scenario drawn in memory and tracked, with the truth of the scenario: stills and experiment.toml go
+/// to a folder of its own under the system's folder for temporary files, which is removed. A lossy codec's clips are
+/// written there and read back. The truth's positions count from the track's reference point, the tracks' from the
+/// pattern.
+MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs);
+
+/// The phase diagram of tracks, by any of its methods.
+core::AnalysisResults phase_diagram_of(const MadeTracks& made, const core::MotionOptions& options);
+
+}  // namespace glidelab::validate

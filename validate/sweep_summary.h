@@ -1,0 +1,60 @@
+/// What a sweep's database says: of every quantity and estimator, error, stated and least sd over each varied key.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validate/sweep.h"
+#include "validate/sweep_database.h"
+
+namespace glidelab::validate {
+
+/// Over the runs of one group. Standard deviations and bounds are root mean squares.
+struct ErrorStatistics {
+  std::uint64_t runs = 0;      ///< with a truth
+  std::uint64_t answered = 0;  ///< of these, with a value
+  double bias = 0.0;           ///< mean error
+  double bias_sd = 0.0;        ///< standard error of it
+  double rms = 0.0;            ///< root mean square error
+  double sd = 0.0;             ///< as stated
+  std::optional<double> least_sd;
+  double coverage = 0.0;  ///< part of the 95 % intervals that hold the truth
+};
+
+struct GroupStatistics {
+  std::string label;      ///< of the value or the bin, for a table
+  double position = 0.0;  ///< on a plot's axis: the value, the middle of the bin, or a number for a word
+  ErrorStatistics statistics;
+};
+
+/// One estimator's answers to one quantity, over all configurations.
+struct Series {
+  std::string quantity;
+  std::string estimator;
+  std::vector<GroupStatistics> groups;
+};
+
+/// Over the values of one axis, all others mixed.
+struct AxisSummary {
+  std::string name;
+  std::string unit;
+  bool words = false;               ///< positions are numbers of labels
+  bool logarithmic = false;         ///< better plotted so
+  std::vector<std::string> labels;  ///< of words
+  std::vector<Series> series;
+};
+
+struct SweepSummary {
+  std::string name;
+  std::uint64_t runs = 0, planned = 0, failed = 0;
+  std::vector<std::string> failures;  ///< the commonest reasons, with how often
+  double cpu_s = 0.0;                 ///< wall time of all runs on their threads
+  std::vector<Series> overall;        ///< each of one group
+  std::vector<AxisSummary> axes;
+};
+
+SweepSummary summarize(const Sweep& sweep, Database& database);
+
+}  // namespace glidelab::validate
