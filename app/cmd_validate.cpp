@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/analysis_files.h"
+#include "app/baseline_gate.h"
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/interrupt.h"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 struct ValidateOptions {
   CommonOptions common;
   std::string scenario;
+  BaselineGate gate;
 };
 
 /// The trajectories also stand beside the other results, as `simulate` writes them.
@@ -36,6 +38,7 @@ void copy_trajectories(const fs::path& truth, const fs::path& dir) {
 }
 
 void validate_command(const ValidateOptions& options) {
+  if (options.gate.wanted()) return run_baseline_gate(options.gate, options.common, options.scenario);
   const render::Scenario scenario = render::read_scenario(options.scenario);
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "validate", options.scenario);
@@ -78,6 +81,23 @@ void add_validate(CLI::App& app, Command& chosen) {
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
+  command
+      ->add_option(
+          "--baseline", options->gate.compare,
+          "In place of filming: analyse replicated tracks of the scenario, and fail with status 4 where errors "
+          "are worse than in this file by a statistical test")
+      ->type_name("FILE");
+  command->add_option("--write-baseline", options->gate.write, "Store such errors, for --baseline")->type_name("FILE");
+  command->add_option("--runs", options->gate.runs, "Replicates for a baseline")
+      ->type_name("N")
+      ->check(CLI::Range(10, 1000000))
+      ->capture_default_str();
+  command
+      ->add_option("--noise-m", options->gate.noise_m,
+                   "Standard deviation of a position for --write-baseline; --baseline takes the stored one")
+      ->type_name("METRES")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/validate-<name of the scenario file>",
                      "Seed of the camera's noise; default: the scenario's");
   command->callback([options, &chosen] { chosen = [options] { validate_command(*options); }; });

@@ -1,0 +1,80 @@
+#include "app/baseline_gate.h"
+
+#include <fmt/format.h>
+
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "render/scenario.h"
+#include "report/number_text.h"
+#include "report/text_table.h"
+#include "validate/baseline.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Under its final name only when it is whole.
+void write_whole(const fs::path& file, const std::string& text) {
+  const fs::path part = file.string() + ".part";
+  base::write_file(part, text);
+  fs::rename(part, file);
+}
+
+std::string table(const validate::Baseline& baseline) {
+  std::vector<std::vector<std::string>> rows = {
+      {"configuration", "estimator", "quantity", "answers", "mean error", "sd of errors", "covered", "efficiency"}};
+  for (const validate::ErrorRecord& record : baseline.records) {
+    rows.push_back({record.configuration, record.estimator, record.quantity,
+                    fmt::format("{} / {}", record.answers, record.runs), report::number_text(record.mean, 3),
+                    report::number_text(record.sd, 3), fmt::format("{} / {}", record.covered, record.answers),
+                    record.efficiency > 0.0 ? report::number_text(record.efficiency, 2) : "–"});
+  }
+  return report::text_table(rows, 3);
+}
+
+}  // namespace
+
+void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file) {
+  const std::string text = base::read_file(scenario_file);
+  const render::Scenario scenario = render::read_scenario(text, scenario_file, render::ScenarioChecks::values);
+  std::optional<validate::Baseline> then;
+  if (!gate.compare.empty()) then = validate::read_baseline(gate.compare);
+  if (then && then->scenario != text) {
+    throw base::InputError(base::Issue{gate.compare, 0, "scenario", "the text of another scenario",
+                                       fmt::format("that of {}, as when the baseline was written", scenario_file)});
+  }
+  validate::BaselineOptions options;
+  options.noise_m = then ? then->noise_m : gate.noise_m;
+  options.runs = gate.runs;
+  // Other noise than a baseline's of the default seed: with the same one an unchanged analysis would prove nothing.
+  options.seed = common.seed.value_or(then ? 2 : 1);
+  options.jobs = common.jobs;
+  ProgressDisplay display(common.quiet);
+  const validate::Baseline now =
+      validate::measure_baseline(scenario, text, options, validate::analyze_both, display.callback());
+  display.clear();
+  throw_if_interrupted();
+  print_result(common.json ? validate::baseline_json(now) : table(now));
+  if (!gate.write.empty()) write_whole(gate.write, validate::baseline_json(now));
+  if (!then) return;
+  const validate::BaselineComparison comparison = validate::compare_baselines(*then, now);
+  say(common,
+      fmt::format("{} tests at {} together; errors 1.5 times as large are found with probability {:.2f}, a bias "
+                  "of half a standard deviation with {:.2f}",
+                  comparison.tests, comparison.significance, comparison.power_spread, comparison.power_bias));
+  if (comparison.worse.empty()) {
+    say(common, "nothing is worse than the baseline");
+    return;
+  }
+  std::string what;
+  for (const validate::Worse& worse : comparison.worse) {
+    what += fmt::format("{} {} {}: {} was {}, is {} (p {:.1g})\n", worse.configuration, worse.estimator, worse.quantity,
+                        worse.what, report::number_text(worse.then, 3), report::number_text(worse.now, 3), worse.p);
+  }
+  throw base::NotMet(fmt::format("worse than {}:\n{}", gate.compare, what));
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,21 @@
+/// validate --baseline, --write-baseline: is the analysis worse than it was?
+#pragma once
+
+#include <string>
+
+#include "app/common_options.h"
+
+namespace glidelab::app {
+
+struct BaselineGate {
+  std::string compare;  ///< --baseline
+  std::string write;    ///< --write-baseline
+  std::uint64_t runs = 100;
+  double noise_m = 2e-5;
+  bool wanted() const { return !compare.empty() || !write.empty(); }
+};
+
+/// NotMet where something is worse.
+void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file);
+
+}  // namespace glidelab::app

@@ -1,0 +1,123 @@
+#include "validate/baseline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "catch.h"
+#include "diagnose/trajectory_results.h"
+#include "temp_dir.h"
+#include "validate/small_sweep.h"
+
+using namespace glidelab;
+using validate::Baseline;
+
+namespace {
+
+// A hand touches the glider after kEnd: what the end of the clip keeps out.
+constexpr double kEnd_s = 1.3;
+
+const render::Scenario& scenario() {
+  static const render::Scenario read = [] {
+    std::string text = tests::kSweptScenario;
+    text.replace(text.find("duration_s = 1.2"), 16, "duration_s = 2.0");
+    return render::read_scenario(text, "swept.toml", render::ScenarioChecks::values);
+  }();
+  return read;
+}
+
+validate::MadeTracks touched(validate::MadeTracks made, bool end_kept) {
+  for (std::size_t c = 0; c < made.tracks.size(); ++c) {
+    core::TrackData& track = made.tracks[c];
+    for (std::size_t i = 0; i < track.t_s.size(); ++i) {
+      const double late_s = std::max(0.0, track.t_s[i] - kEnd_s);
+      track.x_m[i] += 0.5 * 0.1 * late_s * late_s;  // pushed with 0.1 m/s²
+    }
+    if (end_kept) made.setups[c].end_s = kEnd_s;
+  }
+  return made;
+}
+
+std::vector<core::AnalysisResults> right(const validate::MadeTracks& made) {
+  return validate::analyze_both(touched(made, true));
+}
+
+Baseline measured(std::uint64_t seed, const validate::AnalyzeTracks& analyze) {
+  return validate::measure_baseline(scenario(), "text", {.noise_m = 2e-5, .runs = 60, .seed = seed, .jobs = 2},
+                                    analyze);
+}
+
+const Baseline& then() {
+  static const Baseline baseline = measured(1, right);
+  return baseline;
+}
+
+bool finds(const validate::AnalyzeTracks& mistaken) {
+  return !validate::compare_baselines(then(), measured(2, mistaken)).worse.empty();
+}
+
+}  // namespace
+
+TEST_CASE("An analysis that did not change is not called worse, with other noise") {
+  // At most 1 % of seeds may fail; these are fixed ones.
+  for (const std::uint64_t seed : {2u, 3u, 4u}) {
+    const validate::BaselineComparison comparison = validate::compare_baselines(then(), measured(seed, right));
+    CHECK(comparison.worse.empty());
+    CHECK(comparison.tests == 32);  // 1 configuration, 2 estimators, 4 quantities, 4 tests
+    // |z| of a normal z has the mean 0.798 and the standard deviation 0.603; 3.42 is the normal quantile of 0.01/32:
+    // (0.5 0.798) / (0.603 sqrt((2.25 + 1) / 60)) = 2.84, so that 0.28 of such changes are found.
+    CHECK(std::abs(comparison.power_spread - 0.28) < 0.01);
+  }
+}
+
+TEST_CASE("A sign that is wrong in the estimator is found") {
+  CHECK(finds([](const validate::MadeTracks& made) {
+    std::vector<core::AnalysisResults> all = right(made);
+    for (core::ConfigurationResult& configuration : all[0].configurations) {
+      if (configuration.mu.estimate) configuration.mu.estimate->value *= -1.0;
+    }
+    return all;
+  }));
+}
+
+TEST_CASE("A bandwidth that is doubled is found") {
+  CHECK(finds([](const validate::MadeTracks& made) {
+    std::vector<core::AnalysisResults> all = right(made);
+    all[0] = validate::analyze_tracks(touched(made, true), 2.0 * all[0].clips.front().bandwidth_s);
+    return all;
+  }));
+}
+
+TEST_CASE("A clip's end that is left in is found") {
+  CHECK(finds([](const validate::MadeTracks& made) { return validate::analyze_both(touched(made, false)); }));
+}
+
+TEST_CASE("A file keeps every number of a baseline") {
+  const Baseline& baseline = then();
+  REQUIRE(baseline.records.size() == 8);
+  const tests::TempDir dir;
+  base::write_file(dir / "b.json", validate::baseline_json(baseline));
+  const Baseline read = validate::read_baseline(dir / "b.json");
+  REQUIRE(read.records.size() == 8);
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(read.records[i].mean == baseline.records[i].mean);
+    CHECK(read.records[i].sd == baseline.records[i].sd);
+    CHECK(read.records[i].covered == baseline.records[i].covered);
+  }
+  CHECK(validate::compare_baselines(read, baseline).worse.empty());
+}
+
+TEST_CASE("A baseline of another scenario, noise or form is refused") {
+  Baseline other = then();
+  other.scenario = "another";
+  CHECK_THROWS_AS(validate::compare_baselines(other, then()), base::InputError);
+  other = then();
+  other.noise_m = 1.0;
+  CHECK_THROWS_AS(validate::compare_baselines(other, then()), base::InputError);
+  const tests::TempDir dir;
+  for (const char* text : {"", "{}", "[1, 2]", "{\"format\": 2}", "{\"format\": 1, \"scenario\": 3}"}) {
+    base::write_file(dir / "b.json", text);
+    CHECK_THROWS_AS(validate::read_baseline(dir / "b.json"), base::InputError);
+  }
+}

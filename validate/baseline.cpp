@@ -1,0 +1,228 @@
+#include "validate/baseline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "core/parallel.h"
+#include "diagnose/trajectory_results.h"
+#include "validate/comparison.h"
+#include "validate/cramer_rao.h"
+
+namespace glidelab::validate {
+namespace {
+
+using boost::math::cdf;
+using boost::math::complement;
+using boost::math::quantile;
+
+constexpr double kWide95 = 1.959963984540054;
+
+/// One-sided p that the mean now is no larger, by Welch's t test. Each side: mean, standard deviation, number.
+struct Side {
+  double mean, sd, count;
+};
+double p_of_mean(const Side& then, const Side& now) {
+  const double a = then.sd * then.sd / then.count, b = now.sd * now.sd / now.count;
+  const double more = now.mean - then.mean;
+  if (a + b == 0.0) return more > 0.0 ? 0.0 : 1.0;
+  const double degrees = (a + b) * (a + b) / (a * a / (then.count - 1.0) + b * b / (now.count - 1.0));
+  return cdf(complement(boost::math::students_t(degrees), more / std::sqrt(a + b)));
+}
+
+double p_of_spread(const ErrorRecord& then, const ErrorRecord& now) {
+  return p_of_mean({then.deviation, then.deviation_sd, static_cast<double>(then.answers)},
+                   {now.deviation, now.deviation_sd, static_cast<double>(now.answers)});
+}
+
+/// That the mean error now is no farther from zero.
+double p_of_bias(const ErrorRecord& then, const ErrorRecord& now) {
+  return p_of_mean({std::abs(then.mean), then.sd, static_cast<double>(then.answers)},
+                   {std::abs(now.mean), now.sd, static_cast<double>(now.answers)});
+}
+
+/// One-sided p that the proportion now is no smaller.
+double p_of_proportion(std::uint64_t then, std::uint64_t of_then, std::uint64_t now, std::uint64_t of_now) {
+  const double n = static_cast<double>(of_then), m = static_cast<double>(of_now);
+  const double pooled = static_cast<double>(then + now) / (n + m);
+  const double variance = pooled * (1.0 - pooled) * (1.0 / n + 1.0 / m);
+  if (variance == 0.0) return 1.0;
+  const double fewer = static_cast<double>(then) / n - static_cast<double>(now) / m;
+  return cdf(complement(boost::math::normal(), fewer / std::sqrt(variance)));
+}
+
+std::pair<double, double> mean_and_sd(const std::vector<double>& values) {
+  if (values.empty()) return {0.0, 0.0};
+  const double n = static_cast<double>(values.size());
+  double sum = 0.0, square = 0.0;
+  for (const double value : values) sum += value;
+  for (const double value : values) square += (value - sum / n) * (value - sum / n);
+  return {sum / n, values.size() > 1 ? std::sqrt(square / (n - 1.0)) : 0.0};
+}
+
+std::vector<ErrorRecord> records_of(const std::vector<std::vector<QuantityComparison>>& runs) {
+  std::vector<ErrorRecord> records;
+  for (std::size_t i = 0; i < runs.front().size(); ++i) {
+    if (!runs.front()[i].truth) continue;
+    const QuantityComparison& first = runs.front()[i];
+    ErrorRecord record;
+    record.configuration = first.configuration;
+    record.estimator = first.estimator;
+    record.quantity = first.quantity;
+    record.runs = runs.size();
+    std::vector<double> errors, deviations;
+    double square = 0.0;
+    for (const auto& run : runs) {
+      const QuantityComparison& q = run.at(i);
+      if (!q.error) continue;
+      if (q.sd && std::abs(*q.error) <= kWide95 * *q.sd) ++record.covered;
+      errors.push_back(*q.error);
+      square += *q.error * *q.error;
+    }
+    record.answers = errors.size();
+    std::tie(record.mean, record.sd) = mean_and_sd(errors);
+    for (const double error : errors) deviations.push_back(std::abs(error - record.mean));
+    std::tie(record.deviation, record.deviation_sd) = mean_and_sd(deviations);
+    if (first.cramer_rao_sd && square > 0.0) {
+      record.efficiency = std::pow(*first.cramer_rao_sd, 2) / (square / static_cast<double>(record.answers));
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace
+
+std::vector<core::AnalysisResults> analyze_both(const MadeTracks& made) {
+  core::AnalysisResults lines = analyze_tracks(made, core::MotionOptions{});
+  core::AnalysisResults whole = diagnose::with_trajectory_fits(lines);
+  return {std::move(lines), std::move(whole)};
+}
+
+Baseline measure_baseline(const render::Scenario& scenario, const std::string& scenario_text,
+                          const BaselineOptions& options, const AnalyzeTracks& analyze,
+                          const base::Progress& progress) {
+  Baseline baseline{scenario_text, options.noise_m, options.runs, {}};
+  const MadeTracks clean = make_tracks(scenario, options.seed);
+  const std::vector<LeastSd> bounds =
+      least_sds(clean.truth, std::vector<double>(clean.tracks.size(), options.noise_m), clean.gravity_m_s2);
+  std::vector<std::vector<QuantityComparison>> runs(options.runs);
+  std::atomic<std::uint64_t> done = 0;
+  core::for_each_parallel(options.runs, options.jobs, [&](std::size_t run) {
+    const MadeTracks made = with_noise(clean, options.noise_m, options.seed * 1000003u + run);
+    for (const core::AnalysisResults& results : analyze(made)) {
+      for (QuantityComparison& q : with_bounds(compare_quantities(results, made.truth), bounds)) {
+        runs[run].push_back(std::move(q));
+      }
+    }
+    progress("runs", static_cast<double>(++done) / static_cast<double>(options.runs));
+  });
+  baseline.records = records_of(runs);
+  return baseline;
+}
+
+BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) {
+  const auto reject = [](const char* key, const std::string& found, const std::string& expected) {
+    throw base::InputError(base::Issue{"baseline", 0, key, found, expected});
+  };
+  if (then.scenario != now.scenario) reject("scenario", "another scenario", "the scenario that it was made with");
+  if (then.noise_m != now.noise_m) {
+    reject("noise_m", fmt::format("{}", now.noise_m), fmt::format("{} as in the baseline", then.noise_m));
+  }
+  BaselineComparison comparison;
+  constexpr std::size_t kTestsEach = 4;
+  comparison.tests = kTestsEach * then.records.size();
+  const double level = comparison.significance / static_cast<double>(comparison.tests);
+  for (const ErrorRecord& before : then.records) {
+    const auto found = std::find_if(now.records.begin(), now.records.end(), [&](const ErrorRecord& record) {
+      return record.configuration == before.configuration && record.estimator == before.estimator &&
+             record.quantity == before.quantity;
+    });
+    const std::string name = fmt::format("{} {} {}", before.configuration, before.estimator, before.quantity);
+    if (found == now.records.end()) reject(name.c_str(), "nothing now", "a quantity of both");
+    const auto judge = [&](const char* what, double p, double value_then, double value_now) {
+      if (p < level) {
+        comparison.worse.push_back(
+            {before.configuration, before.estimator, before.quantity, what, value_then, value_now, p});
+      }
+    };
+    const auto part = [](std::uint64_t some, std::uint64_t all) {
+      return static_cast<double>(some) / static_cast<double>(all);
+    };
+    judge("answers", p_of_proportion(before.answers, before.runs, found->answers, found->runs),
+          part(before.answers, before.runs), part(found->answers, found->runs));
+    if (before.answers < 2 || found->answers < 2) continue;
+    judge("spread", p_of_spread(before, *found), before.deviation, found->deviation);
+    judge("bias", p_of_bias(before, *found), before.mean, found->mean);
+    judge("coverage", p_of_proportion(before.covered, before.answers, found->covered, found->answers),
+          part(before.covered, before.answers), part(found->covered, found->answers));
+  }
+  const double n = static_cast<double>(now.runs), m = static_cast<double>(then.runs);
+  if (now.runs > 2 && then.runs > 2) {
+    constexpr double kLarger = 1.5, kBias = 0.5;
+    const boost::math::normal normal;
+    const double needed = quantile(complement(normal, level));
+    // Of |z|, z standard normal: mean sqrt(2/pi), standard deviation sqrt(1 - 2/pi).
+    constexpr double kMean = 0.7978845608, kSd = 0.6028102750;
+    comparison.power_spread =
+        cdf(normal, (kLarger - 1.0) * kMean / (kSd * std::sqrt(kLarger * kLarger / n + 1.0 / m)) - needed);
+    comparison.power_bias = cdf(normal, kBias / std::sqrt(1.0 / n + 1.0 / m) - needed);
+  }
+  return comparison;
+}
+
+std::string baseline_json(const Baseline& baseline) {
+  nlohmann::ordered_json document;
+  document["format"] = 1;
+  document["scenario"] = baseline.scenario;
+  document["noise_m"] = baseline.noise_m;
+  document["runs"] = baseline.runs;
+  for (const ErrorRecord& record : baseline.records) {
+    document["records"].push_back({{"configuration", record.configuration},
+                                   {"estimator", record.estimator},
+                                   {"quantity", record.quantity},
+                                   {"runs", record.runs},
+                                   {"answers", record.answers},
+                                   {"covered", record.covered},
+                                   {"mean_error", record.mean},
+                                   {"sd_error", record.sd},
+                                   {"mean_deviation", record.deviation},
+                                   {"sd_deviation", record.deviation_sd},
+                                   {"efficiency", record.efficiency}});
+  }
+  return document.dump(2) + "\n";
+}
+
+Baseline read_baseline(const std::filesystem::path& file) {
+  Baseline baseline;
+  try {
+    const nlohmann::json document = nlohmann::json::parse(base::read_file(file));
+    if (document.at("format") != 1) throw base::InputError(base::Issue{file.string(), 0, "format", "another one", "1"});
+    baseline.scenario = document.at("scenario");
+    baseline.noise_m = document.at("noise_m");
+    baseline.runs = document.at("runs");
+    for (const nlohmann::json& of : document.at("records")) {
+      baseline.records.push_back({of.at("configuration"), of.at("estimator"), of.at("quantity"), of.at("runs"),
+                                  of.at("answers"), of.at("covered"), of.at("mean_error"), of.at("sd_error"),
+                                  of.at("mean_deviation"), of.at("sd_deviation"), of.at("efficiency")});
+      const ErrorRecord& record = baseline.records.back();
+      if (record.runs == 0 || record.answers > record.runs || record.covered > record.answers) {
+        throw base::InputError(
+            base::Issue{file.string(), 0, "records", "counts that do not fit", "runs >= answers >= covered"});
+      }
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw base::InputError(
+        base::Issue{file.string(), 0, "", error.what(), "a baseline that --write-baseline has made"});
+  }
+  return baseline;
+}
+
+}  // namespace glidelab::validate
