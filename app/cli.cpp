@@ -112,6 +112,7 @@ int run(int argc, char** argv) {
   add_require(app, command);
   add_laws(app, command);
   add_characterize(app, command);
+  add_diagnose(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

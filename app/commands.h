@@ -18,5 +18,6 @@ void add_sweep(CLI::App& app, Command& chosen);
 void add_require(CLI::App& app, Command& chosen);
 void add_laws(CLI::App& app, Command& chosen);
 void add_characterize(CLI::App& app, Command& chosen);
+void add_diagnose(CLI::App& app, Command& chosen);
 
 }  // namespace glidelab::app

@@ -1,0 +1,151 @@
+#include "diagnose/diagnose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "core/analyze.h"
+#include "diagnose/hypotheses.h"
+#include "diagnose/track_set.h"
+#include "diagnose/verdict.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kFewestPositions = 40;  // all clips together: fewer carry no verdict beside four parameters
+constexpr double kContradiction = 5.0;        // standard deviations between two statements
+
+std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
+  std::vector<std::size_t> effects;
+  for (const std::string& id : ids) {
+    std::string known;
+    bool found = false;
+    for (std::size_t e = 0; e < effect_list().size(); ++e) {
+      known += (known.empty() ? "" : ", ") + std::string(effect_list()[e].id);
+      if (effect_list()[e].id != id) continue;
+      effects.push_back(e);
+      found = true;
+    }
+    if (!found) throw base::InputError(base::Issue{"", 0, "without", fmt::format("\"{}\"", id), "one of " + known});
+  }
+  return effects;
+}
+
+void check(const TrackSet& set) {
+  std::size_t points = 0;
+  for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
+  if (set.motions.empty()) {
+    throw base::InputError(base::Issue{"", 0, "clips", "no clip in which anything moves freely",
+                                       "one or more clips of a glider that moves"});
+  }
+  if (points < kFewestPositions) {
+    throw base::InputError(base::Issue{"", 0, "clips", fmt::format("{} positions of free motion in all", points),
+                                       fmt::format("at least {}: fewer carry no verdict", kFewestPositions)});
+  }
+}
+
+/// What a reader should know of the data before he believes the verdict.
+void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
+  for (const TrackGroup& group : set.groups) {
+    if (group.statements.empty()) {
+      set.notes.push_back(
+          fmt::format("Set-up \"{}\" has neither a plumb line nor an inclination with its uncertainty "
+                      "(incline_sd_deg): what shows in "
+                      "the inclination only (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
+                      group.name));
+    }
+    for (std::size_t a = 0; a < group.statements.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const InclineStatement &one = group.statements[a], &two = group.statements[b];
+        const double z = (one.alpha_rad - two.alpha_rad) / std::hypot(one.sd_rad, two.sd_rad);
+        if (std::abs(z) < kContradiction) continue;
+        set.notes.push_back(fmt::format(
+            "Set-up \"{}\": {} and {} inclination contradict each other by {:.1f} standard deviations; one of them is "
+            "wrong, and what rests on them is unsure.",
+            group.name, one.against, two.against, std::abs(z)));
+      }
+    }
+  }
+  for (std::size_t a = 0; a < set.groups.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (set.groups[a].name != set.groups[b].name) continue;
+      set.notes.push_back(
+          fmt::format("Clips of set-up \"{}\" state different inclinations; they are taken for set-ups of their own.",
+                      set.groups[a].name));
+    }
+  }
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& setup = setups[motion.clip];
+    if (setup.launched == core::Launched::released || motion.t_s.front() > 0.2) continue;
+    const std::size_t some = std::min<std::size_t>(8, motion.x_m.size() - 1);
+    const double way = motion.x_m[some] - motion.x_m.front();
+    const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;
+    if (way * stated < -10.0 * motion.sd_m) {
+      set.notes.push_back(fmt::format("Clip {} is stated as launched {}, and begins the other way.", setup.name,
+                                      stated < 0.0 ? "up" : "down"));
+    }
+  }
+  if (set.pictures) {
+    set.notes.push_back(
+        "The clips' pictures enter by the positions found in them only; blur, brightness and the scene are not looked "
+        "at "
+        "yet.");
+  }
+}
+
+/// How far the best explanation that names something (or nothing) is from the noise: chi² a point.
+double misfit(const TrackSet& set, const Comparison& comparison) {
+  const Hypothesis& best = comparison.all.front();
+  const int fit = best.fit >= 0 ? best.fit : 0;
+  double points = 0.0;
+  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+  return comparison.fits[static_cast<std::size_t>(fit)].cost / points;
+}
+
+}  // namespace
+
+Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
+                           const DiagnoseOptions& options, const base::Progress& progress) {
+  const std::vector<std::size_t> without = indices(options.without);
+  TrackSet set = track_set(results, setups, true);
+  check(set);
+  note_limits(setups, set);
+  progress("weighing explanations", 0.1);
+  Comparison comparison = compare_hypotheses(set, without, options.jobs);
+  if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > 1.5)) {
+    // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
+    TrackSet trimmed = track_set(results, setups, false);
+    std::size_t points = 0;
+    for (const TrackedMotion& motion : trimmed.motions) points += motion.t_s.size();
+    if (points >= kFewestPositions) {
+      set = std::move(trimmed);
+      note_limits(setups, set);
+      set.notes.push_back(
+          fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
+                      set.disputed));
+      progress("weighing explanations", 0.5);
+      comparison = compare_hypotheses(set, without, options.jobs);
+    }
+  }
+  progress("measuring the gap", 0.9);
+  return verdict_of(set, comparison);
+}
+
+Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
+                   const base::Progress& progress) {
+  std::vector<core::ClipSetup> setups;
+  for (const std::filesystem::path& folder : folders) {
+    const core::Experiment experiment = core::read_experiment(folder);
+    if (experiment.lines) {
+      throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
+                                         "clips or tracks; tables of lines are not diagnosed yet"});
+    }
+    setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
+  }
+  const core::AnalysisResults results = core::analyze(folders, {.bandwidth_s = {}, .jobs = options.jobs}, progress);
+  return diagnose_results(results, setups, options, progress);
+}
+
+}  // namespace glidelab::diagnose

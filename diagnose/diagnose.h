@@ -1,0 +1,34 @@
+/// Experiment folders in, a diagnosis out.
+///
+///     folders ─ core's analysis ─ track_set ─ hypotheses (motion_fit, effect_scan, unnamed) ─ held_out ─ Diagnosis
+///
+/// The noise comes from neighbouring positions alone. Where the analysis took part of the motion for a hand or a stop,
+/// all of it is tried first (a push that lasts, a cable that tightens look like that); where nothing of the list
+/// explains it, the part in dispute is left out, and a note says so.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "base/progress.h"
+#include "core/experiment.h"
+#include "core/results.h"
+#include "diagnose/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+struct DiagnoseOptions {
+  std::vector<std::string> without;  ///< effects that are not considered
+  int jobs = 1;
+};
+
+/// InputError for what is wrong with a folder, for data that carry no verdict (too few positions, nothing that moves
+/// freely), and for an unknown effect in `without`.
+Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
+                   const base::Progress& progress = base::no_progress);
+
+/// The same from an analysis that was made already; `setups` are all folders' clips in order.
+Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
+                           const DiagnoseOptions& options, const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::diagnose

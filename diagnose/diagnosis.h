@@ -1,0 +1,93 @@
+/// What a diagnosis says, as plain data; report/ writes it as diagnosis.json and a page.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidelab::diagnose {
+
+struct DiagnosedParameter {
+  std::string key;  ///< with its unit, as in the list of effects
+  double value = 0.0;
+  double sd = 0.0;
+};
+
+struct DiagnosedEffect {
+  std::string id;
+  std::string stage;
+  std::string words;
+  double probability = 0.0;                ///< that it acts, alone or with another
+  std::vector<std::string> equivalent_to;  ///< what these data cannot tell from it
+  std::vector<DiagnosedParameter> parameters;
+};
+
+struct RankedExplanation {
+  std::string id;  ///< one effect, or two joined by " + "
+  double probability = 0.0;
+  double log_evidence_gain = 0.0;  ///< against the nominal model
+};
+
+struct GapRegion {
+  std::string variable;  ///< x_m, v_m_s, t_s, a_m_s2, mass_kg, direction, group, u_px, v_px, clip
+  double from = 0.0, to = 0.0;
+  double excess = 0.0;  ///< largest size over its standard deviation
+  double size = 0.0;
+  std::string unit;  ///< of size: N, m/s², m, N s/m
+  std::string what;  ///< force, friction, displacement, …
+  std::string clip;  ///< where it is one clip's
+};
+
+/// A function of one variable that would explain the gap, for the plots.
+struct GapCurve {
+  std::string variable, what, unit;
+  double log_evidence = 0.0;
+  std::vector<double> at, size, sd;
+};
+
+struct GapOfParameter {
+  std::string quantity, against, group;
+  double z_before = 0.0, z_after = 0.0;
+};
+
+struct GapSizes {
+  double before = 0.0, after = 0.0;
+  double standard_error = 0.0;  ///< of a gap at the floor
+  std::optional<double> shrink;
+  std::vector<std::string> held_out;
+  std::vector<double> before_by_clip, after_by_clip;
+  double acceleration_before = 0.0, acceleration_after = 0.0;
+  std::vector<GapOfParameter> parameters;
+};
+
+/// Residuals of one motion for the plots, in metres.
+struct ResidualCurve {
+  std::string clip;
+  std::vector<double> t_s, x_m, v_m_s, before_m, after_m;
+};
+
+/// How alike what two effects change is: the cosine of the angle between them, everything fitted projected out.
+struct Isolability {
+  std::vector<std::string> ids;
+  std::vector<double> least_seen;           ///< size of each that makes one standard deviation
+  std::vector<std::vector<double>> cosine;  ///< absolute
+};
+
+struct Diagnosis {
+  std::string verdict;  ///< none, effect, unknown
+  std::vector<DiagnosedEffect> effects;
+  double none = 0.0, unknown = 0.0;
+  std::vector<RankedExplanation> ranking;
+  std::string stage;  ///< where the gap is; empty for none
+  std::vector<GapRegion> regions;
+  std::vector<GapCurve> curves;
+  std::optional<GapSizes> gap;
+  std::string next_experiment;
+  std::string summary;  ///< a paragraph in plain words
+  Isolability isolability;
+  std::vector<ResidualCurve> residuals;
+  std::vector<std::string> notes;  ///< limits that a reader should know
+};
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,56 @@
+/// The effects that a diagnosis knows: their ids, stages, parameters, and how large each may be.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnose/effect_values.h"
+
+namespace glidelab::diagnose {
+
+/// One free parameter of an effect.
+struct EffectParameter {
+  std::string_view key;  ///< as in the list of effects, with its unit
+  double EffectValues::*member = nullptr;
+  bool own = false;  ///< each motion has its own
+  double low = 0.0;  ///< what it may be, of `member`
+  double high = 0.0;
+  double step = 0.0;  ///< for the finite difference
+};
+
+/// How the first fit is found.
+enum class Search {
+  amplitude,  ///< one parameter that acts in proportion
+  shape,      ///< a second one is searched on a grid
+  wave,       ///< a frequency, with a phase in every motion
+  pushes,     ///< a time, with a size in every motion
+  frames,     ///< frames that are missing: found one by one
+  noise,      ///< the scatter of single points tells, no trajectory
+};
+
+struct EffectInfo {
+  std::string_view id;
+  std::string_view stage;  ///< dynamics, optics, timing, sensor, tracking, analysis
+  Search search = Search::amplitude;
+  bool both_signs = false;
+  /// The amplitude first, then the shape.
+  std::vector<EffectParameter> parameters;
+  std::string_view words;  ///< for a person: "a drag that grows with the square of the speed"
+};
+
+/// All effects that tracks can show.
+const std::vector<EffectInfo>& effect_list();
+
+/// Index in effect_list(); std::out_of_range for another word.
+std::size_t effect_index(std::string_view id);
+
+/// The value as the list of effects has it: v_c from 1/v_c², n from n - 1, s from s - 1; others as they are. The
+/// derivative by the member goes with it, for the standard deviation.
+struct ShownValue {
+  double value = 0.0;
+  double by_member = 1.0;
+};
+ShownValue shown(const EffectParameter& parameter, double member);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,302 @@
+#include "diagnose/effect_scan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include "base/dense.h"
+#include "core/parallel.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kSeen = 4.0;         // standard deviations that the largest size must make
+constexpr double kNumerical = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double log_mean(const std::vector<double>& logs) {
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (const double l : logs) sum += std::exp(l - most);
+  return most + std::log(sum / static_cast<double>(logs.size()));
+}
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void add(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+};
+
+Range range_of_x(const TrackSet& set) {
+  Range range;
+  for (const TrackedMotion& motion : set.motions) {
+    for (const double x : motion.x_m) range.add(x);
+  }
+  return range;
+}
+
+std::vector<double> shapes_of(const TrackSet& set, const EffectInfo& effect) {
+  std::vector<double> shapes;
+  if (effect.id == "stribeck") {
+    for (double v = 0.008; v < 0.7; v *= 1.5) shapes.push_back(v);
+    return shapes;
+  }
+  const Range x = range_of_x(set);
+  const int parts = effect.id == "tether" ? 24 : 9;
+  for (int i = 0; i < parts; ++i) shapes.push_back(x.low + (x.high - x.low) * (i + 0.5) / parts);
+  return shapes;
+}
+
+EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
+  const EffectInfo& info = effect_list()[effect];
+  EffectScan scan;
+  scan.effect = effect;
+  std::vector<std::vector<double>> shapes = {{}};
+  if (info.search == Search::shape) {
+    shapes.clear();
+    for (const double shape : shapes_of(space.set(), info)) shapes.push_back({shape});
+  }
+  std::vector<double> logs;
+  double best = -1.0;
+  for (const std::vector<double>& shape : shapes) {
+    ScoreColumn column = space.of_effect(effect, shape);
+    const double square = space.dot(column, column);
+    const double z_most = info.parameters[0].high * std::sqrt(std::max(0.0, square));
+    if (!std::isfinite(square) || z_most < kSeen || square < kNumerical * column.rest.squaredNorm()) {
+      logs.push_back(0.0);  // says nothing
+      continue;
+    }
+    scan.visible = true;
+    const double score = space.dot(column, space.residual());
+    const double z = score / std::sqrt(square);
+    const double gain = z > 0.0 || info.both_signs ? 0.5 * z * z : 0.0;
+    logs.push_back(log_amplitude_evidence(z, z_most, info.both_signs));
+    if (gain <= best) continue;
+    best = gain;
+    scan.gain = gain;
+    scan.least_seen = 1.0 / std::sqrt(square);
+    const double size = gain > 0.0 ? score / square : 0.0;
+    const double step = info.parameters[0].step;
+    scan.values = {std::clamp(std::abs(size) < step ? step : size,
+                              info.both_signs ? 0.9 * info.parameters[0].low : step, 0.9 * info.parameters[0].high)};
+    scan.values.insert(scan.values.end(), shape.begin(), shape.end());
+    scan.direction = std::move(column);
+  }
+  scan.log_evidence = log_mean(logs);
+  return scan;
+}
+
+/// Score and information of (sin, cos) of one frequency in one motion.
+struct WavePart {
+  double ss = 0.0, sc = 0.0, cc = 0.0, rs = 0.0, rc = 0.0;
+};
+
+std::vector<WavePart> wave_parts(const ScoreSpace& space, double f) {
+  std::vector<WavePart> parts;
+  for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+    const auto& t = space.set().motions[i].t_s;
+    const auto n = static_cast<Eigen::Index>(t.size());
+    Eigen::VectorXd s(n), c(n);
+    for (Eigen::Index p = 0; p < n; ++p) {
+      s[p] = std::sin(kTurn * f * t[static_cast<std::size_t>(p)]);
+      c[p] = std::cos(kTurn * f * t[static_cast<std::size_t>(p)]);
+    }
+    s = space.own_rest(i, s);
+    c = space.own_rest(i, c);
+    const auto r = space.residual().rest.segment(space.offset(i), n);
+    parts.push_back({s.dot(s), s.dot(c), c.dot(c), s.dot(r), c.dot(r)});
+  }
+  return parts;
+}
+
+double log_wave_evidence(const std::vector<WavePart>& parts, double& best_size, double& best_gain) {
+  constexpr int kSizes = 20, kPhases = 24;
+  double square = 0.0;
+  for (const WavePart& part : parts) square += 0.5 * (part.ss + part.cc);
+  std::vector<double> logs;
+  best_gain = 0.0;
+  std::array<double, kPhases> sine, cosine;
+  for (std::size_t k = 0; k < kPhases; ++k) {
+    sine[k] = std::sin(kTurn * static_cast<double>(k) / kPhases);
+    cosine[k] = std::cos(kTurn * static_cast<double>(k) / kPhases);
+  }
+  for (int a = 0; a < kSizes; ++a) {
+    // Three decades from what begins to show.
+    const double size = 4.0 * std::pow(10.0, 3.0 * a / (kSizes - 1.0)) / std::sqrt(square);
+    double log_likelihood = 0.0, gain = 0.0;
+    for (const WavePart& part : parts) {
+      double most = -std::numeric_limits<double>::infinity();
+      std::array<double, kPhases> at;
+      for (std::size_t k = 0; k < kPhases; ++k) {
+        const double u = size * cosine[k], w = size * sine[k];
+        at[k] = u * part.rs + w * part.rc - 0.5 * (u * u * part.ss + 2.0 * u * w * part.sc + w * w * part.cc);
+        most = std::max(most, at[k]);
+      }
+      double sum = 0.0;
+      for (const double l : at) sum += std::exp(l - most);
+      log_likelihood += most + std::log(sum / kPhases);
+      gain += most;
+    }
+    logs.push_back(log_likelihood);
+    if (gain > best_gain) {
+      best_gain = gain;
+      best_size = size;
+    }
+  }
+  return log_mean(logs);
+}
+
+/// The best wave of all, as a displacement.
+struct Wave {
+  double gain = 0.0, log_evidence = 0.0, size_m = 0.0, f_hz = 0.0;
+};
+
+Wave find_wave(const ScoreSpace& space) {
+  const TrackSet& set = space.set();
+  Wave wave;
+  double longest = 0.0, rate = std::numeric_limits<double>::infinity();
+  for (const TrackedMotion& motion : set.motions) {
+    longest = std::max(longest, motion.t_s.back() - motion.t_s.front());
+    rate = std::min(rate, static_cast<double>(motion.t_s.size() - 1) / (motion.t_s.back() - motion.t_s.front()));
+  }
+  // At least two turns in the longest motion: slower is a drift, which other causes make as well.
+  const double lowest = 2.0 / longest, highest = 0.48 * rate;
+  std::vector<double> logs;
+  for (double f = lowest; f < highest; f += 0.3 / longest) {
+    double size = 0.0, gain = 0.0;
+    logs.push_back(log_wave_evidence(wave_parts(space, f), size, gain));
+    if (gain > wave.gain) wave = {gain, 0.0, size, f};
+  }
+  if (!logs.empty()) wave.log_evidence = log_mean(logs);
+  return wave;
+}
+
+EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& wave) {
+  const TrackSet& set = space.set();
+  const EffectInfo& info = effect_list()[effect];
+  EffectScan scan;
+  scan.effect = effect;
+  if (!(wave.f_hz > 0.0)) return scan;
+  scan.visible = true;
+  scan.gain = wave.gain;
+  scan.log_evidence = wave.log_evidence;
+  const double omega = kTurn * wave.f_hz;
+  const bool force = info.id == "base_vibration";
+  std::size_t i = 0;
+  double amplitude = wave.size_m;
+  for (const WavePart& part : wave_parts(space, wave.f_hz)) {
+    const double det = std::max(part.ss * part.cc - part.sc * part.sc, 1e-12 * part.ss * part.cc + 1e-300);
+    const double u = (part.cc * part.rs - part.sc * part.rc) / det, w = (part.ss * part.rc - part.sc * part.rs) / det;
+    double phase = std::atan2(w, u);  // of u sin + w cos = A sin(wt + phase)
+    if (force) {
+      // x'' + k x' = A sin: x = Im A exp(i w t) / (-w² + i k w).
+      const double k = space.fit().at.global[0] / set.masses[set.motions[i].mass].mass_kg;
+      phase -= std::arg(1.0 / std::complex<double>(-omega * omega, k * omega));
+    }
+    scan.own.push_back({phase});
+    ++i;
+  }
+  if (force) amplitude *= omega * omega;
+  scan.values = {std::min(amplitude, 0.9 * info.parameters[0].high), wave.f_hz};
+  return scan;
+}
+
+EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
+  const TrackSet& set = space.set();
+  EffectScan scan;
+  scan.effect = effect;
+  double longest = 0.0, step = 0.0;
+  std::vector<std::size_t> from_start;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    const double frame = 1.0 / set.clips[motion.clip].frame_rate_hz;
+    if (motion.t_s.front() > 3.0 * frame) continue;  // the start of the clip is not in it
+    from_start.push_back(i);
+    longest = std::max(longest, motion.t_s.back());
+    step = std::max(step, frame);
+  }
+  if (from_start.empty()) return scan;
+  std::vector<double> logs;
+  double best = 0.0;
+  for (double t_r = 4.0 * step; t_r < 0.4 * longest; t_r *= 1.3) {
+    EffectValues values;
+    values.release_s = t_r;
+    std::vector<ScoreColumn> columns;
+    for (const std::size_t i : from_start) columns.push_back(space.of_own(i, &EffectValues::push_m_s2, 1e-4, values));
+    const auto n = static_cast<Eigen::Index>(columns.size());
+    Eigen::MatrixXd products(n, n);
+    Eigen::VectorXd scores(n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const auto& column = columns[static_cast<std::size_t>(a)];
+      scores[a] = space.dot(column, space.residual());
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        products(a, b) = products(b, a) = space.dot(column, columns[static_cast<std::size_t>(b)]);
+      }
+    }
+    const SpreadEvidence evidence = log_spread_evidence(products, scores);
+    logs.push_back(evidence.log_evidence);
+    if (evidence.gain <= best) continue;
+    best = evidence.gain;
+    scan.gain = evidence.free_gain;  // what a full fit is to be held against
+    scan.values = {t_r};
+    scan.own.assign(set.motions.size(), {0.0});
+    for (std::size_t k = 0; k < from_start.size(); ++k) {
+      scan.own[from_start[k]] = {evidence.mean[static_cast<Eigen::Index>(k)]};
+    }
+  }
+  if (logs.empty() || scan.values.empty()) return scan;
+  scan.visible = true;
+  scan.log_evidence = log_mean(logs);
+  return scan;
+}
+
+}  // namespace
+
+EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
+  switch (effect_list()[effect].search) {
+    case Search::wave:
+      return scan_waves(space, effect, find_wave(space));
+    case Search::pushes:
+      return scan_pushes(space, effect);
+    case Search::amplitude:
+    case Search::shape:
+      return scan_sizes(space, effect);
+    default: {
+      EffectScan nothing;
+      nothing.effect = effect;
+      return nothing;
+    }
+  }
+}
+
+std::vector<EffectScan> scan_effects(const ScoreSpace& space, const std::set<std::size_t>& without, int jobs) {
+  const auto& list = effect_list();
+  std::vector<EffectScan> scans(list.size());
+  std::vector<std::size_t> wanted;
+  bool waves = false;
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    scans[e].effect = e;
+    if (without.contains(e)) continue;
+    waves = waves || list[e].search == Search::wave;
+    if (list[e].search != Search::wave) wanted.push_back(e);
+  }
+  Wave wave;  // the slowest of all, and both waves' start
+  core::for_each_parallel(wanted.size() + 1, jobs, [&](std::size_t i) {
+    if (i > 0) {
+      scans[wanted[i - 1]] = scan_effect(space, wanted[i - 1]);
+    } else if (waves) {
+      wave = find_wave(space);
+    }
+  });
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    if (!without.contains(e) && list[e].search == Search::wave) scans[e] = scan_waves(space, e, wave);
+  }
+  return scans;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,32 @@
+/// How well each effect of the list would explain what a fit leaves, in the linear neighbourhood of that fit.
+///
+/// An amplitude is a score test; a second parameter is searched on a grid and its evidence averaged over it; a wave has
+/// one amplitude and one frequency for all motions and a free phase in each (averaged over); a push has a size in each
+/// motion and one time.
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "diagnose/score_space.h"
+
+namespace glidelab::diagnose {
+
+struct EffectScan {
+  std::size_t effect = 0;
+  bool visible = false;                  ///< the largest size allowed would show in these data
+  double gain = 0.0;                     ///< log likelihood gained at the best, linear estimate
+  double log_evidence = 0.0;             ///< against the fit itself, prior sizes averaged over
+  double least_seen = 0.0;               ///< size of one standard deviation (of the first parameter)
+  std::vector<double> values;            ///< of the parameters that are common, where to begin a fit
+  std::vector<std::vector<double>> own;  ///< of each motion's own ones
+  ScoreColumn direction;                 ///< what it changes, at its best shape
+};
+
+/// Of an effect that acts through the trajectory (not Search::frames, Search::noise).
+EffectScan scan_effect(const ScoreSpace& space, std::size_t effect);
+
+/// All effects but those of `without` (which are not visible), in the order of effect_list(), `jobs` at a time.
+std::vector<EffectScan> scan_effects(const ScoreSpace& space, const std::set<std::size_t>& without, int jobs);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,244 @@
+#include "diagnose/frame_effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/dense.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr int kMostMissing = 60;
+constexpr double kClear = 12.0;       // log likelihood that a missing frame must gain
+constexpr double kKnotPoints = 14.0;  // points a bump of the smooth curve
+
+struct Leftover {
+  std::vector<double> over_sd;  // all points of a motion, outliers too
+  std::vector<double> v;
+};
+
+/// What a least-squares curve of bumps leaves of the residuals, in units of the noise.
+Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
+  const TrackedMotion& data = set.motions[i];
+  const Moved moved = move(model_of(set, *fit.layout, fit.at, i), data.t_s,
+                           fit.late.empty() ? std::span<const double>() : std::span(fit.late[i]));
+  const auto n = static_cast<Eigen::Index>(data.t_s.size());
+  const auto bumps = static_cast<Eigen::Index>(std::max(4.0, static_cast<double>(n) / kKnotPoints));
+  const double span = data.t_s.back() - data.t_s.front(), width = span / static_cast<double>(bumps - 1);
+  Eigen::MatrixXd basis(n, bumps);
+  Eigen::VectorXd r(n);
+  for (Eigen::Index p = 0; p < n; ++p) {
+    const auto q = static_cast<std::size_t>(p);
+    r[p] = (data.x_m[q] - moved.x_m[q]) / data.sd_m;
+    for (Eigen::Index b = 0; b < bumps; ++b) {
+      const double z = (data.t_s[q] - data.t_s.front()) / width - static_cast<double>(b);
+      basis(p, b) = std::abs(z) < 4.0 ? std::exp(-0.5 * z * z) : 0.0;
+    }
+  }
+  Eigen::VectorXd rest = r;
+  std::vector<char> out = data.outlier;
+  for (int round = 0; round < 3; ++round) {
+    Eigen::MatrixXd kept = basis;
+    Eigen::VectorXd of = r;
+    for (Eigen::Index p = 0; p < n; ++p) {
+      if (!out[static_cast<std::size_t>(p)]) continue;
+      kept.row(p).setZero();
+      of[p] = 0.0;
+    }
+    Eigen::MatrixXd normal = base::transposed_product(kept, kept);
+    normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();
+    rest = r - base::product(basis, base::solve_positive(normal, base::transposed_product(kept, of)));
+    for (Eigen::Index p = 0; p < n; ++p) out[static_cast<std::size_t>(p)] = std::abs(rest[p]) > 5.0 ? 1 : 0;
+  }
+  const double taken = std::sqrt(1.0 - std::min(0.5, static_cast<double>(bumps) / static_cast<double>(n)));
+  Leftover left;
+  left.v = moved.v_m_s;
+  for (Eigen::Index p = 0; p < n; ++p) left.over_sd.push_back(rest[p] / taken);
+  return left;
+}
+
+double log_mean(const std::vector<double>& logs) {
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (const double l : logs) sum += std::exp(l - most);
+  return most + std::log(sum / static_cast<double>(logs.size()));
+}
+
+/// Best place for one more missing frame in a motion: the gain, and the point from which on all are late.
+struct Place {
+  double gain = 0.0;
+  std::size_t point = 0;
+  double step_s = 0.0;
+};
+
+Place best_place(const ScoreSpace& space, std::size_t i) {
+  const TrackedMotion& data = space.set().motions[i];
+  const auto n = static_cast<Eigen::Index>(data.t_s.size());
+  const auto& v = space.fit().motions[i].v_m_s;
+  const double step = 1.0 / space.set().clips[data.clip].frame_rate_hz;
+  const auto r = space.residual().rest.segment(space.offset(i), n);
+  Place best;
+  for (Eigen::Index from = 3; from + 3 < n; ++from) {
+    const auto f = static_cast<std::size_t>(from);
+    if (std::abs(v[f]) * step < 5.0 * data.sd_m) continue;  // too slow to tell
+    // The neighbours must show the jump themselves.
+    const double before = data.x_m[f - 1] - data.x_m[f - 2], after = data.x_m[f + 1] - data.x_m[f];
+    const double jump = data.x_m[f] - data.x_m[f - 1] - 0.5 * (before + after);
+    if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_m) continue;
+    if (std::abs(jump) < 3.0 * data.sd_m) continue;
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index p = from; p < n; ++p) change[p] = v[static_cast<std::size_t>(p)] * step;
+    const Eigen::VectorXd c = space.own_rest(i, change);
+    const double gain = c.dot(r) - 0.5 * c.squaredNorm();
+    if (gain > best.gain) best = {gain, f, step};
+  }
+  return best;
+}
+
+}  // namespace
+
+MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
+  MissingFrames found;
+  found.effect.effect = effect_index("dropped_frames");
+  found.fit = fit;
+  Lateness late;
+  for (const TrackedMotion& motion : set.motions) late.emplace_back(motion.t_s.size(), 0.0);
+  double points = 0.0, penalty = 0.0;
+  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+  for (int round = 0; round < kMostMissing; ++round) {
+    const ScoreSpace space(set, found.fit);
+    Lateness tried = late;
+    std::size_t added = 0;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      const Place place = best_place(space, i);
+      if (place.gain < kClear) continue;
+      for (std::size_t p = place.point; p < tried[i].size(); ++p) tried[i][p] += place.step_s;
+      ++added;
+    }
+    if (added == 0) break;
+    MotionFit next = fit_motions(set, fit.effects, found.fit.at, tried);
+    if (!(next.cost < found.fit.cost - 2.0 * kClear)) break;
+    late = std::move(tried);
+    found.fit = std::move(next);
+    found.count += added;
+  }
+  if (found.count == 0) return found;
+  // Where each one is costs the logarithm of the places; the fraction, evenly over its logarithm from 1e-4 to 0.1.
+  const double share = static_cast<double>(found.count) / points;
+  penalty = -static_cast<double>(found.count) * std::log(share) + points * share + std::log(7.0);
+  found.effect.gain = 0.5 * (fit.cost - found.fit.cost);
+  found.effect.log_evidence = found.effect.gain - penalty;
+  found.effect.value = share;
+  found.effect.sd = std::sqrt(static_cast<double>(found.count)) / points;
+  return found;
+}
+
+FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
+  FrameEffect found;
+  found.effect = effect_index("timestamp_jitter");
+  std::vector<double> squares, fast;
+  double step = 0.0, sd = 0.0, top = 0.0;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const Leftover left = leftover_of(set, fit, i);
+    step = std::max(step, 1.0 / set.clips[set.motions[i].clip].frame_rate_hz);
+    sd += set.motions[i].sd_m / static_cast<double>(set.motions.size());
+    for (std::size_t p = 0; p < left.v.size(); ++p) {
+      if (std::abs(left.over_sd[p]) > 6.0) continue;
+      squares.push_back(left.over_sd[p] * left.over_sd[p]);
+      fast.push_back(std::pow(left.v[p] / set.motions[i].sd_m, 2));
+      top = std::max(top, std::abs(left.v[p]));
+    }
+  }
+  const auto n = static_cast<double>(squares.size());
+  if (squares.size() < 50 || !(top > 0.0)) return found;
+  const auto log_likelihood = [&](double tau) {
+    // The scale s² of both parts together is fitted: n log(mean(e²/w)) + sum log w.
+    double weighted = 0.0, logs = 0.0;
+    for (std::size_t p = 0; p < squares.size(); ++p) {
+      const double w = 1.0 + tau * tau * fast[p];
+      weighted += squares[p] / w;
+      logs += std::log(w);
+    }
+    return -0.5 * (n * std::log(weighted / n) + logs);
+  };
+  const double none = log_likelihood(0.0);
+  std::vector<double> logs;
+  double best = 0.0, best_tau = 0.0;
+  // From what begins to show among n points, in units of what one standard deviation of position makes at top speed.
+  for (double tau = 2.0 * std::pow(2.0 / n, 0.25) * sd / top; tau < 40.0 * sd / top && tau < 0.5 * step; tau *= 1.3) {
+    logs.push_back(log_likelihood(tau) - none);
+    if (logs.back() > best) {
+      best = logs.back();
+      best_tau = tau;
+    }
+  }
+  if (logs.empty()) return found;
+  found.gain = best;
+  found.log_evidence = log_mean(logs);
+  // sd_m holds the jitter of the mean speed already: back to the part that is none of it.
+  double weighted = 0.0;
+  for (std::size_t p = 0; p < squares.size(); ++p) {
+    const double w = 1.0 + best_tau * best_tau * fast[p];
+    weighted += squares[p] / w / n;
+  }
+  found.value = best_tau * std::sqrt(weighted);
+  found.sd = found.value / std::sqrt(std::max(1.0, 2.0 * best));
+  return found;
+}
+
+FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
+  FrameEffect found;
+  found.effect = effect_index("heavy_tailed_noise");
+  std::vector<double> e;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const Leftover left = leftover_of(set, fit, i);
+    // Relative to each motion's own scatter, so that clips of different noise make no tails.
+    std::vector<double> size;
+    for (const double r : left.over_sd) size.push_back(std::abs(r));
+    std::nth_element(size.begin(), size.begin() + std::ssize(size) / 2, size.end());
+    const double middle = std::max(size[size.size() / 2] / 0.6745, 0.05);
+    for (const double r : left.over_sd) e.push_back(r / middle);
+  }
+  const auto n = static_cast<double>(e.size());
+  if (n < 50.0) return found;
+  const auto gaussian = [&] {
+    double sum = 0.0;
+    for (const double r : e) sum += r * r;
+    return -0.5 * n * (std::log(sum / n) + 1.0);
+  }();
+  std::vector<double> logs;
+  double best = 0.0;
+  for (const double share : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2}) {
+    if (share * n < 1.5) continue;
+    for (const double wide : {3.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
+      double s2 = 1.0, log_likelihood = 0.0;
+      for (int em = 0; em < 4; ++em) {
+        double sum = 0.0, weights = 0.0;
+        log_likelihood = 0.0;
+        for (const double r : e) {
+          const double a = (1.0 - share) * std::exp(-0.5 * r * r / s2);
+          const double b = share / wide * std::exp(-0.5 * r * r / (s2 * wide * wide));
+          const double in = a / (a + b + 1e-300), w = in + (1.0 - in) / (wide * wide);
+          sum += w * r * r;
+          weights += 1.0;
+          log_likelihood += std::log(a + b + 1e-300) - 0.5 * std::log(s2);
+        }
+        s2 = sum / weights;
+      }
+      logs.push_back(log_likelihood - gaussian);
+      if (logs.back() > best) {
+        best = logs.back();
+        found.value = share;
+      }
+    }
+  }
+  if (logs.empty()) return found;
+  found.gain = best;
+  found.log_evidence = log_mean(logs);
+  found.sd = std::sqrt(found.value / n);
+  return found;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,34 @@
+/// Effects that single frames show: missing frames, uneven times, outliers among the positions.
+///
+/// They are judged by what a smooth curve through each motion's residuals leaves, so that a force that the model lacks
+/// is not taken for them.
+#pragma once
+
+#include "diagnose/effect_scan.h"
+
+namespace glidelab::diagnose {
+
+struct FrameEffect {
+  std::size_t effect = 0;
+  double gain = 0.0;
+  double log_evidence = 0.0;
+  double value = 0.0;  ///< fraction of frames, or seconds
+  double sd = 0.0;
+};
+
+/// Missing frames, found one by one where all later positions are ahead by one or more frames' way; the fit that goes
+/// with them has their lateness.
+struct MissingFrames {
+  FrameEffect effect;
+  std::size_t count = 0;
+  MotionFit fit;
+};
+MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit);
+
+/// Scatter that goes with the speed: variance sd² + (v tau)².
+FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit);
+
+/// A fraction of positions with a scatter many times the others'.
+FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit);
+
+}  // namespace glidelab::diagnose

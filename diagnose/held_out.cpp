@@ -1,0 +1,187 @@
+#include "diagnose/held_out.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/dense.h"
+#include "core/local_cubic.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kStretches = 4;
+
+/// A motion with its own parameters projected out.
+struct Projected {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd common;
+  double freedom = 0.0;
+};
+
+Projected project(const FitMotion& motion) {
+  const Eigen::VectorXd scale = (motion.own.colwise().squaredNorm().transpose().array() + 1e-300).sqrt().inverse();
+  const Eigen::MatrixXd own = motion.own * scale.asDiagonal();
+  Eigen::MatrixXd normal = base::transposed_product(own, own);
+  normal.diagonal().array() += 1e-12;
+  const Eigen::MatrixXd gain = base::solve_positive(normal, own.transpose());
+  Projected result;
+  result.residual = motion.residual - base::product(own, base::product(gain, motion.residual));
+  result.common = motion.global - base::product(own, base::product(gain, motion.global));
+  double points = 0.0;
+  for (Eigen::Index p = 0; p < motion.own.rows(); ++p) points += motion.own(p, 0) != 0.0 ? 1.0 : 0.0;
+  result.freedom = std::max(0.0, points - static_cast<double>(own.cols()));
+  return result;
+}
+
+struct Normal {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd right;
+};
+
+Normal statements_normal(const MotionFit& fit) {
+  const auto n = fit.at.global.size();
+  Normal normal{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+  for (const FitStatement& s : fit.statements) {
+    const auto g = static_cast<Eigen::Index>(s.global);
+    normal.matrix(g, g) += 1.0 / (s.sd * s.sd);
+    normal.right[g] += (s.value - fit.at.global[g]) / (s.sd * s.sd);
+  }
+  return normal;
+}
+
+/// Inverse of a scaled, hardly held-back matrix: directions that nothing determines become very uncertain.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix) {
+  const Eigen::VectorXd scale = (matrix.diagonal().array() + 1e-30).sqrt().inverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-12;
+  const Eigen::MatrixXd inverse = base::inverse_positive(scaled);
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+/// Mean square of the second derivative of residuals smoothed as the analysis smooths positions.
+double acceleration_square(const TrackSet& set, std::size_t i, const Eigen::VectorXd& residual, double& count) {
+  const TrackedMotion& data = set.motions[i];
+  const double bandwidth = set.clips[data.clip].bandwidth_s;
+  double sum = 0.0;
+  if (!(bandwidth > 0.0)) return sum;
+  std::vector<double> t, r;
+  for (std::size_t p = 0; p < data.t_s.size(); ++p) {
+    if (data.outlier[p]) continue;
+    t.push_back(data.t_s[p]);
+    r.push_back(residual[static_cast<Eigen::Index>(p)] * data.sd_m);
+  }
+  if (t.size() < 8) return sum;
+  const core::LocalCubic cubic(t, bandwidth);
+  for (std::size_t p = 0; p < t.size(); p += 3) {
+    if (t[p] - t.front() < 2.0 * bandwidth || t.back() - t[p] < 2.0 * bandwidth) continue;
+    const auto row = cubic.row_of_point(p);
+    if (!row) continue;
+    const double a = core::weighted_sums(*row, r).a_m_s2;
+    sum += a * a;
+    count += 1.0;
+  }
+  return sum;
+}
+
+}  // namespace
+
+HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
+  HeldOutGap gap;
+  std::vector<Projected> motions;
+  for (const FitMotion& motion : fit.motions) motions.push_back(project(motion));
+  Normal all = statements_normal(fit);
+  for (const Projected& motion : motions) {
+    all.matrix += base::transposed_product(motion.common, motion.common);
+    all.right += base::transposed_product(motion.common, motion.residual);
+  }
+  double chi2 = 0.0, freedom = 0.0, a_sum = 0.0, a_count = 0.0;
+  for (std::size_t c = 0; c < set.clips.size(); ++c) {
+    Normal others = all;
+    ClipGap clip{set.clips[c].name, 0.0, 0.0};
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (set.motions[i].clip != c) continue;
+      others.matrix -= base::transposed_product(motions[i].common, motions[i].common);
+      others.right -= base::transposed_product(motions[i].common, motions[i].residual);
+      clip.freedom += motions[i].freedom;
+    }
+    if (clip.freedom <= 0.0) continue;
+    const Eigen::MatrixXd covariance = inverse(others.matrix);
+    const Eigen::VectorXd shift = base::product(covariance, others.right);
+    // u'(1 + G C G')^-1 u = u'u - (G'u)' (C^-1 + G'G)^-1 (G'u)
+    Eigen::VectorXd gu = Eigen::VectorXd::Zero(shift.size());
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (set.motions[i].clip != c) continue;
+      const Eigen::VectorXd u = motions[i].residual - base::product(motions[i].common, shift);
+      clip.chi2 += u.squaredNorm();
+      gu += base::transposed_product(motions[i].common, u);
+      a_sum += acceleration_square(set, i, u, a_count);
+    }
+    const Eigen::MatrixXd together = inverse(all.matrix);
+    const Eigen::VectorXd taken = base::product(together, gu);
+    clip.chi2 -= gu.dot(taken);
+    chi2 += clip.chi2;
+    freedom += clip.freedom;
+    gap.clips.push_back(clip);
+  }
+  if (freedom <= 0.0) return gap;
+  gap.value = std::sqrt(std::max(0.0, chi2) / freedom);
+  // Of a root mean square of n points 1/sqrt(2 n), and of the noise that it is held against sqrt(1.32 / n).
+  gap.standard_error = std::sqrt(1.82 / freedom);
+  gap.acceleration_m_s2 = a_count > 0.0 ? std::sqrt(a_sum / a_count) : 0.0;
+  return gap;
+}
+
+TrackSet split_clip(const TrackSet& set) {
+  TrackSet split = set;
+  split.clips.clear();
+  split.motions.clear();
+  for (const TrackedMotion& motion : set.motions) {
+    const std::size_t n = motion.t_s.size();
+    for (int k = 0; k < kStretches; ++k) {
+      const auto from = static_cast<long>(n * static_cast<std::size_t>(k) / 4);
+      const auto to = static_cast<long>(n * static_cast<std::size_t>(k + 1) / 4);
+      TrackedMotion part = motion;
+      part.t_s.assign(motion.t_s.begin() + from, motion.t_s.begin() + to);
+      part.x_m.assign(motion.x_m.begin() + from, motion.x_m.begin() + to);
+      part.outlier.assign(motion.outlier.begin() + from, motion.outlier.begin() + to);
+      for (std::size_t m = 0; m < part.shared_m.size(); ++m) {
+        if (part.shared_m[m].empty()) continue;
+        part.shared_m[m].assign(motion.shared_m[m].begin() + from, motion.shared_m[m].begin() + to);
+      }
+      if (part.t_s.size() < 8) continue;
+      part.clip = split.clips.size();
+      TrackedClip clip = set.clips[motion.clip];
+      clip.name = fmt::format("{}, {:.2f} to {:.2f} s", clip.name, part.t_s.front(), part.t_s.back());
+      split.clips.push_back(clip);
+      split.motions.push_back(std::move(part));
+    }
+  }
+  return split;
+}
+
+Eigen::MatrixXd common_covariance(const MotionFit& fit) {
+  Normal all = statements_normal(fit);
+  for (const FitMotion& motion : fit.motions) {
+    const Projected projected = project(motion);
+    all.matrix += base::transposed_product(projected.common, projected.common);
+  }
+  return inverse(all.matrix);
+}
+
+std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit& fit) {
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  std::vector<StatementPull> pulls;
+  for (const FitStatement& s : fit.statements) {
+    if (s.against.empty()) continue;
+    const auto g = static_cast<Eigen::Index>(s.global);
+    // Residual of a datum that took part in the fit: its variance is sd² less what the fit knows.
+    const double variance = s.sd * s.sd - covariance(g, g);
+    const double z = variance > 1e-6 * s.sd * s.sd ? (s.value - fit.at.global[g]) / std::sqrt(variance) : 0.0;
+    pulls.push_back({"alpha_deg", s.against, set.groups[fit.layout->globals()[s.global].index].name, z});
+  }
+  return pulls;
+}
+
+}  // namespace glidelab::diagnose

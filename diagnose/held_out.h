@@ -1,0 +1,49 @@
+/// How far a model is from data that it was not fitted to.
+///
+/// Each clip in turn is left out: the common parameters come from the other clips (and from what is stated), its own
+/// start is fitted to it, and its residuals are standardised by their predictive covariance, the position noise and
+/// what the uncertainty of the common parameters adds. The root mean square over all clips is 1 where the model is
+/// right. In the linear neighbourhood of the fit to all clips, in which leaving one out is exact.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+#include "diagnose/motion_fit.h"
+
+namespace glidelab::diagnose {
+
+struct ClipGap {
+  std::string clip;
+  double chi2 = 0.0;
+  double freedom = 0.0;
+};
+
+struct HeldOutGap {
+  double value = 0.0;           ///< root mean square of the standardised residuals; 1 is the floor
+  double standard_error = 0.0;  ///< of it, where it is 1: from the number of points and the noise's own uncertainty
+  std::vector<ClipGap> clips;
+  double acceleration_m_s2 = 0.0;  ///< rms of a(real) - a(model), both smoothed as the analysis does, noise included
+};
+
+/// `set` needs two clips or more (see split_clip).
+HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit);
+
+/// A single clip as four stretches that count as clips of their own.
+TrackSet split_clip(const TrackSet& set);
+
+/// Covariance of the common parameters: positions and statements.
+Eigen::MatrixXd common_covariance(const MotionFit& fit);
+
+/// How far a statement lies from what everything else says, in standard deviations of the difference.
+struct StatementPull {
+  std::string quantity;  ///< "alpha_deg"
+  std::string against;   ///< "plumb", "stated"
+  std::string group;
+  double z = 0.0;
+};
+std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit& fit);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,227 @@
+#include "diagnose/hypotheses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/parallel.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
+constexpr std::size_t kFitted = 9;   // effects of the short list that are fitted in full
+constexpr std::size_t kLeaders = 3;  // that are tried with a second one
+constexpr std::size_t kSeconds = 4;
+constexpr double kWorthFitting = 1.0;  // log likelihood gained
+
+bool moves(std::size_t effect) {
+  const Search search = effect_list()[effect].search;
+  return search != Search::frames && search != Search::noise;
+}
+
+struct Found {
+  Hypothesis hypothesis;
+  MotionFit fit;
+};
+
+/// The full fit of one more effect, and its evidence.
+Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double base_gain,
+               double base_evidence) {
+  const FitPoint start = with_effect(set, base, scan.effect, scan.values, scan.own);
+  std::vector<std::size_t> effects = base.effects;
+  effects.push_back(scan.effect);
+  Found found;
+  found.fit = fit_motions(set, effects, start, base.late);
+  const double gain = 0.5 * (base.cost - found.fit.cost);
+  found.hypothesis.effects = effects;
+  found.hypothesis.gain = base_gain + gain;
+  found.hypothesis.log_evidence =
+      base_evidence + scan.log_evidence + (std::isfinite(gain) ? gain - scan.gain : -scan.gain);
+  return found;
+}
+
+void add(Comparison& comparison, Found found) {
+  std::set<std::size_t> members(found.hypothesis.effects.begin(), found.hypothesis.effects.end());
+  for (Hypothesis& other : comparison.all) {
+    if (other.unnamed || std::set<std::size_t>(other.effects.begin(), other.effects.end()) != members) continue;
+    if (other.log_evidence >= found.hypothesis.log_evidence) return;
+    found.hypothesis.fit = static_cast<int>(comparison.fits.size());
+    comparison.fits.push_back(std::move(found.fit));
+    other = found.hypothesis;
+    return;
+  }
+  found.hypothesis.fit = static_cast<int>(comparison.fits.size());
+  comparison.fits.push_back(std::move(found.fit));
+  comparison.all.push_back(found.hypothesis);
+}
+
+std::vector<const EffectScan*> best_of(const std::vector<EffectScan>& scans, std::size_t most) {
+  std::vector<const EffectScan*> best;
+  for (const EffectScan& scan : scans) {
+    if (scan.visible && scan.gain > kWorthFitting && !scan.values.empty()) best.push_back(&scan);
+  }
+  std::sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
+  if (best.size() > most) best.resize(most);
+  return best;
+}
+
+/// Singles by falling evidence.
+std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t size, std::size_t most) {
+  std::vector<Hypothesis> leaders;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.effects.size() == size && hypothesis.fit >= 0 && !hypothesis.unnamed) leaders.push_back(hypothesis);
+  }
+  std::sort(leaders.begin(), leaders.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  if (leaders.size() > most) leaders.resize(most);
+  return leaders;
+}
+
+/// Full fits of the best scans around a fit, `jobs` at a time.
+void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best, double gain,
+              double evidence, int jobs, Comparison& comparison) {
+  std::vector<Found> found(best.size());
+  core::for_each_parallel(best.size(), jobs,
+                          [&](std::size_t i) { found[i] = fit_more(set, base, *best[i], gain, evidence); });
+  for (Found& one : found) add(comparison, std::move(one));
+}
+
+void add_pairs(const TrackSet& set, const std::set<std::size_t>& without, int jobs, Comparison& comparison) {
+  for (const Hypothesis& leader : leaders_of(comparison, 1, kLeaders)) {
+    if (leader.log_evidence < 0.0) continue;
+    const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
+    const ScoreSpace space(set, base);
+    std::set<std::size_t> others = without;
+    others.insert(base.effects.begin(), base.effects.end());
+    const std::vector<EffectScan> scans = scan_effects(space, others, jobs);
+    std::vector<const EffectScan*> best = best_of(scans, kSeconds);
+    std::erase_if(best, [](const EffectScan* scan) { return scan->log_evidence < -1.0; });
+    fit_best(set, base, best, leader.gain, leader.log_evidence, jobs, comparison);
+  }
+}
+
+void add_unnamed(const TrackSet& set, Comparison& comparison) {
+  std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
+  for (const Hypothesis& pair : leaders_of(comparison, 2, 2)) around.push_back(pair);
+  std::sort(around.begin(), around.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  bool first = true;
+  for (const Hypothesis& named : around) {
+    if (named.log_evidence < 3.0) continue;
+    const ScoreSpace space(set, comparison.fits[static_cast<std::size_t>(named.fit)]);
+    std::vector<UnnamedFamily> families = unnamed_families(space);
+    Hypothesis both = named;
+    both.unnamed = true;
+    both.log_evidence += log_unnamed_evidence(families);
+    for (const UnnamedFamily& family : families) both.gain = std::max(both.gain, named.gain + family.gain);
+    comparison.all.push_back(both);
+    if (first) {
+      comparison.unnamed_left = std::move(families);
+      comparison.left_fit = named.fit;
+    }
+    first = false;
+  }
+}
+
+/// Single-frame effects join the hypotheses: alone, and with the best others.
+void add_frame_effects(Comparison& comparison) {
+  const std::vector<Hypothesis> so_far = comparison.all;
+  for (const FrameEffect& frame : comparison.frames) {
+    for (const Hypothesis& other : so_far) {
+      if (other.effects.size() > 1 || (other.effects.size() == 1 && other.log_evidence < 3.0)) continue;
+      if (std::find(other.effects.begin(), other.effects.end(), frame.effect) != other.effects.end()) continue;
+      Hypothesis with = other;
+      with.effects.push_back(frame.effect);
+      with.gain += frame.gain;
+      with.log_evidence += frame.log_evidence;
+      comparison.all.push_back(with);
+    }
+  }
+}
+
+void weigh(const std::set<std::size_t>& without, Comparison& comparison) {
+  const auto& list = effect_list();
+  double seen = 0.0;
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    const bool candidate = !without.contains(e) && (!moves(e) || comparison.scans[e].visible);
+    seen += candidate ? 1.0 : 0.0;
+  }
+  const double one = std::log(kPriorOne / std::max(1.0, seen));
+  const double two = std::log(kPriorTwo / std::max(1.0, 0.5 * seen * (seen - 1.0)));
+  std::vector<double> logs;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    double prior = hypothesis.effects.empty() ? std::log(kPriorNone) : hypothesis.effects.size() == 1 ? one : two;
+    if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
+    logs.push_back(prior + hypothesis.log_evidence);
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (double& l : logs) sum += l = std::exp(l - most);
+  comparison.effect_probability.assign(list.size(), 0.0);
+  for (std::size_t h = 0; h < logs.size(); ++h) {
+    Hypothesis& hypothesis = comparison.all[h];
+    hypothesis.probability = logs[h] / sum;
+    if (hypothesis.unnamed) {
+      comparison.unknown += hypothesis.probability;
+    } else if (hypothesis.effects.empty()) {
+      comparison.none += hypothesis.probability;
+    } else {
+      for (const std::size_t e : hypothesis.effects) comparison.effect_probability[e] += hypothesis.probability;
+    }
+  }
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
+}  // namespace
+
+Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs) {
+  const std::set<std::size_t> left_out(without.begin(), without.end());
+  Comparison comparison;
+  comparison.fits.push_back(fit_nominal(set));
+  comparison.all.push_back({{}, false, 0.0, 0.0, 0.0, 0});
+  const MotionFit nominal = comparison.fits.front();
+  const ScoreSpace space(set, nominal);
+  comparison.scans = scan_effects(space, left_out, jobs);
+  comparison.unnamed = unnamed_families(space);
+  Hypothesis unnamed;
+  unnamed.unnamed = true;
+  unnamed.log_evidence = log_unnamed_evidence(comparison.unnamed);
+  for (const UnnamedFamily& family : comparison.unnamed) unnamed.gain = std::max(unnamed.gain, family.gain);
+  comparison.all.push_back(unnamed);
+
+  fit_best(set, nominal, best_of(comparison.scans, kFitted), 0.0, 0.0, jobs, comparison);
+  for (const EffectScan& scan : comparison.scans) {
+    const bool fitted = std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& h) {
+      return h.effects == std::vector<std::size_t>{scan.effect};
+    });
+    if (scan.visible && !fitted)
+      comparison.all.push_back({{scan.effect}, false, scan.gain, scan.log_evidence, 0.0, -1});
+  }
+  if (const auto dropped = effect_index("dropped_frames"); !left_out.contains(dropped)) {
+    comparison.missing = find_missing_frames(set, nominal);
+    if (comparison.missing.count > 0) {
+      Found found;
+      found.fit = comparison.missing.fit;
+      found.hypothesis.effects = {dropped};
+      found.hypothesis.gain = comparison.missing.effect.gain;
+      found.hypothesis.log_evidence = comparison.missing.effect.log_evidence;
+      add(comparison, std::move(found));
+    } else {
+      comparison.all.push_back({{dropped}, false, 0.0, -3.0, 0.0, -1});
+    }
+  }
+  add_pairs(set, left_out, jobs, comparison);
+  add_unnamed(set, comparison);
+  const MotionFit& best = comparison.fits[static_cast<std::size_t>(comparison.left_fit)];
+  for (const FrameEffect& frame : {scan_jitter(set, best), scan_tails(set, best)}) {
+    if (!left_out.contains(frame.effect)) comparison.frames.push_back(frame);
+  }
+  add_frame_effects(comparison);
+  weigh(left_out, comparison);
+  return comparison;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,45 @@
+/// Which explanation the data bear out: nothing, one effect of the list, two, or something without a name.
+///
+/// Score tests make a short list; each of it is fitted in full, alone and with a second one; the log evidence is that
+/// of the linear neighbourhood (sizes and shapes averaged over their prior) with the gain of the full fit in place of
+/// the linear one. Something unnamed competes as unnamed.h has it, beside nothing and beside each leading explanation:
+/// what an effect leaves unexplained counts against its name.
+///
+/// Prior odds: nothing 0.3, one effect 0.4 (shared by those that these data can show), two 0.1, unnamed 0.2.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/effect_scan.h"
+#include "diagnose/frame_effects.h"
+#include "diagnose/unnamed.h"
+
+namespace glidelab::diagnose {
+
+struct Hypothesis {
+  std::vector<std::size_t> effects;  ///< none, one or two, in the order found
+  bool unnamed = false;              ///< and something besides
+  double gain = 0.0;                 ///< log likelihood, against nothing
+  double log_evidence = 0.0;         ///< against nothing, sizes averaged over their priors
+  double probability = 0.0;
+  int fit = -1;  ///< index in Comparison::fits
+};
+
+struct Comparison {
+  std::vector<MotionFit> fits;      ///< the nominal one first
+  std::vector<Hypothesis> all;      ///< by falling probability
+  std::vector<EffectScan> scans;    ///< around the nominal fit, as effect_list()
+  std::vector<FrameEffect> frames;  ///< jitter, tails
+  MissingFrames missing;
+  std::vector<UnnamedFamily> unnamed;       ///< around nothing
+  std::vector<UnnamedFamily> unnamed_left;  ///< around the best named explanation
+  int left_fit = 0;                         ///< index of its fit
+  double none = 0.0, unknown = 0.0;
+  std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another
+};
+
+/// `without` are effects that are not considered.
+Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1);
+
+}  // namespace glidelab::diagnose

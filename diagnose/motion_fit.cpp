@@ -1,0 +1,373 @@
+#include "diagnose/motion_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/dense.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr int kMostIterations = 40;
+constexpr double kConverged = 1e-3;  // change of chi², small beside what evidence turns on
+constexpr double kWideAlpha = 0.35;  // rad: what holds back an inclination that the data leave open
+using Global = ParameterLayout::Global;
+
+double& member_of(EffectValues& effects, const EffectParameter& parameter) {
+  return effects.*(parameter.member);
+}
+
+/// As the fit wants it: what each parameter is changed by for a derivative.
+double step_of(const Global& global, double at) {
+  switch (global.kind) {
+    case Global::Kind::k:
+      return 1e-5 * std::max(0.05, std::abs(at));
+    case Global::Kind::mu:
+    case Global::Kind::alpha:
+      return 1e-6;
+    case Global::Kind::mass:
+      return 1e-3;
+    case Global::Kind::effect:
+      return global.step;
+    default:
+      return 1e-3;
+  }
+}
+
+bool touches(const TrackSet& set, const Global& global, std::size_t motion) {
+  const TrackedMotion& of = set.motions[motion];
+  if (global.kind == Global::Kind::alpha) return of.group == global.index;
+  if (global.kind == Global::Kind::mass) return of.mass == global.index;
+  if (global.kind == Global::Kind::mode) return global.index < of.shared_m.size() && !of.shared_m[global.index].empty();
+  if (global.kind == Global::Kind::scale) return of.scale_sd > 0.0;
+  return true;
+}
+
+Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i, const Lateness& late,
+            const UnnamedForce* unnamed = nullptr) {
+  const TrackModel model = model_of(set, layout, at, i, unnamed);
+  return move(model, set.motions[i].t_s, late.empty() ? std::span<const double>() : std::span(late[i]));
+}
+
+FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
+                    const Lateness& late, bool derivatives) {
+  const TrackedMotion& data = set.motions[i];
+  const auto n = static_cast<Eigen::Index>(data.t_s.size());
+  FitMotion of;
+  Moved base = moved(set, layout, at, i, late);
+  of.v_m_s = base.v_m_s;
+  std::vector<double> shared(data.t_s.size(), 0.0);
+  const auto& globals = layout.globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (!touches(set, globals[g], i)) continue;
+    const double c = at.global[static_cast<Eigen::Index>(g)];
+    for (std::size_t p = 0; p < shared.size(); ++p) {
+      if (globals[g].kind == Global::Kind::mode) shared[p] += c * data.shared_m[globals[g].index][p];
+      if (globals[g].kind == Global::Kind::scale) shared[p] += c * data.scale_sd * data.x_m[p];
+    }
+  }
+  std::vector<double> weight(data.t_s.size());
+  for (std::size_t p = 0; p < weight.size(); ++p) weight[p] = data.outlier[p] ? 0.0 : 1.0 / data.sd_m;
+  of.residual.resize(n);
+  for (Eigen::Index p = 0; p < n; ++p) {
+    const auto q = static_cast<std::size_t>(p);
+    of.residual[p] = weight[q] * (data.x_m[q] - base.x_m[q] - shared[q]);
+  }
+  if (!derivatives) return of;
+  of.global = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(globals.size()));
+  of.own = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(2 + layout.own().size()));
+  FitPoint near = at;
+  // Central differences: what is left of an effect that the nuisance nearly takes up must not be their error.
+  const auto fill = [&](double& parameter, double step, auto column) {
+    const double kept = parameter;
+    parameter = kept + step;
+    const Moved above = moved(set, layout, near, i, late);
+    parameter = kept - step;
+    const Moved below = moved(set, layout, near, i, late);
+    parameter = kept;
+    for (Eigen::Index p = 0; p < n; ++p) {
+      const auto q = static_cast<std::size_t>(p);
+      column[p] = weight[q] * (above.x_m[q] - below.x_m[q]) / (2.0 * step);
+    }
+  };
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (!touches(set, globals[g], i)) continue;
+    const auto column = static_cast<Eigen::Index>(g);
+    if (globals[g].kind == Global::Kind::mode || globals[g].kind == Global::Kind::scale) {
+      for (Eigen::Index p = 0; p < n; ++p) {
+        const auto q = static_cast<std::size_t>(p);
+        of.global(p, column) = weight[q] * (globals[g].kind == Global::Kind::mode ? data.shared_m[globals[g].index][q]
+                                                                                  : data.scale_sd * data.x_m[q]);
+      }
+      continue;
+    }
+    fill(near.global[column], step_of(globals[g], near.global[column]), of.global.col(column));
+  }
+  for (Eigen::Index o = 0; o < of.own.cols(); ++o) {
+    fill(near.own[i][o], o < 2 ? 1e-6 : layout.own()[static_cast<std::size_t>(o - 2)]->step, of.own.col(o));
+  }
+  return of;
+}
+
+bool inside(const ParameterLayout& layout, const FitPoint& at) {
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    const double value = at.global[static_cast<Eigen::Index>(g)];
+    if (!std::isfinite(value)) return false;
+    if (global.kind == Global::Kind::alpha && std::abs(value) > 1.5) return false;
+    if (global.kind != Global::Kind::effect) continue;
+    if (value < global.parameter->low || value > global.parameter->high) return false;
+  }
+  return true;
+}
+
+std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayout& layout) {
+  std::vector<FitStatement> statements;
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    switch (global.kind) {
+      case Global::Kind::alpha:
+        for (const InclineStatement& s : set.groups[global.index].statements) {
+          statements.push_back({g, s.alpha_rad, s.sd_rad, s.against, true});
+        }
+        statements.push_back({g, set.groups[global.index].stated_rad, kWideAlpha, "", false});
+        break;
+      case Global::Kind::mass:
+      case Global::Kind::mode:
+      case Global::Kind::scale:
+        statements.push_back({g, 0.0, 1.0, "", true});
+        break;
+      default:
+        break;
+    }
+  }
+  return statements;
+}
+
+double cost_of(const MotionFit& fit) {
+  double cost = 0.0;
+  for (const FitMotion& motion : fit.motions) cost += motion.residual.squaredNorm();
+  for (const FitStatement& s : fit.statements) {
+    cost += std::pow((s.value - fit.at.global[static_cast<Eigen::Index>(s.global)]) / s.sd, 2);
+  }
+  return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+}
+
+void linearise_all(const TrackSet& set, MotionFit& fit, bool derivatives) {
+  fit.motions.clear();
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    fit.motions.push_back(linearise(set, *fit.layout, fit.at, i, fit.late, derivatives));
+  }
+}
+
+FitPoint step_from(const MotionFit& fit, double damping) {
+  const auto globals = fit.at.global.size();
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(globals, globals);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(globals), diagonal = right;
+  std::vector<Eigen::MatrixXd> own_inverse, cross;
+  std::vector<Eigen::VectorXd> own_right;
+  for (const FitMotion& motion : fit.motions) {
+    Eigen::MatrixXd own = base::transposed_product(motion.own, motion.own);
+    for (Eigen::Index o = 0; o < own.rows(); ++o) own(o, o) = own(o, o) * (1.0 + damping) + 1e-12;
+    const Eigen::MatrixXd inverse = base::inverse_positive(own);
+    const Eigen::MatrixXd x = base::transposed_product(motion.global, motion.own);
+    const Eigen::VectorXd r = base::transposed_product(motion.own, motion.residual);
+    const Eigen::MatrixXd a = base::transposed_product(motion.global, motion.global);
+    const Eigen::MatrixXd gain = base::product(x, inverse);
+    diagonal += a.diagonal();
+    normal += a - base::product(gain, x.transpose());
+    right += base::transposed_product(motion.global, motion.residual);
+    right -= base::product(gain, r);
+    own_inverse.push_back(inverse);
+    cross.push_back(x);
+    own_right.push_back(r);
+  }
+  for (const FitStatement& s : fit.statements) {
+    const auto g = static_cast<Eigen::Index>(s.global);
+    const double weight = 1.0 / (s.sd * s.sd);
+    normal(g, g) += weight;
+    diagonal[g] += weight;
+    right[g] += weight * (s.value - fit.at.global[g]);
+  }
+  // Scaled, so that a parameter that the data hardly see does no harm to the others.
+  const Eigen::VectorXd scale = (diagonal.array() + 1e-30).sqrt().inverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  scaled.diagonal().array() += damping + 1e-13;
+  const Eigen::VectorXd change = scale.asDiagonal() * base::solve_positive(scaled, scale.cwiseProduct(right));
+  FitPoint next = fit.at;
+  next.global += change;
+  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
+    const Eigen::VectorXd rest = own_right[i] - base::transposed_product(cross[i], change);
+    next.own[i] += base::product(own_inverse[i], rest);
+  }
+  return next;
+}
+
+/// x0 and v0 by a cubic through the first points.
+Eigen::VectorXd start_of(const TrackedMotion& motion) {
+  const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(motion.t_s.size(), 25));
+  Eigen::MatrixXd design(n, 3);
+  Eigen::VectorXd x(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto p = static_cast<std::size_t>(i);
+    const double t = motion.t_s[p] - motion.t_s.front();
+    const double weight = motion.outlier[p] ? 0.0 : 1.0;
+    design.row(i) << weight, weight * t, weight * t * t;
+    x[i] = weight * motion.x_m[p];
+  }
+  const Eigen::VectorXd fit = base::least_squares(design, x);
+  return fit.head(2);
+}
+
+}  // namespace
+
+ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects) : effects_(std::move(effects)) {
+  using Kind = Global::Kind;
+  globals_.push_back({Kind::k});
+  globals_.push_back({Kind::mu});
+  for (std::size_t g = 0; g < set.groups.size(); ++g) globals_.push_back({Kind::alpha, g});
+  for (std::size_t m = 0; m < set.masses.size(); ++m) {
+    if (set.masses[m].sd_kg > 0.0) globals_.push_back({Kind::mass, m});
+  }
+  for (std::size_t m = 0; m < set.modes; ++m) globals_.push_back({Kind::mode, m});
+  const bool scale =
+      std::any_of(set.motions.begin(), set.motions.end(), [](const auto& m) { return m.scale_sd > 0.0; });
+  if (scale) globals_.push_back({Kind::scale});
+  for (const std::size_t effect : effects_) {
+    for (const EffectParameter& parameter : effect_list()[effect].parameters) {
+      if (parameter.own) {
+        own_.push_back(&parameter);
+      } else {
+        globals_.push_back({Kind::effect, 0, &parameter, effect, parameter.step});
+      }
+    }
+  }
+}
+
+std::size_t ParameterLayout::first_of(std::size_t effect) const {
+  for (std::size_t g = 0; g < globals_.size(); ++g) {
+    if (globals_[g].kind == Global::Kind::effect && globals_[g].effect == effect) return g;
+  }
+  return globals_.size();
+}
+
+TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
+                    const UnnamedForce* unnamed) {
+  const TrackedMotion& data = set.motions[motion];
+  TrackModel model;
+  model.mass_kg = set.masses[data.mass].mass_kg;
+  model.gravity_m_s2 = set.gravity_m_s2;
+  model.x_mid_m = set.groups[data.group].x_mid_m;
+  model.unnamed = unnamed;
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    const double value = at.global[static_cast<Eigen::Index>(g)];
+    if (!touches(set, global, motion)) continue;
+    if (global.kind == Global::Kind::k) model.k_n_s_m = value;
+    if (global.kind == Global::Kind::mu) model.mu = value;
+    if (global.kind == Global::Kind::alpha) model.alpha_rad = value;
+    if (global.kind == Global::Kind::mass) model.mass_kg += value * set.masses[global.index].sd_kg;
+    if (global.kind == Global::Kind::effect) member_of(model.effects, *global.parameter) = value;
+  }
+  model.x0_m = at.own[motion][0];
+  model.v0_m_s = at.own[motion][1];
+  for (std::size_t o = 0; o < layout.own().size(); ++o) {
+    member_of(model.effects, *layout.own()[o]) = at.own[motion][static_cast<Eigen::Index>(2 + o)];
+  }
+  return model;
+}
+
+MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
+                      const Lateness& late) {
+  MotionFit fit;
+  fit.effects = effects;
+  fit.layout = std::make_shared<const ParameterLayout>(set, effects);
+  fit.at = start;
+  fit.late = late;
+  fit.statements = statements_of(set, *fit.layout);
+  linearise_all(set, fit, true);
+  fit.cost = cost_of(fit);
+  double damping = 1e-6;
+  while (std::isfinite(fit.cost) && !fit.converged && fit.iterations < kMostIterations) {
+    ++fit.iterations;
+    MotionFit next = fit;
+    next.at = step_from(fit, damping);
+    if (inside(*fit.layout, next.at)) {
+      linearise_all(set, next, false);
+      next.cost = cost_of(next);
+    } else {
+      next.cost = std::numeric_limits<double>::infinity();
+    }
+    if (next.cost <= fit.cost) {
+      next.converged = fit.cost - next.cost <= kConverged * (1.0 + 1e-5 * fit.cost) && damping <= 1e-2;
+      linearise_all(set, next, true);
+      fit = std::move(next);
+      damping = std::max(1e-9, 0.1 * damping);
+    } else {
+      damping *= 10.0;
+      fit.converged = damping > 1e6;  // rounding, or the edge of what is allowed
+    }
+  }
+  return fit;
+}
+
+MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at) {
+  MotionFit fit;
+  fit.effects = effects;
+  fit.layout = std::make_shared<const ParameterLayout>(set, effects);
+  fit.at = at;
+  fit.statements = statements_of(set, *fit.layout);
+  linearise_all(set, fit, true);
+  fit.cost = cost_of(fit);
+  return fit;
+}
+
+MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
+  const ParameterLayout layout(set, {});
+  MotionFit best;
+  best.cost = std::numeric_limits<double>::infinity();
+  double mass = 0.0;
+  for (const TrackedMotion& motion : set.motions) mass += set.masses[motion.mass].mass_kg;
+  mass /= static_cast<double>(set.motions.size());
+  for (const double k_over_m : {1.0, 3.0, 0.1}) {
+    FitPoint start;
+    start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
+    start.global[0] = k_over_m * mass;
+    start.global[1] = 0.005;
+    for (std::size_t g = 0; g < set.groups.size(); ++g) {
+      start.global[static_cast<Eigen::Index>(2 + g)] = set.groups[g].stated_rad;
+    }
+    for (const TrackedMotion& motion : set.motions) start.own.push_back(start_of(motion));
+    MotionFit fit = fit_motions(set, {}, start, late);
+    if (fit.cost < 0.999 * best.cost) best = std::move(fit);
+    std::size_t points = 0;
+    for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
+    if (best.converged && best.cost < 4.0 * static_cast<double>(points)) break;  // other starts find nothing better
+  }
+  return best;
+}
+
+FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effect, const std::vector<double>& values,
+                     const std::vector<std::vector<double>>& own) {
+  std::vector<std::size_t> effects = fit.effects;
+  effects.push_back(effect);
+  const ParameterLayout layout(set, effects);
+  FitPoint point;
+  point.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
+  point.global.head(fit.at.global.size()) = fit.at.global;  // effects come last, the new one last of them
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    point.global[fit.at.global.size() + static_cast<Eigen::Index>(v)] = values[v];
+  }
+  for (std::size_t i = 0; i < fit.at.own.size(); ++i) {
+    Eigen::VectorXd extended(static_cast<Eigen::Index>(2 + layout.own().size()));
+    extended.head(fit.at.own[i].size()) = fit.at.own[i];
+    for (std::size_t o = 0; !own.empty() && o < own[i].size(); ++o) {
+      extended[fit.at.own[i].size() + static_cast<Eigen::Index>(o)] = own[i][o];
+    }
+    point.own.push_back(extended);
+  }
+  return point;
+}
+
+}  // namespace glidelab::diagnose

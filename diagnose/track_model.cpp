@@ -1,0 +1,165 @@
+#include "diagnose/track_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kLongestStep = 0.012;  // s: 80 frames a second need one step a frame
+constexpr double kLongestTurn = 0.3;    // of omega h and k h
+constexpr int kMostTurns = 20;          // reversals within one step; more is chatter about rest
+
+struct State {
+  double x = 0.0, v = 0.0;
+};
+
+class Mover {
+ public:
+  explicit Mover(const TrackModel& model)
+      : m_(model),
+        sin_(std::sin(model.alpha_rad)),
+        weight_(model.mass_kg * model.gravity_m_s2),
+        cos_(std::cos(model.alpha_rad)),
+        inertia_(model.mass_kg + model.effects.wheels_kg) {
+    const double rate = std::max(
+        {2.0 * std::numbers::pi * model.effects.shake_hz * (model.effects.shake_m_s2 != 0.0 ? 1.0 : 0.0),
+         std::abs(model.k_n_s_m) / model.mass_kg, std::sqrt(std::max(0.0, model.effects.tether_n_m) / model.mass_kg)});
+    step_ = rate > 0.0 ? std::min(kLongestStep, kLongestTurn / rate) : kLongestStep;
+  }
+
+  /// What acts whichever way it moves.
+  double driving(double x, double v, double t) const {
+    const EffectValues& e = m_.effects;
+    double viscous = m_.k_n_s_m * v;
+    if (e.power != 0.0) viscous *= v == 0.0 ? 0.0 : std::pow(std::abs(v), e.power);
+    if (e.rolloff_s2_m2 != 0.0) viscous /= 1.0 + e.rolloff_s2_m2 * v * v;
+    const double off = x - m_.x_mid_m;
+    double force = weight_ * (sin_ + e.bow_1_m * off) - viscous * (1.0 + e.gradient_1_m * off);
+    force -= e.c_kg_m * v * std::abs(v) + e.asymmetry * m_.mu * weight_ * cos_;
+    if (x > e.tether_x_m) force -= e.tether_n_m * (x - e.tether_x_m);
+    if (e.shake_m_s2 != 0.0) {
+      force += m_.mass_kg * e.shake_m_s2 * std::sin(2.0 * std::numbers::pi * e.shake_hz * t + e.shake_phase);
+    }
+    if (pushed_) force += m_.mass_kg * e.push_m_s2;
+    if (m_.unnamed != nullptr) force += (*m_.unnamed)(x, v, t);
+    return force;
+  }
+
+  /// Against the motion.
+  double friction(double v) const {
+    const EffectValues& e = m_.effects;
+    double mu = m_.mu;
+    if (e.stribeck != 0.0) mu *= 1.0 + e.stribeck * std::exp(-(v * v) / (e.stribeck_m_s * e.stribeck_m_s));
+    return mu * weight_ * cos_ + e.force_n;
+  }
+
+  double slide(double x, double v, double t, int direction) const {
+    return (driving(x, v, t) - direction * friction(v)) / inertia_;
+  }
+
+  State advance(State s, double t, double t_end) {
+    const double release = m_.effects.release_s;
+    if (m_.effects.push_m_s2 != 0.0 && t < release && release < t_end) {
+      s = advance_smooth(s, t, release, true);
+      return advance_smooth(s, release, t_end, false);
+    }
+    return advance_smooth(s, t, t_end, t < release);
+  }
+
+  void start(double v) { direction_ = v > 0.0 ? 1 : v < 0.0 ? -1 : 0; }
+
+ private:
+  State advance_smooth(State s, double t, double t_end, bool pushed) {
+    pushed_ = pushed && m_.effects.push_m_s2 != 0.0;
+    const int parts = std::max(1, static_cast<int>(std::ceil((t_end - t) / step_ - 1e-9)));
+    const double h = (t_end - t) / parts;
+    for (int i = 0; i < parts; ++i) s = advance_part(s, t + i * h, h);
+    return s;
+  }
+
+  State rk4(State s, double t, double h) const {
+    const int d = direction_;
+    const double a1 = slide(s.x, s.v, t, d);
+    const double v2 = s.v + 0.5 * h * a1;
+    const double a2 = slide(s.x + 0.5 * h * s.v, v2, t + 0.5 * h, d);
+    const double v3 = s.v + 0.5 * h * a2;
+    const double a3 = slide(s.x + 0.5 * h * v2, v3, t + 0.5 * h, d);
+    const double v4 = s.v + h * a3;
+    const double a4 = slide(s.x + h * v3, v4, t + h, d);
+    return {s.x + h / 6.0 * (s.v + 2.0 * v2 + 2.0 * v3 + v4), s.v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)};
+  }
+
+  State advance_part(State s, double t, double h) {
+    for (int turn = 0; turn < kMostTurns && h > 0.0; ++turn) {
+      if (direction_ == 0 && !leave(s, t)) return s;
+      const State next = rk4(s, t, h);
+      if (next.v * direction_ >= 0.0 || !std::isfinite(next.v)) return next;
+      // v = 0 on the way: the time by regula falsi, then Newton's steps.
+      double at = h * std::abs(s.v) / (std::abs(s.v) + std::abs(next.v));
+      State stop = s;
+      for (int i = 0; i < 6; ++i) {
+        stop = rk4(s, t, at);
+        const double a = slide(stop.x, stop.v, t + at, direction_);
+        const double change = a != 0.0 ? -stop.v / a : 0.0;
+        if (!(std::abs(change) > 1e-15)) break;
+        at = std::clamp(at + change, 0.0, h);
+      }
+      s = {stop.x, 0.0};
+      t += at;
+      h -= at;
+      direction_ = 0;
+    }
+    return s;
+  }
+
+  bool leave(const State& s, double t) {
+    const double net = driving(s.x, 0.0, t);
+    if (!(std::abs(net) > friction(0.0))) return false;
+    direction_ = net > 0.0 ? 1 : -1;
+    return true;
+  }
+
+  const TrackModel& m_;
+  double sin_, weight_, cos_, inertia_;
+  double step_ = kLongestStep;
+  int direction_ = 0;
+  bool pushed_ = false;
+};
+
+double seen(const EffectValues& e, double x, double t) {
+  if (e.lens_1_m2 != 0.0) x *= 1.0 + e.lens_1_m2 * (x - e.lens_x_m) * (x - e.lens_x_m);
+  if (e.perspective_1_m != 0.0) x /= 1.0 + e.perspective_1_m * x;
+  x *= 1.0 + e.scale_error;
+  if (e.camera_m != 0.0) x += e.camera_m * std::sin(2.0 * std::numbers::pi * e.camera_hz * t + e.camera_phase);
+  return x;
+}
+
+}  // namespace
+
+Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s) {
+  Moved moved;
+  moved.x_m.reserve(times_s.size());
+  moved.v_m_s.reserve(times_s.size());
+  if (times_s.empty()) return moved;
+  Mover mover(model);
+  State s{model.x0_m, model.v0_m_s};
+  mover.start(s.v);
+  const double stretch = 1.0 + model.effects.rate_error;
+  double t = stretch * times_s.front();
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const double next = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]);
+    if (next > t) s = mover.advance(s, t, next);
+    t = std::max(t, next);
+    moved.x_m.push_back(seen(model.effects, s.x, times_s[i]));
+    moved.v_m_s.push_back(s.v);
+  }
+  return moved;
+}
+
+double acceleration(const TrackModel& model, double x_m, double v_m_s, double t_s, int direction) {
+  return Mover(model).slide(x_m, v_m_s, t_s, direction);
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,246 @@
+#include "diagnose/track_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/noise.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kFewestPoints = 12;
+constexpr double kOutlier = 5.0;         // standard deviations off the neighbours
+constexpr double kLongestBridge = 0.08;  // s of disputed frames within a motion that are bridged
+constexpr double kSameAngle = 1e-9;
+
+/// Each point off the cubic (line, for few) through its neighbours, over the standard deviation that unit noise gives.
+double off_neighbours(const std::vector<double>& t, const std::vector<double>& x, std::size_t i) {
+  double off = x[i], gain = 1.0;
+  for (const std::size_t a : {i - 2, i - 1, i + 1, i + 2}) {
+    double weight = 1.0;
+    for (const std::size_t b : {i - 2, i - 1, i + 1, i + 2}) {
+      if (b != a) weight *= (t[i] - t[b]) / (t[a] - t[b]);
+    }
+    off -= weight * x[a];
+    gain += weight * weight;
+  }
+  return off / std::sqrt(gain);
+}
+
+enum class Kind { no, free, disputed };
+
+Kind kind_of(const core::MotionPoint& point, bool all) {
+  using core::LeftOut;
+  if (!point.measured_m) return Kind::no;
+  switch (point.left_out) {
+    case LeftOut::used:
+    case LeftOut::kernel_end:
+    case LeftOut::kernel_reversal:
+    case LeftOut::kernel_gap:
+    case LeftOut::outlier:
+    case LeftOut::short_stretch:
+      return Kind::free;
+    case LeftOut::hand:
+    case LeftOut::stop:
+      return all ? Kind::free : Kind::disputed;
+    default:
+      return Kind::no;
+  }
+}
+
+double slope(const std::vector<core::MotionPoint>& motion, std::size_t from, std::size_t to) {
+  const auto& a = motion[from];
+  const auto& b = motion[to];
+  return (*b.measured_m - *a.measured_m) / (b.t_s - a.t_s);
+}
+
+struct Run {
+  std::size_t from = 0, to = 0;  // frames, inclusive, both measured and free
+};
+
+std::vector<Run> runs_of(const core::ClipResult& clip, bool all) {
+  std::vector<Run> runs;
+  const auto& motion = clip.motion;
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    if (kind_of(motion[i], all) != Kind::free) continue;
+    bool joins = false;
+    if (!runs.empty()) {
+      const std::size_t last = runs.back().to;
+      bool rest = false;
+      for (std::size_t j = last + 1; j < i; ++j) rest = rest || kind_of(motion[j], all) == Kind::no;
+      rest = rest && std::any_of(motion.begin() + static_cast<long>(last), motion.begin() + static_cast<long>(i),
+                                 [](const core::MotionPoint& p) { return p.left_out == core::LeftOut::rest; });
+      const bool near = motion[i].t_s - motion[last].t_s <= kLongestBridge || i == last + 1;
+      const bool room = last >= runs.back().from + 2 && i + 2 < motion.size() && motion[i + 2].measured_m;
+      const bool same_way = i == last + 1 || (room && slope(motion, last - 2, last) * slope(motion, i, i + 2) > 0.0);
+      joins = near && !rest && same_way;
+    }
+    if (joins) {
+      runs.back().to = i;
+    } else {
+      runs.push_back({i, i});
+    }
+  }
+  return runs;
+}
+
+double mode_at(const core::ClipResult& clip, std::size_t mode, double t) {
+  for (const core::FreeBlock& block : clip.blocks) {
+    if (mode >= block.shared_m.size() || block.shared_m[mode].empty()) continue;
+    if (&block != &clip.blocks.back() && t > block.t_s.back()) continue;
+    const auto after = std::lower_bound(block.t_s.begin(), block.t_s.end(), t);
+    const auto i = static_cast<std::size_t>(std::min<long>(after - block.t_s.begin(), std::ssize(block.t_s) - 1));
+    return block.shared_m[mode][i];
+  }
+  return 0.0;
+}
+
+TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all) {
+  TrackedMotion motion;
+  const double first = clip.motion.front().t_s;
+  // Where it borders on something else, the border is known to about a bandwidth.
+  double from = clip.motion[run.from].t_s, to = clip.motion[run.to].t_s;
+  if (run.from > 0 && !(all && clip.motion[run.from - 1].left_out == core::LeftOut::no_marker))
+    from += clip.bandwidth_s;
+  if (run.to + 1 < clip.motion.size()) to -= clip.bandwidth_s;
+  for (std::size_t i = run.from; i <= run.to; ++i) {
+    const core::MotionPoint& point = clip.motion[i];
+    if (kind_of(point, all) != Kind::free || point.t_s < from || point.t_s > to) continue;
+    motion.t_s.push_back(point.t_s - first);
+    motion.x_m.push_back(*point.measured_m);
+    motion.outlier.push_back(point.left_out == core::LeftOut::outlier ? 1 : 0);
+  }
+  if (motion.t_s.empty()) return motion;
+  motion.start_s = motion.t_s.front();
+  std::size_t modes = 0;
+  for (const core::FreeBlock& block : clip.blocks) modes = std::max(modes, block.shared_m.size());
+  motion.shared_m.resize(modes);
+  for (std::size_t m = 0; m < modes; ++m) {
+    for (const double t : motion.t_s) motion.shared_m[m].push_back(mode_at(clip, m, t + first));
+    const bool any =
+        std::any_of(motion.shared_m[m].begin(), motion.shared_m[m].end(), [](double s) { return s != 0.0; });
+    if (!any) motion.shared_m[m].clear();
+  }
+  motion.scale_sd = clip.scale_sd_relative;
+  return motion;
+}
+
+void add_statements(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, TrackSet& set) {
+  for (TrackGroup& group : set.groups) {
+    for (const core::PlumbResult& plumb : results.plumbs) {
+      if (plumb.group != group.name || !plumb.plumb_deg.estimate) continue;
+      const double rad = std::numbers::pi / 180.0;
+      group.statements.push_back({plumb.plumb_deg.estimate->value * rad, plumb.plumb_deg.estimate->sd * rad, "plumb"});
+    }
+    for (const core::ClipSetup& setup : setups) {
+      if (setup.group != group.name || !setup.incline_sd_rad || !(*setup.incline_sd_rad > 0.0)) continue;
+      group.statements.push_back({setup.incline_rad, *setup.incline_sd_rad, "stated"});
+      break;  // one reading for all clips of a group
+    }
+  }
+}
+
+std::size_t group_of(const core::ClipSetup& setup, TrackSet& set) {
+  for (std::size_t g = 0; g < set.groups.size(); ++g) {
+    if (set.groups[g].name == setup.group && std::abs(set.groups[g].stated_rad - setup.incline_rad) < kSameAngle)
+      return g;
+  }
+  set.groups.push_back({setup.group, setup.incline_rad, {}, 0.0});
+  return set.groups.size() - 1;
+}
+
+std::size_t mass_of(const core::ClipSetup& setup, TrackSet& set) {
+  for (std::size_t m = 0; m < set.masses.size(); ++m) {
+    if (set.masses[m].mass_kg == setup.mass_kg && set.masses[m].sd_kg == setup.mass_sd_kg) return m;
+  }
+  set.masses.push_back({setup.mass_kg, setup.mass_sd_kg});
+  return set.masses.size() - 1;
+}
+
+/// One level for all clips where theirs differ by no more than their own errors; else half way between.
+void share_noise(std::vector<TrackedMotion>& motions) {
+  double sum = 0.0, weights = 0.0, chi2 = 0.0;
+  for (const TrackedMotion& motion : motions) {
+    const auto n = static_cast<double>(motion.t_s.size());
+    sum += n * std::log(motion.sd_m);
+    weights += n;
+  }
+  const double mean = sum / weights;
+  // Variance of log sd from fourth differences of n points: 2.63 / (2 n).
+  for (const TrackedMotion& motion : motions) {
+    chi2 += std::pow(std::log(motion.sd_m) - mean, 2) * static_cast<double>(motion.t_s.size()) / 1.32;
+  }
+  const double freedom = static_cast<double>(motions.size()) - 1.0;
+  const double own = std::clamp(1.0 - freedom / std::max(chi2, 1e-9), 0.0, 1.0);  // James and Stein's share
+  for (TrackedMotion& motion : motions) motion.sd_m = std::exp(mean + own * (std::log(motion.sd_m) - mean));
+}
+
+}  // namespace
+
+double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>& x_m,
+                       const std::vector<char>& outlier) {
+  const double pilot = core::pilot_noise(t_s, x_m);
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
+    if (outlier[i - 2] || outlier[i - 1] || outlier[i] || outlier[i + 1] || outlier[i + 2]) continue;
+    const double off = off_neighbours(t_s, x_m, i);
+    if (std::abs(off) > kOutlier * pilot) continue;
+    sum += off * off;
+    count += 1.0;
+  }
+  // The pilot's figure holds what rounding makes; it stands where hardly a point is left.
+  return count < 8.0 ? pilot : std::max(std::sqrt(sum / count), 0.7 * pilot);
+}
+
+TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all) {
+  TrackSet set;
+  set.gravity_m_s2 = results.gravity_m_s2;
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    const core::ClipResult& clip = results.clips[c];
+    const double duration = clip.motion.empty() ? 0.0 : clip.motion.back().t_s - clip.motion.front().t_s;
+    set.clips.push_back({clip.name, clip.frame_rate_hz, duration, clip.frames, clip.bandwidth_s});
+    set.pictures = set.pictures || !clip.sightings.empty();
+    if (clip.forced) {
+      set.notes.push_back(
+          fmt::format("clip {}: a known force acts; the diagnosis does not take such clips yet", clip.name));
+      continue;
+    }
+    for (const core::MotionPoint& point : clip.motion) {
+      set.disputed += point.left_out == core::LeftOut::hand || point.left_out == core::LeftOut::stop;
+    }
+    bool any = false;
+    for (const Run& run : runs_of(clip, all)) {
+      TrackedMotion motion = motion_of(clip, run, all);
+      if (motion.t_s.size() < kFewestPoints) continue;
+      motion.clip = c;
+      motion.group = group_of(setups[c], set);
+      motion.mass = mass_of(setups[c], set);
+      motion.sd_m = std::max(neighbour_noise(motion.t_s, motion.x_m, motion.outlier), 1e-9);
+      set.modes = std::max(set.modes, motion.shared_m.size());
+      set.motions.push_back(std::move(motion));
+      any = true;
+    }
+    if (!any) set.notes.push_back(fmt::format("clip {}: no motion of {} points or more", clip.name, kFewestPoints));
+  }
+  if (set.motions.empty()) return set;
+  share_noise(set.motions);
+  for (std::size_t g = 0; g < set.groups.size(); ++g) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const TrackedMotion& motion : set.motions) {
+      if (motion.group != g) continue;
+      for (const double x : motion.x_m) {
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+    }
+    set.groups[g].x_mid_m = 0.5 * (low + high);
+  }
+  add_statements(results, setups, set);
+  return set;
+}
+
+}  // namespace glidelab::diagnose

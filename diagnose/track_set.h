@@ -1,0 +1,76 @@
+/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment.h"
+#include "core/results.h"
+
+namespace glidelab::diagnose {
+
+/// One stretch of motion without a bump or a rest in it; it may turn.
+struct TrackedMotion {
+  std::size_t clip = 0;     ///< index in TrackSet::clips
+  std::size_t group = 0;    ///< index in TrackSet::groups
+  std::size_t mass = 0;     ///< index in TrackSet::masses
+  double start_s = 0.0;     ///< clip's first frame to the motion's first point
+  std::vector<double> t_s;  ///< from the clip's first frame
+  std::vector<double> x_m;
+  std::vector<char> outlier;                  ///< 1: lies off the neighbours; not fitted
+  double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
+  std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
+  double scale_sd = 0.0;                      ///< relative
+};
+
+struct TrackedMass {
+  double mass_kg = 0.0;
+  double sd_kg = 0.0;
+};
+
+struct InclineStatement {
+  double alpha_rad = 0.0;
+  double sd_rad = 0.0;
+  std::string against;  ///< "plumb" or "stated"
+};
+
+struct TrackGroup {
+  std::string name;
+  double stated_rad = 0.0;
+  std::vector<InclineStatement> statements;  ///< those with a known uncertainty
+  double x_mid_m = 0.0;                      ///< middle of the range of x
+};
+
+struct TrackedClip {
+  std::string name;
+  double frame_rate_hz = 0.0;
+  double duration_s = 0.0;
+  std::size_t frames = 0;
+  double bandwidth_s = 0.0;  ///< of the analysis' smoothing
+};
+
+struct TrackSet {
+  double gravity_m_s2 = 9.80665;
+  std::vector<TrackedClip> clips;
+  std::vector<TrackGroup> groups;
+  std::vector<TrackedMass> masses;
+  std::vector<TrackedMotion> motions;
+  std::size_t modes = 0;  ///< shared errors of camera and plane
+  bool pictures = false;  ///< at least one clip was filmed
+  std::vector<std::string> notes;
+  /// Frames that the analysis took for hand or stop and that a motion could hold.
+  std::size_t disputed = 0;
+};
+
+/// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
+/// start or for a stop stays in the motion; else it is left out. Motions with fewer than 12 points are left out.
+TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
+
+/// Noise of one position, from how far each lies off the cubic through its four nearest neighbours, outliers spared;
+/// never below what rounding to a step makes.
+double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>& x_m,
+                       const std::vector<char>& outlier);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,38 @@
+/// Explanations without a name: smooth forces and displacements in each variable, and sizes that differ from clip to
+/// clip, mass to mass or set-up to set-up for no stated reason. They answer for what is not in the list of effects.
+///
+/// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), tau unknown over four decades;
+/// its evidence is exact in the linear neighbourhood of a fit.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/score_space.h"
+
+namespace glidelab::diagnose {
+
+struct UnnamedRegion {
+  double from = 0.0, to = 0.0;
+  double excess = 0.0;  ///< largest size over its standard deviation
+  double size = 0.0;    ///< largest size: N, m/s² or m
+};
+
+struct UnnamedFamily {
+  std::string variable;  ///< x_m, v_m_s, t_s, mass_kg, direction, group, clip
+  std::string what;      ///< "force", "friction", "displacement", "acceleration"
+  std::string unit;      ///< of the sizes
+  double log_evidence = 0.0;
+  double gain = 0.0;
+  std::vector<double> at, size, sd;  ///< the unnamed function over its variable
+  std::vector<std::string> names;    ///< of members (clips, groups); empty for a variable
+  std::vector<UnnamedRegion> regions;
+};
+
+/// All families around a fit. `rate_per_s` bounds how fast the displacement of one clip by itself may change.
+std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
+
+/// Their joint evidence, each family as likely beforehand as another.
+double log_unnamed_evidence(const std::vector<UnnamedFamily>& families);
+
+}  // namespace glidelab::diagnose

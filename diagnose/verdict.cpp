@@ -1,0 +1,252 @@
+#include "diagnose/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnose/held_out.h"
+#include "diagnose/next_experiment.h"
+#include "diagnose/verdict_words.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kSameGain = 3.0;  // log likelihood: twenty times is not yet a difference
+constexpr double kNotable = 3.0;   // log evidence of an unnamed family that is worth a region
+constexpr std::size_t kMostRegions = 6;
+constexpr std::size_t kMostCurves = 4;
+constexpr std::size_t kPlotted = 250;
+
+std::string joined(const std::vector<std::size_t>& effects) {
+  std::string text;
+  for (const std::size_t e : effects) text += (text.empty() ? "" : " + ") + std::string(effect_list()[e].id);
+  return text;
+}
+
+bool same_but(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b, std::size_t from, std::size_t to) {
+  std::vector<std::size_t> expected = a, other = b;
+  std::replace(expected.begin(), expected.end(), from, to);
+  std::sort(expected.begin(), expected.end());
+  std::sort(other.begin(), other.end());
+  return expected == other;
+}
+
+std::vector<std::string> equivalents(const Comparison& comparison, const Hypothesis& best, std::size_t effect) {
+  std::vector<std::string> ids;
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
+    for (const Hypothesis& other : comparison.all) {
+      if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
+      if (other.gain > best.gain - kSameGain && other.gain > kSameGain) ids.emplace_back(effect_list()[e].id);
+      break;
+    }
+  }
+  return ids;
+}
+
+std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, const Hypothesis& hypothesis,
+                                              std::size_t effect) {
+  std::vector<DiagnosedParameter> parameters;
+  for (const FrameEffect& frame : comparison.frames) {
+    if (frame.effect != effect) continue;
+    parameters.push_back({effect_list()[effect].id == "timestamp_jitter" ? "sd_s" : "fraction", frame.value, frame.sd});
+  }
+  if (comparison.missing.count > 0 && comparison.missing.effect.effect == effect) {
+    parameters.push_back({"fraction", comparison.missing.effect.value, comparison.missing.effect.sd});
+  }
+  if (hypothesis.fit < 0) return parameters;
+  const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter == nullptr || globals[g].effect != effect) continue;
+    const auto at = static_cast<Eigen::Index>(g);
+    const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
+    parameters.push_back({std::string(globals[g].parameter->key), value.value,
+                          std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_member)});
+  }
+  return parameters;
+}
+
+void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis) {
+  std::vector<const UnnamedFamily*> sorted;
+  for (const UnnamedFamily& family : families) sorted.push_back(&family);
+  std::sort(sorted.begin(), sorted.end(),
+            [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
+  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
+  for (const UnnamedFamily* family : sorted) {
+    if (family->log_evidence < notable) break;
+    if (family->names.empty() && !family->at.empty() && diagnosis.curves.size() < kMostCurves) {
+      diagnosis.curves.push_back(
+          {family->variable, family->what, family->unit, family->log_evidence, family->at, family->size, family->sd});
+    }
+    std::vector<UnnamedRegion> regions = family->regions;
+    std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.excess > b.excess; });
+    for (std::size_t r = 0; r < regions.size() && r < 2 && diagnosis.regions.size() < kMostRegions; ++r) {
+      GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
+                       regions[r].size,  family->unit,    family->what,  ""};
+      if (family->variable == "clip") {  // a clip as a whole
+        const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
+        region.variable = "t_s";
+        region.clip = clip.name;
+        region.from = 0.0;
+        region.to = clip.duration_s;
+      }
+      diagnosis.regions.push_back(region);
+    }
+  }
+}
+
+std::string stage_of(const std::vector<UnnamedFamily>& families) {
+  const auto best = std::max_element(families.begin(), families.end(),
+                                     [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+  if (best == families.end()) return "";
+  return best->what == "displacement" ? "optics" : "dynamics";
+}
+
+GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, Diagnosis& diagnosis) {
+  GapSizes gap;
+  TrackSet split;
+  HeldOutGap before, after;
+  if (set.clips.size() < 2) {
+    split = split_clip(set);
+    const MotionFit first = fit_nominal(split);
+    before = held_out_gap(split, first);
+    after = before;
+    if (!best.effects.empty() && best.late.empty()) {
+      // From the fit to the whole clip: each stretch starts where that fit is at its beginning.
+      FitPoint start{best.at.global, {}};
+      for (const TrackedMotion& part : split.motions) {
+        std::size_t whole = 0;
+        while (whole + 1 < set.motions.size() && set.motions[whole].t_s.back() < part.t_s.front()) ++whole;
+        Eigen::VectorXd own = best.at.own[whole];
+        const auto at = static_cast<std::size_t>(
+            std::lower_bound(set.motions[whole].t_s.begin(), set.motions[whole].t_s.end(), part.t_s.front()) -
+            set.motions[whole].t_s.begin());
+        own[0] = part.x_m.front();
+        own[1] = best.motions[whole].v_m_s[std::min(at, best.motions[whole].v_m_s.size() - 1)];
+        start.own.push_back(own);
+      }
+      after = held_out_gap(split, fit_motions(split, best.effects, start));
+    }
+    diagnosis.notes.push_back(
+        "There is one clip only, so that none can be held out: the gap is measured on held-out quarters of it.");
+  } else {
+    before = held_out_gap(set, nominal);
+    after = held_out_gap(set, best);
+  }
+  gap.before = before.value;
+  gap.after = after.value;
+  gap.standard_error = before.standard_error;
+  if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - 1.0);
+  gap.acceleration_before = before.acceleration_m_s2;
+  gap.acceleration_after = after.acceleration_m_s2;
+  for (std::size_t c = 0; c < before.clips.size(); ++c) {
+    gap.held_out.push_back(before.clips[c].clip);
+    gap.before_by_clip.push_back(std::sqrt(before.clips[c].chi2 / before.clips[c].freedom));
+    gap.after_by_clip.push_back(c < after.clips.size() ? std::sqrt(after.clips[c].chi2 / after.clips[c].freedom)
+                                                       : gap.before_by_clip.back());
+  }
+  const std::vector<StatementPull> was = statement_pulls(set, nominal), is = statement_pulls(set, best);
+  for (std::size_t p = 0; p < was.size() && p < is.size(); ++p) {
+    gap.parameters.push_back({was[p].quantity, was[p].against, was[p].group, was[p].z, is[p].z});
+  }
+  return gap;
+}
+
+std::vector<ResidualCurve> residuals_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best) {
+  std::vector<ResidualCurve> curves;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    ResidualCurve curve;
+    curve.clip = set.clips[motion.clip].name;
+    const std::size_t step = std::max<std::size_t>(1, motion.t_s.size() / kPlotted);
+    for (std::size_t p = 0; p < motion.t_s.size(); p += step) {
+      if (motion.outlier[p]) continue;
+      curve.t_s.push_back(motion.t_s[p]);
+      curve.x_m.push_back(motion.x_m[p]);
+      curve.v_m_s.push_back(nominal.motions[i].v_m_s[p]);
+      curve.before_m.push_back(nominal.motions[i].residual[static_cast<Eigen::Index>(p)] * motion.sd_m);
+      curve.after_m.push_back(best.motions[i].residual[static_cast<Eigen::Index>(p)] * motion.sd_m);
+    }
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+Isolability isolability_of(const TrackSet& set, const MotionFit& nominal, const Comparison& comparison) {
+  const ScoreSpace space(set, nominal);
+  Isolability result;
+  std::vector<const EffectScan*> seen;
+  for (const EffectScan& scan : comparison.scans) {
+    if (scan.visible && scan.direction.rest.size() > 0) seen.push_back(&scan);
+  }
+  for (const EffectScan* a : seen) {
+    result.ids.emplace_back(effect_list()[a->effect].id);
+    result.least_seen.push_back(a->least_seen);
+    std::vector<double> row;
+    const double aa = space.dot(a->direction, a->direction);
+    for (const EffectScan* b : seen) {
+      const double bb = space.dot(b->direction, b->direction);
+      row.push_back(std::min(1.0, std::abs(space.dot(a->direction, b->direction)) / std::sqrt(aa * bb)));
+    }
+    result.cosine.push_back(std::move(row));
+  }
+  return result;
+}
+
+}  // namespace
+
+const Hypothesis* best_named(const Comparison& comparison) {
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (!hypothesis.unnamed && !hypothesis.effects.empty()) return &hypothesis;
+  }
+  return nullptr;
+}
+
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison) {
+  Diagnosis diagnosis;
+  diagnosis.notes = set.notes;
+  diagnosis.none = comparison.none;
+  diagnosis.unknown = comparison.unknown;
+  const double named = std::max(0.0, 1.0 - comparison.none - comparison.unknown);
+  diagnosis.verdict = named >= comparison.none && named >= comparison.unknown ? "effect"
+                      : comparison.none >= comparison.unknown                 ? "none"
+                                                                              : "unknown";
+  const Hypothesis* best = best_named(comparison);
+  const MotionFit& nominal = comparison.fits.front();
+  const MotionFit* fit = &nominal;
+  if (diagnosis.verdict == "effect" && best != nullptr) {
+    if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
+    for (const std::size_t e : best->effects) {
+      const EffectInfo& info = effect_list()[e];
+      diagnosis.effects.push_back({std::string(info.id), std::string(info.stage), std::string(info.words),
+                                   comparison.effect_probability[e], equivalents(comparison, *best, e),
+                                   parameters_of(comparison, *best, e)});
+    }
+    std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
+                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    diagnosis.stage = diagnosis.effects.front().stage;
+  }
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
+    diagnosis.ranking.push_back({joined(hypothesis.effects), hypothesis.probability, hypothesis.log_evidence});
+  }
+  const bool beside_named = diagnosis.verdict == "unknown" && !comparison.all.front().effects.empty();
+  if (diagnosis.verdict != "none") {
+    add_regions(set, beside_named ? comparison.unnamed_left : comparison.unnamed, diagnosis);
+    if (diagnosis.verdict == "unknown") {
+      diagnosis.stage = stage_of(beside_named ? comparison.unnamed_left : comparison.unnamed);
+    }
+  }
+  diagnosis.gap = gap_of(set, nominal, *fit, diagnosis);
+  diagnosis.residuals = residuals_of(set, nominal, *fit);
+  diagnosis.isolability = isolability_of(set, nominal, comparison);
+  diagnosis.next_experiment = next_experiment(set, comparison, diagnosis);
+  diagnosis.summary = summary_of(diagnosis);
+  return diagnosis;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,14 @@
+/// From a comparison of hypotheses to what is said: the verdict, its effects, where, how much, and in words.
+#pragma once
+
+#include "diagnose/diagnosis.h"
+#include "diagnose/hypotheses.h"
+
+namespace glidelab::diagnose {
+
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison);
+
+/// The best hypothesis that names something, or null.
+const Hypothesis* best_named(const Comparison& comparison);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,96 @@
+#include "report/diagnosis_json.h"
+
+#include "report/json_numbers.h"
+
+namespace glidelab::report {
+namespace {
+
+Json effect_json(const diagnose::DiagnosedEffect& effect) {
+  Json object;
+  object["id"] = effect.id;
+  object["stage"] = effect.stage;
+  put(object, "probability", effect.probability);
+  object["equivalent_to"] = effect.equivalent_to;
+  object["parameters"] = Json::object();
+  for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
+    Json value;
+    put(value, "value", parameter.value);
+    put(value, "sd", parameter.sd);
+    object["parameters"][parameter.key] = std::move(value);
+  }
+  return object;
+}
+
+Json where_json(const diagnose::Diagnosis& diagnosis) {
+  Json where;
+  where["stage"] = diagnosis.stage.empty() ? Json(nullptr) : Json(diagnosis.stage);
+  where["regions"] = Json::array();
+  for (const diagnose::GapRegion& region : diagnosis.regions) {
+    Json object;
+    object["variable"] = region.variable;
+    put(object, "from", region.from);
+    put(object, "to", region.to);
+    put(object, "excess", region.excess);
+    if (!region.clip.empty()) object["clip"] = region.clip;
+    object["what"] = region.what;
+    put(object, "size", region.size);
+    object["unit"] = region.unit;
+    where["regions"].push_back(std::move(object));
+  }
+  return where;
+}
+
+Json gap_json(const diagnose::GapSizes& gap) {
+  Json object;
+  put(object, "before", gap.before);
+  put(object, "after", gap.after);
+  object["floor"] = 1.0;
+  put(object, "shrink", gap.shrink, "the gap is not above the floor by more than its standard error");
+  put(object, "standard_error", gap.standard_error);
+  object["held_out"] = gap.held_out;
+  object["by_clip"] = {{"before", gap.before_by_clip}, {"after", gap.after_by_clip}};
+  Json acceleration;
+  put(acceleration, "before", gap.acceleration_before);
+  put(acceleration, "after", gap.acceleration_after);
+  object["acceleration_m_s2"] = std::move(acceleration);
+  object["parameters"] = Json::array();
+  for (const diagnose::GapOfParameter& parameter : gap.parameters) {
+    Json one;
+    one["quantity"] = parameter.quantity;
+    one["against"] = parameter.against;
+    one["group"] = parameter.group;
+    put(one, "z_before", parameter.z_before);
+    put(one, "z_after", parameter.z_after);
+    object["parameters"].push_back(std::move(one));
+  }
+  return object;
+}
+
+}  // namespace
+
+std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
+  Json document;
+  document["format"] = 1;
+  document["verdict"] = diagnosis.verdict;
+  document["summary"] = diagnosis.summary;
+  document["effects"] = Json::array();
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) document["effects"].push_back(effect_json(effect));
+  put(document["probability"], "none", diagnosis.none);
+  put(document["probability"], "unknown", diagnosis.unknown);
+  document["ranking"] = Json::array();
+  for (const diagnose::RankedExplanation& ranked : diagnosis.ranking) {
+    Json one;
+    one["id"] = ranked.id;
+    put(one, "probability", ranked.probability);
+    put(one, "log_evidence_gain", ranked.log_evidence_gain);
+    document["ranking"].push_back(std::move(one));
+  }
+  document["where"] = where_json(diagnosis);
+  document["gap"] = diagnosis.gap ? gap_json(*diagnosis.gap) : Json(nullptr);
+  document["next_experiment"] = diagnosis.next_experiment;
+  document["isolability"] = {{"effects", diagnosis.isolability.ids}, {"cosine", diagnosis.isolability.cosine}};
+  document["notes"] = diagnosis.notes;
+  return json_text(document);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,165 @@
+#include "report/diagnosis_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/gnuplot.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr std::size_t kBars = 8;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::string axis_of(const std::string& variable) {
+  if (variable == "x_m") return "place x  (m)";
+  if (variable == "v_m_s") return "speed v  (m/s)";
+  if (variable == "t_s") return "time t  (s)";
+  if (variable == "mass_kg") return "mass  (kg)";
+  return variable;
+}
+
+/// Labels of a horizontal bar chart, the first one at the top.
+std::string labels(const std::vector<std::string>& names) {
+  std::string tics = "set ytics (";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(names[i]), -static_cast<double>(i));
+  }
+  return tics + ") scale 0 noenhanced\n";
+}
+
+Plot probabilities(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::pair<double, std::string>> bars = {{diagnosis.none, "none"}, {diagnosis.unknown, "unknown"}};
+  for (const auto& ranked : diagnosis.ranking) bars.emplace_back(ranked.probability, ranked.id);
+  std::stable_sort(bars.begin(), bars.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (bars.size() > kBars) bars.resize(kBars);
+  std::vector<std::string> names;
+  PlotData data{"bars", {}};
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    names.push_back(bars[i].second);
+    data.rows.push_back({-static_cast<double>(i), bars[i].first});
+  }
+  std::string script(kFrame);
+  script += "unset key\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
+  script += labels(names) + fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(bars.size()) + 0.4);
+  script += fmt::format(
+      "set style fill solid 0.85 noborder\nplot $bars using (0.5*$2):1:(0.5*$2):(0.36) with boxxyerror lc rgb '{}'\n",
+      kColors[0]);
+  return {gnuplot_svg(script, std::vector{data}, {620, 340}), "How probable each explanation is, given these data",
+          "Bar chart of the probabilities of the explanations"};
+}
+
+Plot clip_gaps(const diagnose::GapSizes& gap) {
+  PlotData data{"gaps", {}};
+  double most = 2.0;
+  for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
+    data.rows.push_back({-static_cast<double>(c), gap.before_by_clip[c], gap.after_by_clip[c]});
+    most = std::max({most, gap.before_by_clip[c], gap.after_by_clip[c]});
+  }
+  std::string script(kFrame);
+  script += "set offsets 0,0,0,0\nset xlabel 'residuals of the held-out clip / noise'\n";
+  script +=
+      labels(gap.held_out) + fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
+  script += most > 8.0 ? fmt::format("set logscale x\nset xrange [0.5:{}]\n", 1.5 * most)
+                       : fmt::format("set xrange [0:{}]\n", 1.1 * most);
+  script += fmt::format(
+      "set arrow from 1, graph 0 to 1, graph 1 nohead lw 1.5 lc rgb '{}'\n"
+      "plot $gaps using 2:1 with points pt 6 ps 1.1 lw 2 lc rgb '{}' title 'before', "
+      "$gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'\n",
+      kGrey, kColors[1], kColors[0]);
+  return {gnuplot_svg(script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}),
+          "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
+          "Dots for each clip's gap before and after"};
+}
+
+Plot curve_plot(const diagnose::GapCurve& curve) {
+  PlotData data{"curve", {}};
+  for (std::size_t i = 0; i < curve.at.size(); ++i) data.rows.push_back({curve.at[i], curve.size[i], curve.sd[i]});
+  std::string script(kFrame);
+  script += fmt::format("unset key\nset xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), curve.what,
+                        curve.unit);
+  script += fmt::format(
+      "plot $curve using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25, "
+      "$curve using 1:2 with lines lw 2 lc rgb '{}', 0 with lines lw 1 lc rgb '{}'\n",
+      kColors[0], kColors[0], kGrey);
+  return {gnuplot_svg(script, std::vector{data}),
+          fmt::format("The smooth {} over {} that would fill the gap, with two standard deviations", curve.what,
+                      axis_of(curve.variable)),
+          fmt::format("Curve of a {} over {}", curve.what, axis_of(curve.variable))};
+}
+
+Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int variable) {
+  PlotData before{"before", {}}, after{"after", {}};
+  const std::size_t share = std::max<std::size_t>(1, curves.size() / 8);
+  for (const diagnose::ResidualCurve& curve : curves) {
+    const auto& at = variable == 0 ? curve.x_m : variable == 1 ? curve.v_m_s : curve.t_s;
+    for (std::size_t p = 0; p < at.size(); p += share) {
+      before.rows.push_back({at[p], 1000.0 * curve.before_m[p]});
+      after.rows.push_back({at[p], 1000.0 * curve.after_m[p]});
+    }
+  }
+  if (before.rows.empty()) before.rows = after.rows = {{kNan, kNan}};
+  std::string script(kFrame);
+  script += fmt::format("set xlabel '{}'\nset ylabel 'measured - model  (mm)'\n", axis_of(variable == 0   ? "x_m"
+                                                                                          : variable == 1 ? "v_m_s"
+                                                                                                          : "t_s"));
+  script += fmt::format(
+      "plot $before using 1:2 with points pt 7 ps 0.2 lc rgb '{}' title 'before', "
+      "$after using 1:2 with points pt 7 ps 0.2 lc rgb '{}' title 'after'\n",
+      kColors[1], kColors[0]);
+  return {gnuplot_svg(script, std::vector{before, after}),
+          fmt::format("What the fit leaves of all clips, over {}", variable == 0   ? "the place"
+                                                                   : variable == 1 ? "the speed"
+                                                                                   : "the time"),
+          "Residuals before and after"};
+}
+
+}  // namespace
+
+std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
+  std::vector<Plot> plots = {probabilities(diagnosis)};
+  if (diagnosis.gap && !diagnosis.gap->held_out.empty()) plots.push_back(clip_gaps(*diagnosis.gap));
+  return plots;
+}
+
+std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
+  std::vector<Plot> plots;
+  for (const diagnose::GapCurve& curve : diagnosis.curves) {
+    if (plots.size() < 3) plots.push_back(curve_plot(curve));
+  }
+  for (const int variable : {1, 0, 2}) plots.push_back(residual_plot(diagnosis.residuals, variable));
+  return plots;
+}
+
+std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
+  if (isolability.ids.size() < 2) return {};
+  const std::size_t n = isolability.ids.size();
+  PlotData data{"cells", {}};
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = 0; b < n; ++b) {
+      data.rows.push_back({static_cast<double>(b), -static_cast<double>(a), isolability.cosine[a][b]});
+    }
+    data.rows.emplace_back();
+  }
+  std::string script(kFrame);
+  script += "unset key\nunset grid\nset offsets 0,0,0,0\n" + labels(isolability.ids);
+  script += "set xtics rotate by -40 scale 0 noenhanced (";
+  for (std::size_t i = 0; i < n; ++i)
+    script += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(isolability.ids[i]), i);
+  script += fmt::format(
+      ")\nset xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
+      "'#9ecae1', "
+      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.3\n"
+      "plot $cells using 1:2:3 with image\n",
+      static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
+  return {
+      {gnuplot_svg(script, std::vector{data}, {680, 560}),
+       "How alike what two effects do to these clips is, after everything else is fitted: 1 cannot be told apart, 0 "
+       "can",
+       "Matrix of likeness between effects"}};
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,131 @@
+#include "report/diagnosis_report.h"
+
+#include <fmt/format.h>
+
+#include "report/diagnosis_plots.h"
+#include "report/html.h"
+#include "report/number_text.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr std::size_t kRanked = 12;
+
+std::string tile(const std::string& number, const std::string& words) {
+  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", escape(number), escape(words));
+}
+
+std::string probability_text(double p) {
+  return p > 0.9995 ? "> 0.999" : p < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", p);
+}
+
+std::string tiles(const diagnose::Diagnosis& diagnosis) {
+  std::string text = "<div class=\"tiles\">";
+  if (diagnosis.verdict == "effect") {
+    for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+      text += tile(probability_text(effect.probability), effect.id);
+    }
+  } else {
+    text += tile(diagnosis.verdict, "verdict");
+  }
+  text += tile(probability_text(diagnosis.none), "nothing is missing") +
+          tile(probability_text(diagnosis.unknown), "something without a name");
+  if (diagnosis.gap) {
+    text += tile(fmt::format("{} → {}", number_text(diagnosis.gap->before, 3), number_text(diagnosis.gap->after, 3)),
+                 "gap of held-out clips (1: noise)");
+  }
+  return text + "</div>\n";
+}
+
+std::string effect_table(const diagnose::Diagnosis& diagnosis) {
+  HtmlTable table({"effect", "stage", "probability", "size", "not to be told from"}, 2);
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    std::string size, same;
+    for (const auto& p : effect.parameters) {
+      size += fmt::format("{}{} = {}", size.empty() ? "" : "<br>", escape(p.key), value_and_sd_text(p.value, p.sd));
+    }
+    for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
+    table.row({escape(effect.id), escape(effect.stage), probability_text(effect.probability), size.empty() ? "–" : size,
+               same.empty() ? "–" : same});
+  }
+  return table.empty() ? "" : table.str();
+}
+
+std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
+  HtmlTable table({"explanation", "probability", "log evidence against nothing"});
+  table.row({"none", probability_text(diagnosis.none), "0"});
+  table.row({"unknown", probability_text(diagnosis.unknown), "–"});
+  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
+    const auto& ranked = diagnosis.ranking[i];
+    table.row(
+        {escape(ranked.id), probability_text(ranked.probability), fmt::format("{:+.1f}", ranked.log_evidence_gain)});
+  }
+  return table.str();
+}
+
+std::string gap_tables(const diagnose::GapSizes& gap) {
+  HtmlTable clips({"held out", "before", "after"});
+  for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
+    clips.row({escape(gap.held_out[c]), number_text(gap.before_by_clip[c], 3), number_text(gap.after_by_clip[c], 3)});
+  }
+  clips.row({"all", number_text(gap.before, 4), number_text(gap.after, 4)});
+  std::string text = clips.str();
+  text += fmt::format(
+      "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it would be 1 "
+      "± "
+      "{}. {} In acceleration (measured minus model, both smoothed as the analysis smooths): {} m/s² before, {} m/s² "
+      "after, noise included.</p>\n",
+      number_text(gap.standard_error, 2),
+      gap.shrink ? fmt::format("The gap shrinks by {:.1f} % of what is above the floor.", 100.0 * *gap.shrink)
+                 : std::string("It is at the floor."),
+      number_text(gap.acceleration_before, 3), number_text(gap.acceleration_after, 3));
+  if (gap.parameters.empty()) return text;
+  HtmlTable angles({"inclination of", "against", "standard deviations off, before", "after"}, 2);
+  for (const auto& p : gap.parameters) {
+    angles.row(
+        {escape(p.group), escape(p.against), fmt::format("{:+.1f}", p.z_before), fmt::format("{:+.1f}", p.z_after)});
+  }
+  return text + angles.str();
+}
+
+std::string region_table(const diagnose::Diagnosis& diagnosis) {
+  HtmlTable table({"variable", "kind", "from", "to", "largest", "over its sd"}, 2);
+  for (const diagnose::GapRegion& region : diagnosis.regions) {
+    table.row({escape(region.clip.empty() ? region.variable : region.variable + " of " + region.clip),
+               escape(region.what), number_text(region.from, 3), number_text(region.to, 3),
+               number_text(region.size, 2) + " " + escape(region.unit), number_text(region.excess, 2)});
+  }
+  return table.empty() ? "" : table.str();
+}
+
+}  // namespace
+
+std::string diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis) {
+  std::string body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
+  body += tiles(diagnosis);
+  body += fmt::format("<p>{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(diagnosis.summary),
+                      escape(diagnosis.next_experiment));
+  for (const std::string& note : diagnosis.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  body += "<h2>The verdict</h2>\n" + effect_table(diagnosis) + figures(verdict_plots(diagnosis));
+  body += "<h2>Where the gap lies</h2>\n" + figures(where_plots(diagnosis)) + region_table(diagnosis);
+  const std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
+  if (!alike.empty()) body += "<h2>What these data can tell apart</h2>\n" + figures(alike);
+  body += "<h2>Numbers</h2>\n" + ranking_table(diagnosis);
+  if (diagnosis.gap) body += "<h3>The gap, clip by clip</h3>\n" + gap_tables(*diagnosis.gap);
+  body +=
+      "<h2>Method</h2>\n<p>The usual model, m dv/dt = m g sin α − K v − sign(v) µ m g cos α, is fitted to all "
+      "positions of "
+      "all clips at once: one K and one µ, one inclination for each set-up, a start for each clip. The noise comes "
+      "from "
+      "neighbouring positions alone. Every effect of the list is added to the model, alone and in pairs; the evidence "
+      "for "
+      "each is its likelihood averaged over the sizes that it may have (equal odds for each factor of ten above what "
+      "can be "
+      "seen). Smooth forces and displacements without a name, over place, speed and time, and differences between "
+      "clips, "
+      "masses and set-ups compete with them, also beside them: where one of those explains more, the verdict is "
+      "“unknown”.</p>\n";
+  return page(title, body);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,13 @@
+/// report.html of `diagnose`: one page that needs nothing but itself.
+#pragma once
+
+#include <string>
+
+#include "diagnose/diagnosis.h"
+
+namespace glidelab::report {
+
+/// `title` names what was diagnosed. EnvironmentError where gnuplot fails.
+std::string diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis);
+
+}  // namespace glidelab::report
