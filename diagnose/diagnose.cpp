@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "core/analyze.h"
 #include "diagnose/hypotheses.h"
+#include "diagnose/line_table.h"
 #include "diagnose/track_set.h"
 #include "diagnose/verdict.h"
 
@@ -139,8 +140,11 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
   for (const std::filesystem::path& folder : folders) {
     const core::Experiment experiment = core::read_experiment(folder);
     if (experiment.lines) {
-      throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
-                                         "clips or tracks; tables of lines are not diagnosed yet"});
+      if (folders.size() > 1) {
+        throw base::InputError(base::Issue{experiment.file.string(), 0, "lines",
+                                           "a table of lines beside other folders", "a table of lines by itself"});
+      }
+      return diagnose_lines(read_lines(*experiment.lines), experiment.gravity_m_s2);
     }
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
   }

@@ -11,7 +11,7 @@ namespace glidelab::diagnose {
 
 /// One free parameter of an effect.
 struct EffectParameter {
-  std::string_view key;  ///< as in the list of effects, with its unit
+  std::string_view key;  ///< as in the list of effects, with its unit; empty: not shown
   double EffectValues::*member = nullptr;
   bool own = false;  ///< each motion has its own
   double low = 0.0;  ///< what it may be, of `member`

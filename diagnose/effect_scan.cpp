@@ -42,6 +42,9 @@ Range range_of_x(const TrackSet& set) {
 
 std::vector<double> shapes_of(const TrackSet& set, const EffectInfo& effect) {
   std::vector<double> shapes;
+  if (effect.id == "damping_gradient") {
+    return set.groups.size() > 1 ? std::vector<double>{0.0, 1.0} : std::vector<double>{0.0};
+  }
   if (effect.id == "stribeck") {
     for (double v = 0.008; v < 0.7; v *= 1.5) shapes.push_back(v);
     return shapes;

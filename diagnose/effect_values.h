@@ -18,8 +18,10 @@ struct EffectValues {
   double asymmetry = 0.0;      ///< d: mu (1 + d sign(v))
   double bow_1_m = 0.0;        ///< c: sin(alpha) + c (x - x_mid)
   double gradient_1_m = 0.0;   ///< b: K (1 + b (x - x_mid))
-  double wheels_kg = 0.0;      ///< m_w: (m + m_w) dv/dt
-  double tether_n_m = 0.0;     ///< -k (x - x_t) where x > x_t
+  /// x_mid of the gradient: 0 the set-up's own middle, 1 the middle of all set-ups (one K(x) for the track).
+  double gradient_about = 0.0;
+  double wheels_kg = 0.0;   ///< m_w: (m + m_w) dv/dt
+  double tether_n_m = 0.0;  ///< -k (x - x_t) where x > x_t
   double tether_x_m = std::numeric_limits<double>::infinity();
   double shake_m_s2 = 0.0;  ///< A of m A sin(2 pi f t + phi)
   double shake_hz = 0.0;

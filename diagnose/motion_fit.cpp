@@ -259,6 +259,7 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
   model.mass_kg = set.masses[data.mass].mass_kg;
   model.gravity_m_s2 = set.gravity_m_s2;
   model.x_mid_m = set.groups[data.group].x_mid_m;
+  model.x_mid_all_m = set.x_mid_m;
   model.unnamed = unnamed;
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];

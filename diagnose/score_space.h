@@ -39,6 +39,8 @@ class ScoreSpace {
   const ScoreColumn& residual() const { return residual_; }
   const MotionFit& fit() const { return fit_; }
   const TrackSet& set() const { return set_; }
+  /// Positions of a motion as the fit has them: free of the noise that a residual is made of.
+  const std::vector<double>& modelled(std::size_t motion) const { return base_[motion]; }
   /// What a motion's own parameters leave of a change of it, over the noise.
   Eigen::VectorXd own_rest(std::size_t motion, const Eigen::VectorXd& change_m) const;
   Eigen::Index offset(std::size_t motion) const { return offset_[motion]; }

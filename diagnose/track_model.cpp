@@ -36,7 +36,10 @@ class Mover {
     if (e.power != 0.0) viscous *= v == 0.0 ? 0.0 : std::pow(std::abs(v), e.power);
     if (e.rolloff_s2_m2 != 0.0) viscous /= 1.0 + e.rolloff_s2_m2 * v * v;
     const double off = x - m_.x_mid_m;
-    double force = weight_ * (sin_ + e.bow_1_m * off) - viscous * (1.0 + e.gradient_1_m * off);
+    if (e.gradient_1_m != 0.0) {
+      viscous *= 1.0 + e.gradient_1_m * (off - e.gradient_about * (m_.x_mid_all_m - m_.x_mid_m));
+    }
+    double force = weight_ * (sin_ + e.bow_1_m * off) - viscous;
     force -= e.c_kg_m * v * std::abs(v) + e.asymmetry * m_.mu * weight_ * cos_;
     if (x > e.tether_x_m) force -= e.tether_n_m * (x - e.tether_x_m);
     if (e.shake_m_s2 != 0.0) {

@@ -27,8 +27,9 @@ struct TrackModel {
   double k_n_s_m = 0.0;
   double mu = 0.0;
   double alpha_rad = 0.0;
-  double x_mid_m = 0.0;
-  double x0_m = 0.0;  ///< at the first of the times
+  double x_mid_m = 0.0;      ///< of the set-up
+  double x_mid_all_m = 0.0;  ///< of all set-ups
+  double x0_m = 0.0;         ///< at the first of the times
   double v0_m_s = 0.0;
   EffectValues effects;
   const UnnamedForce* unnamed = nullptr;

@@ -228,6 +228,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
   }
   if (set.motions.empty()) return set;
   share_noise(set.motions);
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (std::size_t g = 0; g < set.groups.size(); ++g) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const TrackedMotion& motion : set.motions) {
@@ -238,7 +239,10 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
       }
     }
     set.groups[g].x_mid_m = 0.5 * (low + high);
+    lowest = std::min(lowest, low);
+    highest = std::max(highest, high);
   }
+  set.x_mid_m = 0.5 * (lowest + highest);
   add_statements(results, setups, set);
   return set;
 }

@@ -57,6 +57,7 @@ struct TrackSet {
   std::vector<TrackGroup> groups;
   std::vector<TrackedMass> masses;
   std::vector<TrackedMotion> motions;
+  double x_mid_m = 0.0;   ///< middle of the range of x of all set-ups
   std::size_t modes = 0;  ///< shared errors of camera and plane
   bool pictures = false;  ///< at least one clip was filmed
   std::vector<std::string> notes;

@@ -3,12 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr int kCoarse = 12, kFine = 36;
 constexpr double kSure = 2.0;  // standard deviations at which a place is named
+
+UnnamedFamily family_of(std::string variable, std::string what, std::string unit) {
+  UnnamedFamily family;
+  family.variable = std::move(variable);
+  family.what = std::move(what);
+  family.unit = std::move(unit);
+  return family;
+}
 
 struct Grid {
   int bumps = kCoarse;
@@ -112,10 +121,7 @@ UnnamedFamily force_family(const ScoreSpace& space, const Grid& grid, int variab
     }
     columns.push_back(space.of_force(forces, 1e-4));
   }
-  UnnamedFamily family;
-  family.variable = name;
-  family.what = what;
-  family.unit = with_mass ? "m/s²" : "N";
+  UnnamedFamily family = family_of(name, what, with_mass ? "m/s²" : "N");
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
   draw(grid, evidence, family);
@@ -128,8 +134,8 @@ UnnamedFamily displacement_family(const ScoreSpace& space, const Grid& grid, boo
   std::vector<ScoreColumn> columns;
   for (int b = 0; b < grid.bumps; ++b) {
     std::vector<Eigen::VectorXd> changes;
-    for (const TrackedMotion& motion : set.motions) {
-      const auto& place = in_time ? motion.t_s : motion.x_m;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      const auto& place = in_time ? set.motions[i].t_s : space.modelled(i);
       Eigen::VectorXd change(static_cast<Eigen::Index>(place.size()));
       for (std::size_t p = 0; p < place.size(); ++p) {
         change[static_cast<Eigen::Index>(p)] = bump(place[p], grid.at(b), grid.width());
@@ -138,10 +144,7 @@ UnnamedFamily displacement_family(const ScoreSpace& space, const Grid& grid, boo
     }
     columns.push_back(space.project(changes));
   }
-  UnnamedFamily family;
-  family.variable = in_time ? "t_s" : "x_m";
-  family.what = "displacement";
-  family.unit = "m";
+  UnnamedFamily family = family_of(in_time ? "t_s" : "x_m", "displacement", "m");
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
   draw(grid, evidence, family);
@@ -152,10 +155,7 @@ UnnamedFamily displacement_family(const ScoreSpace& space, const Grid& grid, boo
 /// common size tau; what the common parameters take up is left aside.
 UnnamedFamily own_family(const ScoreSpace& space) {
   const TrackSet& set = space.set();
-  UnnamedFamily family;
-  family.variable = "clip";
-  family.what = "displacement";
-  family.unit = "m";
+  const UnnamedFamily family = family_of("clip", "displacement", "m");
   std::vector<ScoreColumn> columns;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const auto& t = set.motions[i].t_s;
@@ -179,10 +179,7 @@ UnnamedFamily own_family(const ScoreSpace& space) {
 UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable, const std::string& what,
                             std::size_t TrackedMotion::*member, std::size_t members, int kind) {
   const TrackSet& set = space.set();
-  UnnamedFamily family;
-  family.variable = variable;
-  family.what = what;
-  family.unit = kind == 1 ? "N s/m" : "N";
+  UnnamedFamily family = family_of(variable, what, kind == 1 ? "N s/m" : "N");
   std::vector<ScoreColumn> columns;
   for (std::size_t m = 0; m < members; ++m) {
     std::vector<UnnamedForce> forces(set.motions.size());

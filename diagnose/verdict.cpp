@@ -61,7 +61,7 @@ std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, cons
   const Eigen::MatrixXd covariance = common_covariance(fit);
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
-    if (globals[g].parameter == nullptr || globals[g].effect != effect) continue;
+    if (globals[g].parameter == nullptr || globals[g].effect != effect || globals[g].parameter->key.empty()) continue;
     const auto at = static_cast<Eigen::Index>(g);
     const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
     parameters.push_back({std::string(globals[g].parameter->key), value.value,
@@ -78,6 +78,10 @@ void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families
   const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
   for (const UnnamedFamily* family : sorted) {
     if (family->log_evidence < notable) break;
+    const bool drawn = std::any_of(diagnosis.curves.begin(), diagnosis.curves.end(), [&](const GapCurve& curve) {
+      return curve.variable == family->variable && curve.what == family->what;
+    });
+    if (drawn) continue;  // the same at another width
     if (family->names.empty() && !family->at.empty() && diagnosis.curves.size() < kMostCurves) {
       diagnosis.curves.push_back(
           {family->variable, family->what, family->unit, family->log_evidence, family->at, family->size, family->sd});
@@ -89,7 +93,7 @@ void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families
                        regions[r].size,  family->unit,    family->what,  ""};
       if (family->variable == "clip") {  // a clip as a whole
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
-        region.variable = "t_s";
+        region.variable = std::string("t_s");
         region.clip = clip.name;
         region.from = 0.0;
         region.to = clip.duration_s;

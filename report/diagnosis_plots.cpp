@@ -130,7 +130,9 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::GapCurve& curve : diagnosis.curves) {
     if (plots.size() < 3) plots.push_back(curve_plot(curve));
   }
-  for (const int variable : {1, 0, 2}) plots.push_back(residual_plot(diagnosis.residuals, variable));
+  for (const int variable : {1, 0, 2}) {
+    if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis.residuals, variable));
+  }
   return plots;
 }
 
@@ -152,8 +154,8 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
   script += fmt::format(
       ")\nset xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
       "'#9ecae1', "
-      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.3\n"
-      "plot $cells using 1:2:3 with image\n",
+      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.34\n"
+      "plot $cells using 1:2:3 with image pixels\n",
       static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {
       {gnuplot_svg(script, std::vector{data}, {680, 560}),

@@ -1,0 +1,153 @@
+#include "diagnose/diagnose.h"
+
+#include <algorithm>
+
+#include "base/errors.h"
+#include "catch.h"
+#include "diagnose/effect_list.h"
+#include "made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+diagnose::Diagnosis diagnosed(const tests::MadeExperiment& made, const std::vector<std::string>& without = {}) {
+  return diagnose::diagnose_results(made.results, made.setups, {.without = without, .jobs = 2});
+}
+
+double total(const diagnose::Diagnosis& diagnosis) {
+  double sum = diagnosis.none + diagnosis.unknown;
+  for (const auto& ranked : diagnosis.ranking) sum += ranked.probability;
+  return sum;
+}
+
+struct Case {
+  std::string id;
+  tests::MadeEffect effect;
+  std::string key;
+  double truth;
+};
+
+/// Each strong enough to move positions by tens of the noise of 30 µm.
+std::vector<Case> strong_cases() {
+  const double pi = std::acos(-1.0);
+  std::vector<Case> cases;
+  cases.push_back({"quadratic_drag",
+                   {[](double, double, double v, double) { return -0.05 * v * std::abs(v); }, {}},
+                   "c_kg_m",
+                   0.05});
+  cases.push_back({"load_independent_friction",
+                   {[](double, double, double v, double) { return v < 0.0   ? 0.01
+                                                                  : v > 0.0 ? -0.01
+                                                                            : 0.0; }, {}},
+                   "force_n",
+                   0.01});
+  cases.push_back(
+      {"damping_gradient", {[](double, double x, double v, double) { return -0.93 * 0.1 * x * v; }, {}}, "b_1_m", 0.1});
+  cases.push_back({"tether",
+                   {[](double, double x, double, double) { return x > 0.1 ? -0.3 * (x - 0.1) : 0.0; }, {}},
+                   "k_n_m",
+                   0.3});
+  cases.push_back({"perspective_error", {{}, [](double x, double) { return x / (1.0 + 0.02 * x); }}, "p_1_m", 0.02});
+  cases.push_back({"scale_error", {{}, [](double x, double) { return 1.05 * x; }}, "e", 0.05});
+  cases.push_back(
+      {"base_vibration",
+       {[=](double m, double, double, double t) { return m * 0.5 * std::sin(2.0 * pi * 7.3 * t + 0.4); }, {}},
+       "f_hz",
+       7.3});
+  return cases;
+}
+
+}  // namespace
+
+TEST_CASE("a strong effect is named first, with its size, and its probabilities sum to 1") {
+  for (const Case& one : strong_cases()) {
+    INFO(one.id);
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), one.effect, 11));
+    REQUIRE(diagnosis.verdict == "effect");
+    std::vector<std::string> named = diagnosis.effects.front().equivalent_to;
+    named.push_back(diagnosis.effects.front().id);
+    CHECK(std::find(named.begin(), named.end(), one.id) != named.end());
+    CHECK(std::abs(total(diagnosis) - 1.0) < 1e-9);
+    for (const auto& parameter : diagnosis.effects.front().parameters) {
+      if (diagnosis.effects.front().id != one.id || parameter.key != one.key) continue;
+      // Five standard deviations, and 3 % for what differs between "x_mid = 0" here and the middle of the data there.
+      CHECK(std::abs(parameter.value - one.truth) < 5.0 * parameter.sd + 0.03 * one.truth);
+    }
+    REQUIRE(diagnosis.gap);
+    // At the floor: one part in ten above it would be four standard errors of 1200 points.
+    CHECK(diagnosis.gap->after < 1.1);
+  }
+}
+
+TEST_CASE("a wrong scale and a wrong frame rate are named together: tracks cannot tell them apart") {
+  const tests::MadeEffect scale = {{}, [](double x, double) { return 1.05 * x; }};
+  const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), scale, 3));
+  REQUIRE(diagnosis.verdict == "effect");
+  const auto& first = diagnosis.effects.front();
+  CHECK(first.probability < 0.8);
+  std::vector<std::string> named = first.equivalent_to;
+  named.push_back(first.id);
+  CHECK(std::find(named.begin(), named.end(), "scale_error") != named.end());
+  CHECK(std::find(named.begin(), named.end(), "frame_rate_error") != named.end());
+}
+
+TEST_CASE("a nominal experiment has nothing missing, and its gap is at the floor") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), {}, seed));
+    CHECK(diagnosis.verdict == "none");
+    CHECK(diagnosis.none > 0.5);
+    CHECK(std::abs(total(diagnosis) - 1.0) < 1e-9);
+    REQUIRE(diagnosis.gap);
+    // Of 1200 points with a noise that is itself estimated: 0.04 is a standard error.
+    CHECK(std::abs(diagnosis.gap->before - 1.0) < 0.16);
+  }
+}
+
+TEST_CASE("a force that nobody listed is unknown, and the place where it acts is named") {
+  // A rough patch: extra friction between 0.10 and 0.22 m.
+  const tests::MadeEffect patch = {[](double m, double x, double v, double) {
+                                     const double size = x > 0.10 && x < 0.22 ? 0.15 * m : 0.0;
+                                     return v > 0.0 ? -size : size;
+                                   },
+                                   {}};
+  const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), patch, 5));
+  CHECK(diagnosis.verdict == "unknown");
+  REQUIRE(!diagnosis.regions.empty());
+  CHECK(diagnosis.regions.front().variable == "x_m");
+}
+
+TEST_CASE("an effect that is left out of the list is unknown, never another name with high probability") {
+  const tests::MadeEffect bow = {[](double m, double x, double, double) { return m * 9.8 * 0.01 * x; }, {}};
+  const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), bow, 7), {"track_bow"});
+  for (const auto& effect : diagnosis.effects) CHECK(effect.probability < 0.8);
+}
+
+TEST_CASE("data that carry no verdict are refused or say so") {
+  SECTION("constant positions") {
+    const tests::MadeEffect held = {{}, [](double, double) { return 0.25; }};
+    CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), held, 1, 0.0)), base::InputError);
+  }
+  SECTION("a clip with 20 frames") {
+    const auto made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-5, 20);
+    CHECK_THROWS_AS(diagnosed(made), base::InputError);
+  }
+  SECTION("one clip: held-out quarters, and a note") {
+    const auto diagnosis = diagnosed(tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1));
+    CHECK(diagnosis.verdict == "none");
+    REQUIRE(diagnosis.gap);
+    CHECK(diagnosis.gap->held_out.size() == 4);
+    CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(),
+                      [](const std::string& note) { return note.find("one clip only") != std::string::npos; }));
+  }
+  SECTION("no plumb and no stated uncertainty of the inclination") {
+    const tests::MadeEffect scale = {{}, [](double x, double) { return 1.05 * x; }};
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), scale, 1, 3e-5, 150, 100.0, 0.0));
+    CHECK(diagnosis.verdict == "none");
+    CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(),
+                      [](const std::string& note) { return note.find("neither a plumb line") != std::string::npos; }));
+  }
+  SECTION("an effect that does not exist") {
+    CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), {}, 1), {"magic"}), base::InputError);
+  }
+}
