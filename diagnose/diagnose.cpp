@@ -37,6 +37,11 @@ std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
 void check(const TrackSet& set) {
   std::size_t points = 0;
   for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
+  if (set.motions.empty() && set.forced == set.clips.size()) {
+    throw base::InputError(
+        base::Issue{"", 0, "clips", "a known force (force_n) in every clip",
+                    "clips in which only gravity and friction act: the diagnosis takes no force yet"});
+  }
   if (set.motions.empty()) {
     throw base::InputError(base::Issue{"", 0, "clips", "no clip in which anything moves freely",
                                        "one or more clips of a glider that moves"});

@@ -205,6 +205,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     set.clips.push_back({clip.name, clip.frame_rate_hz, duration, clip.frames, clip.bandwidth_s});
     set.pictures = set.pictures || !clip.sightings.empty();
     if (clip.forced) {
+      ++set.forced;
       set.notes.push_back(
           fmt::format("clip {}: a known force acts; the diagnosis does not take such clips yet", clip.name));
       continue;

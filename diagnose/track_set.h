@@ -63,6 +63,7 @@ struct TrackSet {
   std::vector<std::string> notes;
   /// Frames that the analysis took for hand or stop and that a motion could hold.
   std::size_t disputed = 0;
+  std::size_t forced = 0;  ///< clips with a known force, which are left out
 };
 
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the

@@ -216,8 +216,8 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
     v.bumps = x.bumps = bumps;
     families.push_back(force_family(space, v, 1, "v_m_s", "force", false, false));
     families.push_back(force_family(space, x, 0, "x_m", "acceleration", true, false));
+    families.push_back(force_family(space, x, 0, "x_m", "friction", true, true));
   }
-  families.push_back(force_family(space, ranges.x, 0, "x_m", "friction", true, true));
   families.push_back(force_family(space, ranges.t, 2, "t_s", "acceleration", true, false));
   families.push_back(displacement_family(space, ranges.x, false));
   families.push_back(displacement_family(space, ranges.t, true));

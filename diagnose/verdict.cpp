@@ -13,8 +13,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSameGain = 3.0;  // log likelihood: twenty times is not yet a difference
-constexpr double kNotable = 3.0;   // log evidence of an unnamed family that is worth a region
+constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
+constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
+constexpr double kNotable = 3.0;       // log evidence of an unnamed family that is worth a region
 constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
 constexpr std::size_t kPlotted = 250;
@@ -39,7 +40,9 @@ std::vector<std::string> equivalents(const Comparison& comparison, const Hypothe
     if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
     for (const Hypothesis& other : comparison.all) {
       if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
-      if (other.gain > best.gain - kSameGain && other.gain > kSameGain) ids.emplace_back(effect_list()[e].id);
+      const bool as_likely = other.log_evidence > best.log_evidence - kSameEvidence;
+      if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain)
+        ids.emplace_back(effect_list()[e].id);
       break;
     }
   }
