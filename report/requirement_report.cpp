@@ -151,9 +151,8 @@ std::string requirement_report(const Requirement& requirement) {
       : requirement.confirm == validate::Confirm::clips
           ? fmt::format("Where it allows the target, {} rendered runs judge, by the better estimator.",
                         requirement.runs)
-          : fmt::format("Where it is below the target by less than {} times, {} runs of tracks with that noise "
-                        "judge, by the better estimator.",
-                        validate::kClear, requirement.runs));
+          : fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
+                        requirement.runs));
   return page(requirement.name, body);
 }
 

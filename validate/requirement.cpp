@@ -179,6 +179,26 @@ void confirm_by_runs(const Sweep& sweep, const Setting& setting, std::uint64_t p
   candidate.verdict = reached ? Verdict::reached : Verdict::missed;
 }
 
+/// Dropped, duplicated and late frames are in no bound: the same runs with an even clock tell what they cost.
+void add_clock_limit(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options,
+                     Candidate& candidate) {
+  Setting even = setting;
+  even.scenario.recording.clock = {};
+  Candidate then;
+  then.results.resize(options.targets.size());
+  confirm_by_runs(sweep, even, point, options, then);
+  double gain = 0.0;
+  for (std::size_t t = 0; t < options.targets.size(); ++t) {
+    if (!candidate.results[t].found || !then.results[t].found) continue;
+    gain = std::max(gain, *candidate.results[t].found / *then.results[t].found);
+  }
+  if (std::isfinite(gain) && gain > 0.0) {
+    candidate.limits.insert(candidate.limits.begin(), {"the camera's clock (even instead, by runs)", gain});
+  }
+  std::stable_sort(candidate.limits.begin(), candidate.limits.end(),
+                   [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
+}
+
 std::string name_of(const Sweep& sweep, const std::vector<base::TomlScalar>& values, const render::Scenario& scenario) {
   std::string name = scenario.camera_name;
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
@@ -229,7 +249,7 @@ Candidate candidate_of(const Sweep& sweep, std::uint64_t point, const Requiremen
                                       [](const Target& target) { return target.measure == Target::Measure::bias; });
     if (candidate.need > 1.0) {
       candidate.verdict = Verdict::impossible;
-    } else if (candidate.need < 1.0 / kClear && !any_bias && options.confirm != Confirm::clips) {
+    } else if (candidate.need < 1.0 / kClear && !any_bias && options.confirm == Confirm::none) {
       candidate.verdict = Verdict::by_bound;
     } else if (options.confirm != Confirm::none) {
       confirm_by_runs(sweep, setting, point, options, candidate);
@@ -237,6 +257,7 @@ Candidate candidate_of(const Sweep& sweep, std::uint64_t point, const Requiremen
     const bool short_of_it = candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::missed;
     if (short_of_it && std::isfinite(candidate.need)) {
       candidate.limits = limits_of(setting, candidate.need, options.targets);
+      if (candidate.verdict == Verdict::missed) add_clock_limit(sweep, setting, point, options, candidate);
     }
   } catch (const base::InputError& error) {
     candidate.verdict = Verdict::refused;

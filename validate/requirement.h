@@ -3,9 +3,9 @@
 /// A target is on the worst configuration of the scenario: its standard deviation ("sd"), the half-width that holds 95
 /// % of the errors ("error95" = 1.96 rms error) or the mean error ("bias"). The bound takes the noise of the sweep's
 /// tracks, or predicts it from the camera (validate/camera_noise.h). A point whose bound is above the target cannot
-/// reach it. One whose bound is below it by less than kClear is run, as tracks with that noise or rendered, and judged
-/// by its errors (of the better estimator); one that has more room is taken at its bound. Rendered runs judge every
-/// point that the bound allows, for they have errors that the bound does not know: lens, shutter, codec, calibration.
+/// reach it. Any other is run, as tracks with that noise or rendered, and judged by its errors (of the better
+/// estimator), for a bound knows nothing of dropped frames, and of lens, shutter, codec and calibration, which rendered
+/// runs have besides. Where nothing is run, a bound below the target by kClear is said to have room.
 #pragma once
 
 #include <cstdint>
