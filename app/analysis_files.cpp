@@ -3,6 +3,7 @@
 #include "base/staged_output.h"
 #include "core/experiment.h"
 #include "report/file_names.h"
+#include "report/motion_csv.h"
 #include "report/phase_csv.h"
 #include "report/results_json.h"
 
@@ -16,17 +17,20 @@ constexpr int kVideos = 2;  // more would make the page heavy
 void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir) {
   base::write_file(dir / "results.json", report::results_json(results));
   const std::vector<std::string> names = report::phase_file_names(results);
+  const std::vector<std::string> motions = report::motion_file_names(results);
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     base::write_file(dir / names[c], report::phase_csv(results.clips[c]));
+    base::write_file(dir / motions[c], report::motion_csv(results.clips[c]));
   }
 }
 
 std::vector<core::Preview> previews_of(const std::vector<std::filesystem::path>& folders,
-                                       const core::AnalysisResults& results, const base::Progress& progress) {
+                                       const core::AnalysisResults& results, const base::Progress& progress,
+                                       const core::BareTrackOptions& bare) {
   std::vector<core::Preview> previews;
   int videos = 0;
   for (const std::filesystem::path& folder : folders) {
-    const core::Experiment experiment = core::read_experiment(folder);
+    const core::Experiment experiment = core::read_input(folder, bare);
     for (const core::ClipSetup& setup : experiment.clips) {
       if (!setup.file.empty())
         progress("preparing pictures",

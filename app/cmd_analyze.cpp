@@ -1,4 +1,5 @@
-/// glidelab analyze EXPERIMENT…: experiment folders in, results.json, report.html and phase-<clip>.csv out.
+/// glidelab analyze EXPERIMENT…: experiment folders or files of tracks in; results.json, report.html, phase-<clip>.csv
+/// and motion-<clip>.csv out.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,9 +12,11 @@
 #include "app/common_options.h"
 #include "app/interrupt.h"
 #include "app/progress_display.h"
+#include "base/errors.h"
 #include "base/staged_output.h"
 #include "core/analyze.h"
 #include "core/bandwidth_rule.h"
+#include "core/bare_track.h"
 #include "core/experiment.h"
 #include "diagnose/trajectory_results.h"
 #include "report/analysis_report.h"
@@ -31,6 +34,7 @@ struct AnalyzeOptions {
   std::vector<std::string> experiments;
   std::string bandwidth = "lines";
   std::string estimator = "phase-diagram";
+  core::BareTrackOptions bare;
 };
 
 constexpr const char* kLines = "lines";  // the default: what serves the lines best (core/bandwidth.h)
@@ -46,15 +50,27 @@ void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
   }
 }
 
-std::string title_of(const std::vector<fs::path>& folders) {
-  std::string title = core::read_experiment(folders.front()).name;
+std::string title_of(const std::vector<fs::path>& folders, const core::BareTrackOptions& bare) {
+  std::string title = core::read_input(folders.front(), bare).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
   return title;
 }
 
+/// Options for files have no meaning for folders, whose experiment.toml says the same.
+void check_file_options(const AnalyzeOptions& options, const std::vector<fs::path>& inputs) {
+  const core::BareTrackOptions& bare = options.bare;
+  if (bare.column.empty() && !bare.mass_kg && !bare.incline_deg) return;
+  for (const fs::path& input : inputs) {
+    if (core::is_bare_track(input)) continue;
+    throw base::InputError(base::Issue{input.string(), 0, "--column, --mass, --incline", "no file with a track",
+                                       "a file; for a folder experiment.toml says column, mass_kg and incline_deg"});
+  }
+}
+
 void analyze(const AnalyzeOptions& options) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
-  const std::string title = title_of(folders);
+  check_file_options(options, folders);
+  const std::string title = title_of(folders, options.bare);
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "analyze", folders.front());
   check_writable(out);
@@ -64,12 +80,13 @@ void analyze(const AnalyzeOptions& options) {
   const base::Progress progress = display.callback();
   core::AnalysisOptions how;
   how.jobs = options.common.jobs;
+  how.bare = options.bare;
   read_bandwidth(options.bandwidth, how);
   if (options.estimator == "phase-diagram-gls") how.lines = core::LineMethod::generalised;
   core::AnalysisResults results = core::analyze(folders, how, progress);
   if (options.estimator == "trajectory") results = diagnose::with_trajectory_fits(std::move(results));
   write_analysis_files(results, staged.dir());
-  const std::vector<core::Preview> previews = previews_of(folders, results, progress);
+  const std::vector<core::Preview> previews = previews_of(folders, results, progress, options.bare);
   base::write_file(staged.dir() / "report.html", report::analysis_report(title, results, previews, progress));
   throw_if_interrupted();
   staged.publish_files();
@@ -95,9 +112,11 @@ void add_analyze(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "analyze", "Analyse experiment folders: find the glider, smooth its motion, recover K/m, mu, alpha and v_lim");
   command
-      ->add_option("EXPERIMENT", options->experiments,
-                   "Folders that hold an experiment.toml; several share the glider and the track")
-      ->type_name("DIR")
+      ->add_option(
+          "EXPERIMENT", options->experiments,
+          "Folders that hold an experiment.toml; several share the glider and the track. Or files with a track: "
+          "t_s,x_m, or what Tracker, Logger Pro, Capstone or phyphox export")
+      ->type_name("DIR|FILE")
       ->required();
   command
       ->add_option("--bandwidth", options->bandwidth,
@@ -116,6 +135,16 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"phase-diagram", "phase-diagram-gls", "trajectory"}))
       ->capture_default_str();
+  command
+      ->add_option("--column", options->bare.column,
+                   "Of a file: the column that is x, by its header or its number; default: found by its header")
+      ->type_name("NAME|NUMBER");
+  command->add_option("--mass", options->bare.mass_kg, "Of a file: mass of the glider in kilograms")
+      ->type_name("KG")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--incline", options->bare.incline_deg, "Of a file: inclination in degrees, as stated")
+      ->type_name("DEG")
+      ->check(CLI::Range(-89.9, 89.9));
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted as by every command; an analysis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });

@@ -15,15 +15,16 @@
 namespace glidelab::core {
 namespace {
 
-std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folders) {
+std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folders, const BareTrackOptions& bare) {
   if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
   std::vector<Experiment> experiments;
   std::set<std::filesystem::path> seen;
   for (const auto& folder : folders) {
-    if (!seen.insert(std::filesystem::weakly_canonical(folder / "experiment.toml")).second) {
+    const auto file = is_bare_track(folder) ? folder : folder / "experiment.toml";
+    if (!seen.insert(std::filesystem::weakly_canonical(file)).second) {
       throw base::InputError(base::Issue{folder.string(), 0, "", "the folder a second time", "each folder once"});
     }
-    experiments.push_back(read_experiment(folder));
+    experiments.push_back(read_input(folder, bare));
     const Experiment& read = experiments.back();
     if (read.clips.empty()) {
       throw base::InputError(base::Issue{read.file.string(), 0, "clip", "none", "one or more clips or tracks"});
@@ -67,7 +68,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     throw base::InputError(base::Issue{"", 0, "bandwidth", options.bandwidth_rule,
                                        fmt::format("{}", fmt::join(bandwidth_rule_names(), ", "))});
   }
-  const std::vector<Experiment> experiments = read_all(folders);
+  const std::vector<Experiment> experiments = read_all(folders, options.bare);
   AnalysisResults results;
   std::vector<ClipSetup> setups;
   std::vector<TrackData> tracks;
@@ -79,6 +80,10 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
+      if (is_bare_track(experiment.file) && !options.bare.mass_kg) {
+        tracks.back().notes.emplace_back(
+            "no mass is stated: 1 kg stands for it (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)");
+      }
       experiment_of.push_back(&experiment);
     }
     modes += seen.modes;

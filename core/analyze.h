@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "core/bare_track.h"
 #include "core/experiment.h"
 #include "core/frame_source.h"
 #include "core/phase_diagram.h"
@@ -24,10 +25,11 @@ struct AnalysisOptions {
   FrameOpener open = open_frames;     ///< where the clips' frames come from
   std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: that of bandwidth.h
   LineMethod lines = LineMethod::ordinary;
+  BareTrackOptions bare = {};  ///< for inputs that are a track's file
 };
 
-/// Reads and analyses all folders together: they share the glider and the track, and nothing of the camera.
-/// InputError for what is wrong with a folder; the progress tells frames.
+/// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, and nothing of the
+/// camera. InputError for what is wrong with a folder; the progress tells frames.
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
                         const base::Progress& progress = base::no_progress);
 

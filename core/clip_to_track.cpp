@@ -231,7 +231,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
     const ClipSetup& clip = experiment.clips[i];
     if (clip.file.empty()) {
-      results.tracks[i] = read_track_csv(clip.track, downhill_of(experiment, clip.group));
+      results.tracks[i] = read_track_csv(clip.track, downhill_of(experiment, clip.group), clip.column);
     } else {
       pictures.push_back(i);
     }

@@ -171,6 +171,7 @@ ClipSetup read_clip(const TomlTable& table, const fs::path& folder) {
   }
   if (table.has("track")) {
     clip.track = read_file_name(table, "track", folder);
+    clip.column = table.maybe_text("column").value_or("");
     if (table.has("file")) clip.file = folder / table.text("file");
   } else {
     clip.file = read_file_name(table, "file", folder, true);

@@ -61,7 +61,8 @@ struct TrackSetup {
 struct ClipSetup {
   std::string name;
   std::filesystem::path file;   ///< a video or a folder of frames; empty for a track
-  std::filesystem::path track;  ///< a CSV `t_s,x_m[,force_n]`; empty for a clip
+  std::filesystem::path track;  ///< a CSV `t_s,x_m[,force_n]` or an exported table; empty for a clip
+  std::string column = {};      ///< of an exported table, that is x: its header or number; empty: found by its header
   double mass_kg = 0.0;
   double mass_sd_kg = 0.0;
   double incline_rad = 0.0;  ///< as stated

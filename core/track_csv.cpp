@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <string_view>
 
 #include "base/csv.h"
 #include "base/errors.h"
+#include "base/staged_output.h"
 #include "core/quantile.h"
+#include "core/track_import.h"
 
 namespace glidelab::core {
 namespace {
@@ -30,10 +33,27 @@ void check_times(const base::CsvTable& table, const std::vector<double>& t_s) {
   }
 }
 
+/// The first line that is neither empty nor a comment has a name `t_s`.
+bool has_own_header(const std::filesystem::path& file) {
+  const std::string text = base::read_file(file);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  while (!rest.empty()) {
+    const auto newline = rest.find('\n');
+    const std::string_view line = rest.substr(0, newline);
+    rest.remove_prefix(newline == std::string_view::npos ? rest.size() : newline + 1);
+    const auto first = line.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos || line[first] == '#') continue;
+    return line.find("t_s") != std::string_view::npos;
+  }
+  return true;  // an empty file: its error is the plain one
+}
+
 }  // namespace
 
-TrackData read_track_csv(const std::filesystem::path& file, int downhill) {
+TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column) {
   assert(downhill == 1 || downhill == -1);
+  if (!column.empty() || !has_own_header(file)) return import_track(file, column, downhill);
   const base::CsvTable table = base::read_csv(file, {"t_s", "x_m"}, {"force_n"});
   TrackData track;
   track.t_s = table.column("t_s");

@@ -1,8 +1,10 @@
-/// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`.
+/// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or what another
+/// program exported (track_import.h).
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 
 #include "core/track_data.h"
 
@@ -15,6 +17,8 @@ inline constexpr std::size_t kFewestTrackPoints = 8;
 /// Reads `file`; x and the force are multiplied by `downhill` (+1 or -1), so that both are positive downhill. Times
 /// stay those of the file; every row is a frame in which the object was seen. The frame rate is one over the median
 /// time step. InputError, up to ten issues named by line: no number, a time that does not rise, too few points.
-TrackData read_track_csv(const std::filesystem::path& file, int downhill);
+///
+/// A file whose header has no `t_s`, or of which a column is asked for, goes to import_track().
+TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column = {});
 
 }  // namespace glidelab::core

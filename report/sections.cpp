@@ -93,12 +93,12 @@ std::string clip_html(const core::ClipResult& clip, std::size_t index, const std
   }
   text += fmt::format(
       "<p>{} at {} Hz, {} points used. Position noise {} mm. Bandwidth {} ms{}{}. "
-      "Numbers: <code>{}</code>.</p>\n",
+      "Numbers: <code>{}</code>; every frame, with residuals: <code>{}</code>.</p>\n",
       clip.sightings.empty() ? fmt::format("{} positions", clip.frames)
                              : fmt::format("{} frames, the marker found in {},", clip.frames, clip.detected),
       number_text(clip.frame_rate_hz, 5), used, number_text(clip.position_noise_m * 1e3, 3),
       number_text(clip.bandwidth_s * 1e3, 3), clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method),
-      escape(phase_file));
+      escape(phase_file), escape("motion" + phase_file.substr(phase_file.find('-'))));
   text += notes_html(clip.notes);
   if (preview != nullptr) text += pictures(clip, *preview);
   text += figures(motion_plots(clip));

@@ -1,4 +1,8 @@
 /// `glidelab analyze` on a folder of tracks: files, JSON, exit statuses, nothing half-written.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
 
@@ -82,6 +86,40 @@ TEST_CASE("analyze fits generalised lines where they are asked for, in the same 
   for (const auto& [key, value] : plain.items()) CHECK(better.contains(key));
 }
 
+TEST_CASE("analyze takes a file that another program exported, its column of x by name") {
+  const tests::TempDir temp;
+  std::string text = "Run 1: Time (s);Run 1: Position (cm);Run 2: Time (s);Run 2: Position (cm)\n";
+  for (int i = 0; i < 300; ++i) {  // 1.2 m/s, slowing down at 2 1/s and 0.07 m/s^2; a decimal comma
+    const double t = 0.005 * i, x = 100.0 * (-0.035 * t - 0.6175 * std::expm1(-2.0 * t));
+    std::string row = fmt::format("{:.3f};{:.6f};{:.3f};{:.6f}\n", t, 0.5 * x, t, x + 1e-3 * ((i * 37) % 11 - 5));
+    std::replace(row.begin(), row.end(), '.', ',');
+    text += row;
+  }
+  base::write_file(temp / "glider.csv", text);
+  const std::string file = (temp / "glider.csv").string(), out = (temp / "out").string();
+  const tests::ProcessResult unclear = tests::glidelab({"analyze", file, "--out", out});
+  CHECK(unclear.status == 1);
+  CHECK(unclear.err.find("Run 2: Position (cm)") != std::string::npos);
+  CHECK_FALSE(fs::exists(out));
+  const tests::ProcessResult result =
+      tests::glidelab({"analyze", file, "--column", "Run 2: Position", "--mass", "0.3", "--out", out, "--json"});
+  INFO(result.err);
+  REQUIRE(result.status == 0);
+  const json document = json::parse(result.out);
+  CHECK(document.at("configurations").at(0).at("mass_kg") == 0.3);
+  CHECK(document.at("clips").at(0).at("name") == "glider");
+  const json& k = document.at("clips").at(0).at("segments").at(0).at("k_over_m_1_s");
+  CHECK(std::abs(k.at("value").get<double>() - 2.0) < 4.0 * k.at("sd").get<double>());
+  CHECK(fs::exists(temp / "out/motion-glider.csv"));
+  CHECK(fs::exists(temp / "out/report.html"));
+  const tests::ProcessResult without = tests::glidelab({"analyze", file, "--column", "4", "--out", out});
+  CHECK(without.status == 0);
+  tests::write_track_experiment(temp / "made");
+  const tests::ProcessResult folder = tests::glidelab({"analyze", (temp / "made").string(), "--column", "2"});
+  CHECK(folder.status == 1);
+  CHECK(folder.err.find("--column") != std::string::npos);
+}
+
 TEST_CASE("analyze without --json prints a table, and the same files for any number of jobs") {
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");
@@ -94,7 +132,7 @@ TEST_CASE("analyze without --json prints a table, and the same files for any num
     CHECK(result.err.find("report: ") != std::string::npos);
     CHECK(result.err.find('\r') == std::string::npos);  // no bar where there is no terminal
   }
-  for (const char* file : {"results.json", "phase-up.csv", "report.html"}) {
+  for (const char* file : {"results.json", "phase-up.csv", "motion-up.csv", "report.html"}) {
     CHECK(base::read_file(temp / "1" / file) == base::read_file(temp / "2" / file));
   }
 }

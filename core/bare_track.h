@@ -1,0 +1,25 @@
+/// A track's file on its own in place of an experiment folder: what the analysis needs beside it comes from options.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/experiment.h"
+
+namespace glidelab::core {
+
+struct BareTrackOptions {
+  std::string column;                 ///< of x in an exported table (track_import.h); empty: found by its header
+  std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
+  std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
+};
+
+/// A regular file that is not experiment.toml.
+bool is_bare_track(const std::filesystem::path& path);
+
+/// Of a folder read_experiment(); of a file an experiment of one clip, named after the file, x taken as downhill.
+/// InputError as read_experiment(), and for a path that is not there.
+Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options);
+
+}  // namespace glidelab::core
