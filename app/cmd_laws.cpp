@@ -48,10 +48,10 @@ void laws(const LawsOptions& options) {
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "laws", options.scenarios.front());
   check_writable(out);
-  base::StagedOutput staged(out);
   ProgressDisplay display(options.common.quiet);
   std::vector<validate::LawStudy> studies;
   for (const fs::path& file : files) studies.push_back(validate::study_law(file));
+  base::StagedOutput staged(out);
   base::write_file(staged.dir() / "laws.html", report::laws_report(studies, display.callback()));
   throw_if_interrupted();
   staged.publish_files();

@@ -10,7 +10,8 @@ using namespace glidelab;
 
 namespace {
 
-const std::vector<std::string> kCommands = {"simulate", "render", "analyze", "validate", "characterize"};
+const std::vector<std::string> kCommands = {"simulate", "render",  "analyze", "validate",     "coverage",
+                                            "sweep",    "require", "laws",    "characterize", "diagnose"};
 
 }  // namespace
 
@@ -50,7 +51,7 @@ TEST_CASE("the version is printed and nothing else is done") {
 TEST_CASE("a wrong command line is status 2, one message, and nothing on standard output") {
   const std::vector<std::vector<std::string>> wrong = {
       {},
-      {"sweep", "x.toml"},
+      {"blind", "x.toml"},
       {"--no-such-option"},
       {"analyze"},
       {"render"},
@@ -78,15 +79,20 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
 }
 
 TEST_CASE("an unknown command is named together with those that exist") {
-  const tests::ProcessResult result = tests::glidelab({"diagnose", "folder"});
-  CHECK(result.err.find("unknown command \"diagnose\"") != std::string::npos);
-  CHECK(result.err.find("simulate, render, analyze, validate, characterize") != std::string::npos);
+  const tests::ProcessResult result = tests::glidelab({"blind", "folder"});
+  CHECK(result.err.find("unknown command \"blind\"") != std::string::npos);
+  CHECK(
+      result.err.find("simulate, render, analyze, validate, coverage, sweep, require, laws, characterize, diagnose") !=
+      std::string::npos);
 }
 
 TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {
   const tests::TempDir temp;
   for (const std::string& command : kCommands) {
-    const tests::ProcessResult result = tests::glidelab({command, (temp / "nothing.toml").string()}, temp.path());
+    std::vector<std::string> arguments = {command, (temp / "nothing.toml").string()};
+    if (command == "coverage") arguments.insert(arguments.end(), {"--noise-m", "1e-5"});
+    if (command == "require") arguments.insert(arguments.end(), {"--target", "mu=0.001"});
+    const tests::ProcessResult result = tests::glidelab(arguments, temp.path());
     INFO(command << ": " << result.err);
     CHECK(result.status == 1);
     CHECK(result.err.starts_with("glidelab: error: "));

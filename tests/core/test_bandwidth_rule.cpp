@@ -193,7 +193,7 @@ TEST_CASE("a local bandwidth is narrow where the motion bends and wide where it 
   CHECK(late > 1.2 * early);  // x'''' falls by exp(-2.77 * 0.75): its h^9 rule gives a factor of 1.6
 }
 
-TEST_CASE("a motion that is too short for any bandwidth gets none; unknown names have no rule") {
+TEST_CASE("a motion that is too short for any bandwidth gets none, and unknown names have no rule") {
   const std::vector<double> t{0.0, 0.1, 0.2, 0.3}, x{0.0, 0.1, 0.3, 0.2};
   BandwidthProblem problem;
   problem.parts.push_back({t, x});

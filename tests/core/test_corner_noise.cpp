@@ -73,7 +73,8 @@ TEST_CASE("independent errors of corners are told from those that neighbours sha
   }
 }
 
-TEST_CASE("a camera's stated uncertainty holds where neighbouring corners err together; independent noise's does not") {
+TEST_CASE(
+    "a camera's stated uncertainty holds where neighbouring corners err together, and independent noise's does not") {
   const tests::KnownCamera known;
   cv::RNG random(5);
   double z2 = 0.0, naive_z2 = 0.0;

@@ -95,7 +95,7 @@ TEST_CASE("the covariance of a line is L Sigma L' as a dense computation gives i
   CHECK(line->parts.cov == Approx(covariance(0, 1)).epsilon(1e-9));
 }
 
-TEST_CASE("intervals of a line hold the truth in 95 % of noisy clips; the textbook's formula is off") {
+TEST_CASE("intervals of a line hold the truth in 95 % of noisy clips, and the textbook's formula is off") {
   const tests::Law law{4.0, 0.006, 2.0};
   const auto exact = positions(law, 1.2, 300);
   const double noise_m = 1e-4, h = 0.03;

@@ -118,7 +118,7 @@ TEST_CASE("a later clock gives the same results, a longer metre scales a0 and v_
   CHECK(scaled.clip.position_noise_m == Approx(1.25 * here.clip.position_noise_m).epsilon(1e-9));
 }
 
-TEST_CASE("a kernel that reaches over the reversal overstates the friction; left out, it does not") {
+TEST_CASE("a kernel that reaches over the reversal overstates the friction, and left out, it does not") {
   // Level track, a spring's throw simulated as gravity of a slope that turns the glider: mu shows in the jump at v = 0.
   const Law law{2.0, 0.004, 0.3};
   const double h = 0.08;

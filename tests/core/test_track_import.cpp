@@ -105,7 +105,7 @@ TEST_CASE("phyphox: quotes, semicolons, decimal commas, scientific notation, NaN
   CHECK(has_note(gap, "1 rows between others"));
 }
 
-TEST_CASE("two columns without a header are time and place; a byte-order mark and CRLF do not matter") {
+TEST_CASE("two columns without a header are time and place, and a byte-order mark and CRLF do not matter") {
   check_motion(Made(rows("0.{0},{1}e-2\r\n")).read());
   check_motion(Made("\xEF\xBB\xBFt (s),x (mm)\r\n" + rows("0.{0},{1}0\r\n")).read());
   check_motion(Made("zeit_ms,weg_mm\n" + rows("{0}00,{1}0\n")).read());

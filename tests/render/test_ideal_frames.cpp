@@ -25,7 +25,11 @@ height_px = 160
 frame_rate_hz = 100.0
 exposure_s = 0.008
 focal_px = [360.0, 360.0]
-distortion = [-0.2, 0.05, 0.001, 0.002, 0.0]
+[camera.distortion]
+k1 = -0.2
+k2 = 0.05
+p1 = 0.001
+p2 = 0.002
 [sensor]
 full_well_e = 2000
 read_noise_e = 20
@@ -105,10 +109,11 @@ TEST_CASE("ideal frames hold no noise, no flicker and no lens, and the marker wh
     const Spot spot = brightest(grey);
     INFO("frame " << k);
     CHECK(spot.pixels > 50);
-    // A disc of r = 5 px or more that is cut at whole pixels: its centroid is off by about 0.3 / r^1.5 px (the circle
-    // problem); a lens of this kind or half an exposure would move it by a pixel and more.
-    CHECK(std::abs(spot.u - centres.columns[2][k]) < 0.15);
-    CHECK(std::abs(spot.v - centres.columns[3][k]) < 0.15);
+    // Pixels that are covered to 92 % or more count whole: a disc of r = 4 px has some 25 at its edge, each in or out
+    // by chance, which moves its centroid by r sqrt(25 / 12) / (pi r²) = 0.11 px; three of these. This lens, or half
+    // the exposure, would move it by a pixel and more.
+    CHECK(std::abs(spot.u - centres.columns[2][k]) < 0.35);
+    CHECK(std::abs(spot.v - centres.columns[3][k]) < 0.35);
     if (k > 0) CHECK(centres.columns[2][k] > previous_u);
     previous_u = centres.columns[2][k];
     ++k;

@@ -7,7 +7,7 @@
 using namespace glidelab;
 using nlohmann::json;
 
-TEST_CASE("comparison.json has every key of its form; what is missing is null with a reason") {
+TEST_CASE("comparison.json has every key of its form, and what is missing is null with a reason") {
   validate::Comparison comparison;
   comparison.quantities = {
       {"m1", 0.335, 4.0, "phase-diagram", "k_over_m_1_s", 2.76, 2.763, 0.004, 0.003, ""},
