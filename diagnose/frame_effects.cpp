@@ -10,6 +10,8 @@
 namespace glidelab::diagnose {
 namespace {
 
+constexpr double kLeastFilmedJitter = 1e-5;  // s; a hundredth of a short exposure
+
 constexpr int kMostMissing = 60;
 constexpr double kClear = 12.0;       // log likelihood that a missing frame must gain
 constexpr double kKnotPoints = 14.0;  // points a bump of the smooth curve
@@ -166,8 +168,10 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
   const double none = log_likelihood(0.0);
   std::vector<double> logs;
   double best = 0.0, best_tau = 0.0;
-  // From what begins to show among n points, in units of what one standard deviation of position makes at top speed.
-  for (double tau = 2.0 * std::pow(2.0 / n, 0.25) * sd / top; tau < 40.0 * sd / top && tau < 0.5 * step; tau *= 1.3) {
+  // From what begins to show among n points, in units of what one standard deviation of position makes at top speed; in
+  // pictures from what cannot be the marker's blur, which makes its noise grow with the speed as well.
+  const double least = std::max(2.0 * std::pow(2.0 / n, 0.25) * sd / top, set.pictures ? kLeastFilmedJitter : 0.0);
+  for (double tau = least; tau < 40.0 * sd / top && tau < 0.5 * step; tau *= 1.3) {
     logs.push_back(log_likelihood(tau) - none);
     if (logs.back() > best) {
       best = logs.back();

@@ -1,6 +1,7 @@
 #include "diagnose/diagnose.h"
 
 #include <algorithm>
+#include <random>
 
 #include "base/errors.h"
 #include "catch.h"
@@ -150,4 +151,23 @@ TEST_CASE("data that carry no verdict are refused or say so") {
   SECTION("an effect that does not exist") {
     CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), {}, 1), {"magic"}), base::InputError);
   }
+}
+
+TEST_CASE("noise that a moving marker's blur adds is no uneven clock in pictures, and may be one in tracks") {
+  // 1.5 µm of noise at rest; and 2 µm more at 1 m/s, which 2 µs of jitter would make as well.
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  double last_x = 0.0, last_t = 0.0;
+  const tests::MadeEffect blur = {{}, [&](double x, double t) {
+                                    const double v = t > last_t ? (x - last_x) / (t - last_t) : 0.0;
+                                    last_x = x;
+                                    last_t = t;
+                                    return x + 2e-6 * v * normal(random);
+                                  }};
+  tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), blur, 5, 1.5e-6);
+  const auto of_tracks = diagnosed(made);
+  REQUIRE(of_tracks.verdict == "effect");
+  CHECK(of_tracks.effects.front().id == "timestamp_jitter");
+  for (core::ClipResult& clip : made.results.clips) clip.sightings.resize(1);
+  CHECK(diagnosed(made).verdict == "none");
 }
