@@ -61,7 +61,14 @@ TEST_CASE("A sweep that is killed at random instants and continued ends as one t
   const fs::path database = dir / "killed" / "sweep.sqlite";
   while (kills < 50) {
     tests::Process process({tests::kBinary, "sweep", sweep, "-q", "-o", dir / "killed", "--jobs", "2"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(10, 400)(random)));
+    // Every other one is killed at a random instant of its start, the others at one after a run was finished; on a busy
+    // machine the start alone may take a second.
+    std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(10, 200)(random)));
+    if (kills % 2 == 1) {
+      while (process.running() && runs_in(database) == before) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(1, 20)(random)));
+      }
+    }
     if (!process.running()) break;
     process.send(SIGKILL);
     process.wait();
