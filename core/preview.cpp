@@ -1,11 +1,8 @@
 #include "core/preview.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -13,6 +10,7 @@
 
 #include "base/errors.h"
 #include "base/staged_output.h"
+#include "base/temporary_folder.h"
 #include "core/experiment.h"
 #include "core/frame_source.h"
 #include "core/results.h"
@@ -28,26 +26,6 @@ constexpr std::size_t kMostBytes = 1 << 20;  // what a page can carry a few time
 constexpr std::size_t kPathDots = 60;
 const cv::Scalar kMarkerColor(0, 140, 255);  // orange in BGR: seen on black, grey and white
 const cv::Scalar kPathColor(255, 170, 60);   // light blue
-
-/// A folder for the encoder's file, removed with it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "glidelab-preview-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) base::throw_system_error(pattern, "cannot be made", errno);
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;  // a destructor has nobody to tell
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Small pictures in colour, of even size as H.264's 4:2:0 needs.
 class Shrinker {
@@ -135,8 +113,8 @@ class VideoFile {
   }
 
  private:
-  fs::path file() const { return folder_.path() / "clip.mp4"; }
-  TemporaryFolder folder_;
+  fs::path file() const { return folder_ / "clip.mp4"; }
+  base::TemporaryFolder folder_{"preview"};
   cv::VideoWriter writer_;
   bool failed_ = false;
 };

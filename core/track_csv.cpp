@@ -51,6 +51,13 @@ bool has_own_header(const std::filesystem::path& file) {
 
 }  // namespace
 
+void take_rows_as_frames(TrackData& track) {
+  track.frame.resize(track.t_s.size());
+  std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
+  track.frame_t_s = track.t_s;
+  track.frame_rate_hz = 1.0 / median_step(track.t_s);
+}
+
 TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column) {
   assert(downhill == 1 || downhill == -1);
   if (!column.empty() || !has_own_header(file)) return import_track(file, column, downhill);
@@ -64,10 +71,7 @@ TrackData read_track_csv(const std::filesystem::path& file, int downhill, const 
     track.force_n = table.column("force_n");
     for (double& force : track.force_n) force *= downhill;
   }
-  track.frame.resize(track.t_s.size());
-  std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
-  track.frame_t_s = track.t_s;
-  track.frame_rate_hz = 1.0 / median_step(track.t_s);
+  take_rows_as_frames(track);
   return track;
 }
 

@@ -15,10 +15,14 @@ namespace glidelab::core {
 inline constexpr std::size_t kFewestTrackPoints = 8;
 
 /// Reads `file`; x and the force are multiplied by `downhill` (+1 or -1), so that both are positive downhill. Times
-/// stay those of the file; every row is a frame in which the object was seen. The frame rate is one over the median
-/// time step. InputError, up to ten issues named by line: no number, a time that does not rise, too few points.
+/// stay those of the file. InputError, up to ten issues named by line: no number, a time that does not rise, too few
+/// points.
 ///
 /// A file whose header has no `t_s`, or of which a column is asked for, goes to import_track().
 TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column = {});
+
+/// Every point of a track from a file is a frame in which the object was seen; the frame rate is one over the median
+/// time step.
+void take_rows_as_frames(TrackData& track);
 
 }  // namespace glidelab::core

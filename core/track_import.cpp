@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
-#include <numeric>
 
 #include "base/errors.h"
 #include "core/column_header.h"
 #include "core/column_table.h"
-#include "core/quantile.h"
 #include "core/track_csv.h"
 
 namespace glidelab::core {
@@ -142,10 +140,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   }
   if (missing > 0)
     track.notes.push_back(fmt::format("{} rows between others have no time or x and are left out", missing));
-  track.frame.resize(track.t_s.size());
-  std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
-  track.frame_t_s = track.t_s;
-  track.frame_rate_hz = 1.0 / median_step(track.t_s);
+  take_rows_as_frames(track);
   return track;
 }
 

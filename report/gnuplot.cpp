@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,33 +15,12 @@
 
 #include "base/errors.h"
 #include "base/staged_output.h"
+#include "base/temporary_folder.h"
 
 namespace glidelab::report {
 namespace {
 
 namespace fs = std::filesystem;
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code error;
-    const fs::path parent = fs::temp_directory_path(error);
-    if (error) throw base::EnvironmentError(fmt::format("no folder for temporary files: {}", error.message()));
-    std::string pattern = (parent / "glidelab-plot-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) base::throw_system_error(pattern, "cannot be made", errno);
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;  // a destructor has nobody to tell
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  fs::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
 
 /// The process environment with another locale, so that numbers have a decimal point and texts are UTF-8.
 std::vector<std::string> plot_environment() {
@@ -127,7 +105,7 @@ std::string gnuplot_quoted(std::string_view text) {
 }
 
 std::string gnuplot_svg(std::string_view script, std::span<const PlotData> data, PlotSize size) {
-  const TemporaryFolder folder;
+  const base::TemporaryFolder folder("plot");
   const fs::path svg = folder / "plot.svg";
   const fs::path log = folder / "log.txt";
   // At the font size 15 text is still 11 pixels high where the page shows the plot 350 pixels wide.
@@ -146,7 +124,7 @@ std::string gnuplot_svg(std::string_view script, std::span<const PlotData> data,
 }
 
 void check_gnuplot() {
-  const TemporaryFolder folder;
+  const base::TemporaryFolder folder("plot");
   const fs::path log = folder / "log.txt";
   check_status(run({"gnuplot", "--version"}, log), log);
 }

@@ -42,6 +42,21 @@ std::string overall_table(const SweepSummary& summary) {
   return table.str();
 }
 
+std::string acceleration_table(const SweepSummary& summary) {
+  if (summary.accelerations.empty()) return {};
+  HtmlTable table(
+      {"estimator", "clips", "rms error of a(t), median (m/s²)", "over the best possible, median", "in 90 %, at most"},
+      1);
+  const auto ratio = [](const std::optional<double>& value) { return value ? number_text(*value, 3) : "–"; };
+  for (const validate::AccelerationError& of : summary.accelerations) {
+    table.row({escape(of.estimator), fmt::format("{}", of.clips), number_text(of.median_m_s2, 3), ratio(of.regret),
+               ratio(of.regret90)});
+  }
+  return "<h2>Accelerations</h2>\n" + table.str() +
+         "<p class=\"soft\">Of each clip's a(t) against the truth, over the points that count. The best possible "
+         "bandwidth knows the truth; it is there where the sweep names the rule best-possible.</p>\n";
+}
+
 Json statistics_json(const ErrorStatistics& of) {
   Json object;
   object["runs"] = of.runs;
@@ -75,6 +90,7 @@ std::string sweep_report(const SweepSummary& summary, const base::Progress& prog
       "<p class=\"soft\">sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares over "
       "the "
       "runs; coverage is the part of the stated 95 % intervals that hold the truth.</p>\n";
+  body += acceleration_table(summary);
   double done = 0.0;
   for (const validate::AxisSummary& axis : summary.axes) {
     body += fmt::format("<h2>Over {}</h2>\n", escape(axis.name));
@@ -115,6 +131,16 @@ std::string sweep_json(const SweepSummary& summary) {
     object["quantity"] = series.quantity;
     object["estimator"] = series.estimator;
     document["overall"].push_back(std::move(object));
+  }
+  document["accelerations"] = Json::array();
+  for (const validate::AccelerationError& of : summary.accelerations) {
+    Json object;
+    object["estimator"] = of.estimator;
+    object["clips"] = of.clips;
+    put(object, "median_rms_error_m_s2", of.median_m_s2);
+    put(object, "regret", of.regret, "the sweep has no rule best-possible");
+    put(object, "regret_90", of.regret90, "the sweep has no rule best-possible");
+    document["accelerations"].push_back(std::move(object));
   }
   document["axes"] = Json::array();
   for (const validate::AxisSummary& axis : summary.axes) {

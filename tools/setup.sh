@@ -6,22 +6,40 @@ jobs=$(nproc)
 
 say() { printf '\n== %s\n' "$*" >&2; }
 
-# install_missing LIST…: apt-get install of the packages in these lists that dpkg does not know as installed.
-install_missing() {
-  local missing=() package
+# missing_of LIST…: the packages in these lists that dpkg does not know as installed.
+missing_of() {
+  local package
   while read -r package; do
     case "$package" in '' | '#'*) continue ;; esac
-    dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+    dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || echo "$package"
   done < <(cat "$@")
-  [ "${#missing[@]}" -eq 0 ] && return 0
+}
+
+# apt_install PACKAGE…
+apt_install() {
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || { echo "these packages are missing and only root can install them: ${missing[*]}" >&2; exit 3; }
+    command -v sudo >/dev/null || { echo "these packages are missing and only root can install them: $*" >&2; return 3; }
     as_root=(sudo)
   fi
-  say "Installing ${#missing[@]} packages: ${missing[*]}"
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+  say "Installing $# packages: $*"
+  "${as_root[@]}" apt-get update -qq &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2
+}
+
+# install_missing LIST…: nothing goes on without these.
+install_missing() {
+  local missing
+  mapfile -t missing < <(missing_of "$@")
+  [ "${#missing[@]}" -eq 0 ] || apt_install "${missing[@]}" || exit 3
+}
+
+# install_optional LIST…: says so where they cannot be had, and goes on.
+install_optional() {
+  local missing
+  mapfile -t missing < <(missing_of "$@")
+  [ "${#missing[@]}" -eq 0 ] || apt_install "${missing[@]}" ||
+    say "Not installed, so that tests which need them will be skipped: ${missing[*]}"
 }
 
 # build PRESET [TARGET…]: configures and builds in build/PRESET.

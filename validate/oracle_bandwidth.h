@@ -10,6 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "core/results.h"
+#include "validate/made_tracks.h"
+
 namespace glidelab::validate {
 
 struct TrueStretch {
@@ -30,5 +33,13 @@ struct OracleBandwidth {
 /// Searched from 1.2 median time steps to a fifth of the longest stretch, to a part in 1000.
 std::optional<OracleBandwidth> best_bandwidth(const std::vector<TrueStretch>& stretches,
                                               const std::vector<double>& autocovariance);
+
+/// The phase diagram in which every clip has its best bandwidth, for the stretches that an analysis finds and the noise
+/// that it estimates. NumericalError where a clip has none.
+core::AnalysisResults with_best_bandwidths(const MadeTracks& made);
+
+/// Root mean square of the smoothed acceleration minus the true one over the points that count, as they fell out in
+/// this clip; empty where none counts. The clip's frames are the truth's.
+std::optional<double> acceleration_error_m_s2(const core::ClipResult& clip, const TrueClip& truth);
 
 }  // namespace glidelab::validate

@@ -48,10 +48,13 @@ struct Axis {
 };
 
 /// One way to analyse a run's clips.
+/// The rule that knows the truth (validate/oracle_bandwidth.h).
+inline constexpr const char* kBestPossible = "best-possible";
+
 struct Analysis {
-  std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory"
+  std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory", "all-points"
   std::optional<double> bandwidth_s;        ///< given; else chosen
-  std::string bandwidth_rule = {};          ///< by a rule of core/bandwidth_rule.h; empty: the default one
+  std::string bandwidth_rule = {};          ///< of core/bandwidth_rule.h, or kBestPossible; empty: the default one
   std::string name() const;                 ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
 };
 

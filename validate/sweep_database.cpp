@@ -23,7 +23,8 @@ CREATE TABLE result (run INTEGER, configuration TEXT, estimator TEXT, quantity T
                      low95 REAL, high95 REAL, least_sd REAL, why TEXT,
                      PRIMARY KEY (run, configuration, estimator, quantity)) WITHOUT ROWID;
 CREATE TABLE clip (run INTEGER, clip TEXT, estimator TEXT, frames INTEGER, detected INTEGER, bandwidth_s REAL,
-                   position_noise_m REAL, r2_up REAL, r2_down REAL, PRIMARY KEY (run, clip, estimator)) WITHOUT ROWID;
+                   position_noise_m REAL, r2_up REAL, r2_down REAL, a_rms_error_m_s2 REAL,
+                   PRIMARY KEY (run, clip, estimator)) WITHOUT ROWID;
 CREATE TABLE timing (run INTEGER PRIMARY KEY, wall_s REAL);
 INSERT INTO "schema" VALUES
  ('run', 'run', '', 'number of the run, from 0'), ('run', 'point', '', 'combination of values: run / replicates'),
@@ -43,6 +44,7 @@ INSERT INTO "schema" VALUES
  ('clip', 'bandwidth_s', 's', 'standard deviation of the smoothing kernel'),
  ('clip', 'position_noise_m', 'm', 'standard deviation of a position, as estimated'),
  ('clip', 'r2_up', '', 'of the line a(v) for v < 0'), ('clip', 'r2_down', '', 'of the line a(v) for v > 0'),
+ ('clip', 'a_rms_error_m_s2', 'm/s^2', 'root mean square of a(t) minus the truth, over the points that count'),
  ('timing', 'wall_s', 's', 'wall time of the run on its thread');
 )sql";
 
@@ -82,7 +84,7 @@ std::string run_table(const Sweep& sweep) {
 }
 
 std::vector<std::pair<std::string, std::string>> identity_of(const Sweep& sweep, const std::string& version) {
-  std::vector<std::pair<std::string, std::string>> entries = {{"format", "1"},
+  std::vector<std::pair<std::string, std::string>> entries = {{"format", "2"},
                                                               {"program version", version},
                                                               {"sweep", sweep.name},
                                                               {"sweep file's text", sweep.text},
@@ -176,7 +178,7 @@ SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std
   for (std::size_t i = 0; i < axes_; ++i) marks += fmt::format(", ?{}", 7 + i);
   add_run_ = database_.prepare(fmt::format("INSERT INTO run VALUES (?1, ?2, ?3, ?4, ?5, ?6{})", marks));
   add_result_ = database_.prepare("INSERT INTO result VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)");
-  add_clip_ = database_.prepare("INSERT INTO clip VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)");
+  add_clip_ = database_.prepare("INSERT INTO clip VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)");
   add_timing_ = database_.prepare("INSERT INTO timing VALUES (?1, ?2)");
 }
 
@@ -224,6 +226,7 @@ void SweepDatabase::add(const RunRecord& record, double wall_s) {
     add_clip_->bind(1, run).bind(2, std::string_view(row.clip)).bind(3, std::string_view(row.estimator));
     add_clip_->bind(4, static_cast<std::int64_t>(row.frames)).bind(5, static_cast<std::int64_t>(row.detected));
     add_clip_->bind(6, row.bandwidth_s).bind(7, row.position_noise_m).bind(8, row.r2_up).bind(9, row.r2_down);
+    add_clip_->bind(10, row.a_rms_error_m_s2);
     add_clip_->run();
   }
   add_timing_->bind(1, run).bind(2, wall_s).run();

@@ -4,7 +4,8 @@
 ///     schema  table, column, unit, meaning
 ///     run     run, point, replicate, seed, status, why, and a column for each varied key
 ///     result  run, configuration, estimator, quantity, truth, value, sd, low95, high95, least_sd, why
-///     clip    run, clip, estimator, frames, detected, bandwidth_s, position_noise_m, r2_up, r2_down
+///     clip    run, clip, estimator, frames, detected, bandwidth_s, position_noise_m, r2_up, r2_down,
+///             a_rms_error_m_s2
 ///     timing  run, wall_s
 ///
 /// All rows of a run are written in one transaction (WAL), so a run is there whole or not at all. But for `timing` the

@@ -120,8 +120,12 @@ void read_analyses(const TomlTable& root, Sweep& sweep) {
   if (const auto given = root.maybe_numbers("bandwidths_s", 0, base::above(0.0))) {
     for (const double bandwidth_s : *given) sweep.analyses.push_back({"phase-diagram", bandwidth_s, {}});
   }
+  if (const auto given = root.maybe_numbers("all_points_bandwidths_s", 0, base::above(0.0))) {
+    for (const double bandwidth_s : *given) sweep.analyses.push_back({"all-points", bandwidth_s, {}});
+  }
   for (const std::string& rule : root.texts_or_none("bandwidth_rules")) {
-    const std::vector<std::string>& known = core::bandwidth_rule_names();
+    std::vector<std::string> known = core::bandwidth_rule_names();
+    known.emplace_back(kBestPossible);
     if (std::find(known.begin(), known.end(), rule) == known.end()) {
       root.reject("bandwidth_rules", fmt::format("\"{}\"", rule), fmt::format("some of {}", fmt::join(known, ", ")));
     }

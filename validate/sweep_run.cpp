@@ -1,17 +1,17 @@
 #include "validate/sweep_run.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 
 #include "base/errors.h"
+#include "base/temporary_folder.h"
 #include "core/clip_to_track.h"
 #include "diagnose/trajectory_results.h"
 #include "render/clip_set.h"
 #include "render/render_experiment.h"
 #include "validate/cramer_rao.h"
+#include "validate/naive_lines.h"
+#include "validate/oracle_bandwidth.h"
 #include "validate/rendered_frames.h"
 #include "validate/sweep_design.h"
 #include "validate/sweep_scenario.h"
@@ -20,25 +20,6 @@ namespace glidelab::validate {
 namespace {
 
 namespace fs = std::filesystem;
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "glidelab-run-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) base::throw_system_error(pattern, "cannot be made", errno);
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;  // a destructor has nobody to tell
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 QuantityRow row_of(const char* quantity, const std::optional<double>& truth, const core::Quantity& found,
                    const std::optional<double>& least_sd) {
@@ -76,10 +57,13 @@ void add_quantities(const core::AnalysisResults& results, const Truth& truth, co
   }
 }
 
-void add_clips(const core::AnalysisResults& results, const std::string& estimator, std::vector<ClipRow>& rows) {
-  for (const core::ClipResult& clip : results.clips) {
-    ClipRow row{clip.name,    estimator,   clip.frames, clip.detected, clip.bandwidth_s, clip.position_noise_m,
-                std::nullopt, std::nullopt};
+void add_clips(const core::AnalysisResults& results, const Truth& truth, const std::string& estimator,
+               std::vector<ClipRow>& rows) {
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    const core::ClipResult& clip = results.clips[c];
+    ClipRow row{clip.name,     estimator,        clip.frames,
+                clip.detected, clip.bandwidth_s, clip.position_noise_m,
+                std::nullopt,  std::nullopt,     acceleration_error_m_s2(clip, truth.clips[c])};
     for (const core::LineFit& line : clip.segments) (line.direction < 0 ? row.r2_up : row.r2_down) = line.r2;
     rows.push_back(std::move(row));
   }
@@ -92,11 +76,11 @@ bool same_for_all_seeds(const render::ClockSetup& clock) {
 }  // namespace
 
 MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs) {
-  const TemporaryFolder folder;
-  const fs::path pictures = folder.path() / "e", truth = folder.path() / "t";
+  const base::TemporaryFolder folder("run");
+  const fs::path pictures = folder / "e", truth = folder / "t";
   fs::create_directory(pictures);
   fs::create_directory(truth);
-  const bool lossy = scenario.codec == render::Codec::mjpeg || scenario.codec == render::Codec::h264;
+  const bool lossy = render::lossy(scenario.codec);
   render::render_experiment(scenario, pictures, truth, {.seed = seed, .jobs = jobs, .ideal = false, .clips = lossy});
   core::FrameOpener open = core::open_frames;
   if (!lossy) open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, jobs), seed);
@@ -154,10 +138,12 @@ void RunWorker::fill(RunRecord& record) {
     const core::LineMethod lines =
         analysis.estimator == "phase-diagram-gls" ? core::LineMethod::generalised : core::LineMethod::ordinary;
     const core::AnalysisResults results =
-        analysis.estimator == "phase-diagram" && plain
+        analysis.estimator == "all-points"         ? lines_through_all_points(made, *analysis.bandwidth_s)
+        : analysis.bandwidth_rule == kBestPossible ? with_best_bandwidths(made)
+        : analysis.estimator == "phase-diagram" && plain
             ? *by_default
             : phase_diagram_of(made, {analysis.bandwidth_s, analysis.bandwidth_rule, lines});
-    add_clips(results, analysis.name(), record.clips);
+    add_clips(results, made.truth, analysis.name(), record.clips);
     add_quantities(results, made.truth, least, analysis.name(), record.quantities);
   }
 }

@@ -99,6 +99,46 @@ std::vector<Series> series_of(Database& database, const Grouping& grouping, std:
   return all;
 }
 
+/// The value below which the given part of a column lies, of `count` rows of one estimator.
+std::optional<double> quantile_of(Database& database, const std::string& rows, const std::string& column,
+                                  const std::string& estimator, std::uint64_t count, double part) {
+  if (count == 0) return std::nullopt;
+  SqlStatement select = database.prepare(fmt::format("SELECT {} {} ORDER BY 1 LIMIT 1 OFFSET ?2", column, rows));
+  select.bind(1, std::string_view(estimator)).bind(2, static_cast<std::int64_t>(part * static_cast<double>(count - 1)));
+  if (!select.step()) return std::nullopt;
+  return select.maybe_number(0);
+}
+
+std::vector<AccelerationError> accelerations_of(Database& database) {
+  const std::string best = Analysis{"phase-diagram", std::nullopt, kBestPossible}.name();
+  const std::string alone = "FROM clip c WHERE c.estimator = ?1 AND c.a_rms_error_m_s2 IS NOT NULL";
+  const std::string beside = fmt::format(
+      "FROM clip c JOIN clip b ON b.run = c.run AND b.clip = c.clip AND b.estimator = '{}' "
+      "WHERE c.estimator = ?1 AND c.a_rms_error_m_s2 IS NOT NULL AND b.a_rms_error_m_s2 > 0",
+      best);
+  const auto rows_of = [&](const std::string& rows, const std::string& estimator) {
+    SqlStatement count = database.prepare("SELECT count(*) " + rows);
+    count.bind(1, std::string_view(estimator)).step();
+    return static_cast<std::uint64_t>(count.integer(0));
+  };
+  std::vector<AccelerationError> all;
+  SqlStatement names = database.prepare("SELECT DISTINCT estimator FROM clip ORDER BY estimator");
+  while (names.step()) {
+    AccelerationError of;
+    of.estimator = names.text(0);
+    of.clips = rows_of(alone, of.estimator);
+    if (const auto median = quantile_of(database, alone, "c.a_rms_error_m_s2", of.estimator, of.clips, 0.5)) {
+      of.median_m_s2 = *median;
+    }
+    const std::uint64_t pairs = rows_of(beside, of.estimator);
+    const char* const ratio = "c.a_rms_error_m_s2 / b.a_rms_error_m_s2";
+    of.regret = quantile_of(database, beside, ratio, of.estimator, pairs, 0.5);
+    of.regret90 = quantile_of(database, beside, ratio, of.estimator, pairs, 0.9);
+    all.push_back(std::move(of));
+  }
+  return all;
+}
+
 }  // namespace
 
 SweepSummary summarize(const Sweep& sweep, Database& database) {
@@ -129,6 +169,7 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
     if (unit.step()) of_axis.unit = unit.text(0);
     summary.axes.push_back(std::move(of_axis));
   }
+  summary.accelerations = accelerations_of(database);
   return summary;
 }
 

@@ -46,6 +46,15 @@ struct AxisSummary {
   std::vector<Series> series;
 };
 
+/// How far from the truth one method's a(t) is: root mean squares over a clip's points that count, clip by clip beside
+/// the best possible bandwidth's on the same clip.
+struct AccelerationError {
+  std::string estimator;
+  std::uint64_t clips = 0;
+  double median_m_s2 = 0.0;
+  std::optional<double> regret, regret90;  ///< error over the best possible one: median, and what 90 % stay below
+};
+
 struct SweepSummary {
   std::string name;
   std::uint64_t runs = 0, planned = 0, failed = 0;
@@ -53,6 +62,7 @@ struct SweepSummary {
   double cpu_s = 0.0;                 ///< wall time of all runs on their threads
   std::vector<Series> overall;        ///< each of one group
   std::vector<AxisSummary> axes;
+  std::vector<AccelerationError> accelerations;
 };
 
 SweepSummary summarize(const Sweep& sweep, Database& database);

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,9 +14,6 @@ namespace glidelab::tests {
 namespace fs = std::filesystem;
 
 Process::Process(std::vector<std::string> arguments, const fs::path& working_dir) {
-  std::string pattern = (fs::temp_directory_path() / "glidelab-process-XXXXXX").string();
-  if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  folder_ = pattern;
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
@@ -42,8 +38,6 @@ Process::~Process() {
     ::kill(pid_, SIGKILL);
     ::waitpid(pid_, &wait_status_, 0);
   }
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
 }
 
 void Process::send(int signal) const {

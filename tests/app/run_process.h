@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/temporary_folder.h"
+
 namespace glidelab::tests {
 
 struct ProcessResult {
@@ -30,7 +32,7 @@ class Process {
  private:
   pid_t pid_ = -1;
   int wait_status_ = 0;
-  std::filesystem::path folder_;
+  base::TemporaryFolder folder_{"process"};
 };
 
 ProcessResult run(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {});

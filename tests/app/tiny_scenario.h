@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/staged_output.h"
+#include "one_glider.h"
 
 namespace glidelab::tests {
 
@@ -28,24 +29,9 @@ inner_corners = [5, 4]
 square_m = 0.12
 views = 3
 
-[[configuration]]
-name = "m1"
-mass_kg = 0.335
-incline_deg = 4.0
-[[configuration.force]]
-law = "viscous"
-k_over_m_1_s = 2.768
-[[configuration.force]]
-law = "coulomb"
-mu = 0.0071
-[[configuration.clip]]
-name = "up"
-launched = "up"
-x0_m = 0.2
-v0_m_s = -1.2
-duration_s = {}
 )",
-                     more, duration_s);
+                     more) +
+         one_glider(4.0, 2.768, 0.0071, {{"up", 0.2, -1.2, duration_s}});
 }
 
 inline void write_tiny_scenario(const std::filesystem::path& file, double duration_s = 0.3,

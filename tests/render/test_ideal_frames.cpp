@@ -8,6 +8,7 @@
 #include "catch.h"
 #include "core/experiment.h"
 #include "core/frame_source.h"
+#include "one_glider.h"
 #include "render/render_experiment.h"
 #include "temp_dir.h"
 
@@ -17,7 +18,7 @@ using namespace glidelab::render;
 namespace {
 
 /// A bad camera: bent lens, dark corners, much noise, a long exposure, a light that flickers, a mount that shakes.
-constexpr const char* kScenario = R"(format = 1
+const std::string kScenario = R"(format = 1
 name = "ideal"
 [camera]
 width_px = 240
@@ -44,20 +45,7 @@ square_m = 0.12
 views = 3
 [marker]
 diameter_m = 0.06
-[[configuration]]
-name = "m1"
-mass_kg = 0.335
-incline_deg = 0.0
-[[configuration.force]]
-law = "viscous"
-k_over_m_1_s = 2.0
-[[configuration.clip]]
-name = "c"
-launched = "down"
-x0_m = -0.3
-v0_m_s = 1.2
-duration_s = 0.31
-)";
+)" + tests::one_glider(0.0, 2.0, 0.0, {{"c", -0.3, 1.2, 0.31}});
 
 struct Spot {
   double u = 0.0, v = 0.0;

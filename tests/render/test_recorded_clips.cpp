@@ -16,6 +16,7 @@
 #include "catch.h"
 #include "core/experiment.h"
 #include "core/frame_source.h"
+#include "one_glider.h"
 #include "render/render_experiment.h"
 #include "temp_dir.h"
 
@@ -39,20 +40,8 @@ focal_px = [240.0, 240.0]
 inner_corners = [5, 4]
 square_m = 0.12
 views = 3
-[[configuration]]
-name = "m1"
-mass_kg = 0.335
-incline_deg = 0.0
-[[configuration.force]]
-law = "viscous"
-k_over_m_1_s = 2.0
-[[configuration.clip]]
-name = "c"
-launched = "down"
-x0_m = -0.3
-v0_m_s = 1.2
-duration_s = 0.414
-)" + sections;
+)" + tests::one_glider(0.0, 2.0, 0.0, {{"c", -0.3, 1.2, 0.414}}) +
+         sections;
 }
 
 struct Recorded {

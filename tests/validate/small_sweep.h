@@ -5,10 +5,11 @@
 #include <string>
 
 #include "base/staged_output.h"
+#include "one_glider.h"
 
 namespace glidelab::tests {
 
-inline constexpr const char* kSweptScenario = R"(format = 1
+inline const std::string kSweptScenario = R"(format = 1
 name = "swept"
 [camera]
 width_px = 320
@@ -16,23 +17,7 @@ height_px = 240
 frame_rate_hz = 60.0
 focal_px = [480.0, 480.0]
 position_m = [0.0, 0.1, 2.4]
-[[configuration]]
-name = "m1"
-mass_kg = 0.335
-incline_deg = 4.0
-[[configuration.force]]
-law = "viscous"
-k_over_m_1_s = 2.768
-[[configuration.force]]
-law = "coulomb"
-mu = 0.0071
-[[configuration.clip]]
-name = "up"
-launched = "up"
-x0_m = 0.2
-v0_m_s = -1.2
-duration_s = 1.2
-)";
+)" + one_glider(4.0, 2.768, 0.0071, {{"up", 0.2, -1.2, 1.2}});
 
 /// `more` is appended: the [[vary]] tables.
 inline std::filesystem::path write_sweep(const std::filesystem::path& folder, const std::string& head,

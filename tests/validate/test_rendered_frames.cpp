@@ -5,6 +5,7 @@
 #include "base/staged_output.h"
 #include "catch.h"
 #include "core/analyze.h"
+#include "one_glider.h"
 #include "render/render_experiment.h"
 #include "temp_dir.h"
 
@@ -13,7 +14,7 @@ using namespace glidelab;
 namespace {
 
 // A glider that crosses a small picture once in each direction, on a slope that brings it back.
-constexpr const char* kScenario = R"(
+const std::string kScenario = R"(
 format = 1
 name = "small"
 [camera]
@@ -30,29 +31,7 @@ square_m = 0.05
 views = 6
 [marker]
 diameter_m = 0.04
-[[configuration]]
-name = "m1"
-mass_kg = 0.335
-incline_deg = 3.0
-[[configuration.force]]
-law = "viscous"
-k_over_m_1_s = 1.5
-[[configuration.force]]
-law = "coulomb"
-mu = 0.006
-[[configuration.clip]]
-name = "m1-up"
-launched = "up"
-x0_m = 0.4
-v0_m_s = -0.9
-duration_s = 1.2
-[[configuration.clip]]
-name = "m1-down"
-launched = "down"
-x0_m = -0.4
-v0_m_s = 0.5
-duration_s = 1.0
-)";
+)" + tests::one_glider(3.0, 1.5, 0.006, {{"m1-up", 0.4, -0.9, 1.2}, {"m1-down", -0.4, 0.5, 1.0}});
 
 }  // namespace
 

@@ -27,7 +27,7 @@ std::string contents(const std::filesystem::path& file) {
                              "SELECT * FROM clip ORDER BY 1, 2, 3"}) {
     validate::SqlStatement rows = database.prepare(select);
     while (rows.step()) {
-      for (int column = 0; column < 9; ++column) text += rows.text(column) + "|";
+      for (int column = 0; column < 11; ++column) text += rows.text(column) + "|";
       text += "\n";
     }
   }
@@ -214,4 +214,60 @@ TEST_CASE("A sweep over cameras takes each one over, and refuses a scenario that
   CHECK(sweep.axes[0].source.values.size() >= 16);
   const validate::RunScenario run = validate::scenario_with(sweep, {sweep.axes[0].source.values[0]});
   CHECK(run.scenario.recording.frame_rate_hz != 60.0);
+}
+
+TEST_CASE("The best possible bandwidth loses nothing to itself, and a bandwidth far from it loses much") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(
+      tests::write_sweep(dir.path(),
+                         "replicates = 4\nestimators = [\"phase-diagram\"]\nbandwidth_rules = [\"best-possible\"]\n"
+                         "bandwidths_s = [0.02]",
+                         "[tracks]\nnoise_m = 1e-4\n[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [120]\n"));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::run_sweep(sweep, database, {}, 1);
+  const std::vector<validate::AccelerationError> errors = validate::summarize(sweep, database.database()).accelerations;
+  REQUIRE(errors.size() == 3);
+  for (const validate::AccelerationError& of : errors) {
+    INFO(of.estimator);
+    CHECK(of.clips == 4);
+    REQUIRE(of.regret);
+    if (of.estimator == "phase-diagram best-possible") {
+      CHECK(*of.regret == 1.0);
+      CHECK(*of.regret90 == 1.0);
+    }
+    // At h = 0.02 s the noise makes an error of sqrt(0.2116 s² dt / h^5) (core/local_cubic.h), and the best h is two to
+    // three times as long: the sd goes with h^-2.5.
+    if (of.estimator == "phase-diagram h=0.02 s") {
+      const double noise_m_s2 = std::sqrt(0.2116 * 1e-8 / 120.0 / std::pow(0.02, 5));
+      CHECK(of.median_m_s2 == Approx(noise_m_s2).epsilon(0.3));  // some thirty independent points a clip
+      CHECK(*of.regret > 2.0);
+    }
+  }
+}
+
+TEST_CASE("Rendered clips are swept like tracks, lossless ones in memory and lossy ones through a file") {
+  const tests::TempDir dir;
+  tests::write_sweep(dir.path(), "level = \"clips\"",
+                     "[[vary]]\nkey = \"codec.name\"\nwords = [\"ffv1\", \"mjpeg\"]\n");
+  base::write_file(dir / "scenario.toml",
+                   tests::kSweptScenario + "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n");
+  const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
+  validate::RunWorker worker(sweep);
+  std::vector<double> errors;
+  for (std::uint64_t run = 0; run < 2; ++run) {
+    const validate::RunRecord record = worker.evaluate(run);
+    INFO(record.why);
+    REQUIRE_FALSE(record.failed);
+    REQUIRE(record.clips.size() == 1);
+    CHECK(record.clips[0].frames == 72);  // 1.2 s at 60 Hz
+    CHECK(record.clips[0].detected >= 70);
+    for (const validate::QuantityRow& row : record.quantities) {
+      if (row.quantity != "k_over_m_1_s" || row.estimator != "trajectory") continue;
+      REQUIRE(row.value);
+      errors.push_back(*row.value - *row.truth);
+      CHECK(std::abs(errors.back()) < 5.0 * *row.sd);
+    }
+  }
+  REQUIRE(errors.size() == 2);
+  CHECK(errors[0] != errors[1]);  // the codec did something
 }

@@ -1,0 +1,132 @@
+#include "validate/requirement_runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "diagnose/trajectory_results.h"
+#include "validate/comparison.h"
+#include "validate/made_tracks.h"
+#include "validate/sweep_design.h"
+#include "validate/sweep_run.h"
+
+namespace glidelab::validate {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Errors of one estimator in one quantity of one configuration, over the runs.
+struct Errors {
+  std::string estimator, configuration, quantity;
+  std::vector<double> errors;
+  bool missing = false;
+};
+
+void add_errors(const std::vector<QuantityComparison>& quantities, std::vector<Errors>& all) {
+  for (const QuantityComparison& q : quantities) {
+    if (!q.truth) continue;
+    auto found = std::find_if(all.begin(), all.end(), [&](const Errors& e) {
+      return e.estimator == q.estimator && e.configuration == q.configuration && e.quantity == q.quantity;
+    });
+    if (found == all.end()) found = all.insert(all.end(), {q.estimator, q.configuration, q.quantity, {}, false});
+    if (q.error) {
+      found->errors.push_back(*q.error);
+    } else {
+      found->missing = true;
+    }
+  }
+}
+
+double measure_of(const Errors& errors, Target::Measure measure) {
+  if (errors.missing || errors.errors.empty()) return kNever;
+  double sum = 0.0, square = 0.0;
+  for (const double error : errors.errors) {
+    sum += error;
+    square += error * error;
+  }
+  const double n = static_cast<double>(errors.errors.size());
+  if (measure == Target::Measure::bias) return std::abs(sum / n);
+  return std::sqrt(square / n) * (measure == Target::Measure::error95 ? kWide95 : 1.0);
+}
+
+/// The better estimator's measure, each judged by its worst configuration.
+void judge(const std::vector<Errors>& all, const Target& target, TargetResult& result) {
+  for (const char* estimator : {"phase-diagram", "trajectory"}) {
+    double worst = 0.0;
+    std::size_t runs = 0;
+    for (const Errors& errors : all) {
+      if (errors.estimator != estimator || errors.quantity != target.quantity) continue;
+      worst = std::max(worst, measure_of(errors, target.measure));
+      runs = errors.errors.size();
+    }
+    if (runs == 0 || (result.found && *result.found <= worst)) continue;
+    result.found = worst;
+    result.found_sd = worst / std::sqrt(2.0 * static_cast<double>(runs));
+    result.estimator = estimator;
+  }
+}
+
+core::AnalysisResults one_run(const Setting& setting, const MadeTracks& made, std::uint64_t seed, Confirm confirm) {
+  if (confirm == Confirm::clips) return phase_diagram_of(film_tracks(setting.scenario, seed, 1), {});
+  const std::vector<double> noise_m = noise_of(setting, made.truth);
+  // Clips of one scenario have about one noise: their root mean square.
+  double square = 0.0;
+  for (const double noise : noise_m) square += noise * noise / static_cast<double>(noise_m.size());
+  return analyze_tracks(with_noise(made, std::sqrt(square), seed), std::nullopt);
+}
+
+}  // namespace
+
+bool reached_by_runs(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options,
+                     std::vector<TargetResult>& results) {
+  std::vector<Errors> all;
+  for (std::uint64_t run = 0; run < options.runs; ++run) {
+    const std::uint64_t seed = seed_of(sweep, point * options.runs + run);
+    const MadeTracks made = make_tracks(setting.scenario, seed);
+    const core::AnalysisResults of_run = one_run(setting, made, seed, options.confirm);
+    add_errors(compare_quantities(of_run, made.truth), all);
+    add_errors(compare_quantities(diagnose::with_trajectory_fits(of_run), made.truth), all);
+  }
+  bool reached = true;
+  for (std::size_t t = 0; t < options.targets.size(); ++t) {
+    judge(all, options.targets[t], results[t]);
+    reached = reached && results[t].found && *results[t].found <= options.targets[t].value;
+  }
+  return reached;
+}
+
+std::vector<Limit> limits_by_runs(const Sweep& sweep, const Setting& setting, std::uint64_t point,
+                                  const RequirementOptions& options, const std::vector<TargetResult>& results) {
+  std::vector<Limit> limits;
+  const auto try_without = [&](const char* name, const Setting& changed, Confirm confirm) {
+    std::vector<TargetResult> then(options.targets.size());
+    RequirementOptions how = options;
+    how.confirm = confirm;
+    reached_by_runs(sweep, changed, point, how, then);
+    double gain = 0.0;
+    for (std::size_t t = 0; t < then.size(); ++t) {
+      if (results[t].found && then[t].found) gain = std::max(gain, *results[t].found / *then[t].found);
+    }
+    if (std::isfinite(gain) && gain > 0.0) limits.push_back({name, gain});
+  };
+  Setting changed = setting;
+  changed.scenario.recording.clock = {};
+  try_without("the camera's clock (even instead, by runs)", changed, options.confirm);
+  if (options.confirm != Confirm::clips) return limits;
+  if (setting.scenario.recording.shutter.rolling) {
+    changed = setting;
+    changed.scenario.recording.shutter.rolling = false;
+    try_without("rolling shutter (global instead, by runs)", changed, options.confirm);
+  }
+  if (render::lossy(setting.scenario.codec)) {
+    changed = setting;
+    changed.scenario.codec = render::Codec::ffv1;
+    try_without("codec (lossless instead, by runs)", changed, options.confirm);
+  }
+  try_without("lens, calibration and tracking (true positions with the expected noise, by runs)", setting,
+              Confirm::tracks);
+  return limits;
+}
+
+}  // namespace glidelab::validate
