@@ -64,7 +64,7 @@ std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity
   const std::vector<PlotData> data = data_of(axis, quantity, titles);
   if (data.empty()) return {};
   const std::string symbol = symbol_of(quantity), unit = unit_of(quantity);
-  const std::string frame = std::string(kFrame) + "set key font ',11' maxrows 4 samplen 1\n" + x_axis(axis);
+  const std::string frame = std::string(kFrame) + "set key font ',11' maxcols 2 samplen 1\n" + x_axis(axis);
   std::string errors = frame + fmt::format(
                                    "set ylabel {}\nset logscale y\nset format y '%.0e'\nset offsets 0,0,0,0\n"
                                    "set yrange [*:*] noextend\nplot ",
@@ -78,23 +78,25 @@ std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity
   bool bound = false;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const std::string ink = color(i), title = gnuplot_quoted(titles[i]), comma = i == 0 ? "" : ", ";
+    const int shape = i < kColors.size() ? 7 : 5;  // where colours come again: squares in place of discs
     errors += fmt::format(
-        "{0}${1} using 1:2 with {2} pt 7 ps 0.5 lw 1.6 lc rgb '{3}' title {4}, "
-        "${1} using 1:3 with {2} pt 6 ps 0.5 dt 2 lc rgb '{3}' title 'stated sd'",
-        comma, data[i].name, line, ink, title);
+        "{0}${1} using 1:2 with {2} pt {6} ps 0.5 lw 1.6 lc rgb '{3}' title {4}, "
+        "${1} using 1:3 with {2} pt 6 ps 0.5 dt 2 lc rgb '{3}' {5}",
+        comma, data[i].name, line, ink, title, i == 0 ? "title 'stated sd (dashed)'" : "notitle", shape);
     bias += fmt::format(
-        "{0}${1} using 1:5 with {2} pt 7 ps 0.5 lc rgb '{3}' title {4}, "
-        "${1} using 1:5:6 with yerrorbars pt 7 ps 0.3 lc rgb '{3}' notitle",
-        comma, data[i].name, line, ink, title);
-    coverage +=
-        fmt::format(", ${0} using 1:7:8 with yerrorbars pt 7 ps 0.5 lc rgb '{1}' title {2}", data[i].name, ink, title);
+        "{0}${1} using 1:5 with {2} pt {5} ps 0.5 lc rgb '{3}' title {4}, "
+        "${1} using 1:5:6 with yerrorbars pt {5} ps 0.3 lc rgb '{3}' notitle",
+        comma, data[i].name, line, ink, title, shape);
+    coverage += fmt::format(", ${0} using 1:7:8 with yerrorbars pt {3} ps 0.5 lc rgb '{1}' title {2}", data[i].name,
+                            ink, title, shape);
     for (const auto& row : data[i].rows) bound = bound || std::isfinite(row[3]);
   }
   if (bound) {
     errors += fmt::format(", ${} using 1:4 with {} pt 2 ps 0.6 dt 3 lc rgb '#000000' title 'least possible sd'",
                           data[0].name, line);
   }
-  const PlotSize size{480, axis.words ? 460 : 350};
+  const int legend = 14 * static_cast<int>((data.size() + 2) / 2);
+  const PlotSize size{480, (axis.words ? 420 : 310) + legend};
   const std::string over = fmt::format("{} over {}", symbol, axis.name);
   return {{gnuplot_svg(errors, data, size), "Root mean square error (solid) and stated standard deviation (dashed)",
            "Error and standard deviation of " + over},
