@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnose/trajectory_results.h"
 #include "validate/coverage.h"
 #include "validate/made_tracks.h"
+#include "validate/sweep_run.h"
 
 namespace {
 
@@ -138,5 +140,31 @@ void scipy_fit_of_twelve_clips(benchmark::State& state) {
   std::filesystem::remove(data);
 }
 BENCHMARK(scipy_fit_of_twelve_clips)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(1);
+
+/// Experiments as a sweep of rendered clips has them: stills drawn and calibrated, every clip of 2 s (400 frames of 800
+/// x 600) simulated, drawn and tracked in memory, and both estimators; nothing is kept from one to the next. The two
+/// sizes tell what a clip takes, and what an experiment takes besides.
+void experiments_in_memory(benchmark::State& state) {
+  render::Scenario scenario = render::read_scenario(GLIDELAB_SOURCE_DIR "/scenarios/paper/inclined.toml");
+  std::int64_t clips = 0;
+  for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    const std::vector<sim::MotionSetup> once = std::exchange(configuration.motions, {});
+    for (std::int64_t copy = 0; copy < state.range(0); ++copy) {
+      for (sim::MotionSetup motion : once) {
+        motion.duration_s = 2.0;
+        motion.name += "-" + std::to_string(copy);
+        configuration.motions.push_back(motion);
+      }
+    }
+    clips += static_cast<std::int64_t>(configuration.motions.size());
+  }
+  std::uint64_t seed = 0;
+  for (auto _ : state) {
+    const validate::MadeTracks made = validate::film_tracks(scenario, ++seed, 2);
+    benchmark::DoNotOptimize(diagnose::with_trajectory_fits(validate::phase_diagram_of(made, {})));
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * clips);
+}
+BENCHMARK(experiments_in_memory)->Arg(1)->Arg(4)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(2);
 
 }  // namespace
