@@ -50,7 +50,7 @@ std::string limit_text(const Candidate& candidate) {
   std::string text;
   for (const validate::Limit& limit : candidate.limits) {
     if (limit.gain < 1.05) break;
-    text += fmt::format("{}{} {:.2g}x", text.empty() ? "" : "; ", limit.name, limit.gain);
+    text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limit.name, limit.gain, limit.gain < 10.0 ? 1 : 0);
   }
   return text;
 }
@@ -119,8 +119,8 @@ std::string requirement_report(const Requirement& requirement) {
     header.push_back("by runs");
   }
   HtmlTable good(header, 3);
-  header.push_back("what limits it");
-  HtmlTable others(header, 3);
+  header.insert(header.begin() + 3, "what limits it");
+  HtmlTable others(header, 4);
   for (const Candidate& candidate : requirement.candidates) {
     std::vector<std::string> row = {escape(candidate.name), escape(cost_text(requirement, candidate)),
                                     escape(describe(candidate.verdict)), number_text(candidate.frame_rate_hz, 4),
@@ -132,8 +132,7 @@ std::string requirement_report(const Requirement& requirement) {
     if (reached(candidate)) {
       good.row(row);
     } else {
-      row.push_back(fmt::format("<span style=\"white-space:normal\">{}</span>",
-                                escape(candidate.why.empty() ? limit_text(candidate) : candidate.why)));
+      row.insert(row.begin() + 3, escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
       others.row(row);
     }
   }
@@ -144,9 +143,9 @@ std::string requirement_report(const Requirement& requirement) {
       "<p class=\"soft\">The bound is that of Cramér and Rao for the motion seen at this rate with this noise of a "
       "position, which is itself the bound of the marker's centre for the camera's light and noise. {} \"What limits "
       "it\" "
-      "says how many times smaller the bound of the hardest target is with one limitation thought away. A lens, a "
-      "codec, a "
-      "rolling shutter and the calibration are in rendered runs only (--confirm clips).</p>\n",
+      "says how many times smaller the bound of the hardest target (\"by runs\": the error) is with one limitation "
+      "thought away. A lens, a codec, a rolling shutter and the calibration are in rendered runs only (--confirm "
+      "clips).</p>\n",
       requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
       : requirement.confirm == validate::Confirm::clips
           ? fmt::format("Where it allows the target, {} rendered runs judge, by the better estimator.",
