@@ -8,6 +8,7 @@
 #include "report/json_numbers.h"
 #include "report/number_text.h"
 #include "report/quantity_names.h"
+#include "report/sweep_advice.h"
 #include "report/sweep_plots.h"
 #include "report/text_table.h"
 
@@ -90,6 +91,7 @@ std::string sweep_report(const SweepSummary& summary, const base::Progress& prog
       "<p class=\"soft\">sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares over "
       "the "
       "runs; coverage is the part of the stated 95 % intervals that hold the truth.</p>\n";
+  body += sweep_advice(summary);
   body += acceleration_table(summary);
   double done = 0.0;
   for (const validate::AxisSummary& axis : summary.axes) {
