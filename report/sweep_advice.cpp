@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -37,6 +38,11 @@ const GroupStatistics* group_at(const Series& series, double position) {
   const auto found = std::find_if(series.groups.begin(), series.groups.end(),
                                   [&](const GroupStatistics& group) { return group.position == position; });
   return found == series.groups.end() ? nullptr : &*found;
+}
+
+/// By what factor an rms error must be larger: kBetter, and two standard errors of a ratio of two (normal errors).
+double clearly(const validate::ErrorStatistics& of) {
+  return kBetter * (1.0 + 2.0 / std::sqrt(static_cast<double>(of.answered)));
 }
 
 struct Winner {
@@ -89,8 +95,9 @@ std::string exceptions(const validate::AxisSummary& axis, const QuantityName& qu
     const auto clear_winner = [&](std::size_t at) -> std::optional<Winner> {
       const GroupStatistics& group = ours->groups[at];
       const std::optional<Winner> best = winner(axis.series, quantity.key, group.position);
-      const bool clear = best && best->estimator != kDefault &&
-                         (group.statistics.answered == 0 || group.statistics.rms > kBetter * best->rms);
+      const bool clear =
+          best && best->estimator != kDefault &&
+          (group.statistics.answered == 0 || group.statistics.rms > clearly(group.statistics) * best->rms);
       return clear ? best : std::nullopt;
     };
     const std::optional<Winner> first = clear_winner(i);
@@ -100,7 +107,8 @@ std::string exceptions(const validate::AxisSummary& axis, const QuantityName& qu
       if (!next || next->estimator != first->estimator) break;
       ++last;
     }
-    if (first) {
+    constexpr std::size_t kFewGroups = 4;  // of more, one alone is chance more often than not
+    if (first && (last > i || ours->groups.size() <= kFewGroups)) {
       text += fmt::format("{}{} in {} at {} = {}", text.empty() ? "" : ", ", escape(first->estimator), quantity.symbol,
                           escape(axis.name), ours->groups[i].label);
       if (last > i) text += fmt::format(" to {}", ours->groups[last].label);
