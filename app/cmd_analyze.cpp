@@ -34,6 +34,7 @@ struct AnalyzeOptions {
   std::vector<std::string> experiments;
   std::string bandwidth = "lines";
   std::string estimator = "phase-diagram";
+  bool robust = false;
   core::BareTrackOptions bare;
 };
 
@@ -68,6 +69,10 @@ void check_file_options(const AnalyzeOptions& options, const std::vector<fs::pat
 }
 
 void analyze(const AnalyzeOptions& options) {
+  if (options.robust && options.estimator != "trajectory") {
+    throw base::InputError(base::Issue{"", 0, "--robust", options.estimator,
+                                       "the estimator trajectory (lines leave positions off the motion out anyway)"});
+  }
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   check_file_options(options, folders);
   const std::string title = title_of(folders, options.bare);
@@ -84,7 +89,9 @@ void analyze(const AnalyzeOptions& options) {
   read_bandwidth(options.bandwidth, how);
   if (options.estimator == "phase-diagram-gls") how.lines = core::LineMethod::generalised;
   core::AnalysisResults results = core::analyze(folders, how, progress);
-  if (options.estimator == "trajectory") results = diagnose::with_trajectory_fits(std::move(results));
+  if (options.estimator == "trajectory") {
+    results = diagnose::with_trajectory_fits(std::move(results), {.robust = options.robust});
+  }
   write_analysis_files(results, staged.dir());
   const std::vector<core::Preview> previews = previews_of(folders, results, progress, options.bare);
   base::write_file(staged.dir() / "report.html", report::analysis_report(title, results, previews, progress));
@@ -135,6 +142,9 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"phase-diagram", "phase-diagram-gls", "trajectory"}))
       ->capture_default_str();
+  command->add_flag("--robust", options->robust,
+                    "With \"trajectory\": leave out positions that lie off the motion by more than four scaled median "
+                    "deviations, found by Huber's weights");
   command
       ->add_option("--column", options->bare.column,
                    "Of a file: the column that is x, by its header or its number; default: found by its header")

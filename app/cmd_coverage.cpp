@@ -1,4 +1,4 @@
-/// glidelab coverage SCENARIO.toml --noise-m SD: do the stated intervals hold the truth as often as they say?
+/// glidelab coverage SCENARIO.toml [--noise-m SD]: do the stated intervals hold the truth as often as they say?
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -26,9 +26,10 @@ struct CoverageCommand {
   std::string scenario;
   validate::CoverageOptions coverage;
   double bandwidth_s = 0.0;
+  double noise_m = 0.0;
 };
 
-void coverage_command(const CoverageCommand& options, bool bandwidth_given) {
+void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool noise_given) {
   const render::Scenario scenario = render::read_scenario(options.scenario);
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "coverage", options.scenario);
@@ -38,6 +39,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given) {
   validate::CoverageOptions wanted = options.coverage;
   wanted.seed = options.common.seed.value_or(scenario.seed);
   wanted.jobs = options.common.jobs;
+  if (noise_given) wanted.noise_sd_m = options.noise_m;
   if (bandwidth_given) wanted.bandwidth_s = options.bandwidth_s;
   const validate::Coverage coverage = validate::measure_coverage(scenario, wanted, display.callback());
   const std::string json = report::coverage_json(coverage);
@@ -67,17 +69,17 @@ void add_coverage(CLI::App& app, Command& chosen) {
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
-  command
-      ->add_option("--noise-m", options->coverage.noise_sd_m,
-                   "Standard deviation of the noise of every position, in metres (no pictures are made)")
-      ->required();
+  CLI::Option* noise = command->add_option(
+      "--noise-m", options->noise_m,
+      "Standard deviation of the noise of every position, in metres (no pictures are made); default: the least that "
+      "the scenario's camera, light and marker allow, clip by clip");
   command->add_option("--replicates", options->coverage.replicates, "How many")->capture_default_str();
   CLI::Option* bandwidth = command->add_option(
       "--bandwidth", options->bandwidth_s, "Bandwidth of the phase diagram in seconds; default: chosen clip by clip");
   add_common_options(*command, options->common, "glidelab-out/coverage-<name of the scenario file>",
                      "Seed of the noise; default: the scenario's");
-  command->callback([options, bandwidth, &chosen] {
-    chosen = [options, bandwidth] { coverage_command(*options, bandwidth->count() > 0); };
+  command->callback([options, bandwidth, noise, &chosen] {
+    chosen = [options, bandwidth, noise] { coverage_command(*options, bandwidth->count() > 0, noise->count() > 0); };
   });
 }
 

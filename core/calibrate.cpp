@@ -18,8 +18,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kSignificant = 3.0;     // standard deviations
-constexpr std::size_t kFewestViews = 3;  // two give no more than the focal length
+constexpr double kSignificantOne = 9.0;      // chi^2 of one degree of freedom at 0.27 %: three standard deviations
+constexpr double kSignificantPair = 11.829;  // the same of two: -2 log(0.0027)
+constexpr std::size_t kFewestViews = 3;      // two give no more than the focal length
 constexpr double kOutlierPx = 0.2;
 constexpr double kOutlierRatio = 5.0;
 
@@ -61,24 +62,6 @@ OpenCvCalibration run_opencv(const std::vector<const BoardView*>& views, cv::Siz
                                        "views of the pattern from different sides"});
   }
   return found;
-}
-
-/// The views in which the board was seen, with the terms that they determine.
-OpenCvCalibration fit_supported_terms(const std::vector<const BoardView*>& views, cv::Size size, double square_m,
-                                      std::vector<std::string>& notes) {
-  OpenCvCalibration found = run_opencv(views, size, square_m, 0);
-  const auto is_significant = [&](int distortion_index, int sd_index) {
-    return std::abs(found.distortion.at<double>(distortion_index)) > kSignificant * found.sd.at<double>(sd_index);
-  };
-  int flags = 0;
-  if (!is_significant(4, 8)) flags |= cv::CALIB_FIX_K3;
-  if (!is_significant(2, 6) && !is_significant(3, 7)) flags |= cv::CALIB_ZERO_TANGENT_DIST;
-  if (flags == 0) return found;
-  if ((flags & cv::CALIB_FIX_K3) != 0) notes.push_back("k3 is below three standard deviations and fixed to 0");
-  if ((flags & cv::CALIB_ZERO_TANGENT_DIST) != 0) {
-    notes.push_back("p1 and p2 are below three standard deviations and fixed to 0");
-  }
-  return run_opencv(views, size, square_m, flags);
 }
 
 struct Uncertainty {
@@ -133,6 +116,68 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
   return uncertainty;
 }
 
+/// A term of the distortion, or a pair, that the views may not support.
+struct Term {
+  const char* name;
+  std::vector<Eigen::Index> places;  // of fx fy cx cy k1 k2 p1 p2 k3
+  int fixing;                        // OpenCV's flag
+};
+
+struct SupportedFit {
+  OpenCvCalibration found;
+  Uncertainty uncertainty;  // with what terms that were left out may still do
+  std::string model;
+};
+
+/// The terms that the views determine, from all five backwards (see the header).
+SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv::Size size, double square_m) {
+  const std::vector<Term> terms = {{"k3", {8}, cv::CALIB_FIX_K3},
+                                   {"p1, p2", {6, 7}, cv::CALIB_ZERO_TANGENT_DIST},
+                                   {"k2", {5}, cv::CALIB_FIX_K2},
+                                   {"k1", {4}, cv::CALIB_FIX_K1}};
+  int flags = 0;
+  SupportedFit fit;
+  fit.found = run_opencv(views, size, square_m, flags);
+  fit.uncertainty = uncertainty_of(fit.found, views, square_m);
+  Eigen::Matrix<double, 9, 9> left_out = Eigen::Matrix<double, 9, 9>::Zero();
+  std::vector<std::string> tests;
+  bool radial = true;  // the next radial term may be tested
+  for (const Term& term : terms) {
+    const bool is_radial = term.places.size() == 1;
+    if (is_radial && !radial) continue;
+    const auto count = static_cast<Eigen::Index>(term.places.size());
+    Eigen::VectorXd value(count);
+    for (Eigen::Index i = 0; i < count; ++i) {  // OpenCV keeps k1 k2 p1 p2 k3 apart from the matrix
+      value[i] = fit.found.distortion.at<double>(static_cast<int>(term.places[static_cast<std::size_t>(i)]) - 4);
+    }
+    const Eigen::MatrixXd own = fit.uncertainty.covariance(term.places, term.places);
+    const Eigen::MatrixXd with_others = fit.uncertainty.covariance(Eigen::all, term.places);
+    const Eigen::VectorXd weighted = base::solve_positive(own, value);
+    const double statistic = value.dot(weighted);
+    const double limit = count == 1 ? kSignificantOne : kSignificantPair;
+    tests.push_back(fmt::format("{}: {:.3g} of {:.3g}", term.name, statistic, limit));
+    if (statistic > limit) {
+      if (is_radial) radial = false;
+      continue;
+    }
+    const Eigen::VectorXd moved = base::product(with_others, weighted);
+    const double real = std::max(0.0, 1.0 - static_cast<double>(count) / std::max(statistic, 1e-300));
+    left_out += base::product(with_others, base::solve_positive(own, with_others.transpose())) +
+                real * base::product(moved, moved.transpose());
+    flags |= term.fixing;
+    fit.found = run_opencv(views, size, square_m, flags);
+    fit.uncertainty = uncertainty_of(fit.found, views, square_m);
+  }
+  fit.uncertainty.covariance += left_out;
+  std::vector<std::string> kept;
+  for (const Term& term : terms) {
+    if ((flags & term.fixing) == 0) kept.insert(kept.begin(), term.name);
+  }
+  fit.model = fmt::format("distortion: {} (chi^2 of each term tested, and what it takes to be kept: {})",
+                          kept.empty() ? "none" : fmt::format("{}", fmt::join(kept, ", ")), fmt::join(tests, "; "));
+  return fit;
+}
+
 std::string names_of(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.filename().string());
@@ -184,11 +229,10 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   }
   std::vector<const BoardView*> used;
   for (const BoardView& view : boards.views) used.push_back(&view);
-  std::vector<std::string> term_notes;
-  OpenCvCalibration found = fit_supported_terms(used, boards.picture_size, square_m, term_notes);
+  SupportedFit fit = fit_supported_terms(used, boards.picture_size, square_m);
 
   // One view that is off (the board moved, a corner mistaken) pulls all parameters.
-  std::vector<double> errors(found.view_error.begin<double>(), found.view_error.end<double>());
+  std::vector<double> errors(fit.found.view_error.begin<double>(), fit.found.view_error.end<double>());
   std::vector<double> sorted = errors;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   const double limit_px = std::max(kOutlierPx, kOutlierRatio * sorted[sorted.size() / 2]);
@@ -203,9 +247,9 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   }
   if (kept.size() < used.size() && kept.size() >= kFewestViews) {
     used = kept;
-    term_notes.clear();
-    found = fit_supported_terms(used, boards.picture_size, square_m, term_notes);
+    fit = fit_supported_terms(used, boards.picture_size, square_m);
   }
+  const OpenCvCalibration& found = fit.found;
 
   CameraModel& camera = calibration.camera;
   camera.size = boards.picture_size;
@@ -214,9 +258,9 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   camera.cx = found.matrix.at<double>(0, 2);
   camera.cy = found.matrix.at<double>(1, 2);
   for (int i = 0; i < 5; ++i) camera.distortion[static_cast<std::size_t>(i)] = found.distortion.at<double>(i);
-  const Uncertainty uncertainty = uncertainty_of(found, used, square_m);
-  calibration.covariance = uncertainty.covariance;
-  calibration.noise = uncertainty.noise;
+  calibration.covariance = fit.uncertainty.covariance;
+  calibration.noise = fit.uncertainty.noise;
+  calibration.model = fit.model;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();
 
@@ -229,7 +273,6 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
     calibration.notes.push_back(
         fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
   }
-  calibration.notes.insert(calibration.notes.end(), term_notes.begin(), term_notes.end());
   if (calibration.noise.correlated_px > std::max(2.0 * kLeastCorrelatedPx, 0.5 * calibration.noise.white_px)) {
     calibration.notes.push_back(fmt::format(
         "neighbouring corners are off together by {:.2g} px (each alone by {:.2g} px): a bent pattern, or a "

@@ -1,10 +1,17 @@
 /// The camera from views of the calibration pattern, by least squares over all corners (Zhang 2000;
 /// cv::calibrateCamera).
 ///
-/// Which parameters: fx, fy, cx, cy, k1, k2 always; k3, and the tangential pair p1, p2, only where the views determine
-/// them: a term whose value is below 3 of its standard deviations is fixed to zero (the pair where both are) and the
-/// rest fitted again. Leaving such a term out changes the picture by less than its own uncertainty, and an undetermined
-/// one would be amplified outside the place where the pattern was seen.
+/// Which parameters: fx, fy, cx, cy always; of the distortion only the terms that the views support. From all five
+/// (k1, k2, p1, p2, k3) on, k3, then the pair p1, p2, then k2, then k1 are tested: v' C^-1 v of the term with its
+/// covariance C (of correlated corner errors, as below) against 9 for one term and 11.8 for the pair (three standard
+/// deviations, 0.27 %; with white errors that is the F-test of the nested models). A term below it is fixed to zero and
+/// the rest fitted again; k2 is tested only without k3, k1 only without k2. So a lens without distortion gets none, and
+/// no undetermined term is amplified outside the place where the pattern was seen.
+///
+/// A term that was left out may still be there, and a fit without it then errs by more than its own covariance: what
+/// the term's uncertainty did to all terms, C_a C^-1 C_a' (C_a the covariance of all with it), and the part of its
+/// value that is more than noise, (1 - q / (v' C^-1 v)) for q terms, are added to the covariance. So leaving terms out
+/// makes no result look surer.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,6 +48,7 @@ struct Calibration {
   /// Of fx, fy, cx, cy, k1, k2, p1, p2, k3 (the views' poses are fitted with them); rows of fixed terms are 0.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
   CornerNoise noise;    ///< what the covariance assumes of the corners
+  std::string model;    ///< the distortion's terms, and the tests of those that were looked at
   double rms_px = 0.0;  ///< per corner (distance), over the views used
   std::size_t views_used = 0;
   std::vector<std::string> notes;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/estimate.h"
+#include "core/law_bias.h"
 #include "core/line_fit.h"
 #include "core/phase_diagram.h"
 
@@ -36,18 +37,20 @@ Eigen::Matrix2d random_part(const LineUncertainty& parts) {
 /// One direction of one clip: the weight of its line (the moments of its points, or the line's inverse covariance), and
 /// the line.
 struct Part {
-  const LineFit* line = nullptr;
+  LineFit line;
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   std::vector<double> v, a;
 };
 
-std::vector<Part> parts_of(const std::vector<Member>& members, int direction, LineMethod lines) {
+enum class LawBiasIs { kept, taken_off };
+
+std::vector<Part> parts_of(const std::vector<Member>& members, int direction, LineMethod lines, LawBiasIs bias) {
   std::vector<Part> parts;
   for (const Member& member : members) {
     for (const LineFit& line : member.clip->segments) {
       if (line.direction != direction) continue;
       Part part;
-      part.line = &line;
+      part.line = bias == LawBiasIs::kept ? line : without_law_bias(line);
       for (const MotionPoint& point : member.clip->motion) {
         if (point.left_out != LeftOut::used || (point.v_m_s > 0.0 ? 1 : -1) != direction) continue;
         part.v.push_back(point.v_m_s);
@@ -64,21 +67,23 @@ std::vector<Part> parts_of(const std::vector<Member>& members, int direction, Li
 }
 
 /// How much more the clips' own lines scatter about the joint one than their uncertainty allows: chi^2 per degree of
-/// freedom, at least 1.
+/// freedom, where that is more than chance makes it. (Widening by every chi^2 above 1 makes two right lines'
+/// standard deviation 17 % too large on average.)
 double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
   if (parts.size() < 2) return 1.0;
   double chi2 = 0.0;
   for (const Part& part : parts) {
-    Eigen::Matrix2d covariance = random_part(part.line->parts);
-    for (const LineShift& shift : shared_shifts(*part.line)) {
+    Eigen::Matrix2d covariance = random_part(part.line.parts);
+    for (const LineShift& shift : shared_shifts(part.line)) {
       const Eigen::Vector2d both(shift.k, shift.a0);
       covariance += both * both.transpose();
     }
     if (!(covariance.determinant() > 0.0)) return 1.0;
-    const Eigen::Vector2d off = Eigen::Vector2d(part.line->k_over_m_1_s.value, part.line->a0_m_s2.value) - joint;
+    const Eigen::Vector2d off = Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value) - joint;
     chi2 += off.dot(covariance.inverse() * off);
   }
-  return std::max(1.0, chi2 / (2.0 * static_cast<double>(parts.size() - 1)));
+  const double freedom = 2.0 * static_cast<double>(parts.size() - 1);
+  return chi2 > freedom * chi2_ratio_limit(freedom) ? chi2 / freedom : 1.0;
 }
 
 double squared_correlation(const std::vector<Part>& parts) {
@@ -106,21 +111,22 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   double var_a0 = 0.0, var2_per_degree = 0.0;
   LineFit joint;
   joint.direction = direction;
-  joint.from_v_m_s = parts.front().line->from_v_m_s;
-  joint.to_v_m_s = parts.front().line->to_v_m_s;
+  joint.from_v_m_s = parts.front().line.from_v_m_s;
+  joint.to_v_m_s = parts.front().line.to_v_m_s;
   for (const Part& part : parts) {
-    const LineUncertainty& of = part.line->parts;
+    const LineUncertainty& of = part.line.parts;
     normal += part.normal;
-    line += part.normal * Eigen::Vector2d(part.line->k_over_m_1_s.value, part.line->a0_m_s2.value);
+    line += part.normal * Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value);
     random += part.normal * random_part(of) * part.normal;
-    smoothing += part.normal * Eigen::Vector2d(of.smoothing_k, of.smoothing_a0);
+    const LineShift law = of.law ? of.law->shift : LineShift{};
+    smoothing += part.normal * Eigen::Vector2d(of.smoothing_k + law.k, of.smoothing_a0 + law.a0);
     mass += part.normal * Eigen::Vector2d(of.mass_k, of.mass_a0);
     const double share = part.normal(1, 1) * part.normal(1, 1) * of.var_a0;
     var_a0 += share;
     var2_per_degree += share * share / of.degrees;
-    joint.points += part.line->points;
-    joint.from_v_m_s = std::min(joint.from_v_m_s, part.line->from_v_m_s);
-    joint.to_v_m_s = std::max(joint.to_v_m_s, part.line->to_v_m_s);
+    joint.points += part.line.points;
+    joint.from_v_m_s = std::min(joint.from_v_m_s, part.line.from_v_m_s);
+    joint.to_v_m_s = std::max(joint.to_v_m_s, part.line.to_v_m_s);
     joint.parts.scale_relative = std::max(joint.parts.scale_relative, of.scale_relative);
     if (calibration.size() < of.calibration.size()) calibration.resize(of.calibration.size(), Eigen::Vector2d::Zero());
     for (std::size_t mode = 0; mode < of.calibration.size(); ++mode) {
@@ -151,16 +157,22 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   return joint;
 }
 
-/// The mean of the directions' K/m, each weighted by one over its variance. Where the two lie further apart than their
-/// uncertainty explains, half of what is unexplained is a variance of each direction's own (DerSimonian and Laird
-/// 1986): it evens out the weights, and the standard deviation grows with the spread.
+/// The mean of the directions' K/m, each weighted by one over its variance. Where the two lie further apart than three
+/// standard deviations, half of what is unexplained is a variance of each direction's own (DerSimonian and Laird 1986,
+/// who add it at any distance; two right lines would then state 1.2 times their standard deviation on average): it
+/// evens out the weights, and the standard deviation grows with the spread.
 Quantity mean_k(const std::vector<LineFit>& lines) {
   if (lines.empty()) return undetermined("no line: no direction has enough points that count");
   double between = 0.0;
   if (lines.size() == 2) {
     const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
-    const double allowed = std::pow(lines[0].k_over_m_1_s.sd, 2) + std::pow(lines[1].k_over_m_1_s.sd, 2);
-    between = std::max(0.0, 0.5 * (apart * apart - allowed));
+    double allowed = lines[0].parts.var_k + lines[1].parts.var_k;
+    const std::vector<LineShift> one = shared_shifts(lines[0]), other = shared_shifts(lines[1]);
+    for (std::size_t i = 0; i < std::max(one.size(), other.size()); ++i) {
+      const double shift = (i < one.size() ? one[i].k : 0.0) - (i < other.size() ? other[i].k : 0.0);
+      allowed += shift * shift;
+    }
+    if (apart * apart > 9.0 * allowed) between = 0.5 * (apart * apart - allowed);
   }
   double weights = 0.0, value = 0.0, degrees = std::numeric_limits<double>::infinity();
   std::vector<double> shared;
@@ -210,27 +222,56 @@ void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_
       of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus));
 }
 
+std::vector<LineFit> join_lines(const std::vector<Member>& members, LineMethod lines, LawBiasIs bias) {
+  std::vector<LineFit> joined;
+  for (const int direction : {-1, 1}) {
+    const std::vector<Part> parts = parts_of(members, direction, lines, bias);
+    if (!parts.empty()) joined.push_back(join(parts, direction));
+  }
+  return joined;
+}
+
+void recover(const std::vector<LineFit>& lines, double gravity_m_s2, ConfigurationResult& result) {
+  result.k_over_m_1_s = mean_k(lines);
+  result.v_lim_m_s = limit_velocity(lines);
+  if (lines.size() == 2) {
+    split_intercepts(lines[0], lines[1], gravity_m_s2, result);
+    return;
+  }
+  const std::string missing = lines.empty()                  ? "v < 0 and none for v > 0"
+                              : lines.front().direction == 1 ? "v < 0"
+                                                             : "v > 0";
+  result.alpha_deg = result.mu =
+      undetermined("no line for " + missing + ": equation (13) needs both directions to tell friction from slope");
+}
+
+void set_correction(const Quantity& as_fitted, Quantity& recovered) {
+  if (!as_fitted.estimate || !recovered.estimate) return;
+  recovered.smoothing_correction = recovered.estimate->value - as_fitted.estimate->value;
+}
+
 ConfigurationResult join_members(const std::vector<Member>& members, double gravity_m_s2, LineMethod lines) {
   ConfigurationResult result;
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
   result.group = members.front().setup->group;
-  for (const Member& member : members) result.clips.push_back(member.clip->name);
-  for (const int direction : {-1, 1}) {
-    const std::vector<Part> parts = parts_of(members, direction, lines);
-    if (!parts.empty()) result.lines.push_back(join(parts, direction));
+  bool biased = false;
+  for (const Member& member : members) {
+    result.clips.push_back(member.clip->name);
+    for (const LineFit& line : member.clip->segments) biased = biased || line.parts.law.has_value();
   }
-  result.k_over_m_1_s = mean_k(result.lines);
-  result.v_lim_m_s = limit_velocity(result.lines);
-  if (result.lines.size() == 2) {
-    split_intercepts(result.lines[0], result.lines[1], gravity_m_s2, result);
+  result.lines = join_lines(members, lines, LawBiasIs::kept);
+  if (!biased) {
+    recover(result.lines, gravity_m_s2, result);
     return result;
   }
-  const std::string missing = result.lines.empty()                  ? "v < 0 and none for v > 0"
-                              : result.lines.front().direction == 1 ? "v < 0"
-                                                                    : "v > 0";
-  result.alpha_deg = result.mu =
-      undetermined("no line for " + missing + ": equation (13) needs both directions to tell friction from slope");
+  ConfigurationResult as_fitted;
+  recover(result.lines, gravity_m_s2, as_fitted);
+  recover(join_lines(members, lines, LawBiasIs::taken_off), gravity_m_s2, result);
+  set_correction(as_fitted.k_over_m_1_s, result.k_over_m_1_s);
+  set_correction(as_fitted.mu, result.mu);
+  set_correction(as_fitted.alpha_deg, result.alpha_deg);
+  set_correction(as_fitted.v_lim_m_s, result.v_lim_m_s);
   return result;
 }
 

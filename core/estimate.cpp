@@ -1,5 +1,6 @@
 #include "core/estimate.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -26,6 +27,11 @@ double student_t975(double degrees) {
 Estimate estimate(double value, double sd, double degrees) {
   const double half = student_t975(degrees) * sd;
   return {value, sd, value - half, value + half};
+}
+
+double chi2_ratio_limit(double degrees) {
+  const double variance = 2.0 / (9.0 * std::max(1.0, degrees));
+  return std::pow(1.0 - variance + 3.0 * std::sqrt(variance), 3);
 }
 
 Quantity determined(const Estimate& estimate) {

@@ -15,6 +15,10 @@ Estimate estimate(double value, double sd, double degrees);
 /// degrees >= 3 and to 1e-4 for degrees >= 10; closed forms below 3).
 double student_t975(double degrees);
 
+/// chi^2 per degree of freedom that is exceeded by chance with a probability of 0.00135, as three standard deviations
+/// are by a normal number (Wilson and Hilferty 1931; the probability is right to a tenth from 2 degrees on).
+double chi2_ratio_limit(double degrees);
+
 Quantity determined(const Estimate& estimate);
 Quantity undetermined(std::string why);
 

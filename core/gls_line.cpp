@@ -138,7 +138,7 @@ void set_random_part(const Fit& fit, LineUncertainty& parts) {
   const int free = fit.nodes() - 2;
   const double ratio = free > 0 ? fit.chi2() / free : 1.0;
   parts.scatter = std::sqrt(ratio);
-  if (free > 0 && ratio > 1.0 + 3.0 * std::sqrt(2.0 / free)) {
+  if (free > 0 && ratio > chi2_ratio_limit(free)) {
     const int length = std::max(1, fit.nodes() / kFewestBlocks);
     Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
     double blocks = 0.0;
@@ -174,10 +174,13 @@ void compare_with_jackknife(const Fit& fit, LineUncertainty& parts) {
     const Eigen::Vector2d moved = rest.inverse() * (piece.design.transpose() * piece.rho);
     covariance += moved * moved.transpose() * ((n - 1.0) / n);
   }
-  if (covariance(1, 1) <= parts.var_a0) return;
+  if (covariance(1, 1) <= chi2_ratio_limit(n - 1.0) * parts.var_a0 &&
+      covariance(0, 0) <= chi2_ratio_limit(n - 1.0) * parts.var_k) {
+    return;
+  }
   parts.var_k = std::max(covariance(0, 0), parts.var_k);
   parts.cov = covariance(0, 1);
-  parts.var_a0 = covariance(1, 1);
+  parts.var_a0 = std::max(covariance(1, 1), parts.var_a0);
   parts.degrees = n - 2.0;
 }
 

@@ -20,8 +20,8 @@
 /// and without bias p = 1, q = 0. v0 is taken from the smoothed v. With a known force v obeys no such law: p = 1,
 /// q = 0, and the bias of `law` is stated as an uncertainty, as line_fit.h does.
 ///
-/// Covariance (A' C^-1 A)^-1, A = -d rho / d(k, a0). Where chi^2 is above its degrees of freedom by three standard
-/// deviations (the law is no line) it grows by what blocks of whitened residuals scatter, as in line_fit.h; where there
+/// Covariance (A' C^-1 A)^-1, A = -d rho / d(k, a0). Where chi^2 is above its degrees of freedom by more than chance
+/// makes it (the law is no line) it grows by what blocks of whitened residuals scatter, as in line_fit.h; where there
 /// are four stretches or more, leaving them out one at a time is compared as there.
 #pragma once
 
@@ -53,7 +53,8 @@ std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free,
 struct GlsInput {
   double bandwidth_s = 0.0;
   std::vector<double> autocovariance;
-  double k_start_1_s = 0.0;  ///< where the search for k begins
+  std::vector<double> noise_factor = {};  ///< of every point of the motion (speed_noise.h); empty: 1
+  double k_start_1_s = 0.0;               ///< where the search for k begins
   double scale_sd_relative = 0.0;
   double mass_kg = 0.0;  ///< with a known force only
   double mass_sd_kg = 0.0;

@@ -6,26 +6,16 @@
 #include <cmath>
 #include <utility>
 
+#include "core/line_law.h"
 #include "core/local_cubic.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kPivot = 1e-9;   // least pivot of C over its diagonal
-constexpr double kSeries = 1e-3;  // |k t| below which the law's functions are taken as series
+constexpr double kPivot = 1e-9;  // least pivot of C over its diagonal
 
 using Vector = Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
-
-/// phi and psi of the header at one time.
-std::pair<double, double> law_functions(double k, double t) {
-  const double s = k * t;
-  if (std::abs(s) < kSeries) {
-    return {t * (1.0 - s / 2.0 + s * s / 6.0), t * t * (0.5 - s / 6.0 + s * s / 24.0)};
-  }
-  const double phi = -std::expm1(-s) / k;
-  return {phi, (t - phi) / k};
-}
 
 /// The banded matrix of cov(weights of node i, weights of node j) for two kinds of weights, made symmetric.
 template <typename First, typename Second>
@@ -76,7 +66,11 @@ LineNodes::LineNodes(const Motion& motion, const FreePiece& piece, const GlsInpu
   }
   v_ = Eigen::Map<const Vector>(v.data(), static_cast<Eigen::Index>(v.size()));
   a_ = Eigen::Map<const Vector>(a.data(), static_cast<Eigen::Index>(a.size()));
-  const SeriesNoise noise{input.autocovariance, {}};
+  SeriesNoise noise{input.autocovariance, {}};
+  if (!input.noise_factor.empty()) {
+    const auto from = input.noise_factor.begin() + static_cast<std::ptrdiff_t>(piece.first);
+    noise.factor.assign(from, from + static_cast<std::ptrdiff_t>(piece.count));
+  }
   aa_ = covariance_of(rows_, noise, of_a, of_a);
   av_ = covariance_of(rows_, noise, of_a, of_v);
   vv_ = covariance_of(rows_, noise, of_v, of_v);
@@ -95,7 +89,11 @@ NodeResidual LineNodes::residual(double k) const {
   if (forced_) return made;
   const double middle = 0.5 * (t_.front() + t_.back());
   std::vector<double> phi(t_.size()), psi(t_.size());
-  for (std::size_t i = 0; i < t_.size(); ++i) std::tie(phi[i], psi[i]) = law_functions(k, t_[i] - middle);
+  for (std::size_t i = 0; i < t_.size(); ++i) {
+    const LawFunctions at = law_functions(k, t_[i] - middle);
+    phi[i] = at.phi;
+    psi[i] = at.psi;
+  }
   Vector q(count()), v_of_phi(count()), v_of_psi(count());
   for (int j = 0; j < count(); ++j) {
     const SmoothedPoint of_phi = weighted_sums(rows_[static_cast<std::size_t>(j)], phi);

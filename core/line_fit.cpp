@@ -72,6 +72,10 @@ void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, dou
       weight_a0[input.rows[j].first + i] += gain[1] * of_residual;
     }
   }
+  for (std::size_t i = 0; i < input.noise_factor.size(); ++i) {
+    weight_k[i] *= input.noise_factor[i];
+    weight_a0[i] *= input.noise_factor[i];
+  }
   parts.var_k = noise_variance(weight_k, autocovariance);
   parts.var_a0 = noise_variance(weight_a0, autocovariance);
   std::vector<double> sum(weight_k.size());
@@ -97,24 +101,11 @@ double independent(const std::vector<double>& weights, std::size_t count) {
 void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& line,
                 const std::vector<double>& autocovariance, LineUncertainty& parts) {
   const std::size_t n = input.v_m_s.size();
-  std::vector<double> residual(n), weights;
-  double squares = 0.0, expected = 0.0, variance = 0.0;
-  const KernelWeights* known = nullptr;
-  for (std::size_t j = 0; j < n; ++j) {
-    residual[j] = input.a_m_s2[j] - (line[1] - line[0] * input.v_m_s[j]);
-    squares += residual[j] * residual[j];
-    if (input.rows[j].weights.get() != known) {
-      known = input.rows[j].weights.get();
-      weights = known->a;
-      for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += line[0] * known->v[i];
-      variance = noise_variance(weights, autocovariance);
-    }
-    expected += variance;
-  }
-  if (!(expected > 0.0)) return;
-  const double ratio = squares / expected;
-  parts.scatter = std::sqrt(ratio);
-  if (ratio < 1.0 + 3.0 * std::sqrt(2.0 / independent(weights, n))) return;
+  std::vector<double> residual(n);
+  for (std::size_t j = 0; j < n; ++j) residual[j] = input.a_m_s2[j] - (line[1] - line[0] * input.v_m_s[j]);
+  const Scatter scatter = scatter_of(input, residual, line[0], autocovariance);
+  parts.scatter = std::sqrt(scatter.ratio);
+  if (!scatter.significant()) return;
   const std::size_t length = std::max<std::size_t>(1, n / kFewestBlocks);
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   double blocks = 0.0;
@@ -129,7 +120,7 @@ void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Ei
     from = to;
   }
   if (blocks < 3.0) return;
-  const Eigen::Matrix2d wider = inverse * sum * inverse * ((1.0 - 1.0 / ratio) * blocks / (blocks - 2.0));
+  const Eigen::Matrix2d wider = inverse * sum * inverse * ((1.0 - 1.0 / scatter.ratio) * blocks / (blocks - 2.0));
   const double total = parts.var_a0 + wider(1, 1);
   // Welch and Satterthwaite: the part from the blocks has blocks - 2 degrees of freedom.
   parts.degrees = std::max(1.0, (blocks - 2.0) * total * total / (wider(1, 1) * wider(1, 1)));
@@ -163,14 +154,40 @@ void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& norma
   const auto n = static_cast<double>(without.size());
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& moved : without) covariance += moved * moved.transpose() * ((n - 1.0) / n);
-  if (covariance(1, 1) <= parts.var_a0) return;
+  if (covariance(1, 1) <= chi2_ratio_limit(n - 1.0) * parts.var_a0 &&
+      covariance(0, 0) <= chi2_ratio_limit(n - 1.0) * parts.var_k) {
+    return;
+  }
   parts.var_k = std::max(covariance(0, 0), parts.var_k);
   parts.cov = covariance(0, 1);
-  parts.var_a0 = covariance(1, 1);
+  parts.var_a0 = std::max(covariance(1, 1), parts.var_a0);
   parts.degrees = n - 2.0;
+  parts.jackknife = true;
 }
 
 }  // namespace
+
+Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, double k_1_s,
+                   const std::vector<double>& autocovariance) {
+  double squares = 0.0, expected = 0.0, variance = 0.0;
+  std::vector<double> weights;
+  const KernelWeights* known = nullptr;
+  for (std::size_t j = 0; j < residual.size(); ++j) {
+    squares += residual[j] * residual[j];
+    if (input.rows[j].weights.get() != known) {
+      known = input.rows[j].weights.get();
+      weights = known->a;
+      for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += k_1_s * known->v[i];
+      variance = noise_variance(weights, autocovariance);
+    }
+    // Noise that changes with the speed changes little over a kernel.
+    const std::size_t middle = input.rows[j].first + weights.size() / 2;
+    const double factor = input.noise_factor.empty() ? 1.0 : input.noise_factor[middle];
+    expected += factor * factor * variance;
+  }
+  if (!(expected > 0.0)) return {};
+  return {squares / expected, chi2_ratio_limit(independent(weights, residual.size()))};
+}
 
 std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
                                 double scale_sd_relative, Misfit misfit) {
@@ -211,9 +228,13 @@ std::optional<LineFit> fit_line(int direction, const LineInput& input, const std
 
 std::vector<LineShift> shared_shifts(const LineFit& line) {
   const LineUncertainty& parts = line.parts;
-  std::vector<LineShift> shifts{{parts.smoothing_k, parts.smoothing_a0},
-                                {parts.mass_k, parts.mass_a0},
-                                {0.0, parts.scale_relative * line.a0_m_s2.value}};
+  const LineShift law = parts.law ? parts.law->shift : LineShift{};
+  std::vector<LineShift> shifts{
+      {parts.smoothing_k, parts.smoothing_a0},
+      law,
+      {parts.mass_k, parts.mass_a0},
+      {0.0, parts.scale_relative * line.a0_m_s2.value},
+      {kClockSdRelative * line.k_over_m_1_s.value, 2.0 * kClockSdRelative * line.a0_m_s2.value}};
   shifts.insert(shifts.end(), parts.calibration.begin(), parts.calibration.end());
   return shifts;
 }

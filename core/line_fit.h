@@ -15,14 +15,15 @@
 ///
 ///     covariance += (1 - 1/X) (A'A)^-1 [ sum over blocks of s s' ] (A'A)^-1  n_b / (n_b - 2),   s = sum of A_j' e_j,
 ///
-/// with X the mean square residual over that expected of the noise, where X is above 1 by three standard deviations.
+/// with X the mean square residual over that expected of the noise, where X is above 1 by more than chance makes it
+/// (chi2_ratio_limit of estimate.h).
 /// An error of the camera or the plane displaces all positions by x_k(t), and so v by dv and a by da (the same sums
 /// over the kernel); to first order the line changes by
 ///
 ///     d(K/m, a0) = (A'A)^-1 [A' (da + (K/m) dv) + (dA)' e],     (dA)' e = (- sum of dv_j e_j, 0).
 ///
 /// Where there are four stretches or more, leaving them out one at a time (the jackknife) gives a covariance that knows
-/// of no noise model; the larger one counts.
+/// of no noise model; it counts where it is the larger one by more than chance makes it.
 #pragma once
 
 #include <cstddef>
@@ -43,6 +44,9 @@ struct MotionShift {
 /// The points of one direction, and how they follow from the `track_points` measured positions.
 struct LineInput {
   std::size_t track_points = 0;
+  std::vector<double> t_s;                ///< of the measured positions
+  bool forced = false;                    ///< a known force acts
+  std::vector<double> noise_factor = {};  ///< of each measured position's noise (speed_noise.h); empty: 1
   std::vector<double> v_m_s;
   std::vector<double> a_m_s2;          ///< with the known force's part F/m taken off
   std::vector<KernelRow> rows;         ///< over the measured positions
@@ -61,11 +65,26 @@ inline constexpr std::size_t kFewestLinePoints = 5;
 std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
                                 double scale_sd_relative, Misfit misfit = Misfit::widens);
 
+/// Residuals of a + k v at the input's points beside what the noise of the positions makes of them.
+struct Scatter {
+  double ratio = 0.0;  ///< mean square over that expected; 0 where no noise is
+  double limit = 0.0;  ///< chi2_ratio_limit() of as many residuals as are independent
+  bool significant() const { return ratio > 0.0 && ratio >= limit; }
+};
+Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, double k_1_s,
+                   const std::vector<double>& autocovariance);
+
 /// Fills in the standard deviations and intervals of K/m and a0 from line.parts.
 void complete_line(LineFit& line);
 
-/// Changes of the line by one standard deviation of everything that it may share with others: the kernel's bias, the
-/// mass, the scale, the calibration's modes; in the same order for all lines (those that are missing at the end are 0).
+/// Relative standard deviation of a camera's or a sensor's clock, where nothing else is known: that of a quartz
+/// crystal over the temperatures of a room (docs/cameras.md, G1). A clock that is slow by e makes K/m (1 + e) and
+/// a0 (1 + e)^2 times as large, on all lines alike.
+inline constexpr double kClockSdRelative = 2e-5;
+
+/// Changes of the line by one standard deviation of everything that it may share with others: the kernel's bias (what
+/// the line keeps of it), the mass, the scale, the clock, the calibration's modes; in the same order for all lines
+/// (those that are missing at the end are 0).
 std::vector<LineShift> shared_shifts(const LineFit& line);
 
 /// Where the line of v > 0 meets a = 0. Null with the reason where there is no such line, where a0 is not above zero

@@ -6,6 +6,8 @@ LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& poin
                      int direction, double mass_kg, double mass_sd_kg) {
   LineInput input;
   input.track_points = motion.t_s.size();
+  input.t_s = motion.t_s;
+  input.forced = motion.forced;
   for (std::size_t j = 0; j < points.size(); ++j) {
     const StretchPoint& point = points[j];
     if (point.direction != direction || point.left_out != LeftOut::used) continue;

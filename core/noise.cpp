@@ -15,21 +15,6 @@ constexpr std::size_t kFewestResiduals = 20;
 constexpr std::size_t kFewestForCorrelation = 60;
 constexpr double kCompleteKernel = 3.0;  // bandwidths from an end at which the variance of a is within 20 % of inside
 
-/// The step that all positions are whole multiples of; 0 where there is none.
-double resolution(std::span<const double> x_m) {
-  double step = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < x_m.size(); ++i) {
-    const double change = std::abs(x_m[i] - x_m[i - 1]);
-    if (change > 1e-12 * std::abs(x_m[i])) step = std::min(step, change);
-  }
-  if (!std::isfinite(step)) return 0.0;
-  for (std::size_t i = 1; i < x_m.size(); ++i) {
-    const double multiple = (x_m[i] - x_m[0]) / step;
-    if (std::abs(multiple - std::round(multiple)) > 1e-3) return 0.0;
-  }
-  return step;
-}
-
 double autocorrelation(const std::vector<double>& filter, std::size_t lag) {
   double sum = 0.0;
   for (std::size_t i = 0; i + lag < filter.size(); ++i) sum += filter[i] * filter[i + lag];
@@ -122,6 +107,20 @@ Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, d
 
 }  // namespace
 
+double rounding_step(std::span<const double> x_m) {
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < x_m.size(); ++i) {
+    const double change = std::abs(x_m[i] - x_m[i - 1]);
+    if (change > 1e-12 * std::abs(x_m[i])) step = std::min(step, change);
+  }
+  if (!std::isfinite(step)) return 0.0;
+  for (std::size_t i = 1; i < x_m.size(); ++i) {
+    const double multiple = (x_m[i] - x_m[0]) / step;
+    if (std::abs(multiple - std::round(multiple)) > 1e-3) return 0.0;
+  }
+  return step;
+}
+
 double pilot_noise(std::span<const double> t_s, std::span<const double> x_m) {
   std::vector<double> squares;
   for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
@@ -146,7 +145,7 @@ double pilot_noise(std::span<const double> t_s, std::span<const double> x_m) {
     constexpr double kOfSmallerHalf = 0.14267;
     sd = std::sqrt(sum / static_cast<double>(half) / kOfSmallerHalf);
   }
-  return std::max(sd, resolution(x_m) / std::sqrt(12.0));
+  return std::max(sd, rounding_step(x_m) / std::sqrt(12.0));
 }
 
 PositionNoise estimate_noise(const std::vector<NoisePiece>& pieces, double at_least_m) {

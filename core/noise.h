@@ -15,6 +15,9 @@ namespace glidelab::core {
 /// (a rounded file): between two multiples a rounded position says nothing.
 double pilot_noise(std::span<const double> t_s, std::span<const double> x_m);
 
+/// The step q where all positions are whole multiples of it from the first one on (a rounded file), 0 otherwise.
+double rounding_step(std::span<const double> x_m);
+
 /// Noise as a stationary process: white, or white plus a part that is correlated as c rho^|lag| (a codec's, or that of
 /// rounding a slow motion).
 struct PositionNoise {

@@ -12,11 +12,13 @@
 #include "core/free_blocks.h"
 #include "core/free_motion.h"
 #include "core/gls_line.h"
+#include "core/law_bias.h"
 #include "core/line_fit.h"
 #include "core/line_input.h"
 #include "core/motion.h"
 #include "core/noise.h"
 #include "core/outliers.h"
+#include "core/stretch_noise.h"
 #include "core/stretch_points.h"
 
 namespace glidelab::core {
@@ -37,17 +39,6 @@ std::vector<Piece> pieces_of(const std::vector<FreeStretch>& stretches, std::siz
   }
   if (points > next) pieces.push_back({next, points - next});
   return pieces;
-}
-
-PositionNoise noise_at(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s) {
-  std::vector<LocalCubic> cubics;
-  std::vector<NoisePiece> pieces;
-  cubics.reserve(stretches.size());
-  for (const FreeStretch& stretch : stretches) {
-    cubics.emplace_back(std::span(motion.t_s).subspan(stretch.first, stretch.count), bandwidth_s);
-    pieces.push_back({&cubics.back(), std::span(motion.y_m).subspan(stretch.first, stretch.count)});
-  }
-  return estimate_noise(pieces, motion.noise_m);
 }
 
 /// Every frame of the clip, smoothed with the points of its own piece, `left_out` not yet set.
@@ -164,6 +155,20 @@ void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput& in
   }
 }
 
+/// v_lim of the lines with their kernel's bias taken off.
+Quantity recovered_limit(const std::vector<LineFit>& lines) {
+  std::vector<LineFit> straight;
+  for (const LineFit& line : lines) straight.push_back(without_law_bias(line));
+  Quantity limit = limit_velocity(straight);
+  const Quantity as_fitted = limit_velocity(lines);
+  const bool biased =
+      std::any_of(lines.begin(), lines.end(), [](const LineFit& line) { return line.parts.law.has_value(); });
+  if (biased && limit.estimate && as_fitted.estimate) {
+    limit.smoothing_correction = limit.estimate->value - as_fitted.estimate->value;
+  }
+  return limit;
+}
+
 /// A rule sees y, which is x without the known force's part, in the stretches that count.
 BandwidthChoice by_rule(const std::string& name, const Motion& motion, const FreeMotion& free,
                         const PositionNoise& noise) {
@@ -217,6 +222,8 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const 
   const PositionNoise noise = noise_at(motion, free.stretches, clip.bandwidth_s);
   clip.position_noise_m = noise.sd_m;
   clip.noise_autocovariance_m2 = noise.autocovariance;
+  clip.rounding_m = coarse_rounding(motion, noise);
+  const std::vector<double> factors = noise_factors(motion, free.stretches, clip.bandwidth_s);
   clip.scale_sd_relative = track.scale_sd_relative;
   clip.forced = motion.forced;
   clip.blocks = free_blocks(motion, free.stretches, track.shared_m, clip.bandwidth_s);
@@ -226,27 +233,54 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const 
   const std::vector<double> bias = smoothing_bias(motion, free.stretches, law, points);
   for (const int direction : {-1, 1}) {
     LineInput input = line_input(motion, points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
+    input.noise_factor = factors;
     input.calibration = calibration_shifts(motion, input, track.shared_m);
-    const auto line = fit_line(direction, input, noise.autocovariance, track.scale_sd_relative);
-    if (line) clip.segments.push_back(*line);
+    auto line = fit_line(direction, input, noise.autocovariance, track.scale_sd_relative);
+    if (!line) continue;
+    line->parts.law = law_bias(input, *line, noise.autocovariance);
+    if (line->parts.law) {
+      line->parts.smoothing_k = line->parts.smoothing_a0 = 0.0;
+      complete_line(*line);
+    }
+    clip.segments.push_back(std::move(*line));
   }
   if (options.lines == LineMethod::generalised) {
     GlsInput input;
     input.bandwidth_s = clip.bandwidth_s;
     input.autocovariance = noise.autocovariance;
+    input.noise_factor = factors;
     input.scale_sd_relative = track.scale_sd_relative;
     input.mass_kg = setup.mass_kg;
     input.mass_sd_kg = setup.mass_sd_kg;
     input.law_m_s2 = law;
     input.shared_m = track.shared_m;
-    generalise_lines(motion, free, input, clip);
+    if (clip.rounding_m) {
+      clip.segments.clear();  // their covariance would be wrong, and with it their weights
+      clip.notes.push_back(fmt::format(
+          "positions are rounded to {:.3g} m and often repeat: the error of that lasts over frames, and generalised "
+          "lines, which weigh points by the covariance of their noise, are not fitted; use phase-diagram or trajectory",
+          *clip.rounding_m));
+    } else {
+      generalise_lines(motion, free, input, clip);
+    }
   }
-  clip.v_lim_m_s = limit_velocity(clip.segments);
+  clip.v_lim_m_s = recovered_limit(clip.segments);
   clip.motion = smooth_frames(track, motion, free.stretches, noise, clip.bandwidth_s, setup.mass_kg);
   mark_frames(track, motion, free, points, clip.motion);
   clip.left_out = intervals_of(clip.motion);
   clip.stretches = used_stretches(motion, free.stretches, points);
   note_findings(motion, outliers.size(), noise, clip);
+  if (!factors.empty()) {
+    const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+    clip.notes.push_back(fmt::format(
+        "the noise of a position grows with the speed: {:.2g} mm at the slowest, {:.2g} mm at the fastest; the lines' "
+        "intervals allow for it",
+        1e3 * *least * noise.sd_m, 1e3 * *most * noise.sd_m));
+  }
+  if (clip.rounding_m && options.lines == LineMethod::ordinary) {
+    clip.notes.push_back(
+        fmt::format("positions are rounded to {:.3g} m and often repeat: the noise is not random", *clip.rounding_m));
+  }
   return clip;
 }
 

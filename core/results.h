@@ -21,6 +21,9 @@ struct Estimate {
 struct Quantity {
   std::optional<Estimate> estimate;
   std::string why;  ///< empty where there is an estimate
+  /// What the estimate has added to it because a kernel bends the law of a line (law_bias.h); without it, what the
+  /// lines as they are give.
+  std::optional<double> smoothing_correction = {};
 };
 
 /// Why a point of the motion is not in a fit.
@@ -62,6 +65,16 @@ struct LineShift {
   double a0 = 0.0;
 };
 
+/// The kernel's bias of a line that follows its own law (law_bias.h), to be taken off, and the random covariance that
+/// is left then.
+struct LawBias {
+  LineShift shift;
+  double var_k = 0.0;
+  double cov = 0.0;
+  double var_a0 = 0.0;
+  double degrees = 0.0;  ///< of freedom; infinite where the covariance is as good as known
+};
+
 /// What the uncertainty of a line (K/m, a0) is made of; the standard deviations in LineFit hold all of it. Parts that
 /// two lines share (the kernel's bias, the mass, the scale, the calibration) are signed, so that they add up as they
 /// should.
@@ -70,10 +83,12 @@ struct LineUncertainty {
   double var_a0 = 0.0;
   double cov = 0.0;
   double scatter = 0.0;      ///< root mean square residual over what the noise explains: 1 where the line is right
+  bool jackknife = false;    ///< the random part is that of leaving out stretches (line_fit.h)
   double degrees = 0.0;      ///< of freedom that the random part rests on; infinite where it is as good as known
-  double smoothing_k = 0.0;  ///< estimated bias by the kernel; not subtracted
+  double smoothing_k = 0.0;  ///< estimated bias by the kernel where it cannot be taken off; not subtracted
   double smoothing_a0 = 0.0;
-  double mass_k = 0.0;  ///< change by one standard deviation of the mass (with a known force only)
+  std::optional<LawBias> law = {};  ///< where it can: the line itself keeps it, and counts it as an uncertainty
+  double mass_k = 0.0;              ///< change by one standard deviation of the mass (with a known force only)
   double mass_a0 = 0.0;
   double scale_relative = 0.0;         ///< standard deviation of one px_per_m: of a0 and v_lim, not of K/m
   std::vector<LineShift> calibration;  ///< by each mode of the cameras and planes, the same ones for all lines
@@ -135,6 +150,7 @@ struct ClipResult {
   double position_noise_m = 0.0;
   std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points
   double scale_sd_relative = 0.0;               ///< as in TrackData
+  std::optional<double> rounding_m;             ///< step to which the positions are rounded, where that shows
   bool forced = false;                          ///< a known force acts
   std::vector<FreeBlock> blocks;                ///< what a fit of the whole motion rests on
   std::vector<LineFit> segments;                ///< at most one for each direction
@@ -157,6 +173,7 @@ struct ConfigurationResult {
   Quantity mu;
   Quantity alpha_deg;
   Quantity v_lim_m_s;
+  std::vector<std::string> notes;
 };
 
 struct CalibrationResult {
@@ -164,7 +181,11 @@ struct CalibrationResult {
   double rms_px = 0.0;
   std::vector<double> camera_matrix;  ///< 9 numbers, row by row
   std::vector<double> distortion;     ///< k1, k2, p1, p2, k3
+  std::vector<double> sd;             ///< of fx, fy, cx, cy, k1, k2, p1, p2, k3; 0 for a term that is fixed
+  std::string model;                  ///< which terms the views support, and why
   double restitution_rms_m = 0.0;     ///< of the plane views' corners, restituted, against the pattern
+  double plane_rms_px = 0.0;          ///< the same in the picture, one coordinate
+  double plane_expected_px = 0.0;     ///< what the corners' noise and the camera's own uncertainty explain of it
   std::size_t views_used = 0;
   std::vector<std::string> notes;  ///< views without a visible pattern, …
 };

@@ -9,6 +9,7 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
+#include "diagnose/trajectory_uncertainty.h"
 #include "sim/track_sensitivity.h"
 
 namespace glidelab::diagnose {
@@ -18,17 +19,11 @@ using base::product;
 using base::transposed_product;
 
 constexpr int kMostIterations = 60;
-constexpr double kConverged = 1e-10;      // relative change of the cost
-constexpr double kLeastVariance = 1e-24;  // m²: positions without noise
-constexpr double kCondition = 1e-13;      // reciprocal, of the scaled normal matrix
-constexpr std::size_t kFewestPieces = 8;
-
-/// One block's residuals (measured - model) and their derivatives by the common parameters and by (x0, v0).
-struct Linearised {
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd common;  // n x 3
-  Eigen::MatrixXd start;   // n x 2
-};
+constexpr double kConverged = 1e-10;  // relative change of the cost
+constexpr int kRobustPasses = 8;
+constexpr double kHuber = 1.5;         // scaled deviations beyond which a position counts less
+constexpr double kOutlier = 4.0;       // and beyond which it is left out: 6 of 1e5 by chance
+constexpr double kNormalMad = 1.4826;  // standard deviation of normal numbers over their median magnitude
 
 Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const Eigen::Vector2d& start) {
   const core::FreeBlock& block = *fit.block;
@@ -47,10 +42,6 @@ Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const E
   return result;
 }
 
-double variance_of(const FitBlock& fit) {
-  return std::max(fit.autocovariance_m2.front(), kLeastVariance);
-}
-
 struct Point {
   Eigen::Vector3d common;
   std::vector<Eigen::Vector2d> starts;
@@ -58,7 +49,11 @@ struct Point {
 
 class Problem {
  public:
-  Problem(const std::vector<FitBlock>& blocks, int free) : blocks_(blocks), free_(free) {}
+  /// `weights` of every position of every block; empty: 1.
+  Problem(const std::vector<FitBlock>& blocks, std::vector<Eigen::VectorXd> weights, int free)
+      : blocks_(blocks), free_(free) {
+    for (const Eigen::VectorXd& of_block : weights) roots_.push_back(of_block.cwiseSqrt());
+  }
 
   /// Infinite where the motion cannot be moved.
   double cost(const Point& at, std::vector<Linearised>& linearised) const {
@@ -67,6 +62,7 @@ class Problem {
     try {
       for (std::size_t b = 0; b < blocks_.size(); ++b) {
         linearised.push_back(linearise(blocks_[b], at.common, at.starts[b]));
+        if (!roots_.empty()) linearised.back().scale_rows(roots_[b]);
         cost += linearised.back().residual.squaredNorm() / variance_of(blocks_[b]);
       }
     } catch (const base::NumericalError&) {
@@ -114,6 +110,7 @@ class Problem {
  private:
   const std::vector<FitBlock>& blocks_;
   int free_;
+  std::vector<Eigen::VectorXd> roots_;
 };
 
 /// x0 and v0 of a parabola through the first points, or of a line through fewer.
@@ -135,7 +132,7 @@ Eigen::Vector2d start_of(const core::FreeBlock& block) {
 
 struct Found {
   Point at;
-  std::vector<Linearised> linearised;
+  std::vector<Linearised> linearised;  // weighted
   double cost = std::numeric_limits<double>::infinity();
   bool converged = false;
   int iterations = 0;
@@ -166,122 +163,6 @@ Found minimise(const Problem& problem, Point at) {
   return found;
 }
 
-/// Autocovariance of lag i times the vector: Gamma w.
-Eigen::VectorXd times_noise(const std::vector<double>& autocovariance, const Eigen::VectorXd& w) {
-  Eigen::VectorXd product = autocovariance.front() * w;
-  for (Eigen::Index lag = 1; lag < static_cast<Eigen::Index>(autocovariance.size()) && lag < w.size(); ++lag) {
-    const double gamma = autocovariance[static_cast<std::size_t>(lag)];
-    product.tail(w.size() - lag) += gamma * w.head(w.size() - lag);
-    product.head(w.size() - lag) += gamma * w.tail(w.size() - lag);
-  }
-  return product;
-}
-
-/// Number of points worth an independent one, from the noise's autocovariance.
-double independent(const FitBlock& fit, double points) {
-  double sum = 1.0;
-  for (std::size_t lag = 1; lag < fit.autocovariance_m2.size(); ++lag) {
-    sum += 2.0 * std::pow(fit.autocovariance_m2[lag] / fit.autocovariance_m2.front(), 2);
-  }
-  return points / sum;
-}
-
-class Uncertainty {
- public:
-  Uncertainty(const std::vector<FitBlock>& blocks, const Found& found, int free) : blocks_(blocks), found_(found) {
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free, free);
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const Linearised& of = found.linearised[b];
-      const auto common = of.common.leftCols(free);
-      // The part of the derivatives that no start x0, v0 can take up.
-      const Eigen::MatrixXd projected = common - product(of.start, base::least_squares(of.start, common));
-      normal += transposed_product(projected, projected) / variance_of(blocks[b]);
-      projected_.push_back(projected);
-    }
-    const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-    if (!scale.allFinite()) return;
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-    if (!(base::symmetric_eigen(scaled).values[0] > kCondition)) return;
-    inverse_ = scale.asDiagonal() * base::inverse_positive(scaled) * scale.asDiagonal();
-  }
-
-  bool determined() const { return inverse_.size() > 0; }
-
-  void fill(TrajectoryFit& fit) const {
-    const Eigen::Index free = inverse_.rows();
-    Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(free, free);
-    double chi2 = 0.0, count = 0.0, worth = 0.0;
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const double weight = 1.0 / variance_of(blocks_[b]);
-      for (Eigen::Index i = 0; i < free; ++i) {
-        const Eigen::VectorXd noisy = times_noise(blocks_[b].autocovariance_m2, projected_[b].col(i));
-        middle.col(i) += weight * weight * transposed_product(projected_[b], noisy);
-      }
-      chi2 += weight * found_.linearised[b].residual.squaredNorm();
-      const auto points = static_cast<double>(found_.linearised[b].residual.size());
-      count += points;
-      worth += independent(blocks_[b], points);
-    }
-    fit.covariance = product(product(inverse_, middle), inverse_);
-    fit.degrees = std::numeric_limits<double>::infinity();
-    const double freedom = std::max(1.0, count - static_cast<double>(free) - 2.0 * static_cast<double>(blocks_.size()));
-    const double ratio = chi2 / freedom;
-    fit.scatter = std::sqrt(ratio);
-    fit.points = static_cast<std::size_t>(count);
-    if (ratio > 1.0 + 3.0 * std::sqrt(2.0 / std::max(1.0, worth))) add_misfit(count, ratio, fit);
-    add_shared(fit);
-  }
-
- private:
-  /// The scores of pieces of the motion, so long that they are as good as independent.
-  void add_misfit(double count, double ratio, TrajectoryFit& fit) const {
-    const auto length = static_cast<Eigen::Index>(std::max(1.0, std::ceil(count / static_cast<double>(kFewestPieces))));
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(inverse_.rows(), inverse_.rows());
-    double pieces = 0.0;
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Eigen::VectorXd& residual = found_.linearised[b].residual;
-      for (Eigen::Index from = 0; from < residual.size(); from += length) {
-        const Eigen::Index n = std::min(length, residual.size() - from);
-        const Eigen::VectorXd score =
-            transposed_product(projected_[b].middleRows(from, n), residual.segment(from, n)) / variance_of(blocks_[b]);
-        sum += product(score, score.transpose());
-        pieces += 1.0;
-      }
-    }
-    // The parameters that were fitted take their share out of the scores.
-    const double freedom = std::max(1.0, pieces - static_cast<double>(inverse_.rows()));
-    const Eigen::MatrixXd wider = product(product(inverse_, sum), inverse_) * ((1.0 - 1.0 / ratio) * pieces / freedom);
-    // Not below what white residuals of that size would give.
-    Eigen::VectorXd growth(inverse_.rows());
-    for (Eigen::Index i = 0; i < growth.size(); ++i) {
-      growth[i] = std::max(1.0, std::sqrt((ratio - 1.0) * inverse_(i, i) / std::max(wider(i, i), 1e-300)));
-    }
-    fit.covariance += growth.asDiagonal() * wider * growth.asDiagonal();
-    fit.degrees = freedom;
-  }
-
-  void add_shared(TrajectoryFit& fit) const {
-    std::size_t modes = 0;
-    for (const FitBlock& block : blocks_) modes = std::max(modes, block.block->shared_m.size());
-    fit.shared.assign(modes + 1, Eigen::VectorXd::Zero(inverse_.rows()));
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const core::FreeBlock& block = *blocks_[b].block;
-      const Eigen::MatrixXd gain = product(inverse_, projected_[b].transpose()) / variance_of(blocks_[b]);
-      for (std::size_t mode = 0; mode < block.shared_m.size(); ++mode) {
-        if (block.shared_m[mode].empty()) continue;
-        fit.shared[mode] += product(gain, Eigen::Map<const Eigen::VectorXd>(block.shared_m[mode].data(), gain.cols()));
-      }
-      fit.shared[modes] += blocks_[b].scale_sd_relative *
-                           product(gain, Eigen::Map<const Eigen::VectorXd>(block.x_m.data(), gain.cols()));
-    }
-  }
-
-  const std::vector<FitBlock>& blocks_;
-  const Found& found_;
-  std::vector<Eigen::MatrixXd> projected_;
-  Eigen::MatrixXd inverse_;
-};
-
 /// The only direction that occurs, or 0.
 int only_direction(const std::vector<FitBlock>& blocks) {
   int only = 0;
@@ -294,17 +175,8 @@ int only_direction(const std::vector<FitBlock>& blocks) {
   return only;
 }
 
-}  // namespace
-
-std::optional<TrajectoryFit> fit_trajectories(const std::vector<FitBlock>& blocks, const Eigen::Vector3d& start) {
-  if (blocks.empty()) return {};
-  const int direction = only_direction(blocks);
-  const int free = direction == 0 ? 3 : 2;
-  Point first{start, {}};
-  if (direction != 0) first.common = {start[0], start[1] - direction * start[2], 0.0};
-  for (const FitBlock& block : blocks) first.starts.push_back(start_of(*block.block));
-  const Problem problem(blocks, free);
-  // The cost is not convex where the motion turns: from the start given, and with other dampings.
+/// The best of several starts: the cost is not convex where the motion turns.
+Found minimise_from_several(const Problem& problem, const Point& first) {
   Found best;
   for (const double share : {1.0, 0.3, 2.0}) {
     Point at = first;
@@ -312,15 +184,69 @@ std::optional<TrajectoryFit> fit_trajectories(const std::vector<FitBlock>& block
     Found found = minimise(problem, at);
     if (found.converged && (!best.converged || found.cost < best.cost)) best = std::move(found);
   }
-  if (!best.converged) return {};
-  const Uncertainty uncertainty(blocks, best, free);
+  return best;
+}
+
+struct RobustFit {
+  Found found;
+  std::vector<FitBlock> blocks;  // with the noise of what is not left out
+  std::size_t left_out = 0;
+};
+
+/// Huber's weights until they settle, then without what is off by more than kOutlier scaled deviations.
+RobustFit fit_robustly(const std::vector<FitBlock>& blocks, int free, Found found) {
+  RobustFit fit{std::move(found), blocks, 0};
+  for (int pass = 0; pass < kRobustPasses; ++pass) {
+    const bool last = pass + 2 >= kRobustPasses;  // two passes with what is left
+    std::vector<Eigen::VectorXd> weights;
+    fit.left_out = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Eigen::VectorXd off = linearise(blocks[b], fit.found.at.common, fit.found.at.starts[b]).residual.cwiseAbs();
+      std::vector<double> sorted(off.begin(), off.end());
+      const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+      std::nth_element(sorted.begin(), middle, sorted.end());
+      const double scale = std::max(kNormalMad * *middle, std::sqrt(kLeastVariance));
+      const double shrink = std::min(1.0, scale * scale / variance_of(blocks[b]));
+      fit.blocks[b] = blocks[b];
+      for (double& gamma : fit.blocks[b].autocovariance_m2) gamma *= shrink;
+      weights.emplace_back(off.size());
+      for (Eigen::Index i = 0; i < off.size(); ++i) {
+        const double deviations = off[i] / scale;
+        weights.back()[i] = last ? (deviations > kOutlier ? 0.0 : 1.0) : std::min(1.0, kHuber / deviations);
+        fit.left_out += weights.back()[i] == 0.0;
+      }
+    }
+    const Problem problem(fit.blocks, std::move(weights), free);
+    fit.found = minimise(problem, fit.found.at);
+    if (!fit.found.converged) break;
+  }
+  return fit;
+}
+
+}  // namespace
+
+std::optional<TrajectoryFit> fit_trajectories(const std::vector<FitBlock>& blocks, const Eigen::Vector3d& start,
+                                              const TrajectoryOptions& options) {
+  if (blocks.empty()) return {};
+  const int direction = only_direction(blocks);
+  const int free = direction == 0 ? 3 : 2;
+  Point first{start, {}};
+  if (direction != 0) first.common = {start[0], start[1] - direction * start[2], 0.0};
+  for (const FitBlock& block : blocks) first.starts.push_back(start_of(*block.block));
+  RobustFit best{minimise_from_several(Problem(blocks, {}, free), first), blocks, 0};
+  if (!best.found.converged) return {};
+  if (options.robust) best = fit_robustly(blocks, free, std::move(best.found));
+  if (!best.found.converged) return {};
+  const TrajectoryUncertainty uncertainty(best.blocks, best.found.linearised, free);
   if (!uncertainty.determined()) return {};
   TrajectoryFit fit;
-  fit.parameters = best.at.common.head(free);
+  fit.parameters = best.found.at.common.head(free);
   fit.direction = direction;
-  fit.starts = best.at.starts;
-  fit.iterations = best.iterations;
+  fit.starts = best.found.at.starts;
+  fit.iterations = best.found.iterations;
+  fit.left_out = best.left_out;
   uncertainty.fill(fit);
+  fit.points -= fit.left_out;
   return fit;
 }
 

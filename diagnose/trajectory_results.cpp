@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/estimate.h"
-#include "diagnose/trajectory_fit.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -82,15 +81,30 @@ Eigen::Vector3d start_of(const core::ConfigurationResult& result) {
   return {k, result.lines.empty() ? 0.0 : result.lines.front().a0_m_s2.value, 0.0};
 }
 
+void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::ConfigurationResult& result) {
+  if (options.robust) {
+    result.notes.push_back(fmt::format("robust: {} of {} positions are off the motion and left out", fit.left_out,
+                                       fit.points + fit.left_out));
+  }
+  if (std::isfinite(fit.degrees)) {
+    result.notes.push_back(
+        fmt::format("the positions scatter {:.2f} times as far about the fitted motion as their noise, or one part of "
+                    "the motion disagrees with others by more than it explains: the intervals are widened ({:.0f} "
+                    "degrees of freedom)",
+                    fit.scatter, fit.degrees));
+  }
+}
+
 void leave_out(const std::string& why, core::ConfigurationResult& result) {
   result.k_over_m_1_s = result.mu = result.alpha_deg = result.v_lim_m_s = core::undetermined(why);
 }
 
 }  // namespace
 
-core::AnalysisResults with_trajectory_fits(core::AnalysisResults results) {
+core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options) {
   results.estimator = "trajectory";
   for (core::ConfigurationResult& configuration : results.configurations) {
+    configuration.notes.clear();  // of the lines
     std::vector<FitBlock> blocks;
     bool forced = false;
     for (const core::ClipResult& clip : results.clips) {
@@ -111,12 +125,13 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results) {
       leave_out("no free motion", configuration);
       continue;
     }
-    const auto fit = fit_trajectories(blocks, start_of(configuration));
+    const auto fit = fit_trajectories(blocks, start_of(configuration), options);
     if (!fit) {
       leave_out("the fit of the whole motion does not converge, or the motion does not determine it", configuration);
       continue;
     }
     fill(*fit, results.gravity_m_s2, configuration);
+    note_fit(*fit, options, configuration);
   }
   return results;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/results.h"
+#include "diagnose/trajectory_fit.h"
 
 namespace glidelab::diagnose {
 
@@ -10,6 +11,6 @@ namespace glidelab::diagnose {
 ///
 /// Null with the reason: mu and alpha where the motion goes one way only (the reason says which combination is known);
 /// all of them for tracks with a known force, for clips without free motion, and where no fit converges.
-core::AnalysisResults with_trajectory_fits(core::AnalysisResults results);
+core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options = {});
 
 }  // namespace glidelab::diagnose

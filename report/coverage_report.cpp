@@ -75,6 +75,14 @@ Plot coverage_plot(const validate::Coverage& coverage) {
           "Coverage of each quantity by each estimator"};
 }
 
+/// "20 µm", or "12 to 20 µm".
+std::string noise_text(const validate::Coverage& coverage) {
+  if (coverage.noise_sd_m.empty()) return "no";
+  const auto [least, most] = std::minmax_element(coverage.noise_sd_m.begin(), coverage.noise_sd_m.end());
+  const std::string from = number_text(*least * 1e6, 3), to = number_text(*most * 1e6, 3);
+  return from == to ? from + " µm" : fmt::format("{} to {} µm", from, to);
+}
+
 std::string list_of(const std::vector<validate::CoverageRow>& rows) {
   std::string text;
   for (const validate::CoverageRow& row : rows) {
@@ -95,10 +103,7 @@ std::string meaning(const validate::Coverage& coverage) {
     text += fmt::format("<p>These intervals hold the truth less often than they say: {}.</p>\n", list_of(narrow));
   }
   if (!wide.empty()) {
-    text += fmt::format(
-        "<p>These are wider than they need be: {}. The lines of the phase diagram count the estimated bias of their "
-        "kernel as an uncertainty and do not subtract it.</p>\n",
-        list_of(wide));
+    text += fmt::format("<p>These are wider than they need be: {}.</p>\n", list_of(wide));
   }
   text +=
       "<p>The naive lines treat smoothed points as if they were independent. They are shown so that one sees what "
@@ -112,7 +117,14 @@ std::string coverage_json(const validate::Coverage& coverage) {
   Json document;
   document["format"] = 1;
   document["replicates"] = coverage.replicates;
-  put(document, "noise_sd_m", coverage.noise_sd_m);
+  const auto [least, most] = std::minmax_element(coverage.noise_sd_m.begin(), coverage.noise_sd_m.end());
+  if (coverage.noise_sd_m.empty() || *least != *most) {
+    put(document, "noise_sd_m", std::nullopt, "the clips differ: noise_sd_of_clips_m");
+  } else {
+    put(document, "noise_sd_m", *least);
+  }
+  document["noise_sd_of_clips_m"] = coverage.noise_sd_m;
+  document["noise_from"] = coverage.camera_noise ? "camera" : "given";
   document["quantities"] = Json::array();
   for (const validate::CoverageRow& row : coverage.rows) {
     Json object{{"configuration", row.configuration}, {"estimator", row.estimator}, {"quantity", row.quantity}};
@@ -152,9 +164,11 @@ std::string coverage_text(const validate::Coverage& coverage) {
 
 std::string coverage_page(const std::string& title, const validate::Coverage& coverage) {
   std::string body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} µm of independent "
-      "noise in every position, analysed by each estimator.</p>\n",
-      escape(title), coverage.replicates, number_text(coverage.noise_sd_m * 1e6, 3));
+      "<h1>{}</h1>\n<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} of independent "
+      "noise in every position{}, a clock that is off by 20 ppm (one standard deviation) and no lost frames, analysed "
+      "by each estimator.</p>\n",
+      escape(title), coverage.replicates, noise_text(coverage),
+      coverage.camera_noise ? " (the least that the camera, the light and the marker allow)" : "");
   body += meaning(coverage);
   body += figures({coverage_plot(coverage)});
   HtmlTable table({"quantity", "truth", "bias", "sd", "stated sd", "least sd", "efficiency", "coverage", "values"});

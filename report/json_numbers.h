@@ -43,7 +43,14 @@ inline void put(Json& object, const std::string& key, const core::Estimate& esti
 }
 
 inline void put(Json& object, const std::string& key, const core::Quantity& quantity) {
-  if (quantity.estimate) return put(object, key, *quantity.estimate);
+  if (quantity.estimate) {
+    put(object, key, *quantity.estimate);
+    if (quantity.smoothing_correction && object[key].is_object()) {
+      put(object[key], "uncorrected", quantity.estimate->value - *quantity.smoothing_correction);
+      put(object[key], "smoothing_correction", *quantity.smoothing_correction);
+    }
+    return;
+  }
   object[key] = nullptr;
   object["why"][key] = quantity.why.empty() ? "the data do not determine it" : quantity.why;
 }

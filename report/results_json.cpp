@@ -38,6 +38,7 @@ Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
   put(object, "bandwidth_s", clip.bandwidth_s);
   object["bandwidth_method"] = clip.bandwidth_method;
   put(object, "position_noise_m", clip.position_noise_m);
+  if (clip.rounding_m) put(object, "rounding_m", *clip.rounding_m);
   object["segments"] = lines_json(clip.segments);
   put(object, "v_lim_m_s", clip.v_lim_m_s);
   object["stretches"] = Json::array();
@@ -70,6 +71,7 @@ Json configuration_json(const core::ConfigurationResult& configuration) {
   put(object, "alpha_deg", configuration.alpha_deg);
   put(object, "v_lim_m_s", configuration.v_lim_m_s);
   object["lines"] = lines_json(configuration.lines);
+  object["notes"] = configuration.notes;
   return object;
 }
 
@@ -79,7 +81,11 @@ Json calibration_json(const core::CalibrationResult& calibration) {
   put(object, "rms_px", calibration.rms_px);
   object["camera_matrix"] = calibration.camera_matrix;
   object["distortion"] = calibration.distortion;
+  object["sd"] = calibration.sd;
+  object["model"] = calibration.model;
   put(object, "restitution_rms_m", calibration.restitution_rms_m);
+  put(object, "plane_rms_px", calibration.plane_rms_px);
+  put(object, "plane_expected_px", calibration.plane_expected_px);
   object["views_used"] = calibration.views_used;
   object["notes"] = calibration.notes;
   return object;

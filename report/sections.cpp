@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "report/file_names.h"
 #include "report/html.h"
 #include "report/motion_plots.h"
 #include "report/number_text.h"
 #include "report/phase_plots.h"
+#include "report/pixel_phase.h"
 #include "report/quantity_names.h"
 
 namespace glidelab::report {
@@ -113,6 +115,29 @@ std::string quantity_html(const core::Quantity& quantity, std::string_view unit)
   return value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
 }
 
+/// What the lines give as they are, and what the kernel's bias adds to it; nothing where none was taken off.
+std::string corrections_html(const core::AnalysisResults& results) {
+  HtmlTable table({"mass", "stated incline", "quantity", "of the lines as they are", "correction", "recovered"}, 3);
+  for (const core::ConfigurationResult& c : results.configurations) {
+    const std::array<std::pair<std::string_view, const core::Quantity*>, 4> quantities = {
+        std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
+        std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)};
+    for (const auto& [name, quantity] : quantities) {
+      if (!quantity->estimate || !quantity->smoothing_correction) continue;
+      const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
+      table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), std::string(name),
+                 value_text(quantity->estimate->value - correction, sd), error_text(correction, sd),
+                 value_and_sd_text(quantity->estimate->value, sd)});
+    }
+  }
+  if (table.empty()) return {};
+  return "<details><summary>What the smoothing bends, and what is taken off for it</summary>\n" + table.str() +
+         "<p class=\"soft\">Smoothing bends the law of a line. The law that was found is put through the same "
+         "smoothing and "
+         "the same fit without noise; what comes out too much is taken off. The lines themselves, their slopes and R² "
+         "stay as they are.</p></details>\n";
+}
+
 std::string recovered_section(const core::AnalysisResults& results) {
   HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
                    "R² (v&gt;0)"});
@@ -130,6 +155,12 @@ std::string recovered_section(const core::AnalysisResults& results) {
     }
   }
   std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();
+  std::vector<std::string> notes;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    for (const std::string& note : c.notes)
+      notes.push_back(fmt::format("{:.6g} kg, {:.4g}°: {}", c.mass_kg, c.incline_deg, note));
+  }
+  text += notes_html(notes) + corrections_html(results);
   text += "<p class=\"soft\">± is one standard deviation. α is the inclination that the motion itself shows.</p>\n";
   if (!reasons.empty()) text += "<ul class=\"soft\">\n" + reasons + "</ul>\n";
   return text;
@@ -184,20 +215,32 @@ std::string camera_section(const core::AnalysisResults& results) {
         "corners are restituted to {} mm (rms).</p>\n",
         escape(calibration.experiment), calibration.views_used, number_text(calibration.rms_px, 2),
         number_text(calibration.restitution_rms_m * 1e3, 2));
+    text += fmt::format(
+        "<p>In the picture the plane's corners are {} px (rms) from where the camera puts them; their noise explains "
+        "{} px. {}.</p>\n",
+        number_text(calibration.plane_rms_px, 2), number_text(calibration.plane_expected_px, 2),
+        escape(calibration.model));
     HtmlTable table({"parameter", "value"});
     const std::vector<double>& m = calibration.camera_matrix;
+    const auto sd_of = [&](std::size_t k) { return k < calibration.sd.size() ? calibration.sd[k] : 0.0; };
     if (m.size() == 9) {
-      table.row({"focal length f<sub>x</sub>, f<sub>y</sub> (px)", fmt::format("{:.2f}, {:.2f}", m[0], m[4])});
-      table.row({"principal point c<sub>x</sub>, c<sub>y</sub> (px)", fmt::format("{:.2f}, {:.2f}", m[2], m[5])});
+      constexpr std::array<const char*, 4> kNames = {"focal length f<sub>x</sub> (px)", "f<sub>y</sub> (px)",
+                                                     "principal point c<sub>x</sub> (px)", "c<sub>y</sub> (px)"};
+      constexpr std::array<std::size_t, 4> kPlaces = {0, 4, 2, 5};
+      for (std::size_t i = 0; i < kNames.size(); ++i) {
+        table.row({kNames[i], value_and_sd_text(m[kPlaces[i]], sd_of(i))});
+      }
     }
     constexpr std::array<const char*, 5> kNames = {"k<sub>1</sub>", "k<sub>2</sub>", "p<sub>1</sub>", "p<sub>2</sub>",
                                                    "k<sub>3</sub>"};
     for (std::size_t i = 0; i < std::min(kNames.size(), calibration.distortion.size()); ++i) {
-      table.row({kNames[i], number_text(calibration.distortion[i], 4)});
+      const bool fixed = calibration.distortion[i] == 0.0;
+      table.row({kNames[i], fixed ? "0 (left out)" : value_and_sd_text(calibration.distortion[i], sd_of(4 + i))});
     }
     if (!table.empty()) text += table.str();
     text += notes_html(calibration.notes);
   }
+  text += figures(pixel_phase_plot(phase_points(results), false));
   if (!results.plumbs.empty()) {
     HtmlTable table({"group", "inclination against the plumb line"});
     for (const core::PlumbResult& plumb : results.plumbs) {

@@ -79,6 +79,23 @@ std::string analysis_text(const core::AnalysisResults& results) {
   }
   std::string text = text_table(rows, 3);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
+  rows = {{"mass (kg)", "incline (°)", "quantity", "of the lines as they are", "taken off for smoothing"}};
+  std::string notes;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    for (const auto& [name, quantity] :
+         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
+          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
+      if (!quantity->estimate || !quantity->smoothing_correction) continue;
+      const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
+      rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), std::string(name),
+                      value_text(quantity->estimate->value - correction, sd), error_text(-correction, sd)});
+    }
+    for (const std::string& note : c.notes) {
+      notes += fmt::format("{:.6g} kg, {:.4g}°: {}\n", c.mass_kg, c.incline_deg, printable(note));
+    }
+  }
+  if (rows.size() > 1) text += "\n" + text_table(rows, 3);
+  if (!notes.empty()) text += "\n" + notes;
   return text;
 }
 

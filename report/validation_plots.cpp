@@ -8,6 +8,7 @@
 
 #include "report/decimate.h"
 #include "report/gnuplot.h"
+#include "report/pixel_phase.h"
 #include "report/quantity_names.h"
 
 namespace glidelab::report {
@@ -98,6 +99,9 @@ std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
 std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison) {
   std::vector<Plot> plots = error_plot(comparison);
   for (Plot& plot : restitution_plot(results, comparison.restitution)) plots.push_back(std::move(plot));
+  for (Plot& plot : pixel_phase_plot(phase_points(results, comparison.restitution), true)) {
+    plots.push_back(std::move(plot));
+  }
   return plots;
 }
 

@@ -116,7 +116,7 @@ RestitutionComparison compare_positions(const core::AnalysisResults& results, co
       const double error_m = *point.measured_m - x_m;
       sum_of_squares += error_m * error_m;
       compared.max_m = std::max(compared.max_m, std::abs(error_m));
-      compared.points.push_back({c, expected.t_s[frame], x_m, error_m});
+      compared.points.push_back({c, expected.t_s[frame], x_m, error_m, frame});
     }
   }
   if (!compared.points.empty())

@@ -40,6 +40,7 @@ struct RestitutionPoint {
   double t_s = 0.0;
   double x_m = 0.0;      ///< true, as the analysis counts it
   double error_m = 0.0;  ///< measured - true
+  std::size_t frame = 0;
 };
 
 /// Over all frames in which the marker was found.

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
+#include <random>
 
 #include "base/errors.h"
+#include "core/line_fit.h"
 #include "core/parallel.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/binomial.h"
+#include "validate/camera_noise.h"
 #include "validate/comparison.h"
 #include "validate/cramer_rao.h"
 #include "validate/made_tracks.h"
@@ -44,6 +48,32 @@ std::optional<double> truth_of(const TrueConfiguration& truth, int which) {
 
 std::optional<double> bound_of(const LeastSd& least, int which) {
   return which == 0 ? least.k_over_m_1_s : which == 1 ? least.mu : which == 2 ? least.alpha_deg : least.v_lim_m_s;
+}
+
+/// The same scenario filmed with another clock of its kind: its rate is off by a normal deviate of the standard
+/// deviation that the estimators assume of clocks, and no frame is lost or doubled (a defect of the recording: what it
+/// does is no matter of intervals).
+render::Scenario with_other_clock(render::Scenario scenario, std::uint64_t seed) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0xC10Cu};
+  std::mt19937_64 engine(sequence);
+  std::normal_distribution<double> deviate(0.0, core::kClockSdRelative);
+  scenario.recording.clock.rate_error_ppm = 1e6 * deviate(engine);
+  scenario.recording.clock.dropped_fraction = scenario.recording.clock.duplicated_fraction = 0.0;
+  return scenario;
+}
+
+/// The bound with what the clock adds: K/m goes with its rate, accelerations with the square.
+LeastSd with_clock(LeastSd least, const TrueConfiguration& truth) {
+  constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
+  const double rate = core::kClockSdRelative;
+  if (least.k_over_m_1_s) least.k_over_m_1_s = std::hypot(*least.k_over_m_1_s, rate * truth.k_over_m_1_s.value_or(0.0));
+  if (least.mu) least.mu = std::hypot(*least.mu, 2.0 * rate * truth.mu.value_or(0.0));
+  if (least.v_lim_m_s) least.v_lim_m_s = std::hypot(*least.v_lim_m_s, rate * truth.v_lim_m_s.value_or(0.0));
+  if (least.alpha_deg && truth.alpha_deg) {
+    const double by_rate = 2.0 * rate * std::tan(*truth.alpha_deg / kDegreesPerRad) * kDegreesPerRad;
+    least.alpha_deg = std::hypot(*least.alpha_deg, by_rate);
+  }
+  return least;
 }
 
 /// Which of the results' configurations each true one is: by its first clip.
@@ -88,22 +118,30 @@ void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t pl
 
 Coverage measure_coverage(const render::Scenario& scenario, const CoverageOptions& options,
                           const base::Progress& progress) {
-  if (!(std::isfinite(options.noise_sd_m) && options.noise_sd_m > 0.0)) {
+  if (options.noise_sd_m && !(std::isfinite(*options.noise_sd_m) && *options.noise_sd_m > 0.0)) {
     throw base::InputError(
-        base::Issue{"", 0, "noise", fmt::format("{}", options.noise_sd_m), "a length in metres above 0"});
+        base::Issue{"", 0, "noise", fmt::format("{}", *options.noise_sd_m), "a length in metres above 0"});
   }
   if (options.replicates == 0) {
     throw base::InputError(base::Issue{"", 0, "replicates", "0", "a whole number above 0"});
   }
-  const MadeTracks clean = make_tracks(scenario, options.seed);
-  const std::vector<LeastSd> bounds =
-      least_sds(clean.truth, std::vector<double>(clean.tracks.size(), options.noise_sd_m), clean.gravity_m_s2);
+  const MadeTracks clean = make_tracks(with_other_clock(scenario, options.seed), options.seed);
+  const std::vector<double> noise_sd_m = options.noise_sd_m
+                                             ? std::vector<double>(clean.tracks.size(), *options.noise_sd_m)
+                                             : predicted_noise_m(scenario, clean.truth);
+  for (const double sd : noise_sd_m) {
+    if (std::isfinite(sd) && sd > 0.0) continue;
+    throw base::InputError(base::Issue{"", 0, "camera", "a picture in which the marker has no edge of its own",
+                                       "a marker of two pixels or more that is brighter than the wall, or --noise-m"});
+  }
+  const std::vector<LeastSd> bounds = least_sds(clean.truth, noise_sd_m, clean.gravity_m_s2);
   const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
   const std::size_t configurations = clean.truth.configurations.size();
   std::vector<std::vector<Outcome>> outcomes(options.replicates);
   std::atomic<std::size_t> done = 0;
   core::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
-    const MadeTracks noisy = with_noise(clean, options.noise_sd_m, options.seed + r);
+    const MadeTracks noisy = with_noise(make_tracks(with_other_clock(scenario, options.seed + r), options.seed + r),
+                                        noise_sd_m, options.seed + r);
     const core::AnalysisResults lines = analyze_tracks(noisy, options.bandwidth_s);
     const core::MotionOptions generalised{.bandwidth_s = options.bandwidth_s, .lines = core::LineMethod::generalised};
     const core::AnalysisResults results[] = {lines, analyze_tracks(noisy, generalised),
@@ -117,7 +155,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
     }
     progress("replicates", static_cast<double>(++done) / static_cast<double>(options.replicates));
   });
-  Coverage coverage{options.replicates, options.noise_sd_m, {}};
+  Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, {}};
   for (std::size_t c = 0; c < configurations; ++c) {
     for (std::size_t e = 0; e < estimators.size(); ++e) {
       for (int which = 0; which < 4; ++which) {
@@ -128,7 +166,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
         row.estimator = estimators[e];
         row.quantity = kNames[which];
         row.truth = *truth;
-        row.cramer_rao_sd = bound_of(bounds[c], which);
+        row.cramer_rao_sd = bound_of(with_clock(bounds[c], clean.truth.configurations[c]), which);
         summarise(outcomes, (e * configurations + c) * 4 + static_cast<std::size_t>(which), row);
         coverage.rows.push_back(std::move(row));
       }

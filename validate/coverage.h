@@ -1,8 +1,8 @@
 /// Do the stated intervals hold the truth as often as they say, and how near is each estimator to the bound?
 ///
-/// A scenario's motions are made once, and analysed in many replicates that differ in the positions' noise alone
-/// (made_tracks.h); each estimator sees the same ones. Of n intervals of 95 % the number that hold the truth is
-/// binomial.
+/// A scenario's motions are made and analysed in many replicates that differ in the positions' noise and in the rate of
+/// the camera's clock (made_tracks.h; no frame is lost or doubled); each estimator sees the same ones. Of n intervals
+/// of 95 % the number that hold the truth is binomial.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,9 @@ namespace glidelab::validate {
 
 struct CoverageOptions {
   std::size_t replicates = 1000;
-  double noise_sd_m = 0.0;  ///< of each position, white and normal; above 0
+  /// Of each position, white and normal, above 0; left out, each clip's is the least that the scenario's camera allows
+  /// (camera_noise.h).
+  std::optional<double> noise_sd_m = {};
   std::optional<double> bandwidth_s = {};
   std::uint64_t seed = 1;
   int jobs = 1;
@@ -45,11 +47,12 @@ struct CoverageRow {
 
 struct Coverage {
   std::size_t replicates = 0;
-  double noise_sd_m = 0.0;
+  std::vector<double> noise_sd_m;  ///< of each clip
+  bool camera_noise = false;       ///< as the camera allows, not as given
   std::vector<CoverageRow> rows;
 };
 
-/// InputError for a noise or a number of replicates that is not above 0.
+/// InputError for a noise or a number of replicates that is not above 0, and for a camera that cannot see the marker.
 Coverage measure_coverage(const render::Scenario& scenario, const CoverageOptions& options,
                           const base::Progress& progress = base::no_progress);
 

@@ -1,6 +1,7 @@
 #include "validate/made_tracks.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 #include <random>
 
@@ -119,17 +120,22 @@ MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed) {
 }
 
 MadeTracks with_noise(const MadeTracks& clean, double noise_sd_m, std::uint64_t seed) {
+  return with_noise(clean, std::vector<double>(clean.tracks.size(), noise_sd_m), seed);
+}
+
+MadeTracks with_noise(const MadeTracks& clean, const std::vector<double>& noise_sd_m, std::uint64_t seed) {
+  assert(noise_sd_m.size() == clean.tracks.size());
   MadeTracks noisy = clean;
   for (std::size_t c = 0; c < noisy.tracks.size(); ++c) {
     std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                            static_cast<std::uint32_t>(c)};
     std::mt19937_64 engine(sequence);
-    std::normal_distribution<double> deviate(0.0, noise_sd_m);
+    std::normal_distribution<double> deviate(0.0, std::max(noise_sd_m[c], 1e-300));
     const std::vector<double>& true_s = clean.truth.clips[c].t_s;
     std::vector<double>& x_m = noisy.tracks[c].x_m;
     for (std::size_t i = 0; i < x_m.size(); ++i) {
       const bool again = i > 0 && true_s[i] == true_s[i - 1];
-      x_m[i] = again ? x_m[i - 1] : x_m[i] + (noise_sd_m > 0.0 ? deviate(engine) : 0.0);
+      x_m[i] = again ? x_m[i - 1] : x_m[i] + (noise_sd_m[c] > 0.0 ? deviate(engine) : 0.0);
     }
   }
   return noisy;

@@ -32,6 +32,8 @@ MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed);
 /// The same tracks with independent normal deviates added; a duplicated frame repeats its own. Clip c draws from
 /// mt19937_64 with the seed sequence {seed low, seed high, c}.
 MadeTracks with_noise(const MadeTracks& clean, double noise_sd_m, std::uint64_t seed);
+/// The same with a standard deviation for each track (as many as there are: asserted).
+MadeTracks with_noise(const MadeTracks& clean, const std::vector<double>& noise_sd_m, std::uint64_t seed);
 
 /// The phase diagram of every clip and the configurations, as core::analyze() does it with tracks from files.
 core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionOptions& how, int jobs = 1);

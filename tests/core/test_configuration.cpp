@@ -1,6 +1,8 @@
 #include <Eigen/Dense>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "catch.h"
 #include "core/line_fit.h"
@@ -50,6 +52,9 @@ ConfigurationResult join(const std::vector<ClipSetup>& setups, const std::vector
   return results.front();
 }
 
+constexpr double kClock = kClockSdRelative;  // in every standard deviation: once for K/m and v_lim, twice else
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
 const ClipSetup kUp = tests::clip_setup(Launched::up, 4.0);
 const ClipSetup kDown = tests::clip_setup(Launched::down, 4.0);
 
@@ -59,14 +64,15 @@ TEST_CASE("equation (13) turns the intercepts of two lines into the inclination 
   const tests::Law law{4.3, 0.0071, 2.77};
   const auto result = join(
       {kUp, kDown}, {clip_on({{-1, 2.77, law.a0(-1), 0.01, 0.002}}), clip_on({{1, 2.77, law.a0(1), 0.01, 0.001}})});
-  // Exact but for rounding.
+  // Exact but for rounding: some 10 operations of 1e-16, and mu is a difference of numbers 100 times as large.
   CHECK(result.alpha_deg.estimate->value == Approx(4.3).epsilon(1e-12));
   CHECK(result.mu.estimate->value == Approx(0.0071).epsilon(1e-10));
   CHECK(result.k_over_m_1_s.estimate->value == Approx(2.77).epsilon(1e-12));
   CHECK(result.v_lim_m_s.estimate->value == Approx(law.v_lim()).epsilon(1e-12));
   const double g_cos = kGravity * std::cos(4.3 * std::numbers::pi / 180.0);
   const double half = 0.5 * std::hypot(0.002, 0.001);
-  CHECK(result.alpha_deg.estimate->sd == Approx(half / g_cos * 180.0 / std::numbers::pi).epsilon(1e-9));
+  const double of_clock = 2.0 * kClock * std::tan(4.3 / kDegrees);
+  CHECK(result.alpha_deg.estimate->sd == Approx(std::hypot(half / g_cos, of_clock) * kDegrees).epsilon(1e-9));
   // mu = jump / (2 g cos): the mean of the intercepts enters by tan(alpha) mu only, 5e-4 of it.
   CHECK(result.mu.estimate->sd == Approx(half / g_cos).epsilon(2e-3));
   CHECK(result.incline_deg == 4.0);
@@ -77,12 +83,16 @@ TEST_CASE(
     "the K/m of two directions that agree is their weighted mean, of two that do not their mean with the spread") {
   const auto agreeing =
       join({kUp, kDown}, {clip_on({{-1, 2.00, 0.8, 0.01, 0.002}}), clip_on({{1, 2.01, 0.6, 0.02, 0.002}})});
+  // Exact but for rounding (1e-16 an operation).
   CHECK(agreeing.k_over_m_1_s.estimate->value == Approx((2.0 * 4.0 + 2.01) / 5.0).epsilon(1e-12));
-  CHECK(agreeing.k_over_m_1_s.estimate->sd == Approx(std::sqrt(1.0 / (1e4 + 2500.0))).epsilon(1e-12));
+  CHECK(agreeing.k_over_m_1_s.estimate->sd ==
+        Approx(std::hypot(std::sqrt(1.0 / (1e4 + 2500.0)), kClock * 2.002)).epsilon(1e-12));
   const auto apart =
       join({kUp, kDown}, {clip_on({{-1, 2.5, 0.8, 0.01, 0.002}}), clip_on({{1, 1.7, 0.6, 0.02, 0.002}})});
-  CHECK(apart.k_over_m_1_s.estimate->value == Approx(2.1).epsilon(2e-3));  // weights 1/(tau^2 + sd^2), tau = 0.57
-  CHECK(apart.k_over_m_1_s.estimate->sd == Approx(0.4).epsilon(2e-3));     // half of what they are apart
+  // Weights 1/(tau^2 + sd^2) with tau = 0.57 and sd of 0.01 and 0.02 differ by 1e-3; half of that, and of what they are
+  // apart over their mean (0.2), is far below the tolerance.
+  CHECK(apart.k_over_m_1_s.estimate->value == Approx(2.1).epsilon(2e-3));
+  CHECK(apart.k_over_m_1_s.estimate->sd == Approx(0.4).epsilon(2e-3));  // half of what they are apart
 }
 
 TEST_CASE("a configuration of one direction has K/m, and null for mu and alpha with the reason") {
@@ -114,6 +124,7 @@ TEST_CASE("the joint line of two clips is least squares through the points of bo
   const auto result = join({kUp, kDown}, {slow, fast});
   REQUIRE(result.lines.size() == 1);
   CHECK(result.lines[0].points == 40);
+  // Sums of 40 points: 1e-14, and the inverses of their moments (condition 100): 1e-12; roots of products to 1e-9.
   CHECK(result.lines[0].k_over_m_1_s.value == Approx(2.0).epsilon(1e-12));
   CHECK(result.lines[0].r2 == Approx(1.0).epsilon(1e-12));
   Eigen::Matrix2d joint = Eigen::Matrix2d::Zero(), random = joint;
@@ -127,8 +138,9 @@ TEST_CASE("the joint line of two clips is least squares through the points of bo
     random += normal * Eigen::Vector2d(1e-4, 4e-6).asDiagonal() * normal;
   }
   const Eigen::Matrix2d covariance = joint.inverse() * random * joint.inverse();
-  CHECK(result.lines[0].k_over_m_1_s.sd == Approx(std::sqrt(covariance(0, 0))).epsilon(1e-9));
-  CHECK(result.lines[0].a0_m_s2.sd == Approx(std::sqrt(covariance(1, 1))).epsilon(1e-9));
+  CHECK(result.lines[0].k_over_m_1_s.sd == Approx(std::hypot(std::sqrt(covariance(0, 0)), kClock * 2.0)).epsilon(1e-9));
+  CHECK(result.lines[0].a0_m_s2.sd ==
+        Approx(std::hypot(std::sqrt(covariance(1, 1)), 2.0 * kClock * 0.6)).epsilon(1e-9));
 }
 
 TEST_CASE("clips of another mass, inclination or group make another configuration, in the order of the clips") {
@@ -153,9 +165,11 @@ TEST_CASE("an error of the scale moves the inclination and the limit velocity in
   }
   const auto result = join({kUp}, {clip});
   const double alpha = std::asin(0.75 / kGravity);
-  CHECK(result.alpha_deg.estimate->sd == Approx(0.01 * std::tan(alpha) * 180.0 / std::numbers::pi).epsilon(1e-9));
-  CHECK(result.v_lim_m_s.estimate->sd == Approx(0.01 * 0.35).epsilon(1e-9));
-  CHECK(result.k_over_m_1_s.estimate->sd < 1e-12);
+  // First-order propagation, here done by hand: exact but for rounding (as below).
+  CHECK(result.alpha_deg.estimate->sd ==
+        Approx(std::hypot(0.01, 2.0 * kClock) * std::tan(alpha) * kDegrees).epsilon(1e-9));
+  CHECK(result.v_lim_m_s.estimate->sd == Approx(std::hypot(0.01, kClock) * 0.35).epsilon(1e-9));
+  CHECK(result.k_over_m_1_s.estimate->sd == Approx(kClock * 2.0).epsilon(1e-9));
 }
 
 TEST_CASE("an error of the camera that both lines share cancels in mu or in alpha, by its signs") {
@@ -167,13 +181,15 @@ TEST_CASE("an error of the camera that both lines share cancels in mu or in alph
     return join({kUp}, {clip});
   };
   const auto same = with({0.02, 0.003}, {0.02, 0.003});
-  const double g_cos = kGravity * std::cos(std::asin(0.75 / kGravity));
-  CHECK(same.alpha_deg.estimate->sd == Approx(0.003 / g_cos * 180.0 / std::numbers::pi).epsilon(1e-9));
+  const double alpha = std::asin(0.75 / kGravity), g_cos = kGravity * std::cos(alpha);
+  const double of_clock = 2.0 * kClock * std::tan(alpha);
+  CHECK(same.alpha_deg.estimate->sd == Approx(std::hypot(0.003 / g_cos, of_clock) * kDegrees).epsilon(1e-9));
   CHECK(same.mu.estimate->sd < 3e-6);  // mu = 0.05 / g cos(alpha) changes with alpha only
-  CHECK(same.k_over_m_1_s.estimate->sd == Approx(0.02).epsilon(1e-9));
-  CHECK(same.v_lim_m_s.estimate->sd == Approx(std::abs(0.003 - 0.35 * 0.02) / 2.0).epsilon(1e-9));
+  CHECK(same.k_over_m_1_s.estimate->sd == Approx(std::hypot(0.02, kClock * 2.0)).epsilon(1e-9));
+  CHECK(same.v_lim_m_s.estimate->sd == Approx(std::hypot((0.003 - 0.35 * 0.02) / 2.0, kClock * 0.35)).epsilon(1e-9));
   const auto opposite = with({0.02, 0.003}, {-0.02, -0.003});
-  CHECK(opposite.alpha_deg.estimate->sd < 1e-9);
-  CHECK(opposite.mu.estimate->sd == Approx(0.003 / g_cos).epsilon(1e-9));
-  CHECK(opposite.k_over_m_1_s.estimate->sd < 1e-9);
+  CHECK(opposite.alpha_deg.estimate->sd == Approx(of_clock * kDegrees).epsilon(1e-9));
+  // mu goes with the clock as 2 + 2 tan^2(alpha), of which the second part is below 1e-6 of the sd.
+  CHECK(opposite.mu.estimate->sd == Approx(std::hypot(0.003 / g_cos, 2.0 * kClock * 0.05 / g_cos)).epsilon(1e-6));
+  CHECK(opposite.k_over_m_1_s.estimate->sd == Approx(kClock * 2.0).epsilon(1e-9));
 }

@@ -211,7 +211,8 @@ TEST_CASE("the limit velocity is a0 over K/m, and null where the data do not det
   CHECK(v_lim.estimate->value == Approx(0.3).epsilon(1e-14));
   // First order: (d a0 - v_lim d k) / k, and the scale.
   const double variance = (4e-6 - 2.0 * 0.3 * 1e-5 + 0.09 * 1e-4) / 4.0 + std::pow(0.003 * 0.3, 2);
-  CHECK(v_lim.estimate->sd == Approx(std::sqrt(variance)).epsilon(1e-12));
+  CHECK(v_lim.estimate->sd ==
+        Approx(std::hypot(std::sqrt(variance), kClockSdRelative * v_lim.estimate->value)).epsilon(1e-12));
 
   line.a0_m_s2.value = -0.07;
   complete_line(line);

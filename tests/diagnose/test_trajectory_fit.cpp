@@ -93,7 +93,7 @@ TEST_CASE("an error of the camera moves the fit as the stated shift says") {
   }
   const auto after = diagnose::fit_trajectories(pair.blocks, kStart);
   REQUIRE(after);
-  REQUIRE(before->shared.size() == 2);  // the mode and the scale
+  REQUIRE(before->shared.size() == 3);  // the mode, the scale and the clock
   const Eigen::VectorXd moved = after->parameters - before->parameters;
   // To first order: the shift is a thousandth of the parameters, so its square is a thousandth of itself.
   CHECK((moved - before->shared[0]).norm() < 0.02 * moved.norm());

@@ -1,6 +1,7 @@
 #include "validate/coverage.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.h"
 #include "catch.h"
@@ -55,6 +56,19 @@ TEST_CASE("coverage is the same for any number of jobs, and another for another 
   CHECK(row_of(measure_coverage(one_mass(), again), "trajectory", "mu").bias == row_of(one, "trajectory", "mu").bias);
   again.seed = 1000;
   CHECK(row_of(measure_coverage(one_mass(), again), "trajectory", "mu").bias != row_of(one, "trajectory", "mu").bias);
+}
+
+TEST_CASE("without a noise each clip has the least that the scenario's camera allows, and other clocks make no bias") {
+  const Coverage coverage = measure_coverage(one_mass(), {.replicates = 20, .seed = 3, .jobs = 2});
+  CHECK(coverage.camera_noise);
+  REQUIRE(coverage.noise_sd_m.size() == 2);
+  for (const double sd : coverage.noise_sd_m) {
+    CHECK(sd > 5e-7);  // a two-thousandth of a pixel, which is 2 mm: no picture of 8 bits is so good
+    CHECK(sd < 5e-5);  // a fortieth of one
+  }
+  const CoverageRow& k = row_of(coverage, "trajectory", "k_over_m_1_s");
+  CHECK(std::abs(k.bias) < 4.0 * k.sd / std::sqrt(20.0));
+  CHECK(k.covered >= 15);  // of 20 intervals of 95 % fewer than 15 hold the truth once in 3000
 }
 
 TEST_CASE("a noise or a number of replicates of nothing is refused") {

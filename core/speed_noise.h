@@ -1,0 +1,19 @@
+/// Noise of the positions that grows with the speed: a marker that is smeared over pixels, times that jitter.
+///
+///     s^2(v) = a + b v^2,
+///
+/// from the squared residuals of the smoothing (points whose kernel is complete) by least squares, each weighted with
+/// the inverse of its variance 2 s^4, in a few passes. It matters for lines: their ends at high speed weigh most.
+#pragma once
+
+#include <vector>
+
+#include "core/noise.h"
+
+namespace glidelab::core {
+
+/// s(v) at every point of every piece over the root mean square of the residuals. Empty where b is not above 0 by two
+/// of its standard deviations, or fewer than 40 residuals say so: the noise is then taken as one.
+std::vector<std::vector<double>> speed_factors(const std::vector<NoisePiece>& pieces);
+
+}  // namespace glidelab::core

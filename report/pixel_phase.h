@@ -1,0 +1,40 @@
+/// Pixel locking: does the error of a centre follow where in its pixel the centre lies?
+///
+/// For every marker centre, along the picture's axis in which it moves most: its phase (distance from the pixel's
+/// middle, -0.5 to 0.5 px) and its error in pixels, that is the measured position minus the smoothed one (or, in a
+/// rehearsal, minus the true one) times the pixels a metre of its clip. A finder that is drawn to pixels shows a wave;
+/// its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/results.h"
+#include "report/plot_style.h"
+#include "validate/comparison.h"
+
+namespace glidelab::report {
+
+struct PhasePoint {
+  double phase_px = 0.0;
+  double error_px = 0.0;
+};
+
+/// Of the points that the fits use; empty for tracks.
+std::vector<PhasePoint> phase_points(const core::AnalysisResults& results);
+/// Of every centre, from the truth.
+std::vector<PhasePoint> phase_points(const core::AnalysisResults& results,
+                                     const validate::RestitutionComparison& restitution);
+
+struct PixelLocking {
+  double amplitude_px = 0.0;  ///< of the first harmonic
+  double sd_px = 0.0;         ///< of A and of B, the errors taken as independent
+};
+
+/// Nothing for fewer than 20 points.
+std::optional<PixelLocking> pixel_locking(const std::vector<PhasePoint>& points);
+
+/// The points, their means over twentieths of a pixel, and the harmonic. Nothing where pixel_locking() gives nothing.
+std::vector<Plot> pixel_phase_plot(const std::vector<PhasePoint>& points, bool from_truth);
+
+}  // namespace glidelab::report
