@@ -10,6 +10,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "base/append_file.h"
 #include "base/errors.h"
 
 namespace glidelab::base {
@@ -80,8 +81,10 @@ void StagedOutput::publish_whole() {
   swap_in(staging_, final_);
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+namespace {
+
+void write_with(int flags, const fs::path& path, std::string_view bytes) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0666);
   if (file < 0) throw_system_error(path.string(), "cannot be written", errno);
   while (!bytes.empty()) {
     const ssize_t written = ::write(file, bytes.data(), bytes.size());
@@ -94,6 +97,16 @@ void write_file(const fs::path& path, std::string_view bytes) {
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
   if (::close(file) != 0) throw_system_error(path.string(), "cannot be written", errno);
+}
+
+}  // namespace
+
+void write_file(const fs::path& path, std::string_view bytes) {
+  write_with(O_TRUNC, path, bytes);
+}
+
+void append_file(const fs::path& path, std::string_view bytes) {
+  write_with(O_APPEND, path, bytes);
 }
 
 std::string read_file(const fs::path& path) {

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "core/bandwidth_rule.h"
 #include "core/clip_to_track.h"
-#include "core/parallel.h"
 #include "core/phase_diagram.h"
 
 namespace glidelab::core {
@@ -93,7 +93,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   name_uniquely(experiments, setups);
   results.clips.resize(setups.size());
   std::atomic<std::size_t> done = 0;
-  for_each_parallel(setups.size(), options.jobs, [&](std::size_t i) {
+  base::for_each_parallel(setups.size(), options.jobs, [&](std::size_t i) {
     results.clips[i] =
         analyze_motion(setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule, options.lines});
     results.clips[i].experiment = experiment_of[i]->name;

@@ -10,8 +10,9 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
-#include "core/parallel.h"
+#include "base/parallel.h"
 #include "core/picture.h"
+#include "core/pose_elimination.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
@@ -69,8 +70,6 @@ struct Uncertainty {
   CornerNoise noise;
 };
 
-/// With the poses eliminated, M = J - P (P'P)^-1 P'J of every view, an error e of the corners changes the camera's
-/// terms by S^-1 sum of M'e, S = sum of M'M; so their covariance is S^-1 [sum of M'V M] S^-1.
 Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<const BoardView*>& views,
                            double square_m) {
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 15, Eigen::RowMajor>;
@@ -78,8 +77,7 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
   for (int k = 0; k < 9; ++k) {
     if (found.sd.at<double>(k) > 0.0) free.push_back(k);  // OpenCV says 0 of a fixed term
   }
-  std::vector<ViewResiduals> residuals;
-  std::vector<Eigen::MatrixXd> by_terms;  // M
+  std::vector<ViewDerivatives> derivatives;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const BoardCorners& corners = views[i]->corners;
     std::vector<cv::Point3d> points;
@@ -95,24 +93,13 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
       view.residual[static_cast<Eigen::Index>(2 * k)] = corners.points[k].x - projected[k].x;
       view.residual[static_cast<Eigen::Index>(2 * k + 1)] = corners.points[k].y - projected[k].y;
     }
-    const Eigen::MatrixXd terms = jacobian.rightCols<9>()(Eigen::all, free);
-    const Eigen::MatrixXd of_pose = base::transposed_product(view.by_pose, view.by_pose);
-    const Eigen::MatrixXd taken_up = base::solve_positive(of_pose, base::transposed_product(view.by_pose, terms));
-    by_terms.push_back(terms - base::product(view.by_pose, taken_up));
-    residuals.push_back(std::move(view));
+    derivatives.push_back({std::move(view), jacobian.rightCols<9>()(Eigen::all, free)});
   }
+  const TermUncertainty terms = uncertainty_of_terms(derivatives);
   Uncertainty uncertainty;
-  uncertainty.noise = estimate_corner_noise(residuals, free.size());
-  const auto size = static_cast<Eigen::Index>(free.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size), scatter = information;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    information += base::transposed_product(by_terms[i], by_terms[i]);
-    scatter +=
-        base::transposed_product(by_terms[i], times_covariance(uncertainty.noise, residuals[i].grid, by_terms[i]));
-  }
-  const Eigen::MatrixXd inverse = base::inverse_positive(information);
+  uncertainty.noise = terms.noise;
   uncertainty.covariance.setZero();
-  uncertainty.covariance(free, free) = base::product(base::product(inverse, scatter), inverse);
+  uncertainty.covariance(free, free) = terms.covariance;
   return uncertainty;
 }
 
@@ -193,7 +180,7 @@ BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_c
   }
   std::vector<std::optional<BoardCorners>> corners(unique.size());
   std::vector<cv::Size> sizes(unique.size());
-  for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
+  base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
     const cv::Mat grey = read_grey_picture(unique[i]);
     sizes[i] = grey.size();
     corners[i] = find_board(grey, inner_corners);
@@ -216,8 +203,7 @@ BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_c
   return found;
 }
 
-Calibration calibrate_camera(const BoardViews& boards, double square_m) {
-  Calibration calibration;
+std::vector<const BoardView*> checked_views(const BoardViews& boards) {
   if (boards.views.size() < kFewestViews) {
     const fs::path any =
         boards.views.empty() ? boards.without.empty() ? fs::path() : boards.without.front() : boards.views.front().file;
@@ -227,25 +213,59 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
                                 boards.without.empty() ? "" : fmt::format(" (none in {})", names_of(boards.without))),
                     "at least 3, with all inner corners in sight"});
   }
-  std::vector<const BoardView*> used;
-  for (const BoardView& view : boards.views) used.push_back(&view);
-  SupportedFit fit = fit_supported_terms(used, boards.picture_size, square_m);
+  std::vector<const BoardView*> views;
+  for (const BoardView& view : boards.views) views.push_back(&view);
+  return views;
+}
 
-  // One view that is off (the board moved, a corner mistaken) pulls all parameters.
-  std::vector<double> errors(fit.found.view_error.begin<double>(), fit.found.view_error.end<double>());
-  std::vector<double> sorted = errors;
+std::vector<const BoardView*> without_outliers(const std::vector<const BoardView*>& views,
+                                               const std::vector<double>& errors_px, std::vector<std::string>& notes) {
+  std::vector<double> sorted = errors_px;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   const double limit_px = std::max(kOutlierPx, kOutlierRatio * sorted[sorted.size() / 2]);
   std::vector<const BoardView*> kept;
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (errors[i] <= limit_px) {
-      kept.push_back(used[i]);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (errors_px[i] <= limit_px) {
+      kept.push_back(views[i]);
     } else {
-      calibration.notes.push_back(fmt::format("{} is off the fit of the camera by {:.3g} px and left out",
-                                              used[i]->file.filename().string(), errors[i]));
+      notes.push_back(fmt::format("{} is off the fit of the camera by {:.3g} px and left out",
+                                  views[i]->file.filename().string(), errors_px[i]));
     }
   }
-  if (kept.size() < used.size() && kept.size() >= kFewestViews) {
+  return kept.size() >= kFewestViews ? kept : views;
+}
+
+void add_notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used, Calibration& calibration) {
+  if (!boards.without.empty()) {
+    calibration.notes.push_back("no pattern in sight in " + names_of(boards.without));
+  }
+  std::size_t unrefined = 0;
+  for (const BoardView* view : used) unrefined += view->corners.unrefined;
+  if (unrefined > 0) {
+    calibration.notes.push_back(
+        fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
+  }
+  if (calibration.noise.correlated_px > std::max(2.0 * kLeastCorrelatedPx, 0.5 * calibration.noise.white_px)) {
+    calibration.notes.push_back(fmt::format(
+        "neighbouring corners are off together by {:.2g} px (each alone by {:.2g} px): a bent pattern, or a "
+        "lens that the model does not follow; the uncertainties allow for it",
+        calibration.noise.correlated_px, calibration.noise.white_px));
+  }
+  const double sd_fx = std::sqrt(calibration.covariance(0, 0));
+  if (sd_fx > 0.02 * calibration.camera.fx) {
+    calibration.notes.push_back(
+        fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
+                    calibration.camera.fx, sd_fx));
+  }
+}
+
+Calibration calibrate_camera(const BoardViews& boards, double square_m) {
+  Calibration calibration;
+  std::vector<const BoardView*> used = checked_views(boards);
+  SupportedFit fit = fit_supported_terms(used, boards.picture_size, square_m);
+  const std::vector<double> errors(fit.found.view_error.begin<double>(), fit.found.view_error.end<double>());
+  const std::vector<const BoardView*> kept = without_outliers(used, errors, calibration.notes);
+  if (kept.size() < used.size()) {
     used = kept;
     fit = fit_supported_terms(used, boards.picture_size, square_m);
   }
@@ -263,28 +283,7 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   calibration.model = fit.model;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();
-
-  if (!boards.without.empty()) {
-    calibration.notes.push_back("no pattern in sight in " + names_of(boards.without));
-  }
-  std::size_t unrefined = 0;
-  for (const BoardView* view : used) unrefined += view->corners.unrefined;
-  if (unrefined > 0) {
-    calibration.notes.push_back(
-        fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
-  }
-  if (calibration.noise.correlated_px > std::max(2.0 * kLeastCorrelatedPx, 0.5 * calibration.noise.white_px)) {
-    calibration.notes.push_back(fmt::format(
-        "neighbouring corners are off together by {:.2g} px (each alone by {:.2g} px): a bent pattern, or a "
-        "lens that the model does not follow; the uncertainties allow for it",
-        calibration.noise.correlated_px, calibration.noise.white_px));
-  }
-  const double sd_fx = std::sqrt(calibration.covariance(0, 0));
-  if (sd_fx > 0.02 * camera.fx) {
-    calibration.notes.push_back(
-        fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
-                    camera.fx, sd_fx));
-  }
+  add_notes_on_views(boards, used, calibration);
   return calibration;
 }
 

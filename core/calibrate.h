@@ -54,6 +54,17 @@ struct Calibration {
   std::vector<std::string> notes;
 };
 
+/// The views with a board; InputError that names the pictures without one where there are fewer than three.
+std::vector<const BoardView*> checked_views(const BoardViews& boards);
+
+/// Without those whose error is above 0.2 px and five times the median's (one that is off pulls all parameters), with a
+/// note of each; all of them where fewer than three would be left.
+std::vector<const BoardView*> without_outliers(const std::vector<const BoardView*>& views,
+                                               const std::vector<double>& errors_px, std::vector<std::string>& notes);
+
+/// What a reader should know of the views that were used, and of how they fit.
+void add_notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used, Calibration& calibration);
+
 /// At least three views with a visible board; else InputError that names the pictures without one. A view whose error
 /// is above 0.2 px and five times the median's is left out (with a note).
 Calibration calibrate_camera(const BoardViews& boards, double square_m);

@@ -10,12 +10,12 @@
 #include <set>
 
 #include "base/errors.h"
-#include "core/calibrate.h"
+#include "base/parallel.h"
+#include "core/calibrate_fisheye.h"
 #include "core/frame_source.h"
 #include "core/marker_track.h"
 #include "core/mode_axis.h"
 #include "core/motion_axis.h"
-#include "core/parallel.h"
 #include "core/plumb.h"
 #include "core/restitution.h"
 #include "core/track_csv.h"
@@ -88,7 +88,7 @@ Setting calibrated(const Experiment& experiment, int jobs) {
     planes.emplace_back(name, std::vector<BoardCorners>{});
     for (const fs::path& file : planes_of(experiment, name)) planes.back().second.push_back(corners_in(file));
   }
-  const Calibration calibration = calibrate_camera(boards, setup.square_m);
+  const Calibration calibration = calibrate_any_lens(boards, setup.square_m);
   setting.size = calibration.camera.size;
   CalibrationResult result;
   result.experiment = experiment.name;
@@ -96,6 +96,7 @@ Setting calibrated(const Experiment& experiment, int jobs) {
   const CameraModel& camera = calibration.camera;
   result.camera_matrix = {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
   result.distortion.assign(camera.distortion.begin(), camera.distortion.end());
+  if (camera.lens == LensKind::fisheye) result.distortion.resize(4);
   for (Eigen::Index k = 0; k < calibration.covariance.rows(); ++k) {
     result.sd.push_back(std::sqrt(calibration.covariance(k, k)));
   }
@@ -258,7 +259,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   progress("calibration", 1.0);
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, pictures.size());
-  for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
+  base::for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
     seen[pictures[k]] = look_at(experiment, experiment.clips[pictures[k]], setting, open, counter);
   });
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/dense.h"
-#include "core/parallel.h"
+#include "base/parallel.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -289,7 +289,7 @@ std::vector<EffectScan> scan_effects(const ScoreSpace& space, const std::set<std
     if (list[e].search != Search::wave) wanted.push_back(e);
   }
   Wave wave;  // the slowest of all, and both waves' start
-  core::for_each_parallel(wanted.size() + 1, jobs, [&](std::size_t i) {
+  base::for_each_parallel(wanted.size() + 1, jobs, [&](std::size_t i) {
     if (i > 0) {
       scans[wanted[i - 1]] = scan_effect(space, wanted[i - 1]);
     } else if (waves) {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "core/parallel.h"
+#include "base/parallel.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -83,7 +83,7 @@ std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t siz
 void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best, double gain,
               double evidence, int jobs, Comparison& comparison) {
   std::vector<Found> found(best.size());
-  core::for_each_parallel(best.size(), jobs,
+  base::for_each_parallel(best.size(), jobs,
                           [&](std::size_t i) { found[i] = fit_more(set, base, *best[i], gain, evidence); });
   for (Found& one : found) add(comparison, std::move(one));
 }

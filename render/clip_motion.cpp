@@ -33,31 +33,26 @@ MotionPath::MotionPath(double start_s, double step_s, std::vector<sim::State> kn
   if (knots_.size() < 2 || !(step_s_ > 0.0)) throw std::logic_error("a path needs two states and a step");
 }
 
-double MotionPath::x_m(double t_s) const {
+MotionPath::Piece MotionPath::piece_at(double t_s) const {
   const double last = static_cast<double>(knots_.size() - 2);
   const double at = (t_s - start_s_) / step_s_;
-  const double piece = std::clamp(std::floor(at), 0.0, last);
-  const double s = at - piece;
-  const sim::State& from = knots_[static_cast<std::size_t>(piece)];
-  const sim::State& to = knots_[static_cast<std::size_t>(piece) + 1];
-  // x = x0 + s (h v0 + s ((3 dx - 2 h v0 - h v1) + s (h v0 + h v1 - 2 dx)))
+  const double number = std::clamp(std::floor(at), 0.0, last);
+  const sim::State& from = knots_[static_cast<std::size_t>(number)];
+  const sim::State& to = knots_[static_cast<std::size_t>(number) + 1];
   const double dx = to.x_m - from.x_m;
   const double v0 = step_s_ * from.v_m_s;
   const double v1 = step_s_ * to.v_m_s;
-  return from.x_m + s * (v0 + s * (3.0 * dx - 2.0 * v0 - v1 + s * (v0 + v1 - 2.0 * dx)));
+  return {at - number, {from.x_m, v0, 3.0 * dx - 2.0 * v0 - v1, v0 + v1 - 2.0 * dx}};
+}
+
+double MotionPath::x_m(double t_s) const {
+  const auto [s, c] = piece_at(t_s);
+  return c[0] + s * (c[1] + s * (c[2] + s * c[3]));
 }
 
 double MotionPath::v_m_s(double t_s) const {
-  const double last = static_cast<double>(knots_.size() - 2);
-  const double at = (t_s - start_s_) / step_s_;
-  const double piece = std::clamp(std::floor(at), 0.0, last);
-  const double s = at - piece;
-  const sim::State& from = knots_[static_cast<std::size_t>(piece)];
-  const sim::State& to = knots_[static_cast<std::size_t>(piece) + 1];
-  const double dx = to.x_m - from.x_m;
-  const double v0 = step_s_ * from.v_m_s;
-  const double v1 = step_s_ * to.v_m_s;
-  return (v0 + s * (2.0 * (3.0 * dx - 2.0 * v0 - v1) + s * 3.0 * (v0 + v1 - 2.0 * dx))) / step_s_;
+  const auto [s, c] = piece_at(t_s);
+  return (c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])) / step_s_;
 }
 
 double MotionPath::least_x_m() const {

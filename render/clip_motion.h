@@ -5,6 +5,7 @@
 /// the shutter says. The middle of the middle row's exposure has the time `start` on the clock of the truth.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <deque>
 #include <functional>
@@ -38,6 +39,13 @@ class MotionPath {
   double largest_x_m() const;
 
  private:
+  /// x = c0 + c1 s + c2 s² + c3 s³, s from 0 to 1 over the piece.
+  struct Piece {
+    double s;
+    std::array<double, 4> c;
+  };
+  Piece piece_at(double t_s) const;
+
   double start_s_ = 0.0;
   double step_s_ = 1.0;
   std::vector<sim::State> knots_;

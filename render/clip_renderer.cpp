@@ -187,7 +187,7 @@ MovingLayer ClipRenderer::layer_of(const FrameMotion& frame, const MovingBody& b
     if (recording.shutter.rolling) instants_of(frame, frame.start_s + recording.shutter.delay_s(row));
     return instants_;
   };
-  return paint(scenario_.camera, rays_, body, looks, within);
+  return paint(rays_, body, looks, within);
 }
 
 void ClipRenderer::add_reflections(const FrameMotion& frame, bool in_front, const PixelRect& within) {

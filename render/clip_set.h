@@ -1,12 +1,12 @@
 /// The clips of a scenario, to be drawn by anybody: what they share is made once.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
 #include "render/clip_renderer.h"
 
 namespace glidelab::render {
@@ -15,7 +15,8 @@ namespace glidelab::render {
 /// copied: renderers refer to it.
 class ClipSet {
  public:
-  explicit ClipSet(const Scenario& scenario, int jobs = 1);
+  /// `drawn`, where there is one, is called for every set-up that is done, perhaps from several threads at once.
+  explicit ClipSet(const Scenario& scenario, int jobs = 1, const std::function<void()>& drawn = {});
   ClipSet(const ClipSet&) = delete;
   ClipSet& operator=(const ClipSet&) = delete;
 
@@ -29,6 +30,8 @@ class ClipSet {
   FrameClock clock(std::size_t clip, std::uint64_t seed) const;
   /// As in the clips (render/mount.h).
   const Scenario& scenario() const { return scenario_; }
+  /// Of the camera as in the clips.
+  const RayTable& rays() const { return rays_; }
 
   /// One for each thread; the frames of a clip are the same as in the file that render_experiment writes with this
   /// seed.
@@ -52,6 +55,15 @@ class ClipSet {
   std::vector<Clip> clips_;
 };
 
+/// How many clips a scenario has, and frames in all their files with this seed.
+struct ClipCount {
+  std::size_t clips = 0;
+  std::size_t frames = 0;
+};
+ClipCount count_clips(const Scenario& scenario, std::uint64_t seed);
+/// Set-ups of the track.
+std::size_t count_set_ups(const Scenario& scenario);
+
 /// One clip's frames in order, in memory, as its file has them.
 class ClipStream {
  public:
@@ -59,8 +71,9 @@ class ClipStream {
 
   struct Next {
     const FrameMotion& shown;
-    bool repeated;   ///< the picture before once more
-    double stamp_s;  ///< what a container would say of its time
+    std::size_t slot;  ///< of the clock; shown.frame unless repeated
+    bool repeated;     ///< the picture before once more
+    double stamp_s;    ///< what a container would say of its time
   };
   /// The next frame, or nothing at the end.
   std::optional<Next> next();

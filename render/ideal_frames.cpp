@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "base/csv.h"
+#include "base/parallel.h"
 #include "base/staged_output.h"
 #include "render/clip_set.h"
 #include "render/marker_truth.h"
-#include "render/parallel.h"
 
 namespace glidelab::render {
 
@@ -30,7 +30,7 @@ void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& t
   const Scenario ideal = ideal_of(scenario);
   const ClipSet set(ideal, jobs);
   const double code_per_e = 0.75 * 255.0 / electrons_of_white(ideal);
-  in_parallel(jobs, set.size(), [&](const auto& next) {
+  base::in_parallel(jobs, set.size(), [&](const auto& next) {
     for (std::size_t clip = next(); clip < set.size(); clip = next()) {
       const std::string name = set.motion(clip).name;
       ClipRenderer renderer = set.renderer(clip, 0);

@@ -3,205 +3,49 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
-#include "base/errors.h"
 #include "render/coverage.h"
+#include "render/moving_shapes.h"
 
 namespace glidelab::render {
 namespace {
 
-/// Grows a rectangle of pixels by points of the picture.
-class Bounds {
- public:
-  void add(const Camera& camera, double fold_radius, const Eigen::Vector3d& p_C) {
-    if (!(p_C.z() > 0.0)) throw base::NumericalError("the glider reaches behind the camera");
-    const std::optional<Eigen::Vector2d> pixel = pixel_of(camera, p_C.head<2>() / p_C.z(), fold_radius);
-    if (!pixel) {
-      beyond_the_lens_ = true;
-      return;
-    }
-    low_ = low_.cwiseMin(*pixel);
-    high_ = high_.cwiseMax(*pixel);
-  }
-
-  /// What of `all` may be touched; all of it where a part has no picture of its own and another part is seen.
-  PixelRect pixels(const Camera& camera, const PixelRect& all) const {
-    if (!(high_.x() >= low_.x())) return {};
-    constexpr double kMargin = 2.0;  // half a pixel, and what the lens bends an edge between the points that were added
-    const double widest = 4.0 * (camera.width_px + camera.height_px);  // keeps the conversion to int defined
-    const auto pixel = [&](double value) { return static_cast<int>(std::floor(std::clamp(value, -widest, widest))); };
-    const int left = pixel(low_.x() - kMargin);
-    const int top = pixel(low_.y() - kMargin);
-    const PixelRect seen =
-        intersection(all, {left, top, pixel(high_.x() + kMargin) + 1 - left, pixel(high_.y() + kMargin) + 1 - top});
-    return beyond_the_lens_ && !seen.empty() ? all : seen;
-  }
-
- private:
-  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector2d high_ = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity());
-  bool beyond_the_lens_ = false;
-};
-
-/// A line in undistorted coordinates, a x + b y + c, positive inside. It moves linearly with the body's shift s along
-/// the track, fixed + s moving: (p + s d) x (q + s d) has no square of s.
-struct Edge {
-  Eigen::Vector3d fixed;
-  Eigen::Vector3d moving;
-};
-
-/// What a polygon is: the first or another seen face of a box (faces share the box's picture among them), or a patch on
-/// the box, over what was there.
-enum class Part { first_face, face, patch };
-
-struct Polygon {
-  std::array<Edge, 4> edges;
-  double radiance = 0.0;
-  Part part = Part::face;
-  PixelRect rect;
-};
-
-struct Sphere {
-  Eigen::Vector3d center_C;
-  double radius_m = 0.0;
-  double radiance = 0.0;
-  PixelRect rect;
-};
-
-using Corners = std::array<Eigen::Vector3d, 4>;  // camera frame, in order around
-
-/// The six faces of a box, anticlockwise from outside; bit i of a corner's number says +half along axis i.
-constexpr std::array<std::array<int, 4>, 6> kFaces = {
-    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-
-Eigen::Vector3d corner_sign(int number) {
-  return {(number & 1) != 0 ? 1.0 : -1.0, (number & 2) != 0 ? 1.0 : -1.0, (number & 4) != 0 ? 1.0 : -1.0};
-}
-
-/// Where shapes are drawn: the camera's lens, and the pixels that are wanted.
-struct Target {
-  const Camera& camera;
-  double fold_radius;
-  PixelRect within;
-};
-
-/// All shapes of the body in the camera frame, for shifts from `first` to `last` about where it stands.
-class Shapes {
- public:
-  template <typename Transform>
-  Shapes(const Target& target, const Transform& X_CW, const MovingBody& body, double middle, double first, double last)
-      : target_(target),
-        X_CW_(X_CW),
-        shift_W_(middle * body.direction_W),
-        direction_C_(X_CW_.linear() * body.direction_W),
-        first_(first),
-        last_(last) {
-    for (const MovingBox& box : body.boxes) add_box(box);
-    if (body.marker) add_sphere(*body.marker);
-  }
-
-  const std::vector<Polygon>& polygons() const { return polygons_; }
-  const std::optional<Sphere>& sphere() const { return sphere_; }
-  const Eigen::Vector3d& direction_C() const { return direction_C_; }
-
- private:
-  void bound(Bounds& bounds, const Eigen::Vector3d& p_C) const {
-    bounds.add(target_.camera, target_.fold_radius, p_C + first_ * direction_C_);
-    bounds.add(target_.camera, target_.fold_radius, p_C + last_ * direction_C_);
-  }
-
-  Edge edge_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& inside) const {
-    const Eigen::Vector3d fixed = from.cross(to);
-    const double scale = (fixed.dot(inside) > 0.0 ? 1.0 : -1.0) / fixed.head<2>().norm();
-    return {scale * fixed, scale * (from - to).cross(direction_C_)};
-  }
-
-  void add_polygon(const Corners& corners, Part part, double radiance) {
-    Polygon polygon;
-    polygon.radiance = radiance;
-    polygon.part = part;
-    Eigen::Vector3d inside = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& c : corners) inside += c / c.z();
-    Bounds bounds;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const Eigen::Vector3d& next = corners[(i + 1) % corners.size()];
-      polygon.edges[i] = edge_between(corners[i], next, inside);
-      constexpr int kSteps = 4;  // the lens bends long edges
-      for (int k = 0; k < kSteps; ++k) bound(bounds, corners[i] + (next - corners[i]) * k / kSteps);
-    }
-    polygon.rect = bounds.pixels(target_.camera, target_.within);
-    polygons_.push_back(polygon);
-  }
-
-  void add_box(const MovingBox& box) {
-    std::array<Eigen::Vector3d, 8> corner;
-    for (int i = 0; i < 8; ++i) {
-      corner[i] = X_CW_ * (box.center_W + shift_W_ + box.axes_W * corner_sign(i).cwiseProduct(box.half_m));
-    }
-    bool any = false;
-    for (std::size_t f = 0; f < kFaces.size(); ++f) {
-      const Corners around{corner[kFaces[f][0]], corner[kFaces[f][1]], corner[kFaces[f][2]], corner[kFaces[f][3]]};
-      // A face is seen where its outward normal points against the line of sight.
-      if (!((around[1] - around[0]).cross(around[2] - around[1]).dot(around[0]) < 0.0)) continue;
-      add_polygon(around, any ? Part::face : Part::first_face, box.radiance[f]);
-      any = true;
-    }
-    if (!any) throw base::NumericalError("the camera is inside the glider");
-    for (const Patch& patch : box.patches) {
-      Corners around;
-      for (std::size_t i = 0; i < around.size(); ++i) around[i] = X_CW_ * (patch.corners_W[i] + shift_W_);
-      add_polygon(around, Part::patch, patch.radiance);
-    }
-  }
-
-  void add_sphere(const MarkerSphere& marker) {
-    Sphere sphere{X_CW_ * (marker.center_W + shift_W_), marker.radius_m, marker.radiance, {}};
-    Bounds bounds;
-    for (int i = 0; i < 8; ++i) bound(bounds, sphere.center_C + marker.radius_m * corner_sign(i));
-    sphere.rect = bounds.pixels(target_.camera, target_.within);
-    sphere_ = sphere;
-  }
-
-  Target target_;
-  Eigen::Affine3d X_CW_;
-  Eigen::Vector3d shift_W_;
-  Eigen::Vector3d direction_C_;
-  double first_, last_;
-  std::vector<Polygon> polygons_;
-  std::optional<Sphere> sphere_;
-};
-
-/// The rays of a row of pixels.
+/// The rays of a row of a tile.
 struct RowRays {
   const float* x_y_dxdu_dxdv;
   const float* dydu_dydv;
 };
 
-/// Coverage of a row of pixels by a polygon.
-void polygon_row(const Polygon& polygon, double shift, const RowRays& rays, int count, double* coverage) {
-  constexpr std::size_t kEdges = 4;
-  std::array<Eigen::Vector3d, kEdges> lines;
-  for (std::size_t e = 0; e < kEdges; ++e) lines[e] = polygon.edges[e].fixed + shift * polygon.edges[e].moving;
+using TileRow = std::array<double, kRayTile>;
+
+/// Coverage of a row of pixels by a polygon of which only some edges may cross them.
+void polygon_row(const Polygon& polygon, std::uint8_t crossing, double shift, const RowRays& rays, int count,
+                 TileRow& coverage) {
+  std::array<Eigen::Vector3d, 4> lines;
+  std::size_t line_count = 0;
+  for (std::size_t e = 0; e < polygon.edges.size(); ++e) {
+    if ((crossing >> e & 1u) == 0) continue;
+    lines[line_count++] = polygon.edges[e].fixed + shift * polygon.edges[e].moving;
+  }
   for (int i = 0; i < count; ++i) {
     const auto ray = [&](int k) { return static_cast<double>(rays.x_y_dxdu_dxdv[4 * i + k]); };
     const auto slope = [&](int k) { return static_cast<double>(rays.dydu_dydv[2 * i + k]); };
-    std::array<PixelLine, kEdges> through;
-    std::size_t crossing = 0;
+    std::array<PixelLine, 4> through;
+    std::size_t through_count = 0;
     bool outside = false;
-    for (std::size_t e = 0; e < kEdges && !outside; ++e) {
+    for (std::size_t e = 0; e < line_count && !outside; ++e) {
       const Eigen::Vector3d& line = lines[e];
       const PixelLine here{line.x() * ray(0) + line.y() * ray(1) + line.z(), line.x() * ray(2) + line.y() * slope(0),
                            line.x() * ray(3) + line.y() * slope(1)};
       const double reach = 0.5 * (std::abs(here.gx) + std::abs(here.gy));
       outside = here.s <= -reach;
-      if (here.s < reach) through[crossing++] = here;
+      if (here.s < reach) through[through_count++] = here;
     }
-    coverage[i] = outside         ? 0.0
-                  : crossing == 0 ? 1.0
-                  : crossing == 1 ? half_plane_coverage(through[0])
-                                  : convex_coverage(std::span(through).first(crossing));
+    coverage[i] = outside              ? 0.0
+                  : through_count == 0 ? 1.0
+                  : through_count == 1 ? half_plane_coverage(through[0])
+                                       : convex_coverage(std::span(through).first(through_count));
   }
 }
 
@@ -209,6 +53,14 @@ double sphere_coverage(const Sphere& sphere, const Eigen::Vector3d& c, const flo
   const Eigen::Vector2d du(ray[2], slope[0]);
   const Eigen::Vector2d dv(ray[3], slope[1]);
   const Eigen::Vector2d center = c.head<2>() / c.z();
+  // Most pixels are not cut by the outline. The distance of a ray from the centre (below) changes by at most |c| times
+  // what the ray does; half a pixel is in reach, and as much again for what the ray's own length changes.
+  const Eigen::Vector2d off = Eigen::Vector2d(ray[0], ray[1]) - center;
+  const double turned = off.x() * c.y() - off.y() * c.x();
+  const double off2 = (c.z() * c.z() * off.squaredNorm() + turned * turned) / (1.0 + ray[0] * ray[0] + ray[1] * ray[1]);
+  const double reach = c.norm() * (du.norm() + dv.norm());
+  if (off2 > (sphere.radius_m + reach) * (sphere.radius_m + reach)) return 0.0;
+  if (sphere.radius_m > reach && off2 < (sphere.radius_m - reach) * (sphere.radius_m - reach)) return 1.0;
   double coverage = 0.0;
   for (int quarter = 0; quarter < 4; ++quarter) {
     const Eigen::Vector2d p = Eigen::Vector2d(ray[0], ray[1]) + ((quarter & 1) == 0 ? -0.25 : 0.25) * du +
@@ -231,83 +83,210 @@ double sphere_coverage(const Sphere& sphere, const Eigen::Vector3d& c, const flo
   return coverage;
 }
 
-/// Pictures of rows, one instant after the other.
-class RowPainter {
- public:
-  RowPainter(const RayTable& rays, const PixelRect& rect)
-      : rays_(rays), rect_(rect), buffer_(static_cast<std::size_t>(rect.width) * 5) {}
+/// What may be seen of a shape in a tile; `crossing` is that of InTile.
+struct Step {
+  const Polygon* polygon = nullptr;
+  double radiance = 0.0;
+  std::uint8_t crossing = 0;
+};
 
-  /// Adds what the row y shows of the shapes, shifted along the track.
-  void add(const Shapes& shapes, double shift, double weight, int y, float* out_radiance, float* out_coverage) {
-    const int width = rect_.width;
-    double* const seen_radiance = buffer_.data();
-    double* const seen_coverage = seen_radiance + width;
-    double* const box_radiance = seen_coverage + width;
-    double* const box_coverage = box_radiance + width;
-    double* const coverage = box_coverage + width;
-    const auto rays_from = [&](int x) {
-      const std::size_t at = static_cast<std::size_t>(y) * rays_.width + x;
-      return RowRays{rays_.x_y_dxdu_dxdv.data() + 4 * at, rays_.dydu_dydv.data() + 2 * at};
-    };
-    const auto row_of = [&](const PixelRect& rect) { return y >= rect.y && y < rect.y + rect.height; };
-    std::fill_n(seen_radiance, 2 * width, 0.0);
-    // One box after the other: its seen faces, which share its picture, then patches in their places, then the whole
-    // over what was there.
-    for (std::size_t k = 0; k < shapes.polygons().size();) {
-      std::fill_n(box_radiance, 2 * width, 0.0);
-      do {
-        const Polygon& polygon = shapes.polygons()[k];
-        if (!row_of(polygon.rect)) continue;
-        const int left = polygon.rect.x - rect_.x;
-        polygon_row(polygon, shift, rays_from(polygon.rect.x), polygon.rect.width, coverage);
-        for (int i = 0; i < polygon.rect.width; ++i) {
-          double& box_part = box_coverage[left + i];
-          double& light = box_radiance[left + i];
-          if (polygon.part != Part::patch) {
-            light += coverage[i] * polygon.radiance;
-            box_part += coverage[i];
-          } else if (box_part > 0.0) {
-            const double patched = std::min(coverage[i], box_part);
-            light += patched * (polygon.radiance - light / box_part);
-          }
+/// How a tile is drawn as one view sees it: what may be seen of it, in order.
+struct Plan {
+  std::vector<Step> steps;
+  bool with_sphere = false;
+  bool even = true;  ///< the same in all its pixels at all shifts of the range
+};
+
+bool same_picture(const Plan& a, const Plan& b) {
+  return a.even && b.even &&
+         std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), b.steps.end(), [](const Step& s, const Step& t) {
+           return s.radiance == t.radiance && s.polygon->box == t.polygon->box &&
+                  s.polygon->is_patch == t.polygon->is_patch;
+         });
+}
+
+void make_plan(const Shapes& shapes, const RayBounds& tile, const ShiftRange& shifts, Plan& plan) {
+  plan.steps.clear();
+  for (const Polygon& polygon : shapes.polygons()) {
+    const InTile place = place_in_tile(polygon, tile, shifts);
+    if (place.outside) continue;
+    const bool first_of_box = plan.steps.empty() || plan.steps.back().polygon->box != polygon.box;
+    if (polygon.is_patch && first_of_box) continue;  // the box itself is not there
+    if (place.crossing == 0 && polygon.is_patch && plan.steps.size() == 1 && plan.steps.front().crossing == 0) {
+      plan.steps.front().radiance = polygon.radiance;  // hides the face and the patches under it
+      continue;
+    }
+    plan.steps.push_back({&polygon, polygon.radiance, place.crossing});
+    // A face that fills the tile hides the boxes before.
+    if (place.crossing == 0 && !polygon.is_patch && first_of_box) {
+      plan.steps.erase(plan.steps.begin(), plan.steps.end() - 1);
+    }
+  }
+  plan.with_sphere = shapes.sphere() && overlap(shapes.sphere()->bounds, tile);
+  plan.even = !plan.with_sphere &&
+              std::all_of(plan.steps.begin(), plan.steps.end(), [](const Step& step) { return step.crossing == 0; });
+}
+
+/// Some pixels of a row of one tile.
+struct TileSpan {
+  int y = 0;
+  int x = 0;
+  int count = 0;
+};
+
+struct RowPicture {
+  TileRow radiance{};
+  TileRow coverage{};
+};
+
+/// Adds what a row of a tile shows at one instant.
+void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight, const RayTable& rays,
+             const TileSpan& span, RowPicture& out) {
+  const std::size_t at = static_cast<std::size_t>(span.y) * rays.width + span.x;
+  const RowRays row{rays.x_y_dxdu_dxdv.data() + 4 * at, rays.dydu_dydv.data() + 2 * at};
+  RowPicture seen;
+  // One box after the other: its seen faces, which share its picture, then patches in their places, then the whole
+  // over what was there.
+  for (std::size_t k = 0; k < plan.steps.size();) {
+    RowPicture box;
+    const std::size_t number = plan.steps[k].polygon->box;
+    for (; k < plan.steps.size() && plan.steps[k].polygon->box == number; ++k) {
+      const Step& step = plan.steps[k];
+      TileRow coverage;
+      if (step.crossing == 0) {
+        coverage.fill(1.0);
+      } else {
+        polygon_row(*step.polygon, step.crossing, shift, row, span.count, coverage);
+      }
+      for (int i = 0; i < span.count; ++i) {
+        double& box_part = box.coverage[i];
+        double& light = box.radiance[i];
+        if (!step.polygon->is_patch) {
+          light += coverage[i] * step.radiance;
+          box_part += coverage[i];
+        } else if (box_part > 0.0) {
+          const double patched = std::min(coverage[i], box_part);
+          light += patched * (step.radiance - light / box_part);
         }
-      } while (++k < shapes.polygons().size() && shapes.polygons()[k].part != Part::first_face);
-      for (int i = 0; i < width; ++i) {
-        seen_radiance[i] += box_radiance[i] - box_coverage[i] * seen_radiance[i];
-        seen_coverage[i] += box_coverage[i] * (1.0 - seen_coverage[i]);
       }
     }
-    if (const auto& sphere = shapes.sphere(); sphere && row_of(sphere->rect)) {
-      const Eigen::Vector3d c = sphere->center_C + shift * shapes.direction_C();
-      const RowRays row = rays_from(sphere->rect.x);
-      for (int i = 0; i < sphere->rect.width; ++i) {
-        const double covered = sphere_coverage(*sphere, c, row.x_y_dxdu_dxdv + 4 * i, row.dydu_dydv + 2 * i);
-        const int at = sphere->rect.x - rect_.x + i;
-        seen_radiance[at] += covered * (sphere->radiance - seen_radiance[at]);
-        seen_coverage[at] += covered * (1.0 - seen_coverage[at]);
-      }
+    for (int i = 0; i < span.count; ++i) {
+      seen.radiance[i] += box.radiance[i] - box.coverage[i] * seen.radiance[i];
+      seen.coverage[i] += box.coverage[i] * (1.0 - seen.coverage[i]);
     }
-    for (int i = 0; i < width; ++i) {
-      out_radiance[i] += static_cast<float>(weight * seen_radiance[i]);
-      out_coverage[i] += static_cast<float>(weight * seen_coverage[i]);
+  }
+  if (plan.with_sphere) {
+    const Sphere& sphere = *shapes.sphere();
+    const Eigen::Vector3d c = sphere.center_C + shift * shapes.direction_C();
+    for (int i = 0; i < span.count; ++i) {
+      const double covered = sphere_coverage(sphere, c, row.x_y_dxdu_dxdv + 4 * i, row.dydu_dydv + 2 * i);
+      seen.radiance[i] += covered * (sphere.radiance - seen.radiance[i]);
+      seen.coverage[i] += covered * (1.0 - seen.coverage[i]);
     }
+  }
+  for (int i = 0; i < span.count; ++i) {
+    out.radiance[i] += weight * seen.radiance[i];
+    out.coverage[i] += weight * seen.coverage[i];
+  }
+}
+
+/// Draws tile by tile. What is decided of a tile is decided of the whole of it, also where only a part is wanted: so a
+/// pixel is the same in any part of the picture.
+class TilePainter {
+ public:
+  TilePainter(const RayTable& rays, const std::vector<Shapes>& shapes, double middle_m, const Looks& looks)
+      : rays_(rays),
+        shapes_(shapes),
+        middle_m_(middle_m),
+        looks_(looks),
+        ranges_(shapes.size()),
+        plans_(shapes.size()) {}
+
+  MovingLayer paint(const PixelRect& within) {
+    layer_ = {touched(within), {}, {}};
+    const PixelRect& rect = layer_.rect;
+    if (rect.empty()) return std::move(layer_);
+    const auto size = static_cast<std::size_t>(rect.width) * rect.height;
+    layer_.radiance.assign(size, 0.0f);
+    layer_.coverage.assign(size, 0.0f);
+    for (int row = rect.y / kRayTile; row * kRayTile < rect.y + rect.height; ++row) {
+      look_at_rows(row);
+      for (int column = rect.x / kRayTile; column * kRayTile < rect.x + rect.width; ++column) paint_tile(column, row);
+    }
+    return std::move(layer_);
   }
 
  private:
+  /// The tiles within which anything may be seen.
+  PixelRect touched(const PixelRect& within) const {
+    RayBounds body;
+    for (const Shapes& shapes : shapes_) add_to(body, shapes.bounds());
+    PixelRect all;
+    for (int row = within.y / kRayTile; row * kRayTile < within.y + within.height; ++row) {
+      for (int column = within.x / kRayTile; column * kRayTile < within.x + within.width; ++column) {
+        if (overlap(body, rays_.tile(column, row)))
+          all = united(all, {column * kRayTile, row * kRayTile, kRayTile, kRayTile});
+      }
+    }
+    return intersection(all, within);
+  }
+
+  /// The instants of a row of tiles, and between which shifts each view is looked from.
+  void look_at_rows(int tile_row) {
+    std::fill(ranges_.begin(), ranges_.end(), std::nullopt);
+    for (int i = 0; i < kRayTile; ++i) {
+      const int y = std::min(tile_row * kRayTile + i, rays_.height - 1);
+      const std::span<const Instant> instants = looks_.of_row(y);
+      instants_[i].assign(instants.begin(), instants.end());
+      for (const Instant& instant : instants) {
+        const double shift = instant.x_m - middle_m_;
+        std::optional<ShiftRange>& range = ranges_.at(instant.view);
+        range =
+            range ? ShiftRange{std::min(range->first, shift), std::max(range->last, shift)} : ShiftRange{shift, shift};
+      }
+    }
+  }
+
+  void paint_tile(int column, int row) {
+    const RayBounds& bounds = rays_.tile(column, row);
+    const Plan* first = nullptr;
+    bool even = true;
+    for (std::size_t view = 0; view < shapes_.size(); ++view) {
+      if (!ranges_[view]) continue;
+      make_plan(shapes_[view], bounds, *ranges_[view], plans_[view]);
+      if (first == nullptr) first = &plans_[view];
+      even = even && same_picture(*first, plans_[view]);
+    }
+    if (first == nullptr || (even && first->steps.empty())) return;
+    const PixelRect rect = intersection(layer_.rect, {column * kRayTile, row * kRayTile, kRayTile, kRayTile});
+    for (int y = rect.y; y < rect.y + rect.height; ++y) {
+      const TileSpan span{y, rect.x, rect.width};
+      RowPicture picture;
+      if (even) {
+        add_row(shapes_[first - plans_.data()], *first, 0.0, 1.0, rays_, span, picture);
+      } else {
+        for (const Instant& instant : instants_[y - row * kRayTile]) {
+          add_row(shapes_[instant.view], plans_[instant.view], instant.x_m - middle_m_, instant.weight, rays_, span,
+                  picture);
+        }
+      }
+      const std::size_t at = static_cast<std::size_t>(y - layer_.rect.y) * layer_.rect.width + (rect.x - layer_.rect.x);
+      for (int i = 0; i < rect.width; ++i) {
+        layer_.radiance[at + i] = static_cast<float>(picture.radiance[i]);
+        layer_.coverage[at + i] = static_cast<float>(picture.coverage[i]);
+      }
+    }
+  }
+
   const RayTable& rays_;
-  PixelRect rect_;
-  std::vector<double> buffer_;
+  const std::vector<Shapes>& shapes_;
+  double middle_m_;
+  const Looks& looks_;
+  std::vector<std::optional<ShiftRange>> ranges_;  ///< of each view, in the rows at hand; nothing: not looked from
+  std::vector<Plan> plans_;                        ///< of each view, for the tile at hand
+  std::array<std::vector<Instant>, kRayTile> instants_;  ///< of the rows at hand
+  MovingLayer layer_;
 };
-
-void include(PixelRect& whole, const Shapes& shapes) {
-  for (const Polygon& polygon : shapes.polygons()) whole = united(whole, polygon.rect);
-  if (shapes.sphere()) whole = united(whole, shapes.sphere()->rect);
-}
-
-MovingLayer empty_layer(const PixelRect& rect) {
-  const std::size_t size = rect.empty() ? 0 : static_cast<std::size_t>(rect.width) * rect.height;
-  return {rect, std::vector<float>(size, 0.0f), std::vector<float>(size, 0.0f)};
-}
 
 void darken(const RayTable& rays, MovingLayer& layer) {
   if (rays.gain.empty()) return;
@@ -327,47 +306,24 @@ MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& 
 MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, std::span<const double> x_m,
                   const PixelRect& within) {
   if (x_m.empty()) throw std::logic_error("no instant to paint");
-  const double first = *std::min_element(x_m.begin(), x_m.end());
-  const double last = *std::max_element(x_m.begin(), x_m.end());
-  const double middle = 0.5 * (first + last);
-  const Shapes shapes({camera, rays.fold_radius, within}, camera.X_WC.inverse(), body, middle, first - middle,
-                      last - middle);
-  PixelRect rect;
-  include(rect, shapes);
-  MovingLayer layer = empty_layer(rect);
-  if (rect.empty()) return layer;
-  RowPainter painter(rays, rect);
-  const double share = 1.0 / static_cast<double>(x_m.size());
-  for (int y = 0; y < rect.height; ++y) {
-    const std::size_t at = static_cast<std::size_t>(y) * rect.width;
-    for (const double x : x_m) {
-      painter.add(shapes, x - middle, share, rect.y + y, layer.radiance.data() + at, layer.coverage.data() + at);
-    }
-  }
-  darken(rays, layer);
-  return layer;
+  std::vector<Instant> instants;
+  for (const double x : x_m) instants.push_back({0, x, 1.0 / static_cast<double>(x_m.size())});
+  Looks looks;
+  looks.views.emplace_back(camera.X_WC.inverse());
+  looks.first_x_m = *std::min_element(x_m.begin(), x_m.end());
+  looks.last_x_m = *std::max_element(x_m.begin(), x_m.end());
+  looks.of_row = [&](int) -> std::span<const Instant> { return instants; };
+  return paint(rays, body, looks, within);
 }
 
-MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, const Looks& looks,
-                  const PixelRect& within) {
-  const double middle = 0.5 * (looks.first_x_m + looks.last_x_m);
+MovingLayer paint(const RayTable& rays, const MovingBody& body, const Looks& looks, const PixelRect& within) {
+  const double middle_m = 0.5 * (looks.first_x_m + looks.last_x_m);
   std::vector<Shapes> shapes;
-  PixelRect rect;
+  shapes.reserve(looks.views.size());
   for (const Eigen::Affine3d& X_CW : looks.views) {
-    shapes.emplace_back(Target{camera, rays.fold_radius, within}, X_CW, body, middle, looks.first_x_m - middle,
-                        looks.last_x_m - middle);
-    include(rect, shapes.back());
+    shapes.emplace_back(X_CW, body, middle_m, ShiftRange{looks.first_x_m - middle_m, looks.last_x_m - middle_m});
   }
-  MovingLayer layer = empty_layer(rect);
-  if (rect.empty()) return layer;
-  RowPainter painter(rays, rect);
-  for (int y = 0; y < rect.height; ++y) {
-    const std::size_t at = static_cast<std::size_t>(y) * rect.width;
-    for (const Instant& instant : looks.of_row(rect.y + y)) {
-      painter.add(shapes[instant.view], instant.x_m - middle, instant.weight, rect.y + y, layer.radiance.data() + at,
-                  layer.coverage.data() + at);
-    }
-  }
+  MovingLayer layer = TilePainter(rays, shapes, middle_m, looks).paint(within);
   darken(rays, layer);
   return layer;
 }

@@ -5,7 +5,8 @@
 /// and the sphere is taken in quarters of a pixel with its curvature corrected to first order in 1/radius. Light is
 /// linear. The exposure is the mean over the instants at which the caller says where the body is, and whence it is
 /// seen. The moments of a marker's picture are those of rays cast one by one to 1e-3 px, for radii from 2.5 px
-/// (tests/render/test_moving_painter.cpp). A pixel is the same in any part of the picture that is asked for.
+/// (tests/render/test_moving_painter.cpp). Of tiles of 8 x 8 pixels only those that an outline may cross at one of the
+/// instants are looked at pixel by pixel. A pixel is the same in any part of the picture that is asked for.
 ///
 /// This runs on the processor and not in a shader: of the few thousand pixels of a glider each belongs to a few shapes
 /// only, and a shader, which does all the shapes' work in each pixel, was measured to be some twenty times slower.
@@ -23,7 +24,7 @@ namespace glidelab::render {
 
 /// What the body adds to the picture: pixel = radiance + (1 - coverage) * what stands behind.
 struct MovingLayer {
-  PixelRect rect;               ///< within the picture; empty where the body is not seen
+  PixelRect rect;               ///< within the picture, whole tiles of it; empty where the body is not seen
   std::vector<float> radiance;  ///< times coverage and the table's gain; rect.width * rect.height, row by row
   std::vector<float> coverage;
 };
@@ -53,8 +54,7 @@ struct Looks {
 };
 
 /// The body's picture by what each row sees. The sphere stays a sphere in a view that is not rigid.
-MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, const Looks& looks,
-                  const PixelRect& within);
+MovingLayer paint(const RayTable& rays, const MovingBody& body, const Looks& looks, const PixelRect& within);
 
 /// Puts the layer over a picture (of radiance, or of anything that radiance times `scale` is).
 void put_over(const MovingLayer& layer, float scale, FloatPicture& picture);

@@ -22,7 +22,13 @@ void row_words_portable(std::uint32_t first_block, int groups, const RowNoise& n
                                             std::uint32_t* words) {
   const __m256i m0 = _mm256_set1_epi64x(kPhiloxM0);
   const __m256i m1 = _mm256_set1_epi64x(kPhiloxM1);
-  const __m256i low_half = _mm256_set1_epi64x(0xFFFFFFFF);
+  alignas(32) __m256i keys[kPhiloxRounds][2];  // of each round, made once and not for every group
+  PhiloxKey key = noise.key;
+  for (auto& pair : keys) {
+    for (int k = 0; k < 2; ++k) pair[k] = _mm256_set1_epi32(static_cast<std::int32_t>(key[k]));
+    key[0] += kPhiloxW0;
+    key[1] += kPhiloxW1;
+  }
   for (int g = 0; g < groups; ++g) {
     const __m256i block =
         _mm256_set1_epi32(static_cast<std::int32_t>(first_block + static_cast<std::uint32_t>(g * kBlocks)));
@@ -33,10 +39,7 @@ void row_words_portable(std::uint32_t first_block, int groups, const RowNoise& n
       c[h][2] = _mm256_set1_epi64x(noise.stream);
       c[h][3] = _mm256_setzero_si256();
     }
-    PhiloxKey key = noise.key;
-    for (int round = 0; round < kPhiloxRounds; ++round) {
-      const __m256i k0 = _mm256_set1_epi32(static_cast<std::int32_t>(key[0]));
-      const __m256i k1 = _mm256_set1_epi32(static_cast<std::int32_t>(key[1]));
+    for (const auto& [k0, k1] : keys) {
       for (auto& half : c) {
         const __m256i product0 = _mm256_mul_epu32(half[0], m0);
         const __m256i product1 = _mm256_mul_epu32(half[2], m1);
@@ -45,11 +48,9 @@ void row_words_portable(std::uint32_t first_block, int groups, const RowNoise& n
         half[2] = _mm256_xor_si256(_mm256_srli_epi64(product0, 32), _mm256_xor_si256(half[3], k1));
         half[3] = product0;
       }
-      key[0] += kPhiloxW0;
-      key[1] += kPhiloxW1;
     }
     for (int j = 0; j < 4; ++j) {
-      const __m256i merged = _mm256_or_si256(_mm256_and_si256(c[0][j], low_half), _mm256_slli_epi64(c[1][j], 32));
+      const __m256i merged = _mm256_blend_epi32(c[0][j], _mm256_slli_epi64(c[1][j], 32), 0b10101010);
       _mm256_storeu_si256(reinterpret_cast<__m256i*>(words + g * kGroup + j * kBlocks), merged);
     }
   }

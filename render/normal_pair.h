@@ -26,19 +26,30 @@ inline float log_of(float x) {
   return static_cast<float>(exponent) * 0.693147181f + m * polynomial;
 }
 
-/// Two normal deviates of two words (Box and Muller).
-inline void normal_pair(std::uint32_t word0, std::uint32_t word1, float& z0, float& z1) {
+/// The parts of two normal deviates, sqrt(square) cosine and sqrt(square) sine: the root of square times a variance is
+/// one root, not two.
+struct PolarPair {
+  float square;
+  float cosine;
+  float sine;
+};
+
+inline PolarPair polar_pair(std::uint32_t word0, std::uint32_t word1) {
   constexpr float kBit = 1.0f / 16777216.0f;  // 2^-24
   const float u = (static_cast<float>(static_cast<std::int32_t>(word0 >> 8)) + 0.5f) * kBit;
   const float turns = static_cast<float>(static_cast<std::int32_t>(word1) >> 8) * kBit;  // [-1/2, 1/2)
-  const float under_root = -2.0f * log_of(u);
-  const float radius = std::sqrt(under_root > 0.0f ? under_root : 0.0f);
-  const float away = turns < 0.0f ? -turns : turns;
-  const float beyond = away - 0.25f;
-  const float folded = 0.25f - (beyond < 0.0f ? -beyond : beyond);
-  const float sine = sine_of_turns(folded);
-  z0 = radius * sine_of_turns(0.25f - away);
-  z1 = radius * (turns < 0.0f ? -sine : sine);
+  const float square = -2.0f * log_of(u);  // not negative: u <= 1, and the polynomial of log_of is positive
+  const float away = std::fabs(turns);
+  const float folded = 0.25f - std::fabs(away - 0.25f);
+  return {square, sine_of_turns(0.25f - away), std::copysign(sine_of_turns(folded), turns)};
+}
+
+/// Two normal deviates of two words (Box and Muller).
+inline void normal_pair(std::uint32_t word0, std::uint32_t word1, float& z0, float& z1) {
+  const PolarPair pair = polar_pair(word0, word1);
+  const float radius = std::sqrt(pair.square);
+  z0 = radius * pair.cosine;
+  z1 = radius * pair.sine;
 }
 
 }  // namespace glidelab::render

@@ -2,9 +2,31 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/errors.h"
 
 namespace glidelab::render {
+namespace {
+
+/// What the pixels of a rectangle see, each to its square's corners.
+RayBounds seen_in(const RayTable& table, const PixelRect& rect) {
+  RayBounds bounds;
+  for (int v = rect.y; v < rect.y + rect.height; ++v) {
+    for (int u = rect.x; u < rect.x + rect.width; ++u) {
+      const std::size_t at = static_cast<std::size_t>(v) * table.width + u;
+      const float* const ray = table.x_y_dxdu_dxdv.data() + 4 * at;
+      const float* const slope = table.dydu_dydv.data() + 2 * at;
+      const Eigen::Vector2d middle(ray[0], ray[1]);
+      const Eigen::Vector2d reach =
+          0.5 * Eigen::Vector2d(std::abs(ray[2]) + std::abs(ray[3]), std::abs(slope[0]) + std::abs(slope[1]));
+      add_to(bounds, RayBounds{middle - reach, middle + reach});
+    }
+  }
+  return bounds;
+}
+
+}  // namespace
 
 RayTable make_ray_table(const Camera& camera, const Vignetting& vignetting) {
   RayTable table;
@@ -29,6 +51,12 @@ RayTable make_ray_table(const Camera& camera, const Vignetting& vignetting) {
       if (!vignetting.none()) {
         table.gain.push_back(static_cast<float>(gain_at(vignetting, camera, Eigen::Vector2d(u, v), *ray)));
       }
+    }
+  }
+  for (int v = 0; v < table.height; v += kRayTile) {
+    for (int u = 0; u < table.width; u += kRayTile) {
+      table.tiles.push_back(
+          seen_in(table, intersection({u, v, kRayTile, kRayTile}, {0, 0, table.width, table.height})));
     }
   }
   return table;

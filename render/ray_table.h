@@ -6,12 +6,35 @@
 /// double and rounded once to single precision: 2^-25 of half the picture's width, 1e-5 px.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "render/camera.h"
+#include "render/picture.h"
 #include "render/vignetting.h"
 
 namespace glidelab::render {
+
+/// A rectangle in undistorted coordinates; empty until something is added.
+struct RayBounds {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity());
+};
+
+inline void add_to(RayBounds& bounds, const Eigen::Vector2d& point) {
+  bounds.low = bounds.low.cwiseMin(point);
+  bounds.high = bounds.high.cwiseMax(point);
+}
+inline void add_to(RayBounds& bounds, const RayBounds& other) {
+  bounds.low = bounds.low.cwiseMin(other.low);
+  bounds.high = bounds.high.cwiseMax(other.high);
+}
+inline bool overlap(const RayBounds& a, const RayBounds& b) {
+  return a.low.x() <= b.high.x() && b.low.x() <= a.high.x() && a.low.y() <= b.high.y() && b.low.y() <= a.high.y();
+}
+
+/// The picture is cut into tiles of kRayTile x kRayTile pixels, from its first pixel on.
+inline constexpr int kRayTile = 8;
 
 struct RayTable {
   int width = 0;
@@ -19,7 +42,12 @@ struct RayTable {
   std::vector<float> x_y_dxdu_dxdv;  ///< four floats a pixel
   std::vector<float> dydu_dydv;      ///< two floats a pixel
   std::vector<float> gain;           ///< one a pixel, of its light; empty where it is 1 everywhere
+  std::vector<RayBounds> tiles;      ///< what the pixels of each tile see, their whole squares; row by row
   double fold_radius = 0.0;          ///< of the lens
+
+  const RayBounds& tile(int column, int row) const {
+    return tiles[static_cast<std::size_t>(row) * ((width + kRayTile - 1) / kRayTile) + column];
+  }
 };
 
 /// NumericalError where a pixel has no ray (a camera that `why_not_one_to_one` would refuse).

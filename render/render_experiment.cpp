@@ -2,17 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <atomic>
+#include <memory>
 #include <opencv2/core.hpp>
 
+#include "base/append_file.h"
 #include "base/csv.h"
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "base/staged_output.h"
-#include "render/clip_renderer.h"
+#include "render/clip_set.h"
 #include "render/folders.h"
 #include "render/ideal_frames.h"
 #include "render/marker_truth.h"
-#include "render/parallel.h"
 #include "render/readout.h"
 #include "render/static_painter.h"
 #include "render/video_writer.h"
@@ -26,20 +28,6 @@ namespace fs = std::filesystem;
 struct Still {
   std::string name;  ///< within the experiment folder
   StaticScene scene;
-};
-
-/// What stands still while the clips of one set-up of the track are recorded.
-struct SetUp {
-  StaticScene scene;
-  FloatPicture background_e;
-  std::optional<FinePicture> fine;  ///< for a camera that moves
-};
-
-struct Clip {
-  const sim::ConfigurationSetup* configuration = nullptr;
-  const sim::MotionSetup* motion = nullptr;
-  const SetUp* set_up = nullptr;
-  std::uint32_t stream = 0;
 };
 
 // Noise streams: clips count from 0, stills from here.
@@ -91,44 +79,66 @@ Sensor with_8_bits(const Sensor& sensor) {
   return shallow;
 }
 
-FrameClock clock_of(const Scenario& scenario, const Clip& clip, std::uint64_t seed) {
-  return {scenario.recording.clock, scenario.recording.frame_rate_hz, seed, clip.stream};
-}
-
-/// What the truth says of one clip, frame by frame of the file.
-struct ClipTruth {
-  base::CsvWriter trajectory{"t_s,x_m,v_m_s,a_m_s2,mode"};
-  base::CsvWriter marker{"frame,t_s,u_px,v_px,centroid_u_px,centroid_v_px"};
-  base::CsvWriter times{"frame,slot,t_s,stamp_s,duplicate"};
-  std::size_t frames = 0;
-
-  /// A frame of the file that shows `shown`, which was exposed in its own slot, and stands in `slot`.
-  void add(const FrameMotion& shown, const std::optional<MarkerInPicture>& in_picture, std::size_t slot,
-           double stamp_s) {
-    const sim::State& state = shown.middle;
-    trajectory.number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
-    trajectory.text(sim::name_of(state.mode));
-    trajectory.end_row();
-    if (in_picture) {
-      marker.number(static_cast<double>(frames)).number(in_picture->t_s);
-      marker.number(in_picture->center_px.x()).number(in_picture->center_px.y());
-      marker.number(in_picture->centroid_px.x()).number(in_picture->centroid_px.y());
-      marker.end_row();
-    }
-    times.number(static_cast<double>(frames)).number(static_cast<double>(slot)).number(state.t_s).number(stamp_s);
-    times.number(shown.frame == slot ? 0.0 : 1.0);
-    times.end_row();
-    ++frames;
+/// A table that grows on disk, however long the clip.
+class TruthTable {
+ public:
+  TruthTable(fs::path file, std::string_view header) : file_(std::move(file)), header_(header), rows_(header) {}
+  base::CsvWriter& row() { return rows_; }
+  void end_row() {
+    rows_.end_row();
+    constexpr std::size_t kMost = 1 << 16;
+    if (rows_.str().size() > kMost) flush();
   }
+  void flush() {
+    const std::string_view header = std::string_view(header_);
+    std::string_view text = rows_.str();
+    if (written_) text.remove_prefix(header.size() + 1);
+    base::append_file(file_, text);
+    written_ = true;
+    rows_ = base::CsvWriter(header);
+  }
+
+ private:
+  fs::path file_;
+  std::string header_;
+  base::CsvWriter rows_;
+  bool written_ = false;
 };
 
-double longest_clip_s(const Scenario& scenario) {
-  double longest = 0.0;
-  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
-    for (const sim::MotionSetup& motion : configuration.motions) longest = std::max(longest, motion.duration_s);
+/// What the truth says of one clip, frame by frame of the file.
+class ClipTruth {
+ public:
+  ClipTruth(const fs::path& folder, const std::string& clip)
+      : trajectory_(folder / fmt::format("trajectory-{}.csv", clip), "t_s,x_m,v_m_s,a_m_s2,mode"),
+        marker_(folder / fmt::format("marker-{}.csv", clip), "frame,t_s,u_px,v_px,centroid_u_px,centroid_v_px"),
+        times_(folder / fmt::format("frames-{}.csv", clip), "frame,slot,t_s,stamp_s,duplicate") {}
+
+  /// A frame of the file that shows what was exposed in its own slot, or once more what was before.
+  void add(const ClipStream::Next& frame, const std::optional<MarkerInPicture>& in_picture) {
+    const sim::State& state = frame.shown.middle;
+    trajectory_.row().number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
+    trajectory_.row().text(sim::name_of(state.mode));
+    trajectory_.end_row();
+    const auto number = static_cast<double>(frames_++);
+    if (in_picture) {
+      marker_.row().number(number).number(in_picture->t_s);
+      marker_.row().number(in_picture->center_px.x()).number(in_picture->center_px.y());
+      marker_.row().number(in_picture->centroid_px.x()).number(in_picture->centroid_px.y());
+      marker_.end_row();
+    }
+    times_.row().number(number).number(static_cast<double>(frame.slot)).number(state.t_s).number(frame.stamp_s);
+    times_.row().number(frame.repeated ? 1.0 : 0.0);
+    times_.end_row();
   }
-  return longest;
-}
+
+  void finish() {
+    for (TruthTable* const table : {&trajectory_, &marker_, &times_}) table->flush();
+  }
+
+ private:
+  TruthTable trajectory_, marker_, times_;
+  std::size_t frames_ = 0;
+};
 
 template <typename Code>
 void write_frame(VideoWriter& writer, std::span<const Code> codes, const std::optional<double>& stamp_s) {
@@ -142,29 +152,71 @@ void write_frame(VideoWriter& writer, std::span<const Code> codes, const std::op
 }
 
 template <typename Code>
-void render_frames(const Scenario& scenario, const Clip& clip, const FrameClock& clock, ClipRenderer& renderer,
-                   VideoWriter& writer, ClipTruth& truth, const std::function<void()>& frame_done) {
+void write_frames(const Scenario& scenario, const sim::Body& body, ClipStream& stream, VideoWriter& writer,
+                  ClipTruth& truth, const std::function<void()>& frame_done) {
   const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
   std::vector<Code> codes(static_cast<std::size_t>(all.width) * all.height);
-  FrameMotion shown;
   std::optional<MarkerInPicture> marker;
-  const auto visit = [&](const FrameMotion& frame) {
-    const FrameFate fate = clock.fate(frame.frame);
-    if (fate == FrameFate::recorded) {
-      renderer.read(frame, all, std::span<Code>(codes));
-      shown = frame;
-      marker = marker_in_picture(scenario, clip.configuration->body, frame);
+  while (const std::optional<ClipStream::Next> next = stream.next()) {
+    if (!next->repeated) {
+      stream.read(all, std::span<Code>(codes));
+      marker = marker_in_picture(scenario, body, next->shown);
     }
-    if (fate != FrameFate::dropped) {
-      const double stamp_s = clock.stamp_s(frame.frame);
-      write_frame(writer, std::span<const Code>(codes),
-                  scenario.recording.clock.variable ? std::optional(stamp_s) : std::nullopt);
-      truth.add(shown, marker, frame.frame, stamp_s);
-    }
+    write_frame(writer, std::span<const Code>(codes),
+                scenario.recording.clock.variable ? std::optional(next->stamp_s) : std::nullopt);
+    truth.add(*next, marker);
     frame_done();
-  };
-  for_each_frame(clip.configuration->body, *clip.motion, scenario.recording, clock, renderer.longest_step_m(), visit,
-                 renderer.detail());
+  }
+}
+
+fs::path clip_file(const Scenario& scenario, const fs::path& experiment_dir, const std::string& name) {
+  return experiment_dir / "clips" / file_name_of(scenario.codec, scenario.compression, name);
+}
+
+/// One clip's file and its truth.
+void render_clip(const std::shared_ptr<const ClipSet>& set, std::size_t clip, std::uint64_t seed,
+                 const fs::path& experiment_dir, const fs::path& truth_dir, const std::function<void()>& frame_done) {
+  const Scenario& scenario = set->scenario();
+  const std::string& name = set->motion(clip).name;
+  const VideoFormat format{scenario.codec,
+                           scenario.camera.width_px,
+                           scenario.camera.height_px,
+                           scenario.recording.frame_rate_hz,
+                           1,
+                           scenario.compression,
+                           scenario.recording.clock.variable};
+  const auto writer = open_video(clip_file(scenario, experiment_dir, name), format);
+  ClipStream stream(set, clip, seed);
+  const sim::Body& body = set->configuration(clip).body;
+  ClipTruth truth(truth_dir, name);
+  if (scenario.sensor.bit_depth > 8) {
+    write_frames<std::uint16_t>(scenario, body, stream, *writer, truth, frame_done);
+  } else {
+    write_frames<std::uint8_t>(scenario, body, stream, *writer, truth, frame_done);
+  }
+  writer->finish();
+  truth.finish();
+}
+
+/// Views of the pattern and the plumb line, as the camera was before the clips.
+void render_stills(const Scenario& scenario, const RenderOptions& options, const fs::path& experiment_dir,
+                   const std::function<void()>& still_done) {
+  const RayTable rays = make_ray_table(scenario.camera, scenario.vignetting);
+  const double white_e = electrons_of_white(scenario);
+  const std::vector<Still> stills = stills_of(scenario, options.seed);
+  const Readout readout(with_8_bits(scenario.sensor), scenario.recording.exposure_s, options.seed,
+                        scenario.camera.width_px, scenario.camera.height_px);
+  base::in_parallel(options.jobs, stills.size(), [&](const auto& next) {
+    StaticPainter painter(scenario.camera, rays, scenario.focus);
+    const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
+    std::vector<std::uint8_t> codes(static_cast<std::size_t>(all.width) * all.height);
+    for (std::size_t i = next(); i < stills.size(); i = next()) {
+      const FloatPicture expected_e = scaled(painter.paint(stills[i].scene), white_e);
+      readout.read(expected_e, kFirstStill + static_cast<std::uint32_t>(i), 0, all, std::span<std::uint8_t>(codes));
+      write_png(experiment_dir / stills[i].name, cv::Mat(all.height, all.width, CV_8U, codes.data()));
+      still_done();
+    }
+  });
 }
 
 }  // namespace
@@ -175,33 +227,10 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   make_folder(experiment_dir / "calibration");
   make_folder(truth_dir);
 
-  const RayTable rays = make_ray_table(scenario.camera, scenario.vignetting);
-  // The clips are taken after the calibration, perhaps with another focus.
-  const Scenario in_clips = as_in_clips(scenario);
-  const bool refocused = scenario.mount.focal_change != 0.0;
-  const RayTable refocused_rays = refocused ? make_ray_table(in_clips.camera, scenario.vignetting) : RayTable{};
-  const RayTable& clip_rays = refocused ? refocused_rays : rays;
-  const double white_e = electrons_of_white(scenario);
-  const std::vector<Still> stills = stills_of(scenario, options.seed);
-  std::map<std::string, SetUp> set_ups;
-  std::vector<Clip> clips;
-  RenderSummary summary;
-  double all_slots = 0.0;
-  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
-    SetUp& set_up = set_ups[configuration.group];
-    if (set_up.scene.boxes.empty()) set_up.scene = empty_track(scenario, configuration.body.incline_rad);
-    for (const sim::MotionSetup& motion : configuration.motions) {
-      clips.push_back({&configuration, &motion, &set_up, static_cast<std::uint32_t>(clips.size())});
-      const std::size_t slots = frame_count(scenario.recording, motion);
-      all_slots += static_cast<double>(slots);
-      summary.frames += clock_of(scenario, clips.back(), options.seed).frames_of(slots);
-    }
-  }
-  summary.clips = clips.size();
-  std::vector<SetUp*> backgrounds;
-  for (auto& [name, set_up] : set_ups) backgrounds.push_back(&set_up);
-
-  const double all_work = kStillWork * static_cast<double>(stills.size() + backgrounds.size()) + all_slots;
+  const ClipCount count = count_clips(scenario, options.seed);
+  const std::size_t pictures = stills_of(scenario, options.seed).size() + (options.clips ? count_set_ups(scenario) : 0);
+  const double all_work =
+      kStillWork * static_cast<double>(pictures) + (options.clips ? static_cast<double>(count.frames) : 0.0);
   std::atomic<double> done{0.0};
   const auto advance = [&](double work) {
     double before = done.load();
@@ -209,74 +238,26 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
     }
     progress("rendering", std::min(1.0, (before + work) / all_work));
   };
+  const auto picture_done = [&] { advance(kStillWork); };
 
-  const Readout still_readout(with_8_bits(scenario.sensor), scenario.recording.exposure_s, options.seed,
-                              scenario.camera.width_px, scenario.camera.height_px);
-  in_parallel(options.jobs, stills.size() + backgrounds.size(), [&](const auto& next) {
-    StaticPainter painter(scenario.camera, rays, scenario.focus);
-    const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
-    std::vector<std::uint8_t> codes(static_cast<std::size_t>(all.width) * all.height);
-    for (std::size_t i = next(); i < stills.size() + backgrounds.size(); i = next()) {
-      if (i < backgrounds.size()) {
-        SetUp& set_up = *backgrounds[i];
-        set_up.background_e =
-            scaled(refocused ? StaticPainter(in_clips.camera, clip_rays, scenario.focus).paint(set_up.scene)
-                             : painter.paint(set_up.scene),
-                   white_e);
-        if (scenario.mount.moves()) {
-          set_up.fine =
-              fine_picture(in_clips.camera, scenario.mount, scenario.focus, set_up.scene, longest_clip_s(scenario));
-        }
-      } else {
-        const std::size_t number = i - backgrounds.size();
-        const FloatPicture expected_e = scaled(painter.paint(stills[number].scene), white_e);
-        still_readout.read(expected_e, kFirstStill + static_cast<std::uint32_t>(number), 0, all,
-                           std::span<std::uint8_t>(codes));
-        write_png(experiment_dir / stills[number].name, cv::Mat(all.height, all.width, CV_8U, codes.data()));
+  render_stills(scenario, options, experiment_dir, picture_done);
+  if (options.clips) {
+    const auto set = std::make_shared<const ClipSet>(scenario, options.jobs, picture_done);
+    base::for_each_parallel(set->size(), options.jobs, [&](std::size_t clip) {
+      render_clip(set, clip, options.seed, experiment_dir, truth_dir, [&] { advance(1.0); });
+    });
+  } else {
+    for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+      for (const sim::MotionSetup& motion : configuration.motions) {
+        base::write_file(clip_file(scenario, experiment_dir, motion.name), "");
       }
-      advance(kStillWork);
     }
-  });
-
-  in_parallel(options.jobs, clips.size(), [&](const auto& next) {
-    for (std::size_t i = next(); i < clips.size(); i = next()) {
-      const Clip& clip = clips[i];
-      const fs::path file =
-          experiment_dir / "clips" / file_name_of(scenario.codec, scenario.compression, clip.motion->name);
-      if (!options.clips) {
-        base::write_file(file, "");
-        continue;
-      }
-      ClipRenderer renderer(in_clips, *clip.configuration, clip.set_up->scene, clip_rays, clip.set_up->background_e,
-                            options.seed, clip.stream, clip.set_up->fine ? &*clip.set_up->fine : nullptr);
-      const VideoFormat format{scenario.codec,
-                               scenario.camera.width_px,
-                               scenario.camera.height_px,
-                               scenario.recording.frame_rate_hz,
-                               1,
-                               scenario.compression,
-                               scenario.recording.clock.variable};
-      const auto writer = open_video(file, format);
-      const FrameClock clock = clock_of(scenario, clip, options.seed);
-      ClipTruth truth;
-      const auto frame_done = [&] { advance(1.0); };
-      if (scenario.sensor.bit_depth > 8) {
-        render_frames<std::uint16_t>(in_clips, clip, clock, renderer, *writer, truth, frame_done);
-      } else {
-        render_frames<std::uint8_t>(in_clips, clip, clock, renderer, *writer, truth, frame_done);
-      }
-      writer->finish();
-      const std::string& name = clip.motion->name;
-      base::write_file(truth_dir / fmt::format("trajectory-{}.csv", name), truth.trajectory.str());
-      base::write_file(truth_dir / fmt::format("marker-{}.csv", name), truth.marker.str());
-      base::write_file(truth_dir / fmt::format("frames-{}.csv", name), truth.times.str());
-    }
-  });
+  }
 
   if (options.ideal) write_ideal_frames(scenario, truth_dir, options.jobs);
   base::write_file(experiment_dir / "experiment.toml", experiment_toml(scenario));
   base::write_file(truth_dir / "truth.json", truth_json(scenario, options.seed));
-  return summary;
+  return {count.clips, count.frames};
 }
 
 }  // namespace glidelab::render

@@ -64,6 +64,10 @@ inline double light_at(const StaticScene& scene, const Eigen::Vector3d& p_W) {
          (1.0 + scene.light_falloff * (p_W.head<2>() - scene.light_middle_m).squaredNorm());
 }
 
+/// Light comes from the upper left before the track, and its ambient part from all around.
+inline const Eigen::Vector3d kToLight = Eigen::Vector3d(-0.35, 0.62, 0.70).normalized();
+inline constexpr double kAmbient = 0.45;
+
 /// The factor of a surface with this outward normal, 1 where it faces the camera side.
 double shade_of(const Eigen::Vector3d& normal_W);
 

@@ -80,6 +80,7 @@ Json calibration_json(const core::CalibrationResult& calibration) {
   object["experiment"] = calibration.experiment;
   put(object, "rms_px", calibration.rms_px);
   object["camera_matrix"] = calibration.camera_matrix;
+  object["lens"] = lens_of(calibration);
   object["distortion"] = calibration.distortion;
   object["sd"] = calibration.sd;
   object["model"] = calibration.model;
@@ -118,6 +119,10 @@ Json inclination_json(const core::AnalysisResults& results) {
 }
 
 }  // namespace
+
+std::string lens_of(const core::CalibrationResult& calibration) {
+  return calibration.distortion.size() == 4 ? "fisheye" : "brown-conrady";
+}
 
 std::string results_json(const core::AnalysisResults& results) {
   Json document;

@@ -14,4 +14,7 @@ namespace glidelab::report {
 /// The text of results.json. It depends on the results alone.
 std::string results_json(const core::AnalysisResults& results);
 
+/// "fisheye" or "brown-conrady": a fisheye's distortion has four terms, k1 to k4, the other five.
+std::string lens_of(const core::CalibrationResult& calibration);
+
 }  // namespace glidelab::report

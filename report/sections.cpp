@@ -12,6 +12,7 @@
 #include "report/phase_plots.h"
 #include "report/pixel_phase.h"
 #include "report/quantity_names.h"
+#include "report/results_json.h"
 
 namespace glidelab::report {
 namespace {
@@ -231,11 +232,15 @@ std::string camera_section(const core::AnalysisResults& results) {
         table.row({kNames[i], value_and_sd_text(m[kPlaces[i]], sd_of(i))});
       }
     }
-    constexpr std::array<const char*, 5> kNames = {"k<sub>1</sub>", "k<sub>2</sub>", "p<sub>1</sub>", "p<sub>2</sub>",
-                                                   "k<sub>3</sub>"};
-    for (std::size_t i = 0; i < std::min(kNames.size(), calibration.distortion.size()); ++i) {
+    table.row({"lens", lens_of(calibration)});
+    const std::array<const char*, 5> names =
+        lens_of(calibration) == "fisheye"
+            ? std::array<const char*, 5>{"k<sub>1</sub>", "k<sub>2</sub>", "k<sub>3</sub>", "k<sub>4</sub>", ""}
+            : std::array<const char*, 5>{"k<sub>1</sub>", "k<sub>2</sub>", "p<sub>1</sub>", "p<sub>2</sub>",
+                                         "k<sub>3</sub>"};
+    for (std::size_t i = 0; i < std::min(names.size(), calibration.distortion.size()); ++i) {
       const bool fixed = calibration.distortion[i] == 0.0;
-      table.row({kNames[i], fixed ? "0 (left out)" : value_and_sd_text(calibration.distortion[i], sd_of(4 + i))});
+      table.row({names[i], fixed ? "0 (left out)" : value_and_sd_text(calibration.distortion[i], sd_of(4 + i))});
     }
     if (!table.empty()) text += table.str();
     text += notes_html(calibration.notes);

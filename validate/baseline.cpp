@@ -10,8 +10,8 @@
 #include <tuple>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "base/staged_output.h"
-#include "core/parallel.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/comparison.h"
 #include "validate/cramer_rao.h"
@@ -115,7 +115,7 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
       least_sds(clean.truth, std::vector<double>(clean.tracks.size(), options.noise_m), clean.gravity_m_s2);
   std::vector<std::vector<QuantityComparison>> runs(options.runs);
   std::atomic<std::uint64_t> done = 0;
-  core::for_each_parallel(options.runs, options.jobs, [&](std::size_t run) {
+  base::for_each_parallel(options.runs, options.jobs, [&](std::size_t run) {
     const MadeTracks made = with_noise(clean, options.noise_m, options.seed * 1000003u + run);
     for (const core::AnalysisResults& results : analyze(made)) {
       for (QuantityComparison& q : with_bounds(compare_quantities(results, made.truth), bounds)) {

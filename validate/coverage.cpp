@@ -9,8 +9,8 @@
 #include <random>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "core/line_fit.h"
-#include "core/parallel.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/binomial.h"
 #include "validate/camera_noise.h"
@@ -139,7 +139,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   const std::size_t configurations = clean.truth.configurations.size();
   std::vector<std::vector<Outcome>> outcomes(options.replicates);
   std::atomic<std::size_t> done = 0;
-  core::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
+  base::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
     const MadeTracks noisy = with_noise(make_tracks(with_other_clock(scenario, options.seed + r), options.seed + r),
                                         noise_sd_m, options.seed + r);
     const core::AnalysisResults lines = analyze_tracks(noisy, options.bandwidth_s);

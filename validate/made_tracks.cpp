@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/parallel.h"
+#include "base/parallel.h"
 #include "core/phase_diagram.h"
 #include "render/clip_motion.h"
 #include "render/frame_clock.h"
@@ -150,7 +150,7 @@ core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionO
   if (how.lines == core::LineMethod::generalised) results.estimator = "phase-diagram-gls";
   results.gravity_m_s2 = made.gravity_m_s2;
   results.clips.resize(made.tracks.size());
-  core::for_each_parallel(made.tracks.size(), jobs, [&](std::size_t c) {
+  base::for_each_parallel(made.tracks.size(), jobs, [&](std::size_t c) {
     results.clips[c] = core::analyze_motion(made.setups[c], made.tracks[c], how);
     results.clips[c].experiment = made.truth.name;
   });

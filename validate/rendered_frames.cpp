@@ -52,6 +52,12 @@ class RenderedFrames : public core::FrameSource {
 
 std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render::ClipSet> set, std::size_t clip,
                                                    std::uint64_t seed, bool with_color) {
+  if (render::lossy(set->scenario().codec)) {
+    throw base::InputError(base::Issue{set->motion(clip).name, 0, "codec.name",
+                                       "a codec that loses some of the picture",
+                                       "one without loss, or the clip's file: in memory frames are as the sensor gives "
+                                       "them"});
+  }
   return std::make_unique<RenderedFrames>(std::move(set), clip, seed, with_color);
 }
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "core/parallel.h"
+#include "base/parallel.h"
 #include "render/camera_file.h"
 #include "validate/made_tracks.h"
 #include "validate/requirement_bound.h"
@@ -162,7 +162,7 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
   }
   requirement.candidates.resize(points);
   std::atomic<std::uint64_t> done = 0;
-  core::for_each_parallel(points, options.jobs, [&](std::size_t point) {
+  base::for_each_parallel(points, options.jobs, [&](std::size_t point) {
     requirement.candidates[point] = candidate_of(sweep, point, options);
     progress("cameras", static_cast<double>(++done) / static_cast<double>(points));
   });

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/errors.h"
-#include "core/parallel.h"
+#include "base/parallel.h"
 #include "validate/sweep_design.h"
 
 namespace glidelab::validate {
@@ -80,7 +80,7 @@ SweepOutcome run_sweep(const Sweep& sweep, SweepDatabase& database, const Shard&
   SweepOutcome outcome;
   std::mutex mutex;  // of the database, the list of runs and the outcome
   progress("runs", 0.0);
-  core::for_each_parallel(static_cast<std::size_t>(std::max(1, jobs)), jobs, [&](std::size_t) {
+  base::for_each_parallel(static_cast<std::size_t>(std::max(1, jobs)), jobs, [&](std::size_t) {
     RunWorker worker(sweep);
     while (true) {
       std::optional<std::uint64_t> run;

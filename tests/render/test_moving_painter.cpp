@@ -58,6 +58,18 @@ Moments moments_of(const MovingLayer& layer) {
   return moments;
 }
 
+/// The pixels in which the layer holds anything, and one around them: a layer is as large as its tiles.
+PixelRect seen_part(const MovingLayer& layer) {
+  PixelRect seen;
+  for (int y = 0; y < layer.rect.height; ++y) {
+    for (int x = 0; x < layer.rect.width; ++x) {
+      if (layer.coverage[static_cast<std::size_t>(y) * layer.rect.width + x] == 0.0f) continue;
+      seen = united(seen, {layer.rect.x + x - 1, layer.rect.y + y - 1, 3, 3});
+    }
+  }
+  return intersection(seen, layer.rect);
+}
+
 /// The same from nothing but rays: n x n of them a pixel, each tested against the sphere in double.
 Moments moments_by_rays(const Camera& camera, const MarkerSphere& marker, const PixelRect& rect, int n) {
   const Eigen::Vector3d c = camera.X_WC.inverse() * marker.center_W;
@@ -120,7 +132,7 @@ TEST_CASE("A marker's pixels agree in their moments with rays cast one by one") 
       const MovingBody body = marker_at(camera, {770.0 + 0.237 * phase, 25.0 + 0.391 * phase}, 2.4, radius_px);
       const MovingLayer layer = paint(camera, rays, body, kStill);
       const Moments seen = moments_of(layer);
-      const Moments cast = moments_by_rays(camera, *body.marker, layer.rect, 48);
+      const Moments cast = moments_by_rays(camera, *body.marker, seen_part(layer), 48);
       worst = std::max(worst, (seen.centroid - cast.centroid).norm());
     }
   }
@@ -220,10 +232,11 @@ TEST_CASE("A box's pixels are those of rays cast at it, however it is turned") {
       double worst = 0.0;
       double total = 0.0;
       double total_cast = 0.0;
-      for (int y = 0; y < layer.rect.height; ++y) {
-        for (int x = 0; x < layer.rect.width; ++x) {
-          const std::size_t at = static_cast<std::size_t>(y) * layer.rect.width + x;
-          const CastPixel cast = cast_box(camera, box, layer.rect.x + x, layer.rect.y + y);
+      const PixelRect seen = seen_part(layer);
+      for (int y = seen.y; y < seen.y + seen.height; ++y) {
+        for (int x = seen.x; x < seen.x + seen.width; ++x) {
+          const std::size_t at = static_cast<std::size_t>(y - layer.rect.y) * layer.rect.width + (x - layer.rect.x);
+          const CastPixel cast = cast_box(camera, box, x, y);
           worst = std::max({worst, std::abs(static_cast<double>(layer.radiance[at]) - cast.radiance),
                             std::abs(static_cast<double>(layer.coverage[at]) - cast.coverage)});
           total += static_cast<double>(layer.radiance[at]);
@@ -234,9 +247,9 @@ TEST_CASE("A box's pixels are those of rays cast at it, however it is turned") {
       CHECK(worst < 0.045);
       CHECK(std::abs(total / total_cast - 1.0) < 2e-3);
       // Nothing of it lies outside the rectangle.
-      for (int x = layer.rect.x - 1; x <= layer.rect.x + layer.rect.width; ++x) {
-        CHECK(cast_box(camera, box, x, layer.rect.y - 1).coverage == 0.0);
-        CHECK(cast_box(camera, box, x, layer.rect.y + layer.rect.height).coverage == 0.0);
+      for (int x = seen.x - 1; x <= seen.x + seen.width; ++x) {
+        CHECK(cast_box(camera, box, x, seen.y - 1).coverage == 0.0);
+        CHECK(cast_box(camera, box, x, seen.y + seen.height).coverage == 0.0);
       }
     }
   }

@@ -87,3 +87,10 @@ TEST_CASE("Frames in memory are those of the lossless file, and an analysis of t
   // A file of which the scenario knows nothing.
   CHECK_THROWS_AS(options.open(dir / "other.mkv", *experiment.camera, false, std::nullopt), base::InputError);
 }
+
+TEST_CASE("frames in memory are refused where the codec would change them") {
+  const tests::TempDir dir;
+  base::write_file(dir / "scenario.toml", kScenario + "\n[codec]\nname = \"mjpeg\"\n");
+  const auto set = std::make_shared<const render::ClipSet>(render::read_scenario(dir / "scenario.toml"), 2);
+  CHECK_THROWS_AS(validate::rendered_frames(set, 0, 1), base::InputError);
+}
