@@ -113,6 +113,7 @@ int run(int argc, char** argv) {
   add_laws(app, command);
   add_characterize(app, command);
   add_diagnose(app, command);
+  add_blind(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

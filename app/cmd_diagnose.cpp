@@ -26,13 +26,14 @@ struct DiagnoseCommand {
   CommonOptions common;
   std::vector<std::string> experiments;
   std::vector<std::string> without;
+  bool no_page = false;
 };
 
 void diagnose(const DiagnoseCommand& options) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   std::string title = core::read_experiment(folders.front()).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
-  report::check_gnuplot();
+  if (!options.no_page) report::check_gnuplot();
   const fs::path out = output_folder(options.common, "diagnose", folders.front());
   check_writable(out);
   base::StagedOutput staged(out);
@@ -41,13 +42,16 @@ void diagnose(const DiagnoseCommand& options) {
   const diagnose::Diagnosis diagnosis =
       diagnose::diagnose(folders, {.without = options.without, .jobs = options.common.jobs}, display.callback());
   base::write_file(staged.dir() / "diagnosis.json", report::diagnosis_json(diagnosis));
-  base::write_file(staged.dir() / "report.html", report::diagnosis_report(title, diagnosis));
+  if (!options.no_page) {
+    base::write_file(staged.dir() / "report.html", report::diagnosis_report(title, diagnosis));
+  }
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
 
   print_result(options.common.json ? report::diagnosis_json(diagnosis) : report::diagnosis_text(diagnosis));
-  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+  say(options.common, options.no_page ? fmt::format("diagnosis: {}", (out / "diagnosis.json").string())
+                                      : fmt::format("report: {}", (out / "report.html").string()));
 }
 
 }  // namespace
@@ -64,6 +68,7 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->required();
   command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")
       ->type_name("EFFECT");
+  command->add_flag("--no-page", options->no_page, "Write diagnosis.json only, no report.html");
   add_common_options(*command, options->common, "glidelab-out/diagnose-<name of the first folder>",
                      "Accepted as by every command; a diagnosis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { diagnose(*options); }; });

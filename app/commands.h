@@ -19,5 +19,6 @@ void add_require(CLI::App& app, Command& chosen);
 void add_laws(CLI::App& app, Command& chosen);
 void add_characterize(CLI::App& app, Command& chosen);
 void add_diagnose(CLI::App& app, Command& chosen);
+void add_blind(CLI::App& app, Command& chosen);
 
 }  // namespace glidelab::app

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "core/analyze.h"
+#include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/line_table.h"
 #include "diagnose/track_set.h"
@@ -101,6 +102,11 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   }
 }
 
+/// Frames that are missing are taken out first: a jump is no outlier.
+void without_tails(TrackSet& set) {
+  set_tails_aside(set, find_missing_frames(set, fit_nominal(set)).fit);
+}
+
 /// How far the best explanation that names something (or nothing) is from the noise: chi² a point.
 double misfit(const TrackSet& set, const Comparison& comparison) {
   const Hypothesis& best = comparison.all.front();
@@ -119,6 +125,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   check(set);
   note_limits(setups, set);
   progress("weighing explanations", 0.1);
+  without_tails(set);
   Comparison comparison = compare_hypotheses(set, without, options.jobs);
   if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > 1.5)) {
     // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
@@ -132,6 +139,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
           fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
                       set.disputed));
       progress("weighing explanations", 0.5);
+      without_tails(set);
       comparison = compare_hypotheses(set, without, options.jobs);
     }
   }

@@ -27,6 +27,9 @@ struct RankedExplanation {
   std::string id;  ///< one effect, or two joined by " + "
   double probability = 0.0;
   double log_evidence_gain = 0.0;  ///< against the nominal model
+  double log_likelihood_gain = 0.0;
+  std::size_t parameters = 0;       ///< more than the nominal model has
+  std::optional<double> gap_after;  ///< of held-out clips; where it was fitted in full
 };
 
 struct GapRegion {
@@ -75,7 +78,8 @@ struct Isolability {
 };
 
 struct Diagnosis {
-  std::string verdict;  ///< none, effect, unknown
+  std::string verdict;     ///< none, effect, unknown
+  std::size_t points = 0;  ///< positions that took part
   std::vector<DiagnosedEffect> effects;
   double none = 0.0, unknown = 0.0;
   std::vector<RankedExplanation> ranking;

@@ -17,13 +17,6 @@ constexpr double kSeen = 4.0;         // standard deviations that the largest si
 constexpr double kNumerical = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-double log_mean(const std::vector<double>& logs) {
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double sum = 0.0;
-  for (const double l : logs) sum += std::exp(l - most);
-  return most + std::log(sum / static_cast<double>(logs.size()));
-}
-
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double x) {

@@ -13,8 +13,11 @@ namespace {
 constexpr double kLeastFilmedJitter = 1e-5;  // s; a hundredth of a short exposure
 
 constexpr int kMostMissing = 60;
-constexpr double kClear = 12.0;       // log likelihood that a missing frame must gain
-constexpr double kKnotPoints = 14.0;  // points a bump of the smooth curve
+constexpr std::size_t kFewestScatter = 50;  // points from which a scatter's shape tells anything
+constexpr double kMostAside = 0.2;
+constexpr double kTailsBeyondDoubt = 5.0;  // log evidence
+constexpr double kClear = 12.0;            // log likelihood that a missing frame must gain
+constexpr double kKnotPoints = 14.0;       // points a bump of the smooth curve
 
 struct Leftover {
   std::vector<double> over_sd;  // all points of a motion, outliers too
@@ -61,13 +64,6 @@ Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
   return left;
 }
 
-double log_mean(const std::vector<double>& logs) {
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double sum = 0.0;
-  for (const double l : logs) sum += std::exp(l - most);
-  return most + std::log(sum / static_cast<double>(logs.size()));
-}
-
 /// Best place for one more missing frame in a motion: the gain, and the point from which on all are late.
 struct Place {
   double gain = 0.0;
@@ -75,21 +71,25 @@ struct Place {
   double step_s = 0.0;
 };
 
-Place best_place(const ScoreSpace& space, std::size_t i) {
+/// `known`: frames are missing elsewhere for certain, so that one more needs no jump that shows by itself.
+Place best_place(const ScoreSpace& space, std::size_t i, bool known) {
   const TrackedMotion& data = space.set().motions[i];
   const auto n = static_cast<Eigen::Index>(data.t_s.size());
   const auto& v = space.fit().motions[i].v_m_s;
   const double step = 1.0 / space.set().clips[data.clip].frame_rate_hz;
   const auto r = space.residual().rest.segment(space.offset(i), n);
   Place best;
-  for (Eigen::Index from = 3; from + 3 < n; ++from) {
+  const Eigen::Index margin = known ? 1 : 3;
+  for (Eigen::Index from = margin; from + margin <= n - (known ? 0 : 1); ++from) {
     const auto f = static_cast<std::size_t>(from);
-    if (std::abs(v[f]) * step < 5.0 * data.sd_m) continue;  // too slow to tell
+    if (std::abs(v[f]) * step < (known ? 1.0 : 5.0) * data.sd_m) continue;  // too slow to tell
     // The neighbours must show the jump themselves.
-    const double before = data.x_m[f - 1] - data.x_m[f - 2], after = data.x_m[f + 1] - data.x_m[f];
+    const bool last = from + 1 == n;
+    const double after = last ? data.x_m[f - 1] - data.x_m[f - 2] : data.x_m[f + 1] - data.x_m[f];
+    const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
     const double jump = data.x_m[f] - data.x_m[f - 1] - 0.5 * (before + after);
     if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_m) continue;
-    if (std::abs(jump) < 3.0 * data.sd_m) continue;
+    if (!known && std::abs(jump) < 3.0 * data.sd_m) continue;
     Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
     for (Eigen::Index p = from; p < n; ++p) change[p] = v[static_cast<std::size_t>(p)] * step;
     const Eigen::VectorXd c = space.own_rest(i, change);
@@ -114,7 +114,7 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
     Lateness tried = late;
     std::size_t added = 0;
     for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      const Place place = best_place(space, i);
+      const Place place = best_place(space, i, found.count > 0);
       if (place.gain < kClear) continue;
       for (std::size_t p = place.point; p < tried[i].size(); ++p) tried[i][p] += place.step_s;
       ++added;
@@ -154,7 +154,7 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
     }
   }
   const auto n = static_cast<double>(squares.size());
-  if (squares.size() < 50 || !(top > 0.0)) return found;
+  if (squares.size() < kFewestScatter || !(top > 0.0)) return found;
   const auto log_likelihood = [&](double tau) {
     // The scale s² of both parts together is fitted: n log(mean(e²/w)) + sum log w.
     double weighted = 0.0, logs = 0.0;
@@ -192,57 +192,97 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
   return found;
 }
 
-FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
-  FrameEffect found;
-  found.effect = effect_index("heavy_tailed_noise");
+namespace {
+
+/// All points' residuals over their motion's own scatter, so that clips of different noise make no tails.
+std::vector<double> tail_residuals(const TrackSet& set, const MotionFit& fit) {
   std::vector<double> e;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const Leftover left = leftover_of(set, fit, i);
-    // Relative to each motion's own scatter, so that clips of different noise make no tails.
     std::vector<double> size;
     for (const double r : left.over_sd) size.push_back(std::abs(r));
     std::nth_element(size.begin(), size.begin() + std::ssize(size) / 2, size.end());
     const double middle = std::max(size[size.size() / 2] / 0.6745, 0.05);
     for (const double r : left.over_sd) e.push_back(r / middle);
   }
+  return e;
+}
+
+struct Tails {
+  double gain = 0.0, log_evidence = 0.0;
+  double share = 0.0, wide = 1.0, variance = 1.0;  // at the best: of the narrow part
+};
+
+Tails find_tails(const std::vector<double>& e) {
+  Tails tails;
   const auto n = static_cast<double>(e.size());
-  if (n < 50.0) return found;
-  const auto gaussian = [&] {
-    double sum = 0.0;
-    for (const double r : e) sum += r * r;
-    return -0.5 * n * (std::log(sum / n) + 1.0);
-  }();
+  double squares = 0.0;
+  for (const double r : e) squares += r * r;
+  const double gaussian = -0.5 * n * (std::log(squares / n) + 1.0);
   std::vector<double> logs;
-  double best = 0.0;
   for (const double share : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2}) {
     if (share * n < 1.5) continue;
     for (const double wide : {3.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
       double s2 = 1.0, log_likelihood = 0.0;
       for (int em = 0; em < 4; ++em) {
-        double sum = 0.0, weights = 0.0;
+        double sum = 0.0;
         log_likelihood = 0.0;
         for (const double r : e) {
           const double a = (1.0 - share) * std::exp(-0.5 * r * r / s2);
           const double b = share / wide * std::exp(-0.5 * r * r / (s2 * wide * wide));
           const double in = a / (a + b + 1e-300), w = in + (1.0 - in) / (wide * wide);
           sum += w * r * r;
-          weights += 1.0;
           log_likelihood += std::log(a + b + 1e-300) - 0.5 * std::log(s2);
         }
-        s2 = sum / weights;
+        s2 = sum / n;
       }
       logs.push_back(log_likelihood - gaussian);
-      if (logs.back() > best) {
-        best = logs.back();
-        found.value = share;
-      }
+      if (logs.back() > tails.gain) tails = {logs.back(), 0.0, share, wide, s2};
     }
   }
-  if (logs.empty()) return found;
-  found.gain = best;
-  found.log_evidence = log_mean(logs);
-  found.sd = std::sqrt(found.value / n);
+  if (!logs.empty()) tails.log_evidence = log_mean(logs);
+  return tails;
+}
+
+}  // namespace
+
+FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
+  FrameEffect found;
+  found.effect = effect_index("heavy_tailed_noise");
+  const std::vector<double> e = tail_residuals(set, fit);
+  if (e.size() < kFewestScatter) return found;
+  const Tails tails = find_tails(e);
+  found.gain = tails.gain;
+  found.log_evidence = tails.log_evidence;
+  found.value = tails.share;
+  found.sd = std::sqrt(tails.share / static_cast<double>(e.size()));
   return found;
+}
+
+std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit) {
+  const std::vector<double> e = tail_residuals(set, fit);
+  if (e.size() < kFewestScatter) return 0;
+  const Tails tails = find_tails(e);
+  if (tails.log_evidence < kTailsBeyondDoubt) return 0;
+  std::size_t count = 0, at = 0;
+  TrackSet marked = set;
+  for (TrackedMotion& motion : marked.motions) {
+    std::size_t of_motion = 0;
+    for (char& outlier : motion.outlier) {
+      const double square = e[at] * e[at] / tails.variance;
+      ++at;
+      const double in = (1.0 - tails.share) * std::exp(-0.5 * square);
+      const double out = tails.share / tails.wide * std::exp(-0.5 * square / (tails.wide * tails.wide));
+      if (outlier || out <= in) continue;
+      outlier = 1;
+      ++count;
+      ++of_motion;
+    }
+    // A scatter that would cost a motion a fifth of its points is no matter of single positions.
+    if (static_cast<double>(of_motion) > kMostAside * static_cast<double>(motion.t_s.size())) return 0;
+  }
+  set = std::move(marked);
+  return count;
 }
 
 }  // namespace glidelab::diagnose

@@ -31,4 +31,8 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit);
 /// A fraction of positions with a scatter many times the others'.
 FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit);
 
+/// Where the scatter has such tails beyond doubt, the positions that more likely belong to them than not become
+/// outliers, so that no force is fitted to them. Returns how many.
+std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit);
+
 }  // namespace glidelab::diagnose

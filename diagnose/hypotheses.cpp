@@ -27,18 +27,18 @@ struct Found {
 };
 
 /// The full fit of one more effect, and its evidence.
-Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double base_gain,
-               double base_evidence) {
+Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside) {
   const FitPoint start = with_effect(set, base, scan.effect, scan.values, scan.own);
   std::vector<std::size_t> effects = base.effects;
   effects.push_back(scan.effect);
   Found found;
   found.fit = fit_motions(set, effects, start, base.late);
   const double gain = 0.5 * (base.cost - found.fit.cost);
-  found.hypothesis.effects = effects;
-  found.hypothesis.gain = base_gain + gain;
+  found.hypothesis.effects = beside.effects;  // missing frames are in the fit's times, not among its effects
+  found.hypothesis.effects.push_back(scan.effect);
+  found.hypothesis.gain = beside.gain + gain;
   found.hypothesis.log_evidence =
-      base_evidence + scan.log_evidence + (std::isfinite(gain) ? gain - scan.gain : -scan.gain);
+      beside.log_evidence + scan.log_evidence + (std::isfinite(gain) ? gain - scan.gain : -scan.gain);
   return found;
 }
 
@@ -80,11 +80,10 @@ std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t siz
 }
 
 /// Full fits of the best scans around a fit, `jobs` at a time.
-void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best, double gain,
-              double evidence, int jobs, Comparison& comparison) {
+void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best,
+              const Hypothesis& beside, int jobs, Comparison& comparison) {
   std::vector<Found> found(best.size());
-  base::for_each_parallel(best.size(), jobs,
-                          [&](std::size_t i) { found[i] = fit_more(set, base, *best[i], gain, evidence); });
+  base::for_each_parallel(best.size(), jobs, [&](std::size_t i) { found[i] = fit_more(set, base, *best[i], beside); });
   for (Found& one : found) add(comparison, std::move(one));
 }
 
@@ -94,11 +93,11 @@ void add_pairs(const TrackSet& set, const std::set<std::size_t>& without, int jo
     const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
     const ScoreSpace space(set, base);
     std::set<std::size_t> others = without;
-    others.insert(base.effects.begin(), base.effects.end());
+    others.insert(leader.effects.begin(), leader.effects.end());
     const std::vector<EffectScan> scans = scan_effects(space, others, jobs);
     std::vector<const EffectScan*> best = best_of(scans, kSeconds);
     std::erase_if(best, [](const EffectScan* scan) { return scan->log_evidence < -1.0; });
-    fit_best(set, base, best, leader.gain, leader.log_evidence, jobs, comparison);
+    fit_best(set, base, best, leader, jobs, comparison);
   }
 }
 
@@ -192,7 +191,8 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   for (const UnnamedFamily& family : comparison.unnamed) unnamed.gain = std::max(unnamed.gain, family.gain);
   comparison.all.push_back(unnamed);
 
-  fit_best(set, nominal, best_of(comparison.scans, kFitted), 0.0, 0.0, jobs, comparison);
+  const Hypothesis nothing = comparison.all.front();
+  fit_best(set, nominal, best_of(comparison.scans, kFitted), nothing, jobs, comparison);
   for (const EffectScan& scan : comparison.scans) {
     const bool fitted = std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& h) {
       return h.effects == std::vector<std::size_t>{scan.effect};

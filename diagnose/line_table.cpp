@@ -312,7 +312,8 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g) {
     if (w.unnamed || w.terms.empty()) continue;
     std::string id;
     for (const std::size_t t : w.terms) id += (id.empty() ? "" : " + ") + terms[t].id;
-    diagnosis.ranking.push_back({id, w.probability, w.solution.allowed ? w.solution.log_evidence - nothing : 0.0});
+    diagnosis.ranking.push_back(
+        {id, w.probability, w.solution.allowed ? w.solution.log_evidence - nothing : 0.0, 0.0, w.terms.size(), {}});
     if (best == nullptr || w.probability > best->probability) best = &w;
   }
   std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(),

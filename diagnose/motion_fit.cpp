@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/dense.h"
+#include "base/errors.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -345,6 +346,9 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
     std::size_t points = 0;
     for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
     if (best.converged && best.cost < 4.0 * static_cast<double>(points)) break;  // other starts find nothing better
+  }
+  if (!std::isfinite(best.cost)) {
+    throw base::NumericalError("the usual model cannot be fitted to these positions: no start of three moves at all");
   }
   return best;
 }

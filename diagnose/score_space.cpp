@@ -154,6 +154,10 @@ double ScoreSpace::dot(const ScoreColumn& a, const ScoreColumn& b) const {
   return a.rest.dot(b.rest) - a.common.dot(b.common);
 }
 
+double log_mean(const std::vector<double>& logs) {
+  return log_sum(logs) - std::log(static_cast<double>(logs.size()));
+}
+
 double log_amplitude_evidence(double z_hat, double z_most, bool both_signs) {
   constexpr double kLeast = 2.0;
   const double most = std::max(z_most, kLeast * 10.0);  // at least one decade
@@ -209,7 +213,7 @@ SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen:
   for (Eigen::Index j = 0; j < n; ++j) {
     if (eigen.values[j] > kUnseen * largest) result.free_gain += 0.5 * along[j] * along[j] / eigen.values[j];
   }
-  result.log_evidence = log_sum(logs) - std::log(static_cast<double>(kSizes));
+  result.log_evidence = log_mean(logs);
   Eigen::VectorXd shrink(n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const bool seen = eigen.values[j] >= kUnseen * largest;

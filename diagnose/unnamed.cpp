@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr int kCoarse = 12, kFine = 36;
-constexpr double kSure = 2.0;  // standard deviations at which a place is named
+constexpr double kSure = 2.0;        // standard deviations at which a place is named
+constexpr double kUnseen = 1e-10;    // of the largest square: taken up by what is fitted
+constexpr double kMostSeen = 2e4;    // standard deviations of one bump: four decades from what begins to show
+constexpr double kMostSwings = 600;  // periods that are tried
 
 UnnamedFamily family_of(std::string variable, std::string what, std::string unit) {
   UnnamedFamily family;
@@ -36,19 +40,27 @@ double bump(double x, double middle, double width) {
   return std::abs(z) > 5.0 ? 0.0 : std::exp(-0.5 * z * z);
 }
 
-UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
-                    SpreadEvidence& evidence) {
+/// Products of columns with each other and with the residual.
+struct Normal {
+  Eigen::MatrixXd products;
+  Eigen::VectorXd scores;
+};
+
+Normal normal_of(const ScoreSpace& space, const std::vector<ScoreColumn>& columns) {
   const auto n = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd products(n, n);
-  Eigen::VectorXd scores(n);
+  Normal normal{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
   for (Eigen::Index a = 0; a < n; ++a) {
     const auto& column = columns[static_cast<std::size_t>(a)];
-    scores[a] = space.dot(column, space.residual());
+    normal.scores[a] = space.dot(column, space.residual());
     for (Eigen::Index b = 0; b <= a; ++b) {
-      products(a, b) = products(b, a) = space.dot(column, columns[static_cast<std::size_t>(b)]);
+      normal.products(a, b) = normal.products(b, a) = space.dot(column, columns[static_cast<std::size_t>(b)]);
     }
   }
-  evidence = products.allFinite() ? log_spread_evidence(products, scores) : SpreadEvidence{};
+  return normal;
+}
+
+UnnamedFamily solve(const Normal& normal, UnnamedFamily family, SpreadEvidence& evidence) {
+  evidence = normal.products.allFinite() ? log_spread_evidence(normal.products, normal.scores) : SpreadEvidence{};
   family.log_evidence = evidence.log_evidence;
   family.gain = evidence.gain;
   return family;
@@ -88,6 +100,50 @@ void draw(const Grid& grid, const SpreadEvidence& evidence, UnnamedFamily& famil
   name_regions(family);
 }
 
+/// One bump alone, or one step (all bumps from some place on), wherever it explains most: the evidence is averaged over
+/// the places. What acts at one place only is paid for once, and not for all the places where nothing is.
+UnnamedFamily one_place(const Normal& normal, const Grid& grid, bool step, UnnamedFamily family) {
+  const Eigen::Index n = normal.scores.size();
+  if (!normal.products.allFinite()) return family;
+  const double largest = normal.products.diagonal().maxCoeff();
+  std::vector<double> logs;
+  SpreadEvidence best;
+  best.gain = -1.0;
+  for (Eigen::Index from = step ? 1 : 0; from < n; ++from) {
+    const Eigen::Index many = step ? n - from : 1;
+    const double square = normal.products.block(from, from, many, many).sum();
+    const double score = normal.scores.segment(from, many).sum();
+    if (!(square > kUnseen * largest)) {
+      logs.push_back(0.0);  // says nothing
+      continue;
+    }
+    const double z = score / std::sqrt(square);
+    logs.push_back(log_amplitude_evidence(z, kMostSeen, true));
+    if (0.5 * z * z <= best.gain) continue;
+    best.gain = 0.5 * z * z;
+    best.mean = Eigen::VectorXd::Zero(n);
+    best.mean.segment(from, many).setConstant(score / square);
+    best.covariance = Eigen::MatrixXd::Zero(n, n);
+    best.covariance.block(from, from, many, many).setConstant(1.0 / square);
+  }
+  if (logs.empty() || best.gain < 0.0) return family;
+  family.log_evidence = log_mean(logs);
+  family.gain = best.gain;
+  draw(grid, best, family);
+  return family;
+}
+
+/// The three shapes that a function over a grid may have: smooth anywhere, one bump, one step.
+void add_shapes(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, const Grid& grid,
+                const UnnamedFamily& family, std::vector<UnnamedFamily>& families) {
+  const Normal normal = normal_of(space, columns);
+  SpreadEvidence evidence;
+  families.push_back(solve(normal, family, evidence));
+  draw(grid, evidence, families.back());
+  families.push_back(one_place(normal, grid, false, family));
+  families.push_back(one_place(normal, grid, true, family));
+}
+
 struct Ranges {
   Grid x, v, t;
 };
@@ -105,8 +161,8 @@ Ranges ranges_of(const ScoreSpace& space) {
 using Force = std::function<double(double mass_kg, double place, double v_m_s)>;
 
 /// A force f(place) of any smooth shape.
-UnnamedFamily force_family(const ScoreSpace& space, const Grid& grid, int variable, const std::string& name,
-                           const std::string& what, bool with_mass, bool friction) {
+void add_force(const ScoreSpace& space, const Grid& grid, int variable, const std::string& name,
+               const std::string& what, bool with_mass, bool friction, std::vector<UnnamedFamily>& families) {
   const TrackSet& set = space.set();
   std::vector<ScoreColumn> columns;
   for (int b = 0; b < grid.bumps; ++b) {
@@ -121,33 +177,83 @@ UnnamedFamily force_family(const ScoreSpace& space, const Grid& grid, int variab
     }
     columns.push_back(space.of_force(forces, 1e-4));
   }
-  UnnamedFamily family = family_of(name, what, with_mass ? "m/s²" : "N");
-  SpreadEvidence evidence;
-  family = solve(space, columns, family, evidence);
-  draw(grid, evidence, family);
-  return family;
+  add_shapes(space, columns, grid, family_of(name, what, with_mass ? "m/s²" : "N"), families);
 }
 
-/// A displacement d(place) of any smooth shape: what a camera does.
-UnnamedFamily displacement_family(const ScoreSpace& space, const Grid& grid, bool in_time) {
+enum class Seen { over_x, over_t, late };
+
+/// A displacement d(place) of any smooth shape, what a camera does; or a lateness d(t), what its clock does.
+void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std::vector<UnnamedFamily>& families) {
   const TrackSet& set = space.set();
   std::vector<ScoreColumn> columns;
   for (int b = 0; b < grid.bumps; ++b) {
     std::vector<Eigen::VectorXd> changes;
     for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      const auto& place = in_time ? set.motions[i].t_s : space.modelled(i);
+      const auto& place = seen == Seen::over_x ? space.modelled(i) : set.motions[i].t_s;
+      const auto& v = space.fit().motions[i].v_m_s;
       Eigen::VectorXd change(static_cast<Eigen::Index>(place.size()));
       for (std::size_t p = 0; p < place.size(); ++p) {
-        change[static_cast<Eigen::Index>(p)] = bump(place[p], grid.at(b), grid.width());
+        change[static_cast<Eigen::Index>(p)] =
+            (seen == Seen::late ? v[p] : 1.0) * bump(place[p], grid.at(b), grid.width());
       }
       changes.push_back(std::move(change));
     }
     columns.push_back(space.project(changes));
   }
-  UnnamedFamily family = family_of(in_time ? "t_s" : "x_m", "displacement", "m");
-  SpreadEvidence evidence;
-  family = solve(space, columns, family, evidence);
-  draw(grid, evidence, family);
+  add_shapes(space, columns, grid,
+             family_of(seen == Seen::over_x ? "x_m" : "t_s", seen == Seen::late ? "lateness" : "displacement",
+                       seen == Seen::late ? "s" : "m"),
+             families);
+}
+
+/// A displacement that swings with the place: sin and cos of 2 pi f x, one f for all motions, averaged over.
+UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = family_of("x_m", "displacement", "m");
+  std::vector<double> ways;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const auto& at = space.modelled(i);
+    for (std::size_t p = 1; p < at.size(); ++p) ways.push_back(std::abs(at[p] - at[p - 1]));
+  }
+  const double range = x.high - x.low;
+  if (ways.empty() || !(range > 0.0)) return family;
+  std::nth_element(ways.begin(), ways.begin() + std::ssize(ways) / 2, ways.end());
+  // Half of all frames lie closer than this: two of them a turn at least; and no more looks than kMostSwings.
+  const double highest = std::min(0.5 / std::max(ways[ways.size() / 2], 1e-9), kMostSwings * 0.3 / range);
+  std::vector<double> logs;
+  for (double f = 2.0 / range; f < highest; f += 0.3 / range) {
+    std::vector<ScoreColumn> columns;
+    for (const double phase : {0.0, 0.25}) {
+      std::vector<Eigen::VectorXd> changes;
+      for (std::size_t i = 0; i < set.motions.size(); ++i) {
+        const auto& at = space.modelled(i);
+        Eigen::VectorXd change(static_cast<Eigen::Index>(at.size()));
+        for (std::size_t p = 0; p < at.size(); ++p) {
+          change[static_cast<Eigen::Index>(p)] = std::sin(2.0 * std::numbers::pi * (f * at[p] + phase));
+        }
+        changes.push_back(std::move(change));
+      }
+      columns.push_back(space.project(changes));
+    }
+    SpreadEvidence evidence;
+    const UnnamedFamily one = solve(normal_of(space, columns), family, evidence);
+    logs.push_back(one.log_evidence);
+    if (one.gain <= family.gain) continue;
+    family.gain = one.gain;
+    family.at.clear();
+    family.size.clear();
+    family.sd.clear();
+    constexpr int kDrawn = 240;
+    for (int j = 0; j <= kDrawn; ++j) {
+      const double place = x.low + range * j / kDrawn, turn = 2.0 * std::numbers::pi * f * place;
+      const Eigen::Vector2d basis(std::sin(turn), std::cos(turn));
+      family.at.push_back(place);
+      family.size.push_back(basis.dot(evidence.mean));
+      family.sd.push_back(std::sqrt(std::max(0.0, basis.dot(evidence.covariance * basis))));
+    }
+  }
+  if (!logs.empty()) family.log_evidence = log_mean(logs);
+  name_regions(family);
   return family;
 }
 
@@ -172,7 +278,7 @@ UnnamedFamily own_family(const ScoreSpace& space) {
     }
   }
   SpreadEvidence evidence;
-  return solve(space, columns, family, evidence);
+  return solve(normal_of(space, columns), family, evidence);
 }
 
 /// A force of one kind whose size differs between members (masses, set-ups, motions).
@@ -192,7 +298,7 @@ UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable
     columns.push_back(space.of_force(forces, 1e-4));
   }
   SpreadEvidence evidence;
-  family = solve(space, columns, family, evidence);
+  family = solve(normal_of(space, columns), family, evidence);
   for (std::size_t m = 0; m < members && evidence.mean.size() > 0; ++m) {
     const auto e = static_cast<Eigen::Index>(m);
     family.at.push_back(variable == "mass_kg" ? set.masses[m].mass_kg : static_cast<double>(m));
@@ -214,13 +320,16 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
   for (const int bumps : {kCoarse, kFine}) {
     Grid v = ranges.v, x = ranges.x;
     v.bumps = x.bumps = bumps;
-    families.push_back(force_family(space, v, 1, "v_m_s", "force", false, false));
-    families.push_back(force_family(space, x, 0, "x_m", "acceleration", true, false));
-    families.push_back(force_family(space, x, 0, "x_m", "friction", true, true));
+    add_force(space, v, 1, "v_m_s", "force", false, false, families);
+    add_force(space, x, 0, "x_m", "acceleration", true, false, families);
+    add_force(space, x, 0, "x_m", "friction", true, true, families);
+    add_displacement(space, x, Seen::over_x, families);
   }
-  families.push_back(force_family(space, ranges.t, 2, "t_s", "acceleration", true, false));
-  families.push_back(displacement_family(space, ranges.x, false));
-  families.push_back(displacement_family(space, ranges.t, true));
+  add_force(space, ranges.t, 2, "t_s", "acceleration", true, false, families);
+  add_force(space, ranges.t, 2, "t_s", "friction", true, true, families);
+  add_displacement(space, ranges.t, Seen::over_t, families);
+  add_displacement(space, ranges.t, Seen::late, families);
+  families.push_back(swing_family(space, ranges.x));
   families.push_back(own_family(space));
   if (set.masses.size() > 1) {
     families.push_back(member_family(space, "mass_kg", "friction", &TrackedMotion::mass, set.masses.size(), 2));
@@ -238,10 +347,9 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
 }
 
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families) {
-  double most = -std::numeric_limits<double>::infinity(), sum = 0.0;
-  for (const UnnamedFamily& family : families) most = std::max(most, family.log_evidence);
-  for (const UnnamedFamily& family : families) sum += std::exp(family.log_evidence - most);
-  return most + std::log(sum / static_cast<double>(families.size()));
+  std::vector<double> logs;
+  for (const UnnamedFamily& family : families) logs.push_back(family.log_evidence);
+  return log_mean(logs);
 }
 
 }  // namespace glidelab::diagnose

@@ -2,7 +2,8 @@
 /// clip, mass to mass or set-up to set-up for no stated reason. They answer for what is not in the list of effects.
 ///
 /// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), tau unknown over four decades;
-/// its evidence is exact in the linear neighbourhood of a fit.
+/// or one bump of them at an unknown place; or one step there; its evidence is exact in the linear neighbourhood of a
+/// fit. Forces lie over v, x and t, displacements over x and t (also such as swing with x), lateness over t.
 #pragma once
 
 #include <string>
@@ -20,7 +21,7 @@ struct UnnamedRegion {
 
 struct UnnamedFamily {
   std::string variable;  ///< x_m, v_m_s, t_s, mass_kg, direction, group, clip
-  std::string what;      ///< "force", "friction", "displacement", "acceleration"
+  std::string what;      ///< "force", "friction", "displacement", "acceleration", "lateness"
   std::string unit;      ///< of the sizes
   double log_evidence = 0.0;
   double gain = 0.0;

@@ -106,11 +106,39 @@ void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families
   }
 }
 
+/// Parameters that a hypothesis adds to the nominal model.
+std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, const Hypothesis& hypothesis) {
+  std::size_t count = 0;
+  for (const std::size_t e : hypothesis.effects) {
+    const EffectInfo& info = effect_list()[e];
+    for (const EffectParameter& parameter : info.parameters) count += parameter.own ? set.motions.size() : 1;
+    if (info.search == Search::frames) count += 1 + comparison.missing.count;
+    if (info.search == Search::noise) count += info.id == "heavy_tailed_noise" ? 2 : 1;
+  }
+  return count;
+}
+
+void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& diagnosis) {
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
+    RankedExplanation ranked{joined(hypothesis.effects),
+                             hypothesis.probability,
+                             hypothesis.log_evidence,
+                             hypothesis.gain,
+                             parameters_added(set, comparison, hypothesis),
+                             {}};
+    if (hypothesis.fit >= 0 && set.clips.size() > 1) {
+      ranked.gap_after = held_out_gap(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]).value;
+    }
+    diagnosis.ranking.push_back(std::move(ranked));
+  }
+}
+
 std::string stage_of(const std::vector<UnnamedFamily>& families) {
   const auto best = std::max_element(families.begin(), families.end(),
                                      [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
   if (best == families.end()) return "";
-  return best->what == "displacement" ? "optics" : "dynamics";
+  return best->what == "displacement" ? "optics" : best->what == "lateness" ? "timing" : "dynamics";
 }
 
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, Diagnosis& diagnosis) {
@@ -237,10 +265,8 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison) {
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });
     diagnosis.stage = diagnosis.effects.front().stage;
   }
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
-    diagnosis.ranking.push_back({joined(hypothesis.effects), hypothesis.probability, hypothesis.log_evidence});
-  }
+  for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
+  add_ranking(set, comparison, diagnosis);
   const bool beside_named = diagnosis.verdict == "unknown" && !comparison.all.front().effects.empty();
   if (diagnosis.verdict != "none") {
     add_regions(set, beside_named ? comparison.unnamed_left : comparison.unnamed, diagnosis);

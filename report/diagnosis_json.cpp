@@ -72,6 +72,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   Json document;
   document["format"] = 1;
   document["verdict"] = diagnosis.verdict;
+  document["points"] = diagnosis.points;
   document["summary"] = diagnosis.summary;
   document["effects"] = Json::array();
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) document["effects"].push_back(effect_json(effect));
@@ -83,6 +84,9 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
     one["id"] = ranked.id;
     put(one, "probability", ranked.probability);
     put(one, "log_evidence_gain", ranked.log_evidence_gain);
+    put(one, "log_likelihood_gain", ranked.log_likelihood_gain);
+    one["parameters"] = ranked.parameters;
+    if (ranked.gap_after) put(one, "gap_after", *ranked.gap_after);
     document["ranking"].push_back(std::move(one));
   }
   document["where"] = where_json(diagnosis);

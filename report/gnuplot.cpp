@@ -1,9 +1,6 @@
 #include "report/gnuplot.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +10,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "base/child_process.h"
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "base/temporary_folder.h"
@@ -34,48 +32,14 @@ std::vector<std::string> plot_environment() {
   return variables;
 }
 
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> list;
-  std::transform(texts.begin(), texts.end(), std::back_inserter(list), [](std::string& text) { return text.data(); });
-  list.push_back(nullptr);
-  return list;
-}
-
-/// Runs gnuplot to its end with standard input closed and both outputs in `log`; returns what waitpid tells.
 int run(std::vector<std::string> arguments, const fs::path& log) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  // In a process group of its own, so that an interrupt at the terminal reaches this program alone, which then decides.
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  std::vector<std::string> environment = plot_environment();
-  pid_t child = 0;
-  const int error = ::posix_spawnp(&child, "gnuplot", &actions, &attributes, pointers(arguments).data(),
-                                   pointers(environment).data());
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) {
-    throw base::EnvironmentError(
-        fmt::format("gnuplot, which draws the plots, cannot be started: {} (Debian's package is gnuplot-nox)",
-                    std::strerror(error)));
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw base::EnvironmentError(fmt::format("gnuplot: waiting for it: {}", std::strerror(errno)));
-  }
-  return status;
+  return base::run_program("gnuplot", std::move(arguments), log, plot_environment(),
+                           " (it draws the plots; Debian's package is gnuplot-nox)");
 }
 
 void check_status(int status, const fs::path& log) {
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-  const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
-                                              : fmt::format("failed with status {}", WEXITSTATUS(status));
-  throw base::EnvironmentError(fmt::format("gnuplot {}: {}", how, base::read_file(log)));
+  const std::string how = base::how_it_failed(status);
+  if (!how.empty()) throw base::EnvironmentError(fmt::format("gnuplot {}: {}", how, base::read_file(log)));
 }
 
 std::string data_block(const PlotData& data) {
@@ -117,7 +81,7 @@ std::string gnuplot_svg(std::string_view script, std::span<const PlotData> data,
   text += script;
   text += "\nunset output\n";
   base::write_file(folder / "plot.gp", text);
-  check_status(run({"gnuplot", "-d", (folder / "plot.gp").string()}, log), log);
+  check_status(run({"-d", (folder / "plot.gp").string()}, log), log);
   std::error_code missing;
   if (!fs::exists(svg, missing)) throw base::EnvironmentError("gnuplot: no plot written: " + base::read_file(log));
   return base::read_file(svg);
@@ -126,7 +90,7 @@ std::string gnuplot_svg(std::string_view script, std::span<const PlotData> data,
 void check_gnuplot() {
   const base::TemporaryFolder folder("plot");
   const fs::path log = folder / "log.txt";
-  check_status(run({"gnuplot", "--version"}, log), log);
+  check_status(run({"--version"}, log), log);
 }
 
 }  // namespace glidelab::report

@@ -1,0 +1,81 @@
+/// glidelab blind --cases N: experiments with a withheld cause, each diagnosed by another process, then scored.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/common_options.h"
+#include "app/interrupt.h"
+#include "app/progress_display.h"
+#include "base/child_process.h"
+#include "base/staged_output.h"
+#include "report/blind_report.h"
+#include "report/gnuplot.h"
+#include "validate/run_blind.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BlindCommand {
+  CommonOptions common;
+  validate::BlindOptions blind;
+};
+
+/// This program's own file, started anew: that process knows the folder and nothing else.
+std::string diagnose_apart(const fs::path& folder, const fs::path& out, const std::vector<std::string>& without) {
+  std::vector<std::string> arguments = {"diagnose", folder.string(), "-o",       out.string(), "--jobs",
+                                        "1",        "--quiet",       "--no-page"};
+  if (!without.empty()) arguments.emplace_back("--without");
+  arguments.insert(arguments.end(), without.begin(), without.end());
+  const fs::path log = out / "log.txt";
+  const std::string how = base::how_it_failed(base::run_program("/proc/self/exe", arguments, log));
+  throw_if_interrupted();
+  const std::string said = base::read_file(log);
+  fs::remove(log);
+  return how.empty() ? "" : fmt::format("{}: {}", how, said);
+}
+
+void blind(const BlindCommand& options) {
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "blind", "cases");
+  check_writable(out);
+  ProgressDisplay display(options.common.quiet);
+  validate::BlindOptions wanted = options.blind;
+  wanted.seed = options.common.seed.value_or(1);
+  wanted.jobs = options.common.jobs;
+  report::BlindRun run;
+  run.seed = wanted.seed;
+  run.outcomes = validate::run_blind(wanted, out, diagnose_apart, display.callback());
+  run.score = validate::score_blind(run.outcomes);
+  const std::string json = report::blind_json(run);
+  base::StagedOutput staged(out);
+  base::write_file(staged.dir() / "blind.json", json);
+  base::write_file(staged.dir() / "report.html", report::blind_page(run));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+  print_result(options.common.json ? json : report::blind_text(run));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+}
+
+}  // namespace
+
+void add_blind(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<BlindCommand>();
+  CLI::App* command = app.add_subcommand(
+      "blind", "Make experiments whose cause is withheld, diagnose each in another process, and score the diagnoses");
+  command->add_option("--cases", options->blind.cases, "How many; run again with more, it goes on where it stopped")
+      ->required();
+  command
+      ->add_option("--only", options->blind.only, "Every case has this effect (default: nothing, one, two, unlisted)")
+      ->type_name("EFFECT");
+  command->add_flag("--leave-out", options->blind.leave_out,
+                    "Diagnose each case of one effect once more with that effect taken from the list");
+  add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");
+  command->callback([options, &chosen] { chosen = [options] { blind(*options); }; });
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,22 @@
+/// Another program, run to its end.
+///
+/// Standard input is closed and both outputs go into a file. The child has a process group of its own, so that an
+/// interrupt at the terminal reaches this program alone, which then decides.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glidelab::base {
+
+/// What waitpid tells. `program` is looked for in PATH where it has no slash; `environment` holds NAME=value, and where
+/// it is empty the child gets this program's own. EnvironmentError where it cannot be started; `hint` completes the
+/// message.
+int run_program(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
+                std::vector<std::string> environment = {}, const std::string& hint = {});
+
+/// "" where it ended with status 0, else how it ended.
+std::string how_it_failed(int status);
+
+}  // namespace glidelab::base

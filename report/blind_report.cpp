@@ -1,0 +1,303 @@
+#include "report/blind_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+
+#include "report/gnuplot.h"
+#include "report/html.h"
+#include "report/json_numbers.h"
+#include "report/number_text.h"
+#include "report/text_table.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::BlindShare;
+
+std::string percent(const BlindShare& share) {
+  if (share.of == 0) return "–";
+  return fmt::format("{:.0f} % ({} of {})", 100.0 * share.share(), share.yes, share.of);
+}
+
+std::string percent_only(const BlindShare& share) {
+  return share.of == 0 ? "–" : fmt::format("{:.0f} %", 100.0 * share.share());
+}
+
+BlindShare of(const std::map<std::string, BlindShare>& shares, const std::string& key) {
+  const auto found = shares.find(key);
+  return found == shares.end() ? BlindShare{} : found->second;
+}
+
+BlindShare all_of(const std::map<std::string, BlindShare>& shares) {
+  BlindShare sum;
+  for (const auto& [key, share] : shares) {
+    sum.of += share.of;
+    sum.yes += share.yes;
+  }
+  return sum;
+}
+
+struct Target {
+  std::string what;
+  BlindShare share;
+  double wanted = 0.0;
+  bool at_most = false;
+};
+
+std::vector<Target> targets_of(const validate::BlindScore& score) {
+  const auto& single = score.methods.front().single;
+  return {{"one strong effect: named first", of(single, "strong"), 0.95, false},
+          {"one moderate effect: named first", of(single, "moderate"), 0.80, false},
+          {"one effect, moderate or strong: among those named",
+           {of(score.in_set, "strong").of + of(score.in_set, "moderate").of,
+            of(score.in_set, "strong").yes + of(score.in_set, "moderate").yes},
+           0.97,
+           false},
+          {"nothing: another verdict than none", score.false_alarm, 0.05, true},
+          {"outside the library, strong: unknown", of(score.recognised, "strong"), 0.85, false},
+          {"outside the library, all: unknown", all_of(score.recognised), 0.85, false},
+          {"outside the library: a name with probability over 0.8", score.wrong_name, 0.03, true},
+          {"two effects: both named", score.methods.front().pair, 0.75, false},
+          {"gap shrinks by 0.95 or more of what the true effect's own fit reaches", score.shrunk, 0.95, false}};
+}
+
+bool met(const Target& target) {
+  return target.at_most ? target.share.share() <= target.wanted : target.share.share() >= target.wanted;
+}
+
+std::string target_text(const Target& target) {
+  return fmt::format("{} {:.0f} %", target.at_most ? "at most" : "at least", 100.0 * target.wanted);
+}
+
+std::string said_text(const validate::ConfusionRow& row) {
+  std::vector<std::pair<std::string, std::size_t>> said(row.said.begin(), row.said.end());
+  std::stable_sort(said.begin(), said.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text;
+  for (const auto& [word, times] : said) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", word, times);
+  return text;
+}
+
+Json share_json(const BlindShare& share) {
+  return {{"of", share.of}, {"yes", share.yes}};
+}
+
+Json shares_json(const std::map<std::string, BlindShare>& shares) {
+  Json object = Json::object();
+  for (const auto& [key, share] : shares) object[key] = share_json(share);
+  return object;
+}
+
+Json outcome_json(const validate::BlindOutcome& outcome) {
+  Json one{{"case", outcome.index}, {"kind", validate::word(outcome.kind)}, {"clips", outcome.clips}};
+  one["truth"] = Json::array();
+  for (const auto& cause : outcome.causes) {
+    Json object{{"id", cause.id}};
+    put(object, "log_likelihood_gain", cause.gain);
+    object["parameters"] = cause.parameters;
+    one["truth"].push_back(std::move(object));
+  }
+  one["verdict"] = outcome.verdict.verdict;
+  if (!outcome.verdict.why.empty()) one["why"] = outcome.verdict.why;
+  one["named"] = Json::array();
+  for (const auto& effect : outcome.verdict.effects) {
+    one["named"].push_back(
+        {{"id", effect.id}, {"probability", effect.probability}, {"equivalent_to", effect.equivalent_to}});
+  }
+  put(one, "none", outcome.verdict.none);
+  put(one, "unknown", outcome.verdict.unknown);
+  if (outcome.left_out) {
+    one["left_out"] = {{"verdict", outcome.left_out->verdict}, {"named", Json::array()}};
+    for (const auto& effect : outcome.left_out->effects) {
+      one["left_out"]["named"].push_back({{"id", effect.id}, {"probability", effect.probability}});
+    }
+  }
+  return one;
+}
+
+Plot reliability_plot(const validate::BlindScore& score) {
+  PlotData data{"bins", {}};
+  for (const validate::ReliabilityBin& bin : score.reliability) {
+    if (bin.right.of == 0) continue;
+    using Binomial = boost::math::binomial_distribution<>;
+    const auto n = static_cast<double>(bin.right.of), yes = static_cast<double>(bin.right.yes);
+    data.rows.push_back({bin.stated, bin.right.share(), Binomial::find_lower_bound_on_p(n, yes, 0.025),
+                         Binomial::find_upper_bound_on_p(n, yes, 0.025)});
+  }
+  const std::string script = std::string(kFrame) +
+                             "unset offsets\nset xrange [0:1.03]\nset yrange [0:1.03]\nset key bottom right inside\n"
+                             "set xlabel 'probability that was stated'\nset ylabel 'share that was right'\n"
+                             "plot x with lines lw 1.5 lc rgb '#9a9a9a' title 'as stated', "
+                             "$bins using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.5 lc rgb '#0072b2' title 'cases'\n";
+  const std::vector<PlotData> all = {data};
+  return {gnuplot_svg(script, all),
+          fmt::format("Stated probability of the verdict and how often it was right, with 95 % intervals; expected "
+                      "calibration error {}",
+                      number_text(score.calibration_error, 2)),
+          "Reliability diagram"};
+}
+
+Plot methods_plot(const validate::BlindScore& score) {
+  std::vector<PlotData> data;
+  std::string script = std::string(kFrame) +
+                       "unset offsets\nset style fill solid 0.85 noborder\nset boxwidth 0.19\nset yrange [0:105]\n"
+                       "set xrange [0.4:5.6]\nset ylabel 'right  (%)'\nset key outside top left vertical maxrows 4\n"
+                       "set xtics ('none' 1, 'moderate' 2, 'strong' 3, 'two' 4, 'outside' 5)\nplot ";
+  for (std::size_t m = 0; m < score.methods.size(); ++m) {
+    const auto& method = score.methods[m];
+    PlotData rows{fmt::format("m{}", m), {}};
+    const std::vector<BlindShare> shares = {method.none, of(method.single, "moderate"), of(method.single, "strong"),
+                                            method.pair, method.outside};
+    for (std::size_t s = 0; s < shares.size(); ++s) {
+      rows.rows.push_back(
+          {static_cast<double>(s) + 1.0 + 0.2 * (static_cast<double>(m) - 1.5), 100.0 * shares[s].share()});
+    }
+    script += fmt::format("{}$m{} using 1:2 with boxes lc rgb '{}' title {}", m == 0 ? "" : ", ", m, color(m),
+                          gnuplot_quoted(method.name));
+    data.push_back(std::move(rows));
+  }
+  return {gnuplot_svg(script, data, {480, 400}), "How often each way of deciding is right, by kind of case",
+          "Share of right answers of four methods"};
+}
+
+std::string methods_table(const validate::BlindScore& score) {
+  HtmlTable table({"", "nothing there", "one, weak", "moderate", "strong", "two effects", "outside"});
+  for (const validate::BlindMethod& method : score.methods) {
+    table.row({escape(method.name), percent_only(method.none), percent_only(of(method.single, "weak")),
+               percent_only(of(method.single, "moderate")), percent_only(of(method.single, "strong")),
+               percent_only(method.pair), percent_only(method.outside)});
+  }
+  return table.str();
+}
+
+std::string cases_table(const BlindRun& run) {
+  HtmlTable table({"case", "truth", "gain", "verdict", "probability", "not to be told from"}, 6);
+  for (const validate::BlindOutcome& outcome : run.outcomes) {
+    std::string truth = outcome.causes.empty() ? "none" : "", gain, said = outcome.verdict.verdict, p, same;
+    for (const auto& cause : outcome.causes) {
+      truth += (truth.empty() ? "" : " + ") + escape(cause.id);
+      gain += (gain.empty() ? "" : ", ") + number_text(cause.gain, 2);
+    }
+    if (said == "none") p = number_text(outcome.verdict.none, 2);
+    if (said == "unknown") p = number_text(outcome.verdict.unknown, 2);
+    if (!outcome.verdict.effects.empty()) said.clear();
+    for (const auto& effect : outcome.verdict.effects) {
+      said += (said.empty() ? "" : " + ") + escape(effect.id);
+      p += (p.empty() ? "" : ", ") + number_text(effect.probability, 2);
+      for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
+    }
+    table.row({fmt::format("{}", outcome.index), truth, gain, said, p, same});
+  }
+  return table.str();
+}
+
+}  // namespace
+
+std::string blind_json(const BlindRun& run) {
+  const validate::BlindScore& score = run.score;
+  Json document;
+  document["format"] = 1;
+  document["seed"] = run.seed;
+  document["cases"] = run.outcomes.size();
+  document["failed"] = score.failed;
+  document["targets"] = Json::array();
+  for (const Target& target : targets_of(score)) {
+    Json one = share_json(target.share);
+    one["what"] = target.what;
+    one[target.at_most ? "at_most" : "at_least"] = target.wanted;
+    if (target.share.of > 0) one["met"] = met(target);
+    document["targets"].push_back(std::move(one));
+  }
+  put(document, "expected_calibration_error", score.calibration_error);
+  document["methods"] = Json::array();
+  for (const auto& method : score.methods) {
+    document["methods"].push_back({{"name", method.name},
+                                   {"none", share_json(method.none)},
+                                   {"single", shares_json(method.single)},
+                                   {"pair", share_json(method.pair)},
+                                   {"outside", share_json(method.outside)}});
+  }
+  document["exact_name_first"] = shares_json(score.exact);
+  document["in_named_set"] = shares_json(score.in_set);
+  document["outside_unknown"] = shares_json(score.recognised);
+  document["outside_variable_named"] = share_json(score.where);
+  document["left_out"] = shares_json(score.left_out);
+  document["reliability"] = Json::array();
+  for (const auto& bin : score.reliability) {
+    Json one = share_json(bin.right);
+    one["from"] = bin.from;
+    one["to"] = bin.to;
+    put(one, "stated", bin.stated);
+    document["reliability"].push_back(std::move(one));
+  }
+  document["confusion"] = Json::object();
+  for (const auto& row : score.confusion) document["confusion"][row.truth] = row.said;
+  document["outcomes"] = Json::array();
+  for (const auto& outcome : run.outcomes) document["outcomes"].push_back(outcome_json(outcome));
+  return json_text(document);
+}
+
+std::string blind_text(const BlindRun& run) {
+  const validate::BlindScore& score = run.score;
+  std::vector<std::vector<std::string>> rows = {
+      {"of " + std::to_string(run.outcomes.size()) + " blind cases", "found", "wanted"}};
+  for (const Target& target : targets_of(score))
+    rows.push_back({target.what, percent(target.share), target_text(target)});
+  rows.push_back({"expected calibration error", number_text(score.calibration_error, 2), "below 0.05"});
+  for (const auto& [word, share] : score.left_out)
+    rows.push_back({"true effect left out of the list: " + word, percent(share), ""});
+  std::string text = text_table(rows, 1) + "\n";
+  rows = {{"right", "none", "weak", "moderate", "strong", "two", "outside"}};
+  for (const auto& method : score.methods) {
+    rows.push_back({method.name, percent_only(method.none), percent_only(of(method.single, "weak")),
+                    percent_only(of(method.single, "moderate")), percent_only(of(method.single, "strong")),
+                    percent_only(method.pair), percent_only(method.outside)});
+  }
+  text += text_table(rows, 1) + "\n";
+  rows = {{"truth", "first name"}};
+  for (const auto& row : score.confusion) rows.push_back({row.truth, said_text(row)});
+  text += text_table(rows, 2);
+  if (score.failed > 0) text += fmt::format("\n{} cases could not be diagnosed; they count as wrong.\n", score.failed);
+  return text;
+}
+
+std::string blind_page(const BlindRun& run) {
+  const validate::BlindScore& score = run.score;
+  std::string body = fmt::format(
+      "<h1>Blind cases</h1>\n<p class=\"soft\">{} experiments of tracks, seed {}, made by a generator that shares no "
+      "model with the diagnosis; each was diagnosed by another process that was given the experiment folder "
+      "only.</p>\n",
+      run.outcomes.size(), run.seed);
+  HtmlTable targets({"what", "found", "wanted", ""});
+  for (const Target& target : targets_of(score)) {
+    targets.row({escape(target.what), percent(target.share), target_text(target),
+                 target.share.of == 0 ? ""
+                 : met(target)        ? "met"
+                                      : "missed"});
+  }
+  targets.row({"expected calibration error", number_text(score.calibration_error, 2), "below 0.05",
+               score.calibration_error < 0.05 ? "met" : "missed"});
+  body += targets.str();
+  if (score.failed > 0) {
+    body += fmt::format("<p class=\"note\">{} cases could not be diagnosed; they count as wrong.</p>\n", score.failed);
+  }
+  body += figures({methods_plot(score), reliability_plot(score)});
+  body += "<h2>Beside simpler ways of deciding</h2>\n" + methods_table(score);
+  if (!score.left_out.empty()) {
+    HtmlTable left({"verdict with the true effect taken from the list", "cases"});
+    for (const auto& [word, share] : score.left_out) left.row({escape(word), percent(share)});
+    body += "<h2>Leave one effect out</h2>\n" + left.str();
+  }
+  HtmlTable confusion({"truth", "named first (times)"}, 2);
+  for (const auto& row : score.confusion) confusion.row({escape(row.truth), escape(said_text(row))});
+  body += "<h2>Confusions</h2>\n" + confusion.str();
+  body +=
+      "<p class=\"soft\">A case's gain is the log likelihood that the true model wins over the nominal one fitted to "
+      "the same positions: weak below 15, moderate up to 50, strong above. A wrong scale and a wrong frame rate are "
+      "one thing on tracks, and so are a camera and a table that shake: each counts as the other.</p>\n";
+  body += "<h2>All cases</h2>\n" + cases_table(run);
+  return page("Blind cases", body);
+}
+
+}  // namespace glidelab::report

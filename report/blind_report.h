@@ -1,0 +1,23 @@
+/// What came out of blind cases: a file, a text, a page.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "validate/blind_score.h"
+
+namespace glidelab::report {
+
+struct BlindRun {
+  std::uint64_t seed = 0;
+  std::vector<validate::BlindOutcome> outcomes;
+  validate::BlindScore score;
+};
+
+std::string blind_json(const BlindRun& run);
+std::string blind_text(const BlindRun& run);
+/// EnvironmentError where gnuplot fails.
+std::string blind_page(const BlindRun& run);
+
+}  // namespace glidelab::report

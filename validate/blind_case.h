@@ -1,0 +1,55 @@
+/// One blind case: an experiment with a known truth, of which only the folder is shown to the diagnosis.
+///
+/// Drawn from (seed, index) alone: a design; nothing, one effect, two, or one outside the library; a strength by its
+/// detectability, the log likelihood that the right model gains on the nominal one fitted to the same positions:
+///
+///     gain = |d - J (J'J)^-1 J'd|² / 2,       d = (seen with - seen without)/noise,
+///
+/// J the derivatives by K, mu, inclinations, masses and starts, with what is stated of them as rows of its own.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "validate/blind_design.h"
+
+namespace glidelab::validate {
+
+enum class BlindKind { none, single, pair, outside };
+
+std::string_view word(BlindKind kind);
+
+struct BlindCause {
+  std::string id;
+  double size = 0.0;                         ///< in the effect's own unit
+  std::map<std::string, double> parameters;  ///< as effects.md has them; empty outside the library
+  std::string variable;                      ///< of what is outside: where it lies
+  double gain = 0.0;                         ///< log likelihood, beside the other one where there are two
+};
+
+struct BlindCase {
+  std::uint64_t seed = 0;
+  std::size_t index = 0;
+  BlindKind kind = BlindKind::none;
+  std::vector<BlindCause> causes;
+  BlindDesign design;
+  std::vector<std::vector<double>> x_m;  ///< of each clip's frames, noise included
+};
+
+struct BlindDraw {
+  std::string only;  ///< an effect that every case has; empty: all kinds
+};
+
+/// NumericalError where no design of many shows the wanted effect.
+BlindCase make_blind_case(std::uint64_t seed, std::size_t index, const BlindDraw& draw = {});
+
+/// experiment.toml and tracks/*.csv, nothing else; the folder is made.
+void write_blind_folder(const BlindCase& one, const std::filesystem::path& folder);
+
+/// truth as JSON.
+std::string blind_truth_json(const BlindCase& one);
+
+}  // namespace glidelab::validate

@@ -1,0 +1,104 @@
+/// Diagnoses of blind cases held against their truths.
+///
+/// Two pairs of effects are the same thing on tracks and count as one (effects.md: "cannot be told apart, always"):
+/// scale_error and frame_rate_error; camera_motion and base_vibration. Weak cases gain less than 15 in log likelihood,
+/// moderate ones 15 to 50, strong ones more.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validate/blind_case.h"
+
+namespace glidelab::validate {
+
+struct BlindNamed {
+  std::string id;
+  double probability = 0.0;
+  std::vector<std::string> equivalent_to;
+};
+
+struct BlindRanked {
+  std::vector<std::string> ids;  ///< one or two
+  double probability = 0.0;
+  double log_likelihood_gain = 0.0;
+  double parameters = 0.0;
+  std::optional<double> gap_after;
+};
+
+/// What a diagnosis.json says; "failed" with `why` where there is none.
+struct BlindVerdict {
+  std::string verdict;  ///< none, effect, unknown, failed
+  std::string why;
+  std::vector<BlindNamed> effects;
+  std::vector<BlindRanked> ranking;
+  std::vector<std::string> where;  ///< variables of the regions, the largest excess first
+  double none = 0.0, unknown = 0.0, points = 0.0;
+  double gap_before = 0.0, gap_after = 0.0, gap_error = 0.0;
+};
+
+/// InputError where the file is not a diagnosis.
+BlindVerdict read_blind_verdict(const std::filesystem::path& diagnosis_json);
+
+struct BlindOutcome {
+  std::size_t index = 0;
+  BlindKind kind = BlindKind::none;
+  std::vector<BlindCause> causes;
+  std::size_t clips = 0;
+  BlindVerdict verdict;
+  std::optional<BlindVerdict> left_out;  ///< with the true effect taken from the list
+};
+
+/// scale_error and frame_rate_error give one word, so do camera_motion and base_vibration.
+std::string blind_class(const std::string& id);
+/// "weak", "moderate", "strong"; of a pair by its weaker cause.
+std::string_view strength_word(const BlindOutcome& outcome);
+
+struct BlindShare {
+  std::size_t of = 0, yes = 0;
+  double share() const { return of == 0 ? 0.0 : static_cast<double>(yes) / static_cast<double>(of); }
+};
+
+/// How often one way of deciding is right.
+struct BlindMethod {
+  std::string name;
+  BlindShare none, outside, pair;
+  std::map<std::string, BlindShare> single;  ///< by strength
+};
+
+struct ReliabilityBin {
+  double from = 0.0, to = 0.0;
+  double stated = 0.0;  ///< mean
+  BlindShare right;
+};
+
+/// One line of a table of confusions.
+struct ConfusionRow {
+  std::string truth;
+  std::map<std::string, std::size_t> said;  ///< first name, none, unknown, failed
+};
+
+struct BlindScore {
+  std::vector<BlindMethod> methods;              ///< the diagnosis first
+  std::map<std::string, BlindShare> in_set;      ///< single cases: truth among what is named, by strength
+  std::map<std::string, BlindShare> exact;       ///< single cases: the very id first, by strength
+  std::map<std::string, BlindShare> recognised;  ///< outside: unknown, by strength
+  BlindShare false_alarm;                        ///< none: anything else
+  BlindShare wrong_name;                         ///< outside: a name with probability over 0.8
+  BlindShare where;                              ///< outside and unknown: the true variable among the regions
+  std::vector<ReliabilityBin> reliability;
+  double calibration_error = 0.0;              ///< expected: mean |stated - right| over cases
+  std::vector<double> shrink_of_oracle;        ///< single, strong: shrink over the true effect's own, each case
+  BlindShare shrunk;                           ///< of these: at least 0.95
+  std::map<std::string, BlindShare> left_out;  ///< unknown, equivalent, none, name, sure name: of those left out
+  std::vector<ConfusionRow> confusion;
+  std::size_t failed = 0;
+};
+
+BlindScore score_blind(const std::vector<BlindOutcome>& outcomes);
+
+}  // namespace glidelab::validate

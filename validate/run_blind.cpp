@@ -1,0 +1,116 @@
+#include "validate/run_blind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.h"
+#include "base/staged_output.h"
+#include "core/parallel.h"
+#include "validate/blind_effects.h"
+
+namespace glidelab::validate {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostCases = 100000;
+
+void check(const BlindOptions& options) {
+  if (options.cases < 1 || options.cases > kMostCases) {
+    throw base::InputError(
+        base::Issue{"", 0, "--cases", fmt::format("{}", options.cases), fmt::format("1 to {}", kMostCases)});
+  }
+  if (options.only.empty()) return;
+  std::string known;
+  for (const auto* list : {&library_effects(), &outside_effects()}) {
+    for (const std::string& id : *list) {
+      if (id == options.only) return;
+      known += (known.empty() ? "" : ", ") + id;
+    }
+  }
+  throw base::InputError(base::Issue{"", 0, "--only", fmt::format("\"{}\"", options.only), "one of " + known});
+}
+
+/// What makes two runs the same but for their number of cases.
+void check_same_run(const BlindOptions& options, const fs::path& out) {
+  const Json wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
+  const fs::path file = out / "run.json";
+  if (!fs::exists(file)) {
+    base::StagedOutput staged(out);
+    base::write_file(staged.dir() / "run.json", wanted.dump(2) + "\n");
+    staged.publish_files();
+    return;
+  }
+  const Json found = Json::parse(base::read_file(file), nullptr, false);
+  if (found == wanted) return;
+  throw base::InputError(base::Issue{file.string(), 0, "", found.is_discarded() ? "no JSON" : found.dump(),
+                                     "the seed and effect of this run, " + wanted.dump() + ", or an empty folder"});
+}
+
+BlindVerdict verdict_in(const fs::path& file, const std::string& failure) {
+  if (!failure.empty()) {
+    BlindVerdict failed;
+    failed.verdict = "failed";
+    failed.why = failure;
+    return failed;
+  }
+  return read_blind_verdict(file);
+}
+
+/// One whole case; what it leaves on disk is complete once the truth is there.
+BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::size_t index, const Diagnoser& diagnose) {
+  const BlindCase one = make_blind_case(options.seed, index, {options.only});
+  const std::string name = fmt::format("{:04d}", index);
+  const fs::path folder = out / "cases" / name, diagnosis = out / "diagnoses" / name;
+  const fs::path truth = out / "truth" / (name + ".json"), failure_file = diagnosis / "failure.txt";
+  const bool leaves_out = options.leave_out && one.kind == BlindKind::single;
+  const fs::path without = diagnosis / "left-out";
+  const bool done = fs::exists(truth) && (fs::exists(diagnosis / "diagnosis.json") || fs::exists(failure_file));
+  if (!done) {
+    fs::remove_all(folder);
+    fs::remove_all(diagnosis);
+    write_blind_folder(one, folder);
+    fs::create_directories(diagnosis);
+    const std::string failure = diagnose(folder, diagnosis, {});
+    if (!failure.empty()) base::write_file(failure_file, failure);
+  }
+  if (leaves_out && !fs::exists(without / "diagnosis.json")) {
+    fs::create_directories(without);
+    diagnose(folder, without, {one.causes.front().id});
+  }
+  if (!done) {
+    base::StagedOutput staged(out / "truth");
+    base::write_file(staged.dir() / truth.filename(), blind_truth_json(one));
+    staged.publish_files();
+  }
+  BlindOutcome outcome{index, one.kind, one.causes, one.design.clips.size(), {}, {}};
+  outcome.verdict =
+      verdict_in(diagnosis / "diagnosis.json", fs::exists(failure_file) ? base::read_file(failure_file) : "");
+  if (leaves_out && fs::exists(without / "diagnosis.json")) {
+    outcome.left_out = read_blind_verdict(without / "diagnosis.json");
+  }
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path& out, const Diagnoser& diagnose,
+                                    const base::Progress& progress) {
+  check(options);
+  fs::create_directories(out);
+  check_same_run(options, out);
+  std::vector<BlindOutcome> outcomes(options.cases);
+  std::atomic<std::size_t> done{0};
+  core::for_each_parallel(options.cases, options.jobs, [&](std::size_t i) {
+    progress("diagnosing blind cases", static_cast<double>(done) / static_cast<double>(options.cases));
+    outcomes[i] = run_case(options, out, i, diagnose);
+    ++done;
+  });
+  return outcomes;
+}
+
+}  // namespace glidelab::validate

@@ -1,0 +1,39 @@
+/// Blind cases, one after the other or a few at once: made, diagnosed by another process, and only then their truth
+/// written down; in the end all are scored.
+///
+///     OUT/run.json                     what was asked for; a run with other seeds or effects is refused
+///     OUT/cases/0012/                  the experiment folder: all that the diagnosing process is told of
+///     OUT/diagnoses/0012/              diagnosis.json, diagnosis-left-out.json
+///     OUT/truth/0012.json              written after the diagnosis
+///
+/// Run again, it goes on where it stopped: a case counts as done when its truth is there.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "validate/blind_score.h"
+
+namespace glidelab::validate {
+
+struct BlindOptions {
+  std::uint64_t seed = 1;
+  std::size_t cases = 0;
+  bool leave_out = false;  ///< diagnose each case of one effect once more, its effect taken from the list
+  std::string only;        ///< an effect that every case has
+  int jobs = 1;
+};
+
+/// Diagnoses the folder and leaves diagnosis.json in `out`, in another process; returns "" or what went wrong.
+using Diagnoser = std::function<std::string(const std::filesystem::path& folder, const std::filesystem::path& out,
+                                            const std::vector<std::string>& without)>;
+
+/// InputError for no cases, for an unknown effect, and where OUT holds another run.
+std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
+                                    const Diagnoser& diagnose, const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::validate
