@@ -9,13 +9,19 @@
 #include "app/common_options.h"
 #include "app/interrupt.h"
 #include "app/progress_display.h"
+#include "base/errors.h"
 #include "base/staged_output.h"
+#include "core/analyze.h"
 #include "core/experiment.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/plan.h"
+#include "render/scenario.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_report.h"
 #include "report/diagnosis_text.h"
 #include "report/gnuplot.h"
+#include "report/plan_report.h"
+#include "validate/made_tracks.h"
 
 namespace glidelab::app {
 namespace {
@@ -27,9 +33,50 @@ struct DiagnoseCommand {
   std::vector<std::string> experiments;
   std::vector<std::string> without;
   bool no_page = false;
+  std::string twin;
+  bool plan = false;
+  double noise_m = 0.0;
 };
 
+/// What is planned: a scenario's motions with noise, or folders that were recorded.
+diagnose::Plan planned(const DiagnoseCommand& options) {
+  const fs::path first = options.experiments.front();
+  if (fs::is_directory(first)) {
+    const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
+    std::vector<core::ClipSetup> setups;
+    for (const fs::path& folder : folders) {
+      const core::Experiment experiment = core::read_experiment(folder);
+      setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
+    }
+    return diagnose::plan_of(core::analyze(folders, {.bandwidth_s = {}, .jobs = options.common.jobs}), setups);
+  }
+  if (!(options.noise_m > 0.0)) {
+    throw base::InputError(base::Issue{first.string(), 0, "--noise-m", "nothing",
+                                       "the noise of a position in metres, above 0: a scenario alone has none"});
+  }
+  const render::Scenario scenario = render::read_scenario(first);
+  const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
+  const validate::MadeTracks made = validate::with_noise(validate::make_tracks(scenario, seed), options.noise_m, seed);
+  return diagnose::plan_of(validate::analyze_tracks(made, std::optional<double>(), options.common.jobs), made.setups);
+}
+
+void plan(const DiagnoseCommand& options) {
+  if (!options.no_page) report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "diagnose", options.experiments.front());
+  check_writable(out);
+  base::StagedOutput staged(out);
+  const diagnose::Plan plan = planned(options);
+  base::write_file(staged.dir() / "plan.json", report::plan_json(plan));
+  const std::string title = "Plan: " + fs::path(options.experiments.front()).stem().string();
+  if (!options.no_page) base::write_file(staged.dir() / "plan.html", report::plan_page(title, plan));
+  throw_if_interrupted();
+  staged.publish_files();
+  print_result(options.common.json ? report::plan_json(plan) : report::plan_text(plan));
+  say(options.common, fmt::format("plan: {}", (out / (options.no_page ? "plan.json" : "plan.html")).string()));
+}
+
 void diagnose(const DiagnoseCommand& options) {
+  if (options.plan) return plan(options);
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   std::string title = core::read_experiment(folders.front()).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
@@ -48,10 +95,19 @@ void diagnose(const DiagnoseCommand& options) {
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
+  if (!options.twin.empty() && !diagnosis.twin.empty()) base::write_file(options.twin, diagnosis.twin);
 
   print_result(options.common.json ? report::diagnosis_json(diagnosis) : report::diagnosis_text(diagnosis));
   say(options.common, options.no_page ? fmt::format("diagnosis: {}", (out / "diagnosis.json").string())
                                       : fmt::format("report: {}", (out / "report.html").string()));
+  if (options.twin.empty()) return;
+  if (diagnosis.twin.empty()) throw base::NotMet("a table of lines has no motions that a twin could repeat");
+  if (!diagnosis.twin_lacks.empty()) {
+    std::string lacks;
+    for (const std::string& id : diagnosis.twin_lacks) lacks += (lacks.empty() ? "" : ", ") + id;
+    throw base::NotMet(fmt::format("{} is written without {}: a scenario cannot express it", options.twin, lacks));
+  }
+  say(options.common, fmt::format("twin: {}", options.twin));
 }
 
 }  // namespace
@@ -68,6 +124,16 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->required();
   command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")
       ->type_name("EFFECT");
+  command
+      ->add_option(
+          "--twin", options->twin,
+          "Write the fitted motions, with the effect that is named, as a scenario for simulate, render, validate")
+      ->type_name("SCENARIO.toml");
+  command->add_flag("--plan", options->plan,
+                    "Record nothing and judge nothing: say which effects these motions could show and tell apart; "
+                    "EXPERIMENT may be a scenario file");
+  command->add_option("--noise-m", options->noise_m,
+                      "With --plan and a scenario: standard deviation of a position's noise in metres");
   command->add_flag("--no-page", options->no_page, "Write diagnosis.json only, no report.html");
   add_common_options(*command, options->common, "glidelab-out/diagnose-<name of the first folder>",
                      "Accepted as by every command; a diagnosis draws no random numbers");

@@ -91,7 +91,9 @@ struct Diagnosis {
   std::string summary;  ///< a paragraph in plain words
   Isolability isolability;
   std::vector<ResidualCurve> residuals;
-  std::vector<std::string> notes;  ///< limits that a reader should know
+  std::vector<std::string> notes;       ///< limits that a reader should know
+  std::string twin;                     ///< the fitted motions as a scenario file; empty for a table of lines
+  std::vector<std::string> twin_lacks;  ///< named effects that a scenario cannot express
 };
 
 }  // namespace glidelab::diagnose

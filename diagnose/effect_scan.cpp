@@ -33,7 +33,7 @@ Range range_of_x(const TrackSet& set) {
   return range;
 }
 
-std::vector<double> shapes_of(const TrackSet& set, const EffectInfo& effect) {
+std::vector<double> second_parameters(const TrackSet& set, const EffectInfo& effect) {
   std::vector<double> shapes;
   if (effect.id == "damping_gradient") {
     return set.groups.size() > 1 ? std::vector<double>{0.0, 1.0} : std::vector<double>{0.0};
@@ -52,18 +52,13 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
   EffectScan scan;
   scan.effect = effect;
-  std::vector<std::vector<double>> shapes = {{}};
-  if (info.search == Search::shape) {
-    shapes.clear();
-    for (const double shape : shapes_of(space.set(), info)) shapes.push_back({shape});
-  }
   std::vector<double> logs;
   double best = -1.0;
-  for (const std::vector<double>& shape : shapes) {
+  for (const std::vector<double>& shape : effect_shapes(space.set(), effect)) {
     ScoreColumn column = space.of_effect(effect, shape);
-    const double square = space.dot(column, column);
-    const double z_most = info.parameters[0].high * std::sqrt(std::max(0.0, square));
-    if (!std::isfinite(square) || z_most < kSeen || square < kNumerical * column.rest.squaredNorm()) {
+    const double square = seen_square(space, column);
+    const double z_most = info.parameters[0].high * std::sqrt(square);
+    if (z_most < kSeen) {
       logs.push_back(0.0);  // says nothing
       continue;
     }
@@ -252,6 +247,20 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
 }
 
 }  // namespace
+
+std::vector<std::vector<double>> effect_shapes(const TrackSet& set, std::size_t effect) {
+  const EffectInfo& info = effect_list()[effect];
+  if (info.search != Search::shape) return {{}};
+  std::vector<std::vector<double>> shapes;
+  for (const double second : second_parameters(set, info)) shapes.push_back({second});
+  return shapes;
+}
+
+double seen_square(const ScoreSpace& space, const ScoreColumn& column) {
+  const double square = space.dot(column, column);
+  const bool derived = std::isfinite(square) && square >= kNumerical * column.rest.squaredNorm();
+  return derived ? std::max(0.0, square) : 0.0;
+}
 
 EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
   switch (effect_list()[effect].search) {

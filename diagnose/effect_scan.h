@@ -23,6 +23,12 @@ struct EffectScan {
   ScoreColumn direction;                 ///< what it changes, at its best shape
 };
 
+/// Values of the second parameter that are tried (one empty list for an effect without one).
+std::vector<std::vector<double>> effect_shapes(const TrackSet& set, std::size_t effect);
+
+/// Square of what is left of a column, over the noise; 0 where that is no more than its own rounding.
+double seen_square(const ScoreSpace& space, const ScoreColumn& column);
+
 /// Of an effect that acts through the trajectory (not Search::frames, Search::noise).
 EffectScan scan_effect(const ScoreSpace& space, std::size_t effect);
 

@@ -65,7 +65,7 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
     const double c = at.global[static_cast<Eigen::Index>(g)];
     for (std::size_t p = 0; p < shared.size(); ++p) {
       if (globals[g].kind == Global::Kind::mode) shared[p] += c * data.shared_m[globals[g].index][p];
-      if (globals[g].kind == Global::Kind::scale) shared[p] += c * data.scale_sd * data.x_m[p];
+      if (globals[g].kind == Global::Kind::scale) shared[p] += c * data.scale_sd * base.x_m[p];
     }
   }
   std::vector<double> weight(data.t_s.size());
@@ -99,7 +99,7 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
       for (Eigen::Index p = 0; p < n; ++p) {
         const auto q = static_cast<std::size_t>(p);
         of.global(p, column) = weight[q] * (globals[g].kind == Global::Kind::mode ? data.shared_m[globals[g].index][q]
-                                                                                  : data.scale_sd * data.x_m[q]);
+                                                                                  : data.scale_sd * base.x_m[q]);
       }
       continue;
     }

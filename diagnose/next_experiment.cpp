@@ -65,6 +65,7 @@ double decides(const TrackSet& set, const MotionFit& a, const MotionFit& b, cons
   motion.group = candidate.group;
   motion.mass = one.masses.size() - 1;
   motion.sd_m = set.motions.front().sd_m;
+  motion.scale_sd = set.motions.front().scale_sd;
   const double span = set.motions.front().t_s.back() - set.motions.front().t_s.front();
   const auto frames = static_cast<std::size_t>(std::clamp(span * candidate.rate_hz, 20.0, 2000.0));
   for (std::size_t k = 0; k < frames; ++k) motion.t_s.push_back(static_cast<double>(k) / candidate.rate_hz);

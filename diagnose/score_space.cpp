@@ -214,6 +214,7 @@ SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen:
     if (eigen.values[j] > kUnseen * largest) result.free_gain += 0.5 * along[j] * along[j] / eigen.values[j];
   }
   result.log_evidence = log_mean(logs);
+  result.tau = std::sqrt(best_tau2);
   Eigen::VectorXd shrink(n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const bool seen = eigen.values[j] >= kUnseen * largest;

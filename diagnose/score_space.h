@@ -72,6 +72,7 @@ struct SpreadEvidence {
   double log_evidence = 0.0;
   double gain = 0.0;           ///< log likelihood gained at the best tau
   double free_gain = 0.0;      ///< with sizes as the data have them, tau infinite
+  double tau = 0.0;            ///< the best
   Eigen::VectorXd mean;        ///< sizes at the best tau
   Eigen::MatrixXd covariance;  ///< of them
 };

@@ -46,6 +46,12 @@ struct Normal {
   Eigen::VectorXd scores;
 };
 
+Eigen::MatrixXd rests_of(const std::vector<ScoreColumn>& columns) {
+  Eigen::MatrixXd rests(columns.front().rest.size(), std::ssize(columns));
+  for (std::size_t c = 0; c < columns.size(); ++c) rests.col(static_cast<Eigen::Index>(c)) = columns[c].rest;
+  return rests;
+}
+
 Normal normal_of(const ScoreSpace& space, const std::vector<ScoreColumn>& columns) {
   const auto n = static_cast<Eigen::Index>(columns.size());
   Normal normal{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
@@ -59,10 +65,14 @@ Normal normal_of(const ScoreSpace& space, const std::vector<ScoreColumn>& column
   return normal;
 }
 
-UnnamedFamily solve(const Normal& normal, UnnamedFamily family, SpreadEvidence& evidence) {
+UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
+                    SpreadEvidence& evidence) {
+  const Normal normal = normal_of(space, columns);
   evidence = normal.products.allFinite() ? log_spread_evidence(normal.products, normal.scores) : SpreadEvidence{};
   family.log_evidence = evidence.log_evidence;
   family.gain = evidence.gain;
+  family.columns = rests_of(columns);
+  family.tau = evidence.tau;
   return family;
 }
 
@@ -102,13 +112,15 @@ void draw(const Grid& grid, const SpreadEvidence& evidence, UnnamedFamily& famil
 
 /// One bump alone, or one step (all bumps from some place on), wherever it explains most: the evidence is averaged over
 /// the places. What acts at one place only is paid for once, and not for all the places where nothing is.
-UnnamedFamily one_place(const Normal& normal, const Grid& grid, bool step, UnnamedFamily family) {
+UnnamedFamily one_place(const Normal& normal, const std::vector<ScoreColumn>& columns, const Grid& grid, bool step,
+                        UnnamedFamily family) {
   const Eigen::Index n = normal.scores.size();
   if (!normal.products.allFinite()) return family;
   const double largest = normal.products.diagonal().maxCoeff();
   std::vector<double> logs;
   SpreadEvidence best;
   best.gain = -1.0;
+  Eigen::Index best_from = 0;
   for (Eigen::Index from = step ? 1 : 0; from < n; ++from) {
     const Eigen::Index many = step ? n - from : 1;
     const double square = normal.products.block(from, from, many, many).sum();
@@ -125,10 +137,16 @@ UnnamedFamily one_place(const Normal& normal, const Grid& grid, bool step, Unnam
     best.mean.segment(from, many).setConstant(score / square);
     best.covariance = Eigen::MatrixXd::Zero(n, n);
     best.covariance.block(from, from, many, many).setConstant(1.0 / square);
+    best_from = from;
   }
   if (logs.empty() || best.gain < 0.0) return family;
   family.log_evidence = log_mean(logs);
   family.gain = best.gain;
+  family.columns = Eigen::MatrixXd::Zero(columns.front().rest.size(), 1);
+  for (Eigen::Index c = best_from; c < (step ? n : best_from + 1); ++c) {
+    family.columns.col(0) += columns[static_cast<std::size_t>(c)].rest;
+  }
+  family.tau = std::numeric_limits<double>::infinity();
   draw(grid, best, family);
   return family;
 }
@@ -138,10 +156,10 @@ void add_shapes(const ScoreSpace& space, const std::vector<ScoreColumn>& columns
                 const UnnamedFamily& family, std::vector<UnnamedFamily>& families) {
   const Normal normal = normal_of(space, columns);
   SpreadEvidence evidence;
-  families.push_back(solve(normal, family, evidence));
+  families.push_back(solve(space, columns, family, evidence));
   draw(grid, evidence, families.back());
-  families.push_back(one_place(normal, grid, false, family));
-  families.push_back(one_place(normal, grid, true, family));
+  families.push_back(one_place(normal, columns, grid, false, family));
+  families.push_back(one_place(normal, columns, grid, true, family));
 }
 
 struct Ranges {
@@ -236,10 +254,12 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
       columns.push_back(space.project(changes));
     }
     SpreadEvidence evidence;
-    const UnnamedFamily one = solve(normal_of(space, columns), family, evidence);
+    const UnnamedFamily one = solve(space, columns, family, evidence);
     logs.push_back(one.log_evidence);
     if (one.gain <= family.gain) continue;
     family.gain = one.gain;
+    family.columns = one.columns;
+    family.tau = one.tau;
     family.at.clear();
     family.size.clear();
     family.sd.clear();
@@ -278,7 +298,7 @@ UnnamedFamily own_family(const ScoreSpace& space) {
     }
   }
   SpreadEvidence evidence;
-  return solve(normal_of(space, columns), family, evidence);
+  return solve(space, columns, family, evidence);
 }
 
 /// A force of one kind whose size differs between members (masses, set-ups, motions).
@@ -298,7 +318,7 @@ UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable
     columns.push_back(space.of_force(forces, 1e-4));
   }
   SpreadEvidence evidence;
-  family = solve(normal_of(space, columns), family, evidence);
+  family = solve(space, columns, family, evidence);
   for (std::size_t m = 0; m < members && evidence.mean.size() > 0; ++m) {
     const auto e = static_cast<Eigen::Index>(m);
     family.at.push_back(variable == "mass_kg" ? set.masses[m].mass_kg : static_cast<double>(m));
@@ -343,7 +363,30 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
     families.push_back(member_family(space, "clip", "force", &TrackedMotion::clip, set.clips.size(), 0));
     families.push_back(member_family(space, "clip", "viscous drag", &TrackedMotion::clip, set.clips.size(), 1));
   }
+  const auto likeliest = std::max_element(families.begin(), families.end(),
+                                          [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+  for (auto family = families.begin(); family != families.end(); ++family) {
+    if (family != likeliest) family->columns.resize(0, 0);
+  }
   return families;
+}
+
+MotionFit with_unnamed(const MotionFit& fit, const UnnamedFamily& family) {
+  MotionFit with = fit;
+  const Eigen::Index before = fit.at.global.size(), more = family.columns.cols();
+  with.at.global.conservativeResize(before + more);
+  with.at.global.tail(more).setZero();
+  Eigen::Index from = 0;
+  for (FitMotion& motion : with.motions) {
+    const Eigen::Index n = motion.residual.size();
+    motion.global.conservativeResize(Eigen::NoChange, before + more);
+    motion.global.rightCols(more) = family.columns.middleRows(from, n);
+    from += n;
+  }
+  for (Eigen::Index b = 0; b < more && std::isfinite(family.tau); ++b) {
+    with.statements.push_back({static_cast<std::size_t>(before + b), 0.0, family.tau, "", false});
+  }
+  return with;
 }
 
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families) {

@@ -28,10 +28,16 @@ struct UnnamedFamily {
   std::vector<double> at, size, sd;  ///< the unnamed function over its variable
   std::vector<std::string> names;    ///< of members (clips, groups); empty for a variable
   std::vector<UnnamedRegion> regions;
+  Eigen::MatrixXd columns;  ///< of the likeliest family only: its bumps over the noise, own parameters projected out
+  double tau = 0.0;         ///< standard deviation of their sizes
 };
 
 /// All families around a fit. `rate_per_s` bounds how fast the displacement of one clip by itself may change.
 std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
+
+/// The fit with the family's bumps as further parameters, each N(0, tau²): in its linear neighbourhood, for
+/// held_out_gap(). The family must have its columns.
+MotionFit with_unnamed(const MotionFit& fit, const UnnamedFamily& family);
 
 /// Their joint evidence, each family as likely beforehand as another.
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families);

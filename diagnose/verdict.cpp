@@ -8,6 +8,7 @@
 
 #include "diagnose/held_out.h"
 #include "diagnose/next_experiment.h"
+#include "diagnose/twin.h"
 #include "diagnose/verdict_words.h"
 
 namespace glidelab::diagnose {
@@ -274,9 +275,26 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison) {
       diagnosis.stage = stage_of(beside_named ? comparison.unnamed_left : comparison.unnamed);
     }
   }
-  diagnosis.gap = gap_of(set, nominal, *fit, diagnosis);
+  const MotionFit* gap_fit = fit;
+  MotionFit with;
+  if (diagnosis.verdict == "unknown" && set.clips.size() > 1) {
+    // The likeliest function without a name stands in for what is missing.
+    const auto& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
+    const auto family = std::max_element(families.begin(), families.end(),
+                                         [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+    const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.left_fit)] : nominal;
+    if (family != families.end() && family->columns.size() > 0) {
+      with = with_unnamed(beside, *family);
+      gap_fit = &with;
+    }
+  }
+  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis);
   diagnosis.residuals = residuals_of(set, nominal, *fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
+  const bool named_fit = diagnosis.verdict == "effect" && best != nullptr;
+  Twin twin = twin_of(set, *fit, named_fit ? best->effects : std::vector<std::size_t>{}, comparison);
+  diagnosis.twin = std::move(twin.toml);
+  diagnosis.twin_lacks = std::move(twin.lacks);
   diagnosis.next_experiment = next_experiment(set, comparison, diagnosis);
   diagnosis.summary = summary_of(diagnosis);
   return diagnosis;

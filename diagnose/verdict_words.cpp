@@ -43,6 +43,11 @@ std::string gap_words(const Diagnosis& diagnosis) {
     text += fmt::format("; with {} in the model it is {} times (1 is the floor)",
                         diagnosis.effects.size() > 1 ? "these effects" : "this effect", times(gap.after));
   }
+  if (diagnosis.verdict == "unknown" && gap.shrink && !diagnosis.regions.empty() &&
+      diagnosis.regions.front().clip.empty()) {
+    text += fmt::format("; with a free curve for it, learnt from the other clips, it is {} times (1 is the floor)",
+                        times(gap.after));
+  }
   return text + ".";
 }
 

@@ -35,7 +35,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"report",
      {"base", "core/results.h", "core/preview.h", "core/camera_measurement.h", "validate/comparison.h",
       "validate/sweep_summary.h", "validate/requirement.h", "validate/law_study.h", "validate/coverage.h",
-      "validate/blind_score.h", "diagnose/diagnosis.h"}},  // the result types
+      "validate/blind_score.h", "diagnose/diagnosis.h", "diagnose/plan.h"}},  // the result types
     {"app", {"base", "core", "sim", "render", "diagnose", "validate", "report"}},
 };
 

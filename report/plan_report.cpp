@@ -1,0 +1,90 @@
+#include "report/plan_report.h"
+
+#include <fmt/format.h>
+
+#include "report/diagnosis_plots.h"
+#include "report/html.h"
+#include "report/json_numbers.h"
+#include "report/number_text.h"
+#include "report/text_table.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string joined(const std::vector<std::string>& ids) {
+  std::string text;
+  for (const std::string& id : ids) text += (text.empty() ? "" : ", ") + id;
+  return text.empty() ? "–" : text;
+}
+
+std::string seen_text(const diagnose::PlannedEffect& effect) {
+  if (!effect.seen) return "not seen";
+  return fmt::format("{} {}", effect.key, number_text(effect.seen_from, 2));
+}
+
+std::string lead(const diagnose::Plan& plan) {
+  std::size_t seen = 0, alone = 0;
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    seen += effect.seen ? 1 : 0;
+    alone += effect.seen && effect.alike.empty() ? 1 : 0;
+  }
+  return fmt::format(
+      "{} clips, {} positions, {} µm of noise. Of {} effects that push or displace in one way, {} can be seen in these "
+      "motions at all, and {} of those can be told from every other one.",
+      plan.clips, plan.points, number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
+}
+
+constexpr const char* kMethod =
+    "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
+    "adjust "
+    "(K, µ, inclinations, starts) has been adjusted. Two are alike where the angle between what they then do is below "
+    "18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven times and outliers have no single "
+    "direction "
+    "and are not in the table.";
+
+}  // namespace
+
+std::string plan_json(const diagnose::Plan& plan) {
+  Json document;
+  document["format"] = 1;
+  document["clips"] = plan.clips;
+  document["points"] = plan.points;
+  put(document, "noise_m", plan.noise_m);
+  document["effects"] = Json::array();
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    Json one{{"id", effect.id}, {"parameter", effect.key}, {"seen", effect.seen}};
+    if (effect.seen) put(one, "seen_from", effect.seen_from);
+    one["alike"] = effect.alike;
+    document["effects"].push_back(std::move(one));
+  }
+  document["isolability"] = {{"effects", plan.isolability.ids}, {"cosine", plan.isolability.cosine}};
+  document["notes"] = plan.notes;
+  return json_text(document);
+}
+
+std::string plan_text(const diagnose::Plan& plan) {
+  std::vector<std::vector<std::string>> rows = {{"effect", "seen from", "not to be told from"}};
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    rows.push_back({effect.id, seen_text(effect), joined(effect.alike)});
+  }
+  std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
+  for (const std::string& note : plan.notes) text += "\n" + note + "\n";
+  return text;
+}
+
+std::string plan_page(const std::string& title, const diagnose::Plan& plan) {
+  std::string body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">What this experiment will be able to tell apart.</p>\n"
+      "<p>{}</p>\n",
+      escape(title), escape(lead(plan)));
+  for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    table.row({escape(effect.id), escape(effect.words), escape(seen_text(effect)), escape(joined(effect.alike))});
+  }
+  body +=
+      table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);
+  return page(title, body);
+}
+
+}  // namespace glidelab::report
