@@ -68,6 +68,7 @@ void add_blind(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "blind", "Make experiments whose cause is withheld, diagnose each in another process, and score the diagnoses");
   command->add_option("--cases", options->blind.cases, "How many; run again with more, it goes on where it stopped")
+      ->check(CLI::Range(std::size_t{1}, validate::kMostBlindCases))
       ->required();
   command
       ->add_option("--only", options->blind.only, "Every case has this effect (default: nothing, one, two, unlisted)")

@@ -18,7 +18,7 @@ struct PlannedEffect {
   std::string id;
   std::string words;
   std::string key;                 ///< of its size, with the unit
-  double seen_from = 0.0;          ///< size of four standard deviations
+  double seen_from = 0.0;          ///< size of four standard deviations; of n and s what they are off 1
   bool seen = false;               ///< the largest size that is considered makes as much
   std::vector<std::string> alike;  ///< those whose cosine with it is kAlike or more
 };

@@ -126,7 +126,7 @@ Plot reliability_plot(const validate::BlindScore& score) {
                          Binomial::find_upper_bound_on_p(n, yes, 0.025)});
   }
   const std::string script = std::string(kFrame) +
-                             "unset offsets\nset xrange [0:1.03]\nset yrange [0:1.03]\nset key bottom right inside\n"
+                             "unset offsets\nset xrange [0:1.03]\nset yrange [0:1.03]\n"
                              "set xlabel 'probability that was stated'\nset ylabel 'share that was right'\n"
                              "plot x with lines lw 1.5 lc rgb '#9a9a9a' title 'as stated', "
                              "$bins using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.5 lc rgb '#0072b2' title 'cases'\n";
@@ -140,10 +140,11 @@ Plot reliability_plot(const validate::BlindScore& score) {
 
 Plot methods_plot(const validate::BlindScore& score) {
   std::vector<PlotData> data;
-  std::string script = std::string(kFrame) +
-                       "unset offsets\nset style fill solid 0.85 noborder\nset boxwidth 0.19\nset yrange [0:105]\n"
-                       "set xrange [0.4:5.6]\nset ylabel 'right  (%)'\nset key outside top left vertical maxrows 4\n"
-                       "set xtics ('none' 1, 'moderate' 2, 'strong' 3, 'two' 4, 'outside' 5)\nplot ";
+  std::string script =
+      std::string(kFrame) +
+      "unset offsets\nset style fill solid 0.85 noborder\nset boxwidth 0.19\nset yrange [0:105]\n"
+      "set xrange [0.4:5.6]\nset ylabel 'right  (%)'\nset key outside top center horizontal maxcols 2 samplen 1\n"
+      "set xtics ('none' 1, 'moderate' 2, 'strong' 3, 'two' 4, 'outside' 5)\nplot ";
   for (std::size_t m = 0; m < score.methods.size(); ++m) {
     const auto& method = score.methods[m];
     PlotData rows{fmt::format("m{}", m), {}};
@@ -269,15 +270,13 @@ std::string blind_page(const BlindRun& run) {
       "model with the diagnosis; each was diagnosed by another process that was given the experiment folder "
       "only.</p>\n",
       run.outcomes.size(), run.seed);
-  HtmlTable targets({"what", "found", "wanted", ""});
+  HtmlTable targets({"what", "found", "wanted"});
   for (const Target& target : targets_of(score)) {
-    targets.row({escape(target.what), percent(target.share), target_text(target),
-                 target.share.of == 0 ? ""
-                 : met(target)        ? "met"
-                                      : "missed"});
+    const std::string how = target.share.of == 0 ? "" : met(target) ? ": met" : ": missed";
+    targets.row({escape(target.what), percent(target.share), target_text(target) + how});
   }
-  targets.row({"expected calibration error", number_text(score.calibration_error, 2), "below 0.05",
-               score.calibration_error < 0.05 ? "met" : "missed"});
+  targets.row({"expected calibration error", number_text(score.calibration_error, 2),
+               score.calibration_error < 0.05 ? "below 0.05: met" : "below 0.05: missed"});
   body += targets.str();
   if (score.failed > 0) {
     body += fmt::format("<p class=\"note\">{} cases could not be diagnosed; they count as wrong.</p>\n", score.failed);

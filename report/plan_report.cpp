@@ -19,7 +19,10 @@ std::string joined(const std::vector<std::string>& ids) {
 
 std::string seen_text(const diagnose::PlannedEffect& effect) {
   if (!effect.seen) return "not seen";
-  return fmt::format("{} {}", effect.key, number_text(effect.seen_from, 2));
+  const std::string size = number_text(effect.seen_from, 2);
+  if (effect.key == "v_c_m_s") return fmt::format("{} up to {}", effect.key, size);  // the larger, the less there is
+  if (effect.key == "n" || effect.key == "s") return fmt::format("{} off 1 by {}", effect.key, size);
+  return fmt::format("{} {}", effect.key, size);
 }
 
 std::string lead(const diagnose::Plan& plan) {
@@ -78,9 +81,9 @@ std::string plan_page(const std::string& title, const diagnose::Plan& plan) {
       "<p>{}</p>\n",
       escape(title), escape(lead(plan)));
   for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
-  HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
+  HtmlTable table({"effect", "seen from", "not to be told from"}, 3);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    table.row({escape(effect.id), escape(effect.words), escape(seen_text(effect)), escape(joined(effect.alike))});
+    table.row({escape(effect.id), escape(seen_text(effect)), escape(joined(effect.alike))});
   }
   body +=
       table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);

@@ -17,12 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostCases = 100000;
-
 void check(const BlindOptions& options) {
-  if (options.cases < 1 || options.cases > kMostCases) {
+  if (options.cases < 1 || options.cases > kMostBlindCases) {
     throw base::InputError(
-        base::Issue{"", 0, "--cases", fmt::format("{}", options.cases), fmt::format("1 to {}", kMostCases)});
+        base::Issue{"", 0, "--cases", fmt::format("{}", options.cases), fmt::format("1 to {}", kMostBlindCases)});
   }
   if (options.only.empty()) return;
   std::string known;
@@ -70,6 +68,10 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
   const bool leaves_out = options.leave_out && one.kind == BlindKind::single;
   const fs::path without = diagnosis / "left-out";
   const bool done = fs::exists(truth) && (fs::exists(diagnosis / "diagnosis.json") || fs::exists(failure_file));
+  if (done && base::read_file(truth) != blind_truth_json(one)) {
+    throw base::InputError(base::Issue{truth.string(), 0, "", "a case of another version of this program",
+                                       "an empty folder, or the version that made it"});
+  }
   if (!done) {
     fs::remove_all(folder);
     fs::remove_all(diagnosis);

@@ -20,6 +20,8 @@
 
 namespace glidelab::validate {
 
+inline constexpr std::size_t kMostBlindCases = 100000;
+
 struct BlindOptions {
   std::uint64_t seed = 1;
   std::size_t cases = 0;

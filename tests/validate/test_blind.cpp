@@ -125,6 +125,8 @@ TEST_CASE("a truth is written after its diagnosis, a second run goes on, and ano
   const auto more = validate::run_blind(options, temp / "out", diagnoser);
   CHECK(calls == 4);
   CHECK(more[1].verdict.verdict == "failed");
+  base::write_file(temp / "out" / "truth" / "0002.json", "{}\n");
+  CHECK_THROWS_AS(validate::run_blind(options, temp / "out", diagnoser), base::InputError);
   options.seed = 10;
   CHECK_THROWS_AS(validate::run_blind(options, temp / "out", diagnoser), base::InputError);
   options.seed = 9;
