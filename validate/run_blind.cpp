@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "base/staged_output.h"
-#include "core/parallel.h"
 #include "validate/blind_effects.h"
 
 namespace glidelab::validate {
@@ -107,7 +107,7 @@ std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path&
   check_same_run(options, out);
   std::vector<BlindOutcome> outcomes(options.cases);
   std::atomic<std::size_t> done{0};
-  core::for_each_parallel(options.cases, options.jobs, [&](std::size_t i) {
+  base::for_each_parallel(options.cases, options.jobs, [&](std::size_t i) {
     progress("diagnosing blind cases", static_cast<double>(done) / static_cast<double>(options.cases));
     outcomes[i] = run_case(options, out, i, diagnose);
     ++done;
