@@ -18,7 +18,9 @@
 namespace glidelab::render {
 
 enum class Codec { ffv1, raw, png, mjpeg, h264 };
-inline bool lossy(Codec codec) { return codec == Codec::mjpeg || codec == Codec::h264; }
+inline bool lossy(Codec codec) {
+  return codec == Codec::mjpeg || codec == Codec::h264;
+}
 enum class Container { mkv, avi, mp4, folder };
 
 /// How much a lossy codec may leave out.
