@@ -255,10 +255,10 @@ ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const 
     input.law_m_s2 = law;
     input.shared_m = track.shared_m;
     if (clip.rounding_m) {
-      clip.segments.clear();  // their covariance would be wrong, and with it their weights
       clip.notes.push_back(fmt::format(
           "positions are rounded to {:.3g} m and often repeat: the error of that lasts over frames, and generalised "
-          "lines, which weigh points by the covariance of their noise, are not fitted; use phase-diagram or trajectory",
+          "lines, which weigh points by the covariance of their noise, are not fitted; the ordinary ones stand in "
+          "their place",
           *clip.rounding_m));
     } else {
       generalise_lines(motion, free, input, clip);
