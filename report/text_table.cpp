@@ -94,8 +94,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
       notes += fmt::format("{:.6g} kg, {:.4g}°: {}\n", c.mass_kg, c.incline_deg, printable(note));
     }
   }
-  if (rows.size() > 1) text += "\n" + text_table(rows, 3);
-  if (!notes.empty()) text += "\n" + notes;
+  if (rows.size() > 1) text.append("\n").append(text_table(rows, 3));
+  if (!notes.empty()) text.append("\n").append(notes);
   return text;
 }
 
