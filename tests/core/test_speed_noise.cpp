@@ -80,8 +80,8 @@ TEST_CASE("a recording that is rounded coarsely keeps its ordinary lines, and sa
   how.noise_m = 1e-4;
   how.rounding_m = 0.01;
   const auto setup = tests::clip_setup(Launched::up, 2.0);
-  const ClipResult rounded =
-      analyze_motion(setup, tests::film(motion, how), MotionOptions{.lines = LineMethod::generalised});
+  const ClipResult rounded = analyze_motion(setup, tests::film(motion, how),
+                                            MotionOptions{.bandwidth_s = {}, .lines = LineMethod::generalised});
   REQUIRE(rounded.rounding_m);
   CHECK(std::abs(*rounded.rounding_m - 0.01) < 1e-12);  // a difference of two sums of 1e-16
   CHECK(rounded.segments.size() == 2);                  // the ordinary lines
