@@ -5,7 +5,6 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-#include "base/errors.h"
 #include "core/pose_elimination.h"
 
 namespace glidelab::core {
@@ -21,9 +20,9 @@ struct Fit {
   double rms_px = 0.0;
 };
 
-/// `guess`: a camera to begin with; nothing: OpenCV's own guess.
-Fit run_opencv(const std::vector<const BoardView*>& views, cv::Size size, double square_m, int fixed_terms,
-               const CameraModel* guess) {
+/// Nothing where it finds no camera. `guess`: a camera to begin with; nothing: OpenCV's own guess.
+std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Size size, double square_m,
+                              int fixed_terms, const CameraModel* guess) {
   std::vector<std::vector<cv::Point3d>> objects;
   std::vector<std::vector<cv::Point2d>> images;
   for (const BoardView* view : views) {
@@ -48,10 +47,8 @@ Fit run_opencv(const std::vector<const BoardView*>& views, cv::Size size, double
   try {
     fit.rms_px = cv::fisheye::calibrate(objects, images, size, matrix, distortion, fit.turns, fit.shifts, flags,
                                         cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12));
-  } catch (const cv::Exception& exception) {
-    throw base::InputError(base::Issue{views.front()->file.parent_path().string(), 0, "calibration.views",
-                                       fmt::format("views that give no fisheye camera ({})", exception.err),
-                                       "views of the pattern from different sides"});
+  } catch (const cv::Exception&) {  // how OpenCV says that it found none
+    return std::nullopt;
   }
   fit.camera.lens = LensKind::fisheye;
   fit.camera.size = size;
@@ -135,22 +132,28 @@ std::vector<double> view_errors_px(const Fit& fit, const std::vector<const Board
 
 }  // namespace
 
-Calibration calibrate_fisheye(const BoardViews& boards, double square_m) {
+std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m) {
   std::vector<const BoardView*> views = checked_views(boards);
   const auto fit_of = [&](const std::vector<const BoardView*>& some, const CameraModel* guess) {
     return run_opencv(some, boards.picture_size, square_m, 0, guess);
   };
   // From OpenCV's own guess a tilted board near the picture's edge may end in a false pose; the camera of the others
   // puts it right.
+  const std::optional<Fit> first = fit_of(views, nullptr);
+  if (!first) return std::nullopt;
   std::vector<std::string> unused;
-  const Fit first = fit_of(views, nullptr);
-  const CameraModel guess =
-      fit_of(without_outliers(views, view_errors_px(first, views, square_m), unused), nullptr).camera;
-  const Fit all = fit_of(views, &guess);
+  const std::optional<Fit> most =
+      fit_of(without_outliers(views, view_errors_px(*first, views, square_m), unused), nullptr);
+  if (!most) return std::nullopt;
+  const CameraModel& guess = most->camera;
+  const std::optional<Fit> all = fit_of(views, &guess);
+  if (!all) return std::nullopt;
   std::vector<std::string> notes;
-  views = without_outliers(views, view_errors_px(all, views, square_m), notes);
+  views = without_outliers(views, view_errors_px(*all, views, square_m), notes);
   for (int fixed = 0;; ++fixed) {
-    const Fit fit = run_opencv(views, boards.picture_size, square_m, fixed, &guess);
+    const std::optional<Fit> found = run_opencv(views, boards.picture_size, square_m, fixed, &guess);
+    if (!found) return std::nullopt;
+    const Fit& fit = *found;
     const int free_terms = kTerms - fixed;
     std::vector<ViewDerivatives> derivatives;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -177,13 +180,19 @@ Calibration calibrate_fisheye(const BoardViews& boards, double square_m) {
 
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m) {
   Calibration found = calibrate_camera(boards, square_m);
-  if (found.noise.correlated_px <= std::max(2.0 * kLeastCorrelatedPx, 0.5 * found.noise.white_px)) return found;
-  Calibration fisheye = calibrate_fisheye(boards, square_m);
-  if (fisheye.rms_px > kMuchLess * found.rms_px) return found;
-  fisheye.notes.push_back(fmt::format(
+  const CameraModel& camera = found.camera;
+  constexpr double kWide = 0.8;  // focal lengths
+  const bool wide = std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy) > kWide;
+  const bool follows = found.noise.correlated_px <= std::max(2.0 * kLeastCorrelatedPx, 0.5 * found.noise.white_px);
+  if (!wide && follows) return found;
+  std::optional<Calibration> fisheye = calibrate_fisheye(boards, square_m);
+  if (!fisheye || fisheye->views_used < found.views_used) return found;
+  const double coordinates = 2.0 * static_cast<double>(found.views_used * boards.views.front().corners.points.size());
+  if (coordinates * 2.0 * std::log(found.rms_px / fisheye->rms_px) < kDecisive) return found;
+  fisheye->notes.push_back(fmt::format(
       "the lens is taken as a fisheye (equidistant): that leaves {:.2g} px of the corners, Brown-Conrady {:.2g} px",
-      fisheye.rms_px, found.rms_px));
-  return fisheye;
+      fisheye->rms_px, found.rms_px));
+  return std::move(*fisheye);
 }
 
 }  // namespace glidelab::core

@@ -5,17 +5,21 @@
 /// fixed to zero and the rest fitted again, up to the first that is not.
 #pragma once
 
+#include <optional>
+
 #include "core/calibrate.h"
 
 namespace glidelab::core {
 
-/// As calibrate_camera (calibrate.h), covariance rows fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. InputError
-/// where no such camera fits.
-Calibration calibrate_fisheye(const BoardViews& boards, double square_m);
+/// As calibrate_camera (calibrate.h), covariance rows fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing where
+/// OpenCV finds no such camera.
+std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
 
-/// Brown-Conrady, and a fisheye instead where neighbouring corners show that Brown-Conrady does not follow the lens and
-/// a fisheye leaves less than kMuchLess of its residuals (both have as many terms).
-inline constexpr double kMuchLess = 0.8;
+/// Brown-Conrady, or a fisheye where that explains the corners decisively better: n log(rms² / rms²) > kDecisive over n
+/// coordinates (twice the logarithm of the likelihoods' ratio; both have as many terms, and neighbouring corners, some
+/// ten together, err alike). A fisheye is tried where the picture's corner is more than 0.8 focal lengths off the axis,
+/// or neighbouring corners show that Brown-Conrady does not follow the lens.
+inline constexpr double kDecisive = 100.0;
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m);
 
 }  // namespace glidelab::core
