@@ -152,7 +152,7 @@ void experiments_in_memory(benchmark::State& state) {
     for (std::int64_t copy = 0; copy < state.range(0); ++copy) {
       for (sim::MotionSetup motion : once) {
         motion.duration_s = 2.0;
-        motion.name += "-" + std::to_string(copy);
+        motion.name.append("-").append(std::to_string(copy));
         configuration.motions.push_back(motion);
       }
     }
