@@ -44,7 +44,7 @@ double deviations(const diagnose::TrajectoryFit& fit, Eigen::Index i) {
 
 }  // namespace
 
-TEST_CASE("planted outliers pull the plain fit; the robust one leaves them out and finds the law") {
+TEST_CASE("planted outliers pull the plain fit, and the robust one leaves them out and finds the law") {
   std::mt19937 random(11);
   auto blocks = up_and_down(random);
   std::size_t planted = 0;

@@ -89,7 +89,9 @@ TEST_CASE("a clock that runs fast, and frames that are dropped and duplicated, a
 
 TEST_CASE("both estimators recover the truth of made tracks, and the whole motion's sd is near the least there is") {
   const MadeTracks clean = make_tracks(paper(), 1);
-  const double sd = 2e-5;
+  // So much that the clock's 20 ppm, which every stated sd holds and no bound does, are little beside it: 40 ppm of
+  // 4.3 degrees are 0.00017 degrees, and this noise leaves alpha ten times as uncertain.
+  const double sd = 2e-4;
   const core::AnalysisResults lines = analyze_tracks(with_noise(clean, sd, 11), std::nullopt, 2);
   const core::AnalysisResults whole = diagnose::with_trajectory_fits(lines);
   const auto bounds = least_sds(clean.truth, std::vector<double>(clean.tracks.size(), sd), clean.gravity_m_s2);
