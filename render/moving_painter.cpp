@@ -28,10 +28,10 @@ void polygon_row(const Polygon& polygon, std::uint8_t crossing, double shift, co
     if ((crossing >> e & 1u) == 0) continue;
     lines[line_count++] = polygon.edges[e].fixed + shift * polygon.edges[e].moving;
   }
+  std::array<PixelLine, 4> through;  // one for all pixels: to clear it is a quarter of the work
   for (int i = 0; i < count; ++i) {
     const auto ray = [&](int k) { return static_cast<double>(rays.x_y_dxdu_dxdv[4 * i + k]); };
     const auto slope = [&](int k) { return static_cast<double>(rays.dydu_dydv[2 * i + k]); };
-    std::array<PixelLine, 4> through;
     std::size_t through_count = 0;
     bool outside = false;
     for (std::size_t e = 0; e < line_count && !outside; ++e) {
