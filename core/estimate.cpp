@@ -5,11 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "core/quantile.h"
+
 namespace glidelab::core {
 
 double student_t975(double degrees) {
   assert(degrees >= 1.0);
-  constexpr double z = 1.959963984540054;  // normal quantile
+  constexpr double z = kNormal95;
   if (!std::isfinite(degrees)) return z;
   // Quantile p = 0.975 in closed form at 1 and 2 degrees (tan(pi (p - 1/2)); sqrt 2 (2p-1) / sqrt(4p(1-p)) · …);
   // between 1 and 3 the logarithm is interpolated.

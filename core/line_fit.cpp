@@ -8,11 +8,10 @@
 #include <limits>
 
 #include "core/estimate.h"
+#include "core/quantile.h"
 
 namespace glidelab::core {
 namespace {
-
-constexpr double kSignificant = 1.959963984540054;  // two-sided 95 %
 
 Eigen::Matrix2d normal_matrix(const std::vector<double>& v_m_s) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
@@ -256,10 +255,10 @@ Quantity limit_velocity(const std::vector<LineFit>& lines) {
   const auto found = std::find_if(lines.begin(), lines.end(), [](const LineFit& line) { return line.direction > 0; });
   if (found == lines.end()) return undetermined("no line for v > 0");
   const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
-  if (k - kSignificant * found->k_over_m_1_s.sd <= 0.0) {
+  if (k - kNormal95 * found->k_over_m_1_s.sd <= 0.0) {
     return undetermined("K/m for v > 0 is not above zero by more than its uncertainty");
   }
-  if (a0 - kSignificant * found->a0_m_s2.sd <= 0.0) {
+  if (a0 - kNormal95 * found->a0_m_s2.sd <= 0.0) {
     return undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
   }
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;

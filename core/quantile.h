@@ -1,4 +1,4 @@
-/// Quantiles of some numbers, and the time step of a series.
+/// Quantiles of the normal distribution and of some numbers, and the time step of a series.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,9 @@
 #include <vector>
 
 namespace glidelab::core {
+
+/// Standard deviations to either side that hold 95 % of a normal distribution: the quantile of 0.975.
+inline constexpr double kNormal95 = 1.959963984540054;
 
 /// The value below which the given part of the numbers lies (the lower of two neighbours); 0 where there are none.
 inline double quantile(std::vector<double> values, double part) {

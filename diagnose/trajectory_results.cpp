@@ -7,12 +7,12 @@
 #include <numbers>
 
 #include "core/estimate.h"
+#include "core/quantile.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
-constexpr double kSignificant = 1.959963984540054;  // two-sided 95 %
 
 core::Estimate estimate_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient) {
   double variance = gradient.dot(fit.covariance * gradient);
@@ -24,10 +24,10 @@ core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k,
                               const Eigen::VectorXd& by_a0) {
   if (fit.direction < 0) return core::undetermined("no motion with v > 0");
   const core::Estimate intercept = estimate_of(fit, a0, by_a0);
-  if (k.value - kSignificant * k.sd <= 0.0) {
+  if (k.value - core::kNormal95 * k.sd <= 0.0) {
     return core::undetermined("K/m is not above zero by more than its uncertainty");
   }
-  if (a0 - kSignificant * intercept.sd <= 0.0) {
+  if (a0 - core::kNormal95 * intercept.sd <= 0.0) {
     return core::undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
   }
   Eigen::VectorXd gradient = by_a0 / k.value;

@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "base/staged_output.h"
+#include "core/quantile.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/comparison.h"
 #include "validate/cramer_rao.h"
@@ -22,8 +23,6 @@ namespace {
 using boost::math::cdf;
 using boost::math::complement;
 using boost::math::quantile;
-
-constexpr double kWide95 = 1.959963984540054;
 
 /// One-sided p that the mean now is no larger, by Welch's t test. Each side: mean, standard deviation, number.
 struct Side {
@@ -82,7 +81,7 @@ std::vector<ErrorRecord> records_of(const std::vector<std::vector<QuantityCompar
     for (const auto& run : runs) {
       const QuantityComparison& q = run.at(i);
       if (!q.error) continue;
-      if (q.sd && std::abs(*q.error) <= kWide95 * *q.sd) ++record.covered;
+      if (q.sd && std::abs(*q.error) <= core::kNormal95 * *q.sd) ++record.covered;
       errors.push_back(*q.error);
       square += *q.error * *q.error;
     }

@@ -11,12 +11,12 @@
 
 #include "base/errors.h"
 #include "core/local_cubic.h"
+#include "core/quantile.h"
 
 namespace glidelab::validate {
 namespace {
 
 constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
-constexpr double kNormal95 = 1.959963984540054;
 
 struct Line {
   double k = 0.0, a0 = 0.0;
@@ -58,7 +58,7 @@ std::optional<Line> line_of(const std::vector<core::ClipResult>& all, const std:
 
 core::Quantity interval(double value, double variance) {
   const double sd = std::sqrt(variance);
-  return {core::Estimate{value, sd, value - kNormal95 * sd, value + kNormal95 * sd}, {}};
+  return {core::Estimate{value, sd, value - core::kNormal95 * sd, value + core::kNormal95 * sd}, {}};
 }
 
 core::Quantity nothing(const char* why) {

@@ -19,7 +19,6 @@
 namespace glidelab::validate {
 
 inline constexpr double kClear = 4.0;
-inline constexpr double kWide95 = 1.959963984540054;  ///< standard deviations to either side that hold 95 %
 
 struct Target {
   enum class Measure { sd, error95, bias };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/quantile.h"
 #include "validate/camera_noise.h"
 #include "validate/cramer_rao.h"
 
@@ -48,7 +49,7 @@ std::vector<TargetResult> bounds(const MadeTracks& made, const std::vector<doubl
       const std::optional<double> sd = bound_of(least, targets[t].quantity);
       if (!sd) continue;
       const double factor = targets[t].measure == Target::Measure::sd        ? 1.0
-                            : targets[t].measure == Target::Measure::error95 ? kWide95
+                            : targets[t].measure == Target::Measure::error95 ? core::kNormal95
                                                                              : 0.0;
       results[t].bound = std::max(results[t].bound.value_or(0.0), factor * *sd);
     }

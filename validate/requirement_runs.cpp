@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "core/quantile.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/comparison.h"
 #include "validate/made_tracks.h"
@@ -47,7 +48,7 @@ double measure_of(const Errors& errors, Target::Measure measure) {
   }
   const double n = static_cast<double>(errors.errors.size());
   if (measure == Target::Measure::bias) return std::abs(sum / n);
-  return std::sqrt(square / n) * (measure == Target::Measure::error95 ? kWide95 : 1.0);
+  return std::sqrt(square / n) * (measure == Target::Measure::error95 ? core::kNormal95 : 1.0);
 }
 
 /// The better estimator's measure, each judged by its worst configuration.
