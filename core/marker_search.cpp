@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 namespace glidelab::core {
@@ -57,23 +60,87 @@ double noise_of(const cv::Mat& values) {
   return static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
 }
 
-/// Means of boxes from an integral picture.
-class Boxes {
- public:
-  explicit Boxes(const cv::Mat& values) { cv::integral(values, sums_, CV_64F); }
-  /// The box's part inside the picture; nothing where that is empty.
-  std::optional<double> mean(int u, int v, int half) const {
-    const int left = std::max(u - half, 0), right = std::min(u + half + 1, sums_.cols - 1);
-    const int top = std::max(v - half, 0), bottom = std::min(v + half + 1, sums_.rows - 1);
-    if (left >= right || top >= bottom) return std::nullopt;
-    const double sum = sums_.at<double>(bottom, right) - sums_.at<double>(top, right) - sums_.at<double>(bottom, left) +
-                       sums_.at<double>(top, left);
-    return sum / static_cast<double>((right - left) * (bottom - top));
+/// Means over squares of 2 half + 1 pixels, of what of them lies inside the picture, for centres in the picture and up
+/// to `beyond` pixels outside; NaN where nothing does. Sums are those of an integral picture.
+cv::Mat square_means(const cv::Mat& sums, int half, int beyond) {
+  const int width = sums.cols - 1, height = sums.rows - 1;
+  cv::Mat means(height + 2 * beyond, width + 2 * beyond, CV_64F);
+  std::vector<int> left(static_cast<std::size_t>(means.cols)), right(left.size());
+  for (int u = 0; u < means.cols; ++u) {
+    left[static_cast<std::size_t>(u)] = std::max(u - beyond - half, 0);
+    right[static_cast<std::size_t>(u)] = std::min(u - beyond + half + 1, width);
   }
+  for (int v = 0; v < means.rows; ++v) {
+    const int top = std::max(v - beyond - half, 0), bottom = std::min(v - beyond + half + 1, height);
+    auto* row = means.ptr<double>(v);
+    if (top >= bottom) {
+      std::fill(row, row + means.cols, std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    const auto* upper = sums.ptr<double>(top);
+    const auto* lower = sums.ptr<double>(bottom);
+    for (int u = 0; u < means.cols; ++u) {
+      const int l = left[static_cast<std::size_t>(u)], r = right[static_cast<std::size_t>(u)];
+      const double area = static_cast<double>(r - l) * (bottom - top);
+      row[u] = l < r ? (lower[r] - upper[r] - lower[l] + upper[l]) / area : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return means;
+}
 
- private:
-  cv::Mat sums_;
-};
+/// Half the sides of the squares within and around a disc.
+int inner_half(double radius) {
+  return std::max(0, static_cast<int>(std::lround(0.6 * radius - 0.3)));
+}
+int outer_half(double radius) {
+  return std::max(0, static_cast<int>(std::lround(0.4 * radius - 0.3)));
+}
+
+/// By how much a disc of this radius stands out of its surroundings at each pixel of the region: its inner mean above
+/// the brightest but `bright_neighbours` of the means at eight places around it; 0 where more of these are as bright.
+cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, double radius, int bright_neighbours) {
+  const int outer = outer_half(radius);
+  const int away = static_cast<int>(std::lround(radius + 1.0 + outer + 0.3 * radius));
+  const int diagonal = static_cast<int>(std::lround(away * 0.75));
+  const std::array<cv::Point, 8> around{
+      cv::Point(away, 0),  cv::Point(diagonal, diagonal),   cv::Point(0, away),  cv::Point(-diagonal, diagonal),
+      cv::Point(-away, 0), cv::Point(-diagonal, -diagonal), cv::Point(0, -away), cv::Point(diagonal, -diagonal)};
+  cv::Mat sums;
+  cv::integral(values, sums, CV_64F);
+  const cv::Mat in = square_means(sums, inner_half(radius), 0);
+  const cv::Mat out = square_means(sums, outer, away);
+  std::array<std::ptrdiff_t, 8> step{};
+  for (std::size_t k = 0; k < around.size(); ++k) {
+    step[k] = static_cast<std::ptrdiff_t>(around[k].y) * out.cols + around[k].x;
+  }
+  cv::Mat response(values.size(), CV_32F, cv::Scalar(0.0F));
+  std::vector<std::int64_t> brighter(static_cast<std::size_t>(values.cols));
+  for (int v = region.y; v < region.br().y; ++v) {
+    const auto* inside = in.ptr<double>(v);
+    const double* beside = out.ptr<double>(v + away) + away;
+    auto* result = response.ptr<float>(v);
+    std::ranges::fill(brighter, 0);
+    for (const std::ptrdiff_t k : step) {
+      for (int u = region.x; u < region.br().x; ++u) {
+        brighter[static_cast<std::size_t>(u)] += beside[u + k] >= inside[u] ? 1 : 0;
+      }
+    }
+    for (int u = region.x; u < region.br().x; ++u) {
+      if (brighter[static_cast<std::size_t>(u)] > bright_neighbours) continue;
+      std::array<double, 8> means{};
+      std::size_t count = 0;
+      for (const std::ptrdiff_t k : step) {
+        const double mean = beside[u + k];
+        if (!std::isnan(mean)) means[count++] = mean;
+      }
+      if (static_cast<int>(count) <= bright_neighbours) continue;
+      const auto rank = means.begin() + bright_neighbours;
+      std::nth_element(means.begin(), rank, means.begin() + static_cast<std::ptrdiff_t>(count), std::greater<>());
+      result[u] = static_cast<float>(inside[u] - *rank);
+    }
+  }
+  return response;
+}
 
 }  // namespace
 
@@ -122,42 +189,20 @@ std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
     return cv::Point2d((u + 0.5) * fu - 0.5 + taken.x, (v + 0.5) * fv - 0.5 + taken.y);
   };
 
-  const int inner = std::max(0, static_cast<int>(std::lround(0.6 * radius - 0.3)));
-  const int outer = std::max(0, static_cast<int>(std::lround(0.4 * radius - 0.3)));
-  const int away = static_cast<int>(std::lround(radius + 1.0 + outer + 0.3 * radius));
-  const int diagonal = static_cast<int>(std::lround(away * 0.75));
-  const std::array<cv::Point, 8> around{
-      cv::Point(away, 0),  cv::Point(diagonal, diagonal),   cv::Point(0, away),  cv::Point(-diagonal, diagonal),
-      cv::Point(-away, 0), cv::Point(-diagonal, -diagonal), cv::Point(0, -away), cv::Point(diagonal, -diagonal)};
-  const Boxes boxes(small);
-  cv::Mat response(small.size(), CV_32F, cv::Scalar(0.0F));
-  const auto rank = static_cast<std::ptrdiff_t>(search.bright_neighbours);
-  for (int v = 0; v < small.rows; ++v) {
-    for (int u = 0; u < small.cols; ++u) {
-      const cv::Point2d place = to_picture(u, v);
-      if (place.x < region.x - 0.5 || place.y < region.y - 0.5 || place.x >= region.br().x ||
-          place.y >= region.br().y) {
-        continue;
-      }
-      const double inside = *boxes.mean(u, v, inner);
-      std::array<double, 8> means{};
-      std::size_t count = 0;
-      int brighter = 0;
-      for (const cv::Point off : around) {
-        const auto mean = boxes.mean(u + off.x, v + off.y, outer);
-        if (!mean) continue;
-        if (*mean >= inside && ++brighter > search.bright_neighbours) break;
-        means[count++] = *mean;
-      }
-      if (brighter > search.bright_neighbours || static_cast<int>(count) <= search.bright_neighbours) continue;
-      std::nth_element(means.begin(), means.begin() + rank, means.begin() + static_cast<std::ptrdiff_t>(count),
-                       std::greater<>());
-      response.at<float>(v, u) = static_cast<float>(inside - means[static_cast<std::size_t>(rank)]);
-    }
-  }
+  // Of the shrunk picture, what lies in the region.
+  const auto first_in = [](int count, double from, const auto& place) {
+    int k = 0;
+    while (k < count && place(k) < from) ++k;
+    return k;
+  };
+  const auto column = [&](int u) { return to_picture(u, 0).x; };
+  const auto line = [&](int v) { return to_picture(0, v).y; };
+  const cv::Point begin(first_in(small.cols, region.x - 0.5, column), first_in(small.rows, region.y - 0.5, line));
+  const cv::Point end(first_in(small.cols, region.br().x, column), first_in(small.rows, region.br().y, line));
+  const cv::Mat response = response_of(small, cv::Rect(begin, end), radius, search.bright_neighbours);
   double best = 0.0;
   cv::minMaxLoc(response, nullptr, &best);
-  const double noise = noise_of(small) / (2.0 * std::min(inner, outer) + 1.0);
+  const double noise = noise_of(small) / (2.0 * std::min(inner_half(radius), outer_half(radius)) + 1.0);
   const double least =
       std::max({kNoiseSigmas * std::sqrt(2.0) * noise, kShareOfBest * best, search.least_contrast, 1e-6});
 

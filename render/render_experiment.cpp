@@ -35,8 +35,13 @@ constexpr std::uint32_t kFirstStill = 0x40000000u;
 // How long a still takes beside a frame, for the progress.
 constexpr double kStillWork = 30.0;
 
+/// What stands behind the pattern and the plumb line.
+StaticScene stills_background(const Scenario& scenario) {
+  return empty_track(scenario, scenario.motion.configurations.front().body.incline_rad);
+}
+
 std::vector<Still> stills_of(const Scenario& scenario, std::uint64_t seed) {
-  const StaticScene track = empty_track(scenario, scenario.motion.configurations.front().body.incline_rad);
+  const StaticScene track = stills_background(scenario);
   std::vector<Still> stills;
   for (const Chessboard& board : calibration_boards(scenario, seed)) {
     stills.push_back({view_name(stills.size()), track});
@@ -204,6 +209,8 @@ void render_stills(const Scenario& scenario, const RenderOptions& options, const
   const RayTable rays = make_ray_table(scenario.camera, scenario.vignetting);
   const double white_e = electrons_of_white(scenario);
   const std::vector<Still> stills = stills_of(scenario, options.seed);
+  const FloatPicture empty = StaticPainter(scenario.camera, rays, scenario.focus).paint(stills_background(scenario));
+  still_done();
   const Readout readout(with_8_bits(scenario.sensor), scenario.recording.exposure_s, options.seed,
                         scenario.camera.width_px, scenario.camera.height_px);
   base::in_parallel(options.jobs, stills.size(), [&](const auto& next) {
@@ -211,7 +218,7 @@ void render_stills(const Scenario& scenario, const RenderOptions& options, const
     const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
     std::vector<std::uint8_t> codes(static_cast<std::size_t>(all.width) * all.height);
     for (std::size_t i = next(); i < stills.size(); i = next()) {
-      const FloatPicture expected_e = scaled(painter.paint(stills[i].scene), white_e);
+      const FloatPicture expected_e = scaled(painter.paint_before(empty, stills[i].scene), white_e);
       readout.read(expected_e, kFirstStill + static_cast<std::uint32_t>(i), 0, all, std::span<std::uint8_t>(codes));
       write_png(experiment_dir / stills[i].name, cv::Mat(all.height, all.width, CV_8U, codes.data()));
       still_done();
@@ -228,7 +235,8 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   make_folder(truth_dir);
 
   const ClipCount count = count_clips(scenario, options.seed);
-  const std::size_t pictures = stills_of(scenario, options.seed).size() + (options.clips ? count_set_ups(scenario) : 0);
+  const std::size_t pictures =
+      1 + stills_of(scenario, options.seed).size() + (options.clips ? count_set_ups(scenario) : 0);
   const double all_work =
       kStillWork * static_cast<double>(pictures) + (options.clips ? static_cast<double>(count.frames) : 0.0);
   std::atomic<double> done{0.0};

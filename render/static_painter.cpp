@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -15,32 +16,78 @@
 namespace glidelab::render {
 namespace {
 
-/// The pixels that a box may touch; the whole picture where part of it has no picture of its own.
-PixelRect pixels_of(const Camera& camera, const StaticBox& box) {
-  const PixelRect all{0, 0, camera.width_px, camera.height_px};
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(box.turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
-  constexpr int kSteps = 16;  // the lens bends long edges
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int i = 0; i <= kSteps; ++i) {
+/// The rectangle that holds the pictures of points, with a margin; the whole picture where one of them has none.
+class Extent {
+ public:
+  explicit Extent(const Camera& camera) : camera_(camera) {}
+
+  void add(const Eigen::Vector3d& p_W) {
+    const auto pixel = project(camera_, p_W);
+    if (!pixel) {
+      is_whole_ = true;
+      return;
+    }
+    low_ = low_.cwiseMin(*pixel);
+    high_ = high_.cwiseMax(*pixel);
+  }
+  /// The lens bends long edges: points all along.
+  void add_edge(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) {
+    constexpr int kSteps = 16;
+    for (int i = 0; i <= kSteps; ++i) add(from_W + (to_W - from_W) * (static_cast<double>(i) / kSteps));
+  }
+  void add(const StaticBox& box) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(box.turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    for (int axis = 0; axis < 3; ++axis) {
       for (int corner = 0; corner < 4; ++corner) {
         Eigen::Vector3d sign;
-        sign[axis] = -1.0 + 2.0 * i / kSteps;
+        sign[axis] = -1.0;
         sign[(axis + 1) % 3] = (corner & 1) != 0 ? 1.0 : -1.0;
         sign[(axis + 2) % 3] = (corner & 2) != 0 ? 1.0 : -1.0;
-        const auto pixel = project(camera, box.center_W + turn * sign.cwiseProduct(box.half_m));
-        if (!pixel) return all;
-        left = std::min(left, pixel->x());
-        right = std::max(right, pixel->x());
-        top = std::min(top, pixel->y());
-        bottom = std::max(bottom, pixel->y());
+        const Eigen::Vector3d from = box.center_W + turn * sign.cwiseProduct(box.half_m);
+        sign[axis] = 1.0;
+        add_edge(from, box.center_W + turn * sign.cwiseProduct(box.half_m));
       }
     }
   }
-  const auto clamped = [](double value) { return static_cast<int>(std::floor(std::clamp(value, -1e6, 1e6))); };
-  constexpr double kMargin = 6.0;
-  return intersection(all, {clamped(left - kMargin), clamped(top - kMargin), clamped(right - left + 2 * kMargin) + 1,
-                            clamped(bottom - top + 2 * kMargin) + 1});
+  PixelRect rect(int more_px = 0) const {
+    const PixelRect all{0, 0, camera_.width_px, camera_.height_px};
+    if (is_whole_) return all;
+    const auto whole = [](double value) { return static_cast<int>(std::floor(std::clamp(value, -1e6, 1e6))); };
+    const double margin = 6.0 + more_px;
+    return intersection(
+        all, {whole(low_.x() - margin), whole(low_.y() - margin), whole(high_.x() - low_.x() + 2 * margin) + 1,
+              whole(high_.y() - low_.y() + 2 * margin) + 1});
+  }
+
+ private:
+  const Camera& camera_;
+  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(1e9), high_ = Eigen::Vector2d::Constant(-1e9);
+  bool is_whole_ = false;
+};
+
+PixelRect pixels_of(const Camera& camera, const StaticBox& box) {
+  Extent extent(camera);
+  extent.add(box);
+  return extent.rect();
+}
+
+/// The pixels that the board and the plumb line may change, with `reach_px` around.
+PixelRect pixels_before(const Camera& camera, const StaticScene& scene, int reach_px) {
+  Extent extent(camera);
+  if (scene.board) {
+    const std::vector<Eigen::Vector3d> outline = outline_of(*scene.board);
+    for (std::size_t i = 0; i < outline.size(); ++i) extent.add_edge(outline[i], outline[(i + 1) % outline.size()]);
+  }
+  if (scene.plumb) {
+    const PlumbLine& plumb = *scene.plumb;
+    const double radius = 0.5 * std::max(plumb.diameter_m, plumb.bob_diameter_m);
+    const double bottom = plumb.bottom_y_m - plumb.bob_diameter_m;
+    StaticBox around;
+    around.center_W = {plumb.x_m, 0.5 * (plumb.top_y_m + bottom), plumb.z_m};
+    around.half_m = {radius, 0.5 * (plumb.top_y_m - bottom), radius};
+    extent.add(around);
+  }
+  return extent.rect(reach_px);
 }
 
 Eigen::Vector4f center_of(const StaticBox& box) {
@@ -106,7 +153,7 @@ int StaticPainter::blur_reach_px(const StaticScene& scene) const {
   return static_cast<int>(std::ceil(std::min(disc + 3.0 * core_sigma_px(*focus_, camera_), 500.0)));
 }
 
-FloatPicture StaticPainter::paint(const StaticScene& scene) {
+void StaticPainter::show(const StaticScene& scene) {
   if (scene.boxes.size() > kMostBoxes) throw std::logic_error("too many boxes for the shader");
   canvas_.use(0);
   canvas_.set(
@@ -146,50 +193,51 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
   } else {
     canvas_.set("bob", Eigen::Vector3f(Eigen::Vector3f::Zero()));
   }
-  std::vector<Eigen::Vector4f> centers, halves, caster_centers, caster_halves;
-  std::vector<PixelRect> rects;
+  std::vector<Eigen::Vector4f> caster_centers, caster_halves;
   for (const StaticBox& box : scene.boxes) {
-    centers.push_back(center_of(box));
-    halves.push_back(half_of(box));
-    rects.push_back(pixels_of(camera_, box));
     if (!box.casts_shadow) continue;
-    caster_centers.push_back(centers.back());
-    caster_halves.push_back(halves.back());
+    caster_centers.push_back(center_of(box));
+    caster_halves.push_back(half_of(box));
   }
   canvas_.set("casters", static_cast<int>(caster_centers.size()));
   canvas_.set_array("caster_center", std::span<const Eigen::Vector4f>(caster_centers));
   canvas_.set_array("caster_half", std::span<const Eigen::Vector4f>(caster_halves));
+}
 
-  const PixelRect all{0, 0, camera_.width_px, camera_.height_px};
-  const auto draw_tiles = [&](const auto& is_wanted) {
-    constexpr int kTile = 64;
-    for (int y = 0; y < all.height; y += kTile) {
-      for (int x = 0; x < all.width; x += kTile) {
-        const PixelRect tile = intersection({x, y, kTile, kTile}, all);
-        if (!is_wanted(tile)) continue;
-        std::vector<Eigen::Vector4f> tile_centers, tile_halves;
-        std::vector<Eigen::Vector2f> tile_looks;
-        for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
-          if (intersection(tile, rects[i]).empty()) continue;
-          tile_centers.push_back(centers[i]);
-          tile_halves.push_back(halves[i]);
-          tile_looks.emplace_back(static_cast<float>(scene.boxes[i].albedo),
-                                  static_cast<float>(scene.boxes[i].surface));
-        }
-        canvas_.set("boxes", static_cast<int>(tile_centers.size()));
-        canvas_.set_array("box_center", std::span<const Eigen::Vector4f>(tile_centers));
-        canvas_.set_array("box_half", std::span<const Eigen::Vector4f>(tile_halves));
-        canvas_.set_array("box_look", std::span<const Eigen::Vector2f>(tile_looks));
-        canvas_.draw(tile);
+void StaticPainter::draw_tiles(const StaticScene& scene, const PixelRect& within,
+                               const std::function<bool(const PixelRect&)>& is_wanted) {
+  std::vector<PixelRect> rects;
+  for (const StaticBox& box : scene.boxes) rects.push_back(pixels_of(camera_, box));
+  constexpr int kTile = 64;
+  for (int y = within.y; y < within.y + within.height; y += kTile) {
+    for (int x = within.x; x < within.x + within.width; x += kTile) {
+      const PixelRect tile = intersection({x, y, kTile, kTile}, within);
+      if (!is_wanted(tile)) continue;
+      std::vector<Eigen::Vector4f> centers, halves;
+      std::vector<Eigen::Vector2f> looks;
+      for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
+        if (intersection(tile, rects[i]).empty()) continue;
+        const StaticBox& box = scene.boxes[i];
+        centers.push_back(center_of(box));
+        halves.push_back(half_of(box));
+        looks.emplace_back(static_cast<float>(box.albedo), static_cast<float>(box.surface));
       }
+      canvas_.set("boxes", static_cast<int>(centers.size()));
+      canvas_.set_array("box_center", std::span<const Eigen::Vector4f>(centers));
+      canvas_.set_array("box_half", std::span<const Eigen::Vector4f>(halves));
+      canvas_.set_array("box_look", std::span<const Eigen::Vector2f>(looks));
+      canvas_.draw(tile);
     }
-  };
-  std::vector<float> values(static_cast<std::size_t>(all.width) * all.height * 2);
+  }
+}
+
+FloatPicture StaticPainter::cast_rays(const StaticScene& scene, const PixelRect& within, int reach_px) {
+  std::vector<float> values(static_cast<std::size_t>(within.width) * within.height * 2);
   canvas_.set("first_pass", 1);
-  draw_tiles([](const PixelRect&) { return true; });
-  canvas_.read(all, values);
-  FloatPicture picture(all.width, all.height);
-  FloatPicture spread(all.width, all.height);
+  draw_tiles(scene, within, [](const PixelRect&) { return true; });
+  canvas_.read(within, values);
+  FloatPicture picture(within.width, within.height);
+  FloatPicture spread(within.width, within.height);
   for (std::size_t i = 0; i < picture.values.size(); ++i) {
     picture.values[i] = values[2 * i];
     spread.values[i] = values[2 * i + 1];
@@ -197,25 +245,55 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
   FloatPicture wanted = wanted_rays(picture, spread);
   if (focus_) {
     // All that a blurred edge may reach.
-    const int reach = blur_reach_px(scene);
-    cv::Mat rays(all.height, all.width, CV_32F, wanted.values.data());
-    cv::dilate(rays, rays, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+    cv::Mat rays(within.height, within.width, CV_32F, wanted.values.data());
+    cv::dilate(rays, rays, cv::Mat::ones(2 * reach_px + 1, 2 * reach_px + 1, CV_8U));
     for (float& count : wanted.values) count = count > 0.0f ? static_cast<float>(kFocusRays) : 0.0f;
   }
-  canvas_.update_texture(wanted_unit_, all.width, all.height, 1, wanted.values);
+  FloatPicture of_all(camera_.width_px, camera_.height_px);
+  for (int y = 0; y < within.height; ++y) {
+    std::ranges::copy(wanted.row(y, 0, within.width), of_all.row(within.y + y, within.x, within.width).begin());
+  }
+  canvas_.update_texture(wanted_unit_, of_all.width, of_all.height, 1, of_all.values);
   canvas_.set("first_pass", 0);
-  draw_tiles([&](const PixelRect& tile) {
+  draw_tiles(scene, within, [&](const PixelRect& tile) {
     for (int y = tile.y; y < tile.y + tile.height; ++y) {
-      const std::span<const float> row = wanted.row(y, tile.x, tile.width);
-      if (*std::max_element(row.begin(), row.end()) > 0.0f) return true;
+      if (std::ranges::max(of_all.row(y, tile.x, tile.width)) > 0.0f) return true;
     }
     return false;
   });
-  canvas_.read(all, values);
+  canvas_.read(within, values);
   for (std::size_t i = 0; i < picture.values.size(); ++i) {
     if (wanted.values[i] > 0.5f) picture.values[i] = values[2 * i];
   }
-  for (std::size_t i = 0; i < gain_.size(); ++i) picture.values[i] *= gain_[i];
+  for (int y = 0; y < (gain_.empty() ? 0 : within.height); ++y) {
+    const std::span<float> row = picture.row(y, 0, within.width);
+    const float* gain = gain_.data() + static_cast<std::size_t>(within.y + y) * camera_.width_px + within.x;
+    for (std::size_t x = 0; x < row.size(); ++x) row[x] *= gain[x];
+  }
+  return picture;
+}
+
+FloatPicture StaticPainter::paint(const StaticScene& scene) {
+  show(scene);
+  return cast_rays(scene, {0, 0, camera_.width_px, camera_.height_px}, focus_ ? blur_reach_px(scene) : 0);
+}
+
+FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const StaticScene& scene) {
+  show(scene);
+  const int reach_px = focus_ ? blur_reach_px(scene) : 0;
+  const PixelRect changed = pixels_before(camera_, scene, reach_px);
+  if (changed.empty()) return empty;
+  // How many rays a pixel gets depends on those around it.
+  const int around = reach_px + 2;
+  const PixelRect drawn =
+      intersection({0, 0, camera_.width_px, camera_.height_px},
+                   {changed.x - around, changed.y - around, changed.width + 2 * around, changed.height + 2 * around});
+  const FloatPicture part = cast_rays(scene, drawn, reach_px);
+  FloatPicture picture = empty;
+  for (int y = changed.y; y < changed.y + changed.height; ++y) {
+    std::ranges::copy(part.row(y - drawn.y, changed.x - drawn.x, changed.width),
+                      picture.row(y, changed.x, changed.width).begin());
+  }
   return picture;
 }
 

@@ -6,6 +6,7 @@
 /// own share of the pixel, so that its edges are exact to about 1e-3 of their contrast.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "render/float_canvas.h"
@@ -24,7 +25,15 @@ class StaticPainter {
   /// Relative radiance, times the table's gain, in the size of the picture.
   FloatPicture paint(const StaticScene& scene);
 
+  /// The same, from `empty`, the picture of the scene without its board and plumb line: only what these may change is
+  /// drawn. (With `focus` the pixels elsewhere have as many rays as `empty` needed.)
+  FloatPicture paint_before(const FloatPicture& empty, const StaticScene& scene);
+
  private:
+  void show(const StaticScene& scene);
+  void draw_tiles(const StaticScene& scene, const PixelRect& within,
+                  const std::function<bool(const PixelRect&)>& is_wanted);
+  FloatPicture cast_rays(const StaticScene& scene, const PixelRect& within, int reach_px);
   int blur_reach_px(const StaticScene& scene) const;
 
   Camera camera_;

@@ -206,3 +206,32 @@ TEST_CASE("The same scene gives the same picture, and what stands nearer hides w
   const Eigen::Vector2d corner = project(camera, scene.board->X_WP * Eigen::Vector3d(-0.055, -0.055, 0.0)).value();
   CHECK(first.at(static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y()))) < 0.1f);
 }
+
+TEST_CASE("A board or a plumb line painted before the empty scene gives the picture painted whole") {
+  const Camera camera = camera_for_tests();
+  const RayTable rays = make_ray_table(camera);
+  StaticScene scene = bare_scene();
+  scene.light_falloff = 0.3;
+  StaticBox track;  // in front of a part of the board, with edges all over the picture
+  track.center_W = {0.0, -0.25, 0.35};
+  track.half_m = {0.9, 0.06, 0.03};
+  track.turn_rad = 0.07;
+  track.surface = Surface::scale_tape;
+  scene.boxes.push_back(track);
+  StaticPainter painter(camera, rays);
+  const FloatPicture empty = painter.paint(scene);
+  SECTION("a board") {
+    scene.board = tilted_board();
+  }
+  SECTION("a board at the picture's corner, part of it outside") {
+    scene.board = tilted_board();
+    scene.board->X_WP.translation() += Eigen::Vector3d(0.5, -0.35, 0.1);
+  }
+  SECTION("a plumb line") {
+    scene.plumb = PlumbLine{};
+    scene.plumb->z_m = 0.2;
+  }
+  const FloatPicture whole = painter.paint(scene);
+  CHECK(painter.paint_before(empty, scene).values == whole.values);
+  CHECK(whole.values != empty.values);
+}
