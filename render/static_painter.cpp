@@ -194,10 +194,21 @@ void StaticPainter::show(const StaticScene& scene) {
     canvas_.set("bob", Eigen::Vector3f(Eigen::Vector3f::Zero()));
   }
   std::vector<Eigen::Vector4f> caster_centers, caster_halves;
+  Eigen::AlignedBox3d casters;
   for (const StaticBox& box : scene.boxes) {
     if (!box.casts_shadow) continue;
     caster_centers.push_back(center_of(box));
     caster_halves.push_back(half_of(box));
+    const double c = std::abs(std::cos(box.turn_rad)), s = std::abs(std::sin(box.turn_rad));
+    const Eigen::Vector3d half = box.half_m;
+    // And a millimetre for single precision.
+    const Eigen::Vector3d reach =
+        Eigen::Vector3d(c * half.x() + s * half.y(), s * half.x() + c * half.y(), half.z()).array() + 1e-3;
+    casters.extend(box.center_W - reach).extend(box.center_W + reach);
+  }
+  if (!casters.isEmpty()) {
+    canvas_.set("casters_low", Eigen::Vector3f(casters.min().cast<float>()));
+    canvas_.set("casters_high", Eigen::Vector3f(casters.max().cast<float>()));
   }
   canvas_.set("casters", static_cast<int>(caster_centers.size()));
   canvas_.set_array("caster_center", std::span<const Eigen::Vector4f>(caster_centers));

@@ -27,6 +27,8 @@ uniform vec4 box_half[kMostBoxes];    // and sin
 uniform vec2 box_look[kMostBoxes];    // albedo, surface
 uniform vec4 caster_center[kMostBoxes];
 uniform vec4 caster_half[kMostBoxes];
+uniform vec3 casters_low;  // all of them lie between these
+uniform vec3 casters_high;
 uniform vec4 thread;       // x, z, top y, bottom y
 uniform vec3 bob;          // thread's radius (0: none), bob's radius, albedo
 uniform int has_board;
@@ -69,6 +71,16 @@ float hit_box(vec3 from, vec3 along, vec4 center, vec4 half_size, out vec3 norma
   float t = max(near.x, max(near.y, near.z));
   normal = t == near.x ? vec3(-sign(d.x), 0, 0) : t == near.y ? vec3(0, -sign(d.y), 0) : vec3(0, 0, -sign(d.z));
   return t < min(far.x, min(far.y, far.z)) ? t : -1.0;
+}
+
+// Whether a ray may meet any caster.
+bool may_meet_casters(vec3 from, vec3 along) {
+  vec3 inverse = 1.0 / (along + vec3(equal(along, vec3(0.0))) * 1e-12);
+  vec3 a = (casters_low - from) * inverse;
+  vec3 b = (casters_high - from) * inverse;
+  vec3 near = min(a, b);
+  vec3 far = max(a, b);
+  return min(far.x, min(far.y, far.z)) >= max(0.0, max(near.x, max(near.y, near.z)));
 }
 
 // Mean of the square wave (+1 on [0, 1), -1 on [1, 2), …) over [x - w/2, x + w/2], w < 1.
@@ -141,7 +153,7 @@ void main() {
     float t = (wall.x - from.z) / d.z;  // the wall is behind everything
     vec3 at = from + t * d;
     vec3 normal = vec3(0, 0, 1);
-    float albedo = wall.y * (0.97 + 0.06 * noise(at.xy * 7.0) + 0.03 * (noise(at.xy * 160.0) - 0.5));
+    float albedo = -1.0;  // the wall's comes last: noise is dear
     int found = -1;
     vec3 found_normal = vec3(0.0);
     for (int k = 0; k < boxes; ++k) {
@@ -218,11 +230,13 @@ void main() {
         albedo = mix(board_albedo.x, board_albedo.y, black);
       }
     }
+    if (albedo < 0.0) albedo = wall.y * (0.97 + 0.06 * noise(at.xy * 7.0) + 0.03 * (noise(at.xy * 160.0) - 0.5));
     // Light: ambient, and a lamp of some width that boxes may hide.
     vec3 lamp = normalize(to_light + 0.10 * (vec3(offset[(i * 37) & 63], offset[(i * 11) & 63].x) - 0.5));
     float seen = max(dot(normal, to_light), 0.0);
     vec3 unused;
-    for (int k = 0; k < casters; ++k) {
+    int tried = may_meet_casters(at + normal * 1e-4, lamp) ? casters : 0;
+    for (int k = 0; k < tried; ++k) {
       if (hit_box(at + normal * 1e-4, lamp, caster_center[k], caster_half[k], unused) > 0.0) seen = 0.0;
     }
     vec2 off = at.xy - light.xy;
