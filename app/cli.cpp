@@ -114,6 +114,8 @@ int run(int argc, char** argv) {
   add_characterize(app, command);
   add_diagnose(app, command);
   add_blind(app, command);
+  add_new(app, command);
+  add_pattern(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

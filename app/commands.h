@@ -20,5 +20,7 @@ void add_laws(CLI::App& app, Command& chosen);
 void add_characterize(CLI::App& app, Command& chosen);
 void add_diagnose(CLI::App& app, Command& chosen);
 void add_blind(CLI::App& app, Command& chosen);
+void add_new(CLI::App& app, Command& chosen);
+void add_pattern(CLI::App& app, Command& chosen);
 
 }  // namespace glidelab::app

@@ -10,8 +10,14 @@ using namespace glidelab;
 
 namespace {
 
-const std::vector<std::string> kCommands = {"simulate", "render", "analyze",      "validate", "coverage", "sweep",
-                                            "require",  "laws",   "characterize", "diagnose", "blind"};
+const std::vector<std::string> kCommands = {"simulate", "render",  "analyze", "validate",     "coverage",
+                                            "sweep",    "require", "laws",    "characterize", "diagnose",
+                                            "blind",    "new",     "pattern"};
+
+/// Commands that make something out of nothing but their options.
+bool takes_an_input(const std::string& command) {
+  return command != "blind" && command != "new" && command != "pattern";
+}
 
 }  // namespace
 
@@ -38,7 +44,7 @@ TEST_CASE("every command's help names the options that every command takes") {
       INFO(option);
       CHECK(result.out.find(option) != std::string::npos);
     }
-    CHECK(result.out.find("glidelab-out/" + command) != std::string::npos);
+    CHECK(result.out.find(command == "new" ? "default: FOLDER" : "glidelab-out/" + command) != std::string::npos);
   }
 }
 
@@ -82,13 +88,13 @@ TEST_CASE("an unknown command is named together with those that exist") {
   const tests::ProcessResult result = tests::glidelab({"guess", "folder"});
   CHECK(result.err.find("unknown command \"guess\"") != std::string::npos);
   CHECK(result.err.find("simulate, render, analyze, validate, coverage, sweep, require, laws, characterize, diagnose, "
-                        "blind") != std::string::npos);
+                        "blind, new, pattern") != std::string::npos);
 }
 
 TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {
   const tests::TempDir temp;
   for (const std::string& command : kCommands) {
-    if (command == "blind") continue;  // it takes none
+    if (!takes_an_input(command)) continue;
     std::vector<std::string> arguments = {command, (temp / "nothing.toml").string()};
     if (command == "coverage") arguments.insert(arguments.end(), {"--noise-m", "1e-5"});
     if (command == "require") arguments.insert(arguments.end(), {"--target", "mu=0.001"});

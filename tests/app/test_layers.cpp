@@ -45,6 +45,7 @@ const std::map<std::string, std::vector<std::string>> kBehindOneFile = {
     {"SUNDIALS", {"sundials/", "cvode/", "cvodes/", "nvector/", "sunmatrix/", "sunlinsol/", "sunnonlinsol/"}},
     {"libav", {"libavcodec/", "libavformat/", "libavutil/", "libswscale/"}},
     {"SQLite", {"sqlite3"}},
+    {"Cairo", {"cairo"}},
 };
 
 std::vector<Source> sources_of_rooms() {

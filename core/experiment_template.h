@@ -1,0 +1,18 @@
+/// The files of a new experiment folder: an experiment.toml that explains every key, and a short README.
+///
+/// The folder's form is a contract with other programs (core/experiment.h reads it). Keys that a first experiment can
+/// do without stand as comments "#key = value"; taking the # away makes each of them count (a test does so one by one).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace glidelab::core {
+
+/// experiment.toml of an experiment with two clips and a chessboard. `name` is the experiment's, any text.
+std::string experiment_template(std::string_view name);
+
+/// README.md: what to record, what goes where, which commands follow.
+std::string experiment_readme(std::string_view name);
+
+}  // namespace glidelab::core
