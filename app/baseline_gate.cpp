@@ -52,7 +52,7 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
   // Other noise than a baseline's of the default seed: with the same one an unchanged analysis would prove nothing.
   options.seed = common.seed.value_or(then ? 2 : 1);
   options.jobs = common.jobs;
-  ProgressDisplay display(common.quiet);
+  ProgressDisplay display(common.quiet, common.verbose);
   const validate::Baseline now =
       validate::measure_baseline(scenario, text, options, validate::analyze_both, display.callback());
   display.clear();

@@ -1,8 +1,11 @@
 #include "app/cli.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -12,10 +15,13 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/program_texts.h"
 #include "base/errors.h"
+#include "base/nearest_word.h"
 
 namespace glidelab::app {
 namespace {
@@ -27,12 +33,19 @@ constexpr int kEnvironmentFailed = 3;
 constexpr int kNotMet = 4;
 constexpr int kInterrupted = 130;  // as a shell says it of SIGINT
 
+/// Colours are for people: on a terminal, and where NO_COLOR (no-color.org) is not set.
+bool in_colour() {
+  const char* const refused = ::getenv("NO_COLOR");
+  return ::isatty(STDERR_FILENO) == 1 && (refused == nullptr || *refused == '\0');
+}
+
 /// One line of standard error for each line of the message.
 int fail(int status, std::string_view message) {
+  const char* const head = in_colour() ? "\033[1;31mglidelab: error:\033[0m" : "glidelab: error:";
   while (!message.empty() && message.back() == '\n') message.remove_suffix(1);
   do {
     const std::size_t newline = message.find('\n');
-    fmt::print(stderr, "glidelab: error: {}\n", message.substr(0, newline));
+    fmt::print(stderr, "{} {}\n", head, message.substr(0, newline));
     message.remove_prefix(newline == std::string_view::npos ? message.size() : newline + 1);
   } while (!message.empty());
   return status;
@@ -72,15 +85,37 @@ int run_command(const Command& command) {
   }
 }
 
-/// CLI11 says of a misspelt command that one is missing; this says which word it was. Empty where that is not the case.
-std::string unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return {};
-  std::string names;
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
+  const std::string nearest = base::nearest_word(word, known);
+  return nearest.empty() ? "" : fmt::format("did you mean \"{}\"? ", nearest);
+}
+
+/// CLI11 says of a misspelt command that one is missing, of a misspelt option that it was not expected; this says which
+/// word it was and which was meant. Empty where it is neither.
+std::string misspelt(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2) return {};
+  std::vector<std::string> names;
+  const CLI::App* chosen = argv[1][0] == '-' ? &app : nullptr;
   for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->get_name() == argv[1]) return {};
-    names += (names.empty() ? "" : ", ") + command->get_name();
+    names.push_back(command->get_name());
+    if (command->get_name() == argv[1]) chosen = command;
   }
-  return fmt::format("unknown command \"{}\"; the commands are {}", argv[1], names);
+  if (chosen == nullptr) {
+    return fmt::format("unknown command \"{}\"; {}the commands are {}", argv[1], did_you_mean(argv[1], names),
+                       fmt::join(names, ", "));
+  }
+  std::vector<std::string> options;
+  for (const CLI::Option* option : chosen->get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string_view(argv[i]).find('='));
+    if (word == "--") break;
+    if (!word.starts_with("--") || std::find(options.begin(), options.end(), word) != options.end()) continue;
+    return fmt::format("unknown option \"{}\"; {}glidelab {}--help lists them", word, did_you_mean(word, options),
+                       chosen == &app ? "" : chosen->get_name() + " ");
+  }
+  return {};
 }
 
 /// OpenCV and FFmpeg write their own remarks about files to standard error; ours name the file and what is wrong.
@@ -99,7 +134,18 @@ int run(int argc, char** argv) {
       "as one analyses a real one, and compares the result with the truth.",
       "glidelab");
   app.set_help_flag("-h,--help", "Show this help");
-  app.set_version_flag("--version", "glidelab " GLIDELAB_VERSION, "Show the version");
+  app.set_version_flag("--version", version_text(), "Show the version, and the libraries it was built with");
+  const auto print_and_leave = [](const std::string& text) {
+    fmt::print("{}", text);
+    throw CLI::Success();
+  };
+  app.add_flag_callback(
+      "--man", [&] { print_and_leave(man_page(app)); }, "Print the manual page (roff)");
+  app.add_option_function<std::string>(
+         "--completion", [&](const std::string& shell) { print_and_leave(completion_script(app, shell)); },
+         "Print what completes commands and options in a shell: bash or zsh")
+      ->type_name("SHELL")
+      ->check(CLI::IsMember({"bash", "zsh"}));
   app.require_subcommand(1);
   app.footer("glidelab COMMAND --help shows the options of a command.");
   Command command;
@@ -121,7 +167,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
-    const std::string unknown = unknown_command(app, argc, argv);
+    const std::string unknown = misspelt(app, argc, argv);
     fail(kWrongCommandLine, unknown.empty() ? error.what() : unknown);
     fmt::print(stderr, "Run glidelab --help for the commands, glidelab COMMAND --help for the options of one.\n");
     return kWrongCommandLine;

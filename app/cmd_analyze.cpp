@@ -81,7 +81,7 @@ void analyze(const AnalyzeOptions& options) {
   check_writable(out);
   base::StagedOutput staged(out);
 
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const base::Progress progress = display.callback();
   core::AnalysisOptions how;
   how.jobs = options.common.jobs;

@@ -42,7 +42,7 @@ void blind(const BlindCommand& options) {
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "blind", "cases");
   check_writable(out);
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   validate::BlindOptions wanted = options.blind;
   wanted.seed = options.common.seed.value_or(1);
   wanted.jobs = options.common.jobs;

@@ -33,7 +33,7 @@ void characterize(const CharacterizeOptions& options) {
   check_writable(out);
   base::StagedOutput staged(out);
 
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const core::CameraMeasurement camera = core::measure_camera(folder, display.callback());
   const std::string json = report::camera_json(camera);
   base::write_file(staged.dir() / "camera.toml", core::camera_toml(camera));

@@ -35,7 +35,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
   const fs::path out = output_folder(options.common, "coverage", options.scenario);
   check_writable(out);
   base::StagedOutput staged(out);
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   validate::CoverageOptions wanted = options.coverage;
   wanted.seed = options.common.seed.value_or(scenario.seed);
   wanted.jobs = options.common.jobs;

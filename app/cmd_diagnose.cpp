@@ -85,7 +85,7 @@ void diagnose(const DiagnoseCommand& options) {
   check_writable(out);
   base::StagedOutput staged(out);
 
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const diagnose::Diagnosis diagnosis =
       diagnose::diagnose(folders, {.without = options.without, .jobs = options.common.jobs}, display.callback());
   base::write_file(staged.dir() / "diagnosis.json", report::diagnosis_json(diagnosis));

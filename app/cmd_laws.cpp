@@ -48,7 +48,7 @@ void laws(const LawsOptions& options) {
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "laws", options.scenarios.front());
   check_writable(out);
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   std::vector<validate::LawStudy> studies;
   for (const fs::path& file : files) studies.push_back(validate::study_law(file));
   base::StagedOutput staged(out);

@@ -34,7 +34,7 @@ void render_command(const RenderCommandOptions& options) {
   base::StagedOutput staged_experiment(out);
   base::StagedOutput staged_truth(truth);
 
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
   const render::RenderSummary summary = render::render_experiment(
       scenario, staged_experiment.dir(), staged_truth.dir(),

@@ -41,7 +41,7 @@ void require_command(const RequireOptions& options) {
   const fs::path out = output_folder(options.common, "require", options.sweep);
   check_writable(out);
   base::StagedOutput staged(out);
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const validate::Requirement requirement = validate::find_requirement(sweep, how, display.callback());
   const std::string json = report::requirement_json(requirement);
   base::write_file(staged.dir() / "require.json", json);

@@ -113,7 +113,7 @@ void simulate_command(const SimulateOptions& options) {
   const fs::path out = output_folder(options.common, "simulate", options.scenario);
   check_writable(out);
   base::StagedOutput staged(out);
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const base::Progress progress = display.callback();
   render::Recording recording = scenario.recording;
   if (options.rate_hz) recording.frame_rate_hz = *options.rate_hz;

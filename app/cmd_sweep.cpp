@@ -106,7 +106,7 @@ void sweep_command(const SweepOptions& options) {
   const std::string name =
       shard.count == 1 ? "sweep.sqlite" : fmt::format("sweep-{}-of-{}.sqlite", shard.index, shard.count);
   validate::SweepDatabase database(out / name, sweep, GLIDELAB_VERSION, shard);
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const base::Progress progress = display.callback();
   for (const std::string& other : options.merge) {
     progress("merging", 0.0);

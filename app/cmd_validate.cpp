@@ -50,7 +50,7 @@ void validate_command(const ValidateOptions& options) {
   fs::create_directory(experiment);
   fs::create_directory(truth);
 
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const base::Progress progress = display.callback();
   validate::ValidationOptions run;
   run.render = {.seed = options.common.seed.value_or(scenario.seed), .jobs = options.common.jobs};

@@ -60,7 +60,8 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
       ->type_name("N")
       ->check(CLI::Range(1, kMostJobs));
   command.add_flag("--json", options.json, "Print the result on standard output as one JSON object");
-  command.add_flag("-q,--quiet", options.quiet, "No progress and no messages but errors");
+  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet, "No progress and no messages but errors");
+  command.add_flag("-v,--verbose", options.verbose, "Say how long each stage took")->excludes(quiet);
 }
 
 fs::path output_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {

@@ -16,9 +16,10 @@ struct CommonOptions {
   int jobs = 1;
   bool json = false;
   bool quiet = false;
+  bool verbose = false;
 };
 
-/// Adds --out, --seed, --jobs, --json and --quiet. `default_out` and `seed_help` complete their help.
+/// Adds --out, --seed, --jobs, --json, --quiet and --verbose. `default_out` and `seed_help` complete their help.
 void add_common_options(CLI::App& command, CommonOptions& options, const std::string& default_out,
                         const std::string& seed_help);
 

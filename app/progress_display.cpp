@@ -34,7 +34,8 @@ int columns() {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+ProgressDisplay::ProgressDisplay(bool quiet, bool verbose)
+    : quiet_(quiet), verbose_(verbose), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 ProgressDisplay::~ProgressDisplay() {
   clear();
@@ -46,10 +47,22 @@ base::Progress ProgressDisplay::callback() {
 
 void ProgressDisplay::clear() {
   const std::lock_guard lock(mutex_);
+  end_stage(Clock::now());
+  erase_bar();
+}
+
+void ProgressDisplay::erase_bar() {
   if (!bar_shown_) return;
   fmt::print(stderr, "\r{:{}}\r", "", columns() - 1);
   std::fflush(stderr);
   bar_shown_ = false;
+}
+
+void ProgressDisplay::end_stage(Clock::time_point now) {
+  if (!verbose_ || stage_.empty()) return;
+  erase_bar();
+  fmt::print(stderr, "{}: took {:.2f} s\n", stage_, std::chrono::duration<double>(now - stage_start_).count());
+  stage_.clear();
 }
 
 void ProgressDisplay::update(std::string_view stage, double fraction) {
@@ -58,6 +71,7 @@ void ProgressDisplay::update(std::string_view stage, double fraction) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   if (stage != stage_) {
+    end_stage(now);
     stage_ = stage;
     fraction_ = 0.0;
     tenths_printed_ = -1;

@@ -1,4 +1,5 @@
-/// How far the work is, on standard error: a bar on a terminal, a line now and then elsewhere, nothing with --quiet.
+/// How far the work is, on standard error: a bar on a terminal, a line now and then elsewhere, nothing with --quiet;
+/// with --verbose also how long each stage took, in a line of its own.
 ///
 /// Also the place where an interrupt ends the work: every call looks at the flag first.
 #pragma once
@@ -14,7 +15,7 @@ namespace glidelab::app {
 
 class ProgressDisplay {
  public:
-  explicit ProgressDisplay(bool quiet);
+  explicit ProgressDisplay(bool quiet, bool verbose = false);
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -30,8 +31,11 @@ class ProgressDisplay {
   void update(std::string_view stage, double fraction);
   void draw_bar(Clock::time_point now);
   void print_line(Clock::time_point now);
+  void end_stage(Clock::time_point now);
+  void erase_bar();
 
   bool quiet_;
+  bool verbose_;
   bool terminal_;
   std::mutex mutex_;
   std::string stage_;

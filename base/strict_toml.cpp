@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include "base/errors.h"
+#include "base/nearest_word.h"
 #include "base/staged_output.h"
 
 namespace glidelab::base {
@@ -61,29 +62,10 @@ std::string show(const toml::node* node) {
   return "a date or time";
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
 std::string list_of_known(std::string_view key, const std::set<std::string, std::less<>>& known) {
-  const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-    return edit_distance(key, a) < edit_distance(key, b);
-  });
-  if (nearest == known.end()) return "no key here";
-  if (edit_distance(key, *nearest) <= std::max<std::size_t>(2, key.size() / 3)) {
-    return fmt::format("a known key; did you mean \"{}\"?", *nearest);
-  }
+  if (known.empty()) return "no key here";
+  const std::string nearest = nearest_word(key, {known.begin(), known.end()});
+  if (!nearest.empty()) return fmt::format("a known key; did you mean \"{}\"?", nearest);
   return fmt::format("one of {}", fmt::join(known, ", "));
 }
 

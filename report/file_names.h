@@ -12,7 +12,7 @@ namespace glidelab::report {
 /// The text with '/', '%' and control characters written as %XX, so that it names one file of a folder.
 std::string file_name_part(std::string_view text);
 
-/// "phase-<clip>.csv" for each clip of the results; where clips of two folders bear one name, the folder's name stands
+/// `phase-<clip>.csv` for each clip of the results; where clips of two folders bear one name, the folder's name stands
 /// before it (and a number behind it where that is the same as well).
 std::vector<std::string> phase_file_names(const core::AnalysisResults& results);
 

@@ -1,6 +1,6 @@
 /// The pieces of a page that needs nothing but itself: style, tables, pictures as data URIs.
 ///
-/// Every text that comes from a file goes through escape(): a clip that is named <script> is text.
+/// Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.
 #pragma once
 
 #include <string>

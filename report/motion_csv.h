@@ -1,4 +1,4 @@
-/// motion-<clip>.csv: the smoothed motion of one clip and its residuals, one row for every frame.
+/// `motion-<clip>.csv`: the smoothed motion of one clip and its residuals, one row for every frame.
 ///
 ///     t_s,measured_x_m,x_m,sd_x_m,residual_x_m,v_m_s,sd_v_m_s,a_m_s2,sd_a_m_s2,line_a_m_s2,residual_a_m_s2,reason
 ///
@@ -18,7 +18,7 @@ namespace glidelab::report {
 /// NumericalError where a smoothed value is not finite.
 std::string motion_csv(const core::ClipResult& clip);
 
-/// "motion-<clip>.csv" for each clip, as phase_file_names() has it.
+/// `motion-<clip>.csv` for each clip, as phase_file_names() has it.
 std::vector<std::string> motion_file_names(const core::AnalysisResults& results);
 
 }  // namespace glidelab::report

@@ -1,4 +1,4 @@
-/// phase-<clip>.csv: the smoothed motion of one clip, one row for each frame that has smoothed values.
+/// `phase-<clip>.csv`: the smoothed motion of one clip, one row for each frame that has smoothed values.
 ///
 ///     t_s,x_m,v_m_s,a_m_s2,used,sd_v_m_s,sd_a_m_s2,measured_x_m,reason
 ///

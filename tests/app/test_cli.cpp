@@ -2,9 +2,11 @@
 #include <regex>
 #include <set>
 
+#include "base/staged_output.h"
 #include "catch.h"
 #include "run_process.h"
 #include "temp_dir.h"
+#include "tiny_scenario.h"
 
 using namespace glidelab;
 
@@ -40,7 +42,8 @@ TEST_CASE("every command's help names the options that every command takes") {
     const tests::ProcessResult result = tests::glidelab({command, "--help"});
     INFO(command);
     CHECK(result.status == 0);
-    for (const char* option : {"--help", "-o,--out DIR", "--seed N", "--jobs N", "--json", "-q,--quiet"}) {
+    for (const char* option :
+         {"--help", "-o,--out DIR", "--seed N", "--jobs N", "--json", "-q,--quiet", "-v,--verbose"}) {
       INFO(option);
       CHECK(result.out.find(option) != std::string::npos);
     }
@@ -106,4 +109,59 @@ TEST_CASE("an input that is not there is status 1 and names the file, whatever t
     CHECK(result.out.empty());
     CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
   }
+}
+
+TEST_CASE("a misspelt command or option is answered with the one that was meant") {
+  CHECK(tests::glidelab({"analyse", "folder"}).err.find("did you mean \"analyze\"?") != std::string::npos);
+  const tests::ProcessResult result = tests::glidelab({"analyze", "folder", "--bandwith", "0.04"});
+  CHECK(result.status == 2);
+  CHECK(result.err.find("unknown option \"--bandwith\"; did you mean \"--bandwidth\"?") != std::string::npos);
+  CHECK(tests::glidelab({"--versoin"}).err.find("did you mean \"--version\"?") != std::string::npos);
+}
+
+TEST_CASE("the version names the libraries that it was built with") {
+  const std::string text = tests::glidelab({"--version"}).out;
+  for (const char* library : {"Eigen 3", "SUNDIALS 6", "OpenCV 4", "SQLite 3", "OSMesa ", "libavcodec "}) {
+    INFO(library);
+    CHECK(text.find(library) != std::string::npos);
+  }
+}
+
+TEST_CASE("the manual page and the completions name every command and its options") {
+  const std::string man = tests::glidelab({"--man"}).out;
+  CHECK(man.starts_with(".TH GLIDELAB 1"));
+  const std::string bash = tests::glidelab({"--completion", "bash"}).out;
+  const std::string zsh = tests::glidelab({"--completion", "zsh"}).out;
+  CHECK(zsh.starts_with("#compdef glidelab"));
+  for (const std::string& command : kCommands) {
+    INFO(command);
+    CHECK(man.find(".SS glidelab " + command) != std::string::npos);
+    CHECK(bash.find("    " + command + ") words=\"") != std::string::npos);
+    CHECK(zsh.find("    '" + command + ":") != std::string::npos);
+  }
+  CHECK(man.find("\\-o, \\-\\-out DIR") != std::string::npos);
+  CHECK(tests::glidelab({"--completion", "fish"}).status == 2);
+}
+
+TEST_CASE("bash completes a command's name, and the options of a command") {
+  const tests::TempDir temp;
+  base::write_file(temp / "glidelab", tests::glidelab({"--completion", "bash"}).out);
+  base::write_file(temp / "ask.sh",
+                   "source ./glidelab\n"
+                   "COMP_WORDS=(glidelab sim) COMP_CWORD=1; _glidelab; echo \"${COMPREPLY[*]}\"\n"
+                   "COMP_WORDS=(glidelab analyze --est) COMP_CWORD=2; _glidelab; echo \"${COMPREPLY[*]}\"\n");
+  const tests::ProcessResult result = tests::run({"bash", "ask.sh"}, temp.path());
+  INFO(result.err);
+  CHECK(result.out == "simulate\n--estimator\n");
+}
+
+TEST_CASE("with --verbose each stage's time is said, and --quiet with it is a contradiction") {
+  CHECK(tests::glidelab({"analyze", "folder", "-v", "-q"}).status == 2);
+  const tests::TempDir temp;
+  base::write_file(temp / "tiny.toml", tests::tiny_scenario());
+  const tests::ProcessResult result = tests::glidelab({"simulate", "tiny.toml", "-v"}, temp.path());
+  INFO(result.err);
+  CHECK(result.status == 0);
+  static const std::regex kTook(R"(simulating: took [0-9]+\.[0-9]{2} s)");
+  CHECK(std::regex_search(result.err, kTook));
 }

@@ -1,0 +1,14 @@
+/// The word that somebody may have meant, by its edit distance (Levenshtein, 1966: letters put in, left out, replaced).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidelab::base {
+
+/// The known word that takes the fewest changes, the first of equals; empty where even that one takes more than two and
+/// more than a third of the word's letters.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace glidelab::base

@@ -1,0 +1,46 @@
+# What `cmake --install` and the Debian package hold: the program with its manual page and completions, the scenarios and
+# the documentation; and the rooms as libraries with their headers, for find_package(glidelab).
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# The manual page and the completions are what the program says of itself.
+set(texts ${CMAKE_BINARY_DIR}/texts)
+add_custom_command(
+  OUTPUT ${texts}/glidelab.1.gz ${texts}/glidelab.bash ${texts}/_glidelab
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${texts}
+  COMMAND $<TARGET_FILE:glidelab> --man > ${texts}/glidelab.1
+  COMMAND gzip -9nf ${texts}/glidelab.1
+  COMMAND $<TARGET_FILE:glidelab> --completion bash > ${texts}/glidelab.bash
+  COMMAND $<TARGET_FILE:glidelab> --completion zsh > ${texts}/_glidelab
+  DEPENDS glidelab
+  VERBATIM)
+add_custom_target(texts ALL DEPENDS ${texts}/glidelab.1.gz ${texts}/glidelab.bash ${texts}/_glidelab)
+
+install(TARGETS glidelab)
+install(FILES ${texts}/glidelab.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${texts}/glidelab.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME glidelab)
+install(FILES ${texts}/_glidelab DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/glidelab)
+install(FILES README.md CHANGELOG.md CONVENTIONS.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/glidelab)
+foreach(room base sim core render diagnose validate report)
+  set_target_properties(glidelab_${room} PROPERTIES EXPORT_NAME ${room})
+  install(TARGETS glidelab_${room} EXPORT glidelab ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/glidelab)
+  install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glidelab FILES_MATCHING PATTERN "*.h")
+endforeach()
+install(EXPORT glidelab NAMESPACE glidelab:: FILE glidelabTargets.cmake DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/glidelabConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/glidelabConfig.cmake ${CMAKE_BINARY_DIR}/glidelabConfigVersion.cmake DESTINATION ${package})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "the Glidelab maintainers <glidelab@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "rehearse and analyse video experiments on friction")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the program links to, with versions
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "gnuplot-nox | gnuplot, fonts-dejavu-core")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+include(CPack)
