@@ -100,7 +100,7 @@ void analyze_clip(benchmark::State& state) {
   setup.incline_rad = 0.07;
   setup.launched = core::Launched::down;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(core::analyze_motion(setup, track, std::nullopt, 9.80665));
+    benchmark::DoNotOptimize(core::analyze_motion(setup, track, core::MotionOptions{}));
   }
   state.SetItemsProcessed(state.iterations() * 341);
 }

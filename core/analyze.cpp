@@ -94,8 +94,8 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   results.clips.resize(setups.size());
   std::atomic<std::size_t> done = 0;
   base::for_each_parallel(setups.size(), options.jobs, [&](std::size_t i) {
-    results.clips[i] =
-        analyze_motion(setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule, options.lines});
+    results.clips[i] = analyze_motion(
+        setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule, options.lines, options.lost_frames});
     results.clips[i].experiment = experiment_of[i]->name;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });

@@ -25,6 +25,7 @@ struct AnalysisOptions {
   FrameOpener open = open_frames;     ///< where the clips' frames come from
   std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: that of bandwidth.h
   LineMethod lines = LineMethod::ordinary;
+  LostFrameTimes lost_frames = LostFrameTimes::put_right;
   BareTrackOptions bare = {};  ///< for inputs that are a track's file
 };
 

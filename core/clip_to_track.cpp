@@ -59,11 +59,6 @@ std::set<std::string> groups_with_pictures(const Experiment& experiment) {
   return names;
 }
 
-// Views differ in sharpness and tilt, and their corners' noise with them: a warning at three times what all views have.
-// Corners are found to hundredths of a pixel, and what they disagree by less than the second figure is small beside it.
-constexpr double kOffPlane = 3.0;
-constexpr double kLeastOffPx = 0.05;
-
 Setting calibrated(const Experiment& experiment, int jobs) {
   const CalibrationSetup& setup = *experiment.calibration;
   std::vector<fs::path> files = setup.views;
@@ -112,17 +107,10 @@ Setting calibrated(const Experiment& experiment, int jobs) {
     const auto views = static_cast<double>(corners.size());
     sum += views * fit.rms_m * fit.rms_m;
     count += views;
-    // Of one coordinate; every view's pose takes its share out of the residuals, in the plane as in the camera's fit.
-    const double expected_px = std::hypot(calibration.noise.white_px, calibration.noise.correlated_px);
     result.plane_rms_px = std::max(result.plane_rms_px, fit.rms_px);
-    result.plane_expected_px = expected_px;
-    if (fit.rms_px > std::max(kLeastOffPx, kOffPlane * expected_px)) {
-      result.notes.push_back(fmt::format(
-          "the plane {} of group {} not agree with the camera: the pattern's corners are {:.2g} px (rms) from where "
-          "the camera of all views and {} plane put them, and {:.2g} px is what the corners' noise explains",
-          corners.size() == 1 ? "view" : "views", "\"" + name + (corners.size() == 1 ? "\" does" : "\" do"), fit.rms_px,
-          corners.size() == 1 ? "a" : "one", expected_px));
-    }
+    result.plane_expected_px = std::hypot(calibration.noise.white_px, calibration.noise.correlated_px);
+    const auto warning = disagreement(fit, corners.size(), calibration.noise, name);
+    if (warning) result.notes.push_back(*warning);
   }
   result.restitution_rms_m = std::sqrt(sum / count);
   setting.calibration = std::move(result);

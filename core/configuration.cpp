@@ -187,19 +187,21 @@ Quantity mean_k(const std::vector<LineFit>& lines) {
   }
   double variance = 1.0 / weights;
   for (const double shift : shared) variance += std::pow(shift / weights, 2);
-  return determined(estimate(value / weights, std::sqrt(variance), degrees));
+  return determined(estimate(value / weights, std::sqrt(variance), degrees), std::sqrt(1.0 / weights));
 }
 
 /// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+).
-Estimate of_intercepts(double value, double by_minus, double by_plus, const LineFit& minus, const LineFit& plus) {
-  double variance = by_minus * by_minus * minus.parts.var_a0 + by_plus * by_plus * plus.parts.var_a0;
+Quantity of_intercepts(double value, double by_minus, double by_plus, const LineFit& minus, const LineFit& plus) {
+  const double random = by_minus * by_minus * minus.parts.var_a0 + by_plus * by_plus * plus.parts.var_a0;
+  double variance = random;
   const std::vector<LineShift> of_minus = shared_shifts(minus), of_plus = shared_shifts(plus);
   for (std::size_t k = 0; k < std::max(of_minus.size(), of_plus.size()); ++k) {
     const double a = k < of_minus.size() ? by_minus * of_minus[k].a0 : 0.0;
     const double b = k < of_plus.size() ? by_plus * of_plus[k].a0 : 0.0;
     variance += (a + b) * (a + b);
   }
-  return estimate(value, std::sqrt(variance), std::min(minus.parts.degrees, plus.parts.degrees));
+  const double degrees = std::min(minus.parts.degrees, plus.parts.degrees);
+  return determined(estimate(value, std::sqrt(variance), degrees), std::sqrt(random));
 }
 
 /// Equation (13): (a0- + a0+)/2 = g sin(alpha), (a0- - a0+)/2 = mu g cos(alpha).
@@ -215,11 +217,10 @@ void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_
   const double g_cos = gravity_m_s2 * std::cos(alpha);
   const double degrees = 180.0 / std::numbers::pi;
   const double by_mean = degrees / g_cos;
-  result.alpha_deg = determined(of_intercepts(alpha * degrees, 0.5 * by_mean, 0.5 * by_mean, minus, plus));
+  result.alpha_deg = of_intercepts(alpha * degrees, 0.5 * by_mean, 0.5 * by_mean, minus, plus);
   // mu = half_jump / sqrt(g^2 - mean^2)
   const double by_jump = 1.0 / g_cos, mu_by_mean = half_jump * mean / std::pow(g_cos, 3);
-  result.mu = determined(
-      of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus));
+  result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus);
 }
 
 std::vector<LineFit> join_lines(const std::vector<Member>& members, LineMethod lines, LawBiasIs bias) {

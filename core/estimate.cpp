@@ -36,8 +36,10 @@ double chi2_ratio_limit(double degrees) {
   return std::pow(1.0 - variance + 3.0 * std::sqrt(variance), 3);
 }
 
-Quantity determined(const Estimate& estimate) {
-  return {estimate, {}};
+Quantity determined(const Estimate& estimate, std::optional<double> noise_sd) {
+  Quantity quantity{estimate, {}};
+  quantity.noise_sd = noise_sd;
+  return quantity;
 }
 
 Quantity undetermined(std::string why) {

@@ -1,6 +1,7 @@
 /// Numbers with their uncertainty.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/results.h"
@@ -19,7 +20,8 @@ double student_t975(double degrees);
 /// are by a normal number (Wilson and Hilferty 1931; the probability is right to a tenth from 2 degrees on).
 double chi2_ratio_limit(double degrees);
 
-Quantity determined(const Estimate& estimate);
+/// `noise_sd`: the random part of the estimate's standard deviation (Quantity).
+Quantity determined(const Estimate& estimate, std::optional<double> noise_sd = {});
 Quantity undetermined(std::string why);
 
 }  // namespace glidelab::core

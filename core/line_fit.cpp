@@ -263,9 +263,10 @@ Quantity limit_velocity(const std::vector<LineFit>& lines) {
   }
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
   const LineUncertainty& parts = found->parts;
-  double variance = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
+  const double random = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
+  double variance = random;
   for (const LineShift& shift : shared_shifts(*found)) variance += std::pow(by_k * shift.k + by_a0 * shift.a0, 2);
-  return determined(estimate(a0 / k, std::sqrt(variance), parts.degrees));
+  return determined(estimate(a0 / k, std::sqrt(variance), parts.degrees), std::sqrt(random));
 }
 
 }  // namespace glidelab::core

@@ -15,9 +15,11 @@
 #include "core/law_bias.h"
 #include "core/line_fit.h"
 #include "core/line_input.h"
+#include "core/lost_frames.h"
 #include "core/motion.h"
 #include "core/noise.h"
 #include "core/outliers.h"
+#include "core/quantile.h"
 #include "core/stretch_noise.h"
 #include "core/stretch_points.h"
 
@@ -187,21 +189,50 @@ BandwidthChoice by_rule(const std::string& name, const Motion& motion, const Fre
   return {free.pilot_bandwidth_s, "that of the first smoothing: the motion is too short for the rule " + name, 0.0};
 }
 
-}  // namespace
-
-ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s,
-                          double /*gravity_m_s2*/) {
-  return analyze_motion(setup, track, MotionOptions{bandwidth_s, {}});
+std::vector<LostFrames> lost_frames(const TrackData& track, double mass_kg) {
+  const Motion motion = motion_of(track, mass_kg);
+  return find_lost_frames(track, without(motion, find_outliers(motion)));
 }
 
-ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options) {
+/// start_s and end_s are by the file's times.
+ClipSetup later(ClipSetup setup, const std::vector<LostFrames>& lost, double step_s) {
+  if (setup.start_s) setup.start_s = core::put_right(*setup.start_s, lost, step_s);
+  if (setup.end_s) setup.end_s = core::put_right(*setup.end_s, lost, step_s);
+  return setup;
+}
+
+void note_lost_frames(const std::vector<LostFrames>& lost, LostFrameTimes times, std::vector<std::string>& notes) {
+  if (lost.empty()) return;
+  std::size_t frames = 0;
+  std::vector<std::string> places;
+  for (const LostFrames& gap : lost) {
+    frames += gap.count;
+    places.push_back(fmt::format("{:.3f} s", gap.after_s));
+  }
+  constexpr std::size_t kNamed = 6;
+  const bool more = places.size() > kNamed;
+  places.resize(std::min(places.size(), kNamed));
+  notes.push_back(fmt::format(
+      "{} frame{} missing without a gap in the times (after {}{}): the motion jumps there by whole frames' way; {}",
+      frames, frames == 1 ? " is" : "s are", fmt::join(places, ", "), more ? ", …" : "",
+      times == LostFrameTimes::put_right ? "the times behind are put right" : "the times are left as they are"));
+}
+
+}  // namespace
+
+ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const MotionOptions& options) {
   ClipResult clip;
+  clip.lost_frames = lost_frames(filed, stated.mass_kg);
+  const bool put_right = options.lost_frames == LostFrameTimes::put_right;
+  const ClipSetup setup = put_right ? later(stated, clip.lost_frames, median_step(filed.frame_t_s)) : stated;
+  const TrackData track = put_right ? core::put_right(filed, clip.lost_frames) : filed;
   clip.name = setup.name;
   clip.frames = track.frame_t_s.size();
   clip.detected = track.t_s.size();
   clip.frame_rate_hz = track.frame_rate_hz;
   clip.sightings = track.sightings;
   clip.notes = track.notes;
+  note_lost_frames(clip.lost_frames, options.lost_frames, clip.notes);
 
   const Motion measured = motion_of(track, setup.mass_kg);
   const std::vector<std::size_t> outliers = find_outliers(measured);

@@ -11,22 +11,22 @@
 
 namespace glidelab::core {
 
-/// Smooths one clip's x(t) with the local cubic (10)-(12), decides which points count, and fits a line for v < 0 and v
-/// > 0. A given bandwidth is used as it is; otherwise choose_bandwidth() decides.
-ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s,
-                          double gravity_m_s2);
-
 /// How a line is fitted: by ordinary least squares as the paper does (line_fit.h), or by generalised least squares with
 /// the points' covariance (gls_line.h).
 enum class LineMethod { ordinary, generalised };
 
+/// Whether times are put right by the frames that the motion shows to be lost (lost_frames.h).
+enum class LostFrameTimes { put_right, kept };
+
 struct MotionOptions {
-  std::optional<double> bandwidth_s;  ///< given; otherwise chosen
-  std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h (asserted); empty: choose_bandwidth()
+  std::optional<double> bandwidth_s = {};  ///< given; otherwise chosen
+  std::string bandwidth_rule = {};         ///< a name of bandwidth_rule.h (asserted); empty: choose_bandwidth()
   LineMethod lines = LineMethod::ordinary;
+  LostFrameTimes lost_frames = LostFrameTimes::put_right;
 };
 
-/// The same with a choice of how.
+/// Smooths one clip's x(t) with the local cubic (10)-(12), decides which points count, and fits a line for v < 0 and v
+/// > 0. A given bandwidth is used as it is; otherwise the rule named, or choose_bandwidth(), decides.
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 
 /// Joins clips of one mass, stated inclination and group: lines through the points of all of them, alpha and mu by

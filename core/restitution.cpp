@@ -1,5 +1,7 @@
 #include "core/restitution.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 #include <opencv2/calib3d.hpp>
@@ -197,6 +199,19 @@ PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& v
   }
   fit.rms_m = std::sqrt(sum / count);
   return fit;
+}
+
+std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
+                                        const std::string& group) {
+  constexpr double kOff = 3.0, kLeastOffPx = 0.05;
+  // Of one coordinate; every view's pose takes its share out of the residuals, in the plane as in the camera's fit.
+  const double expected_px = std::hypot(noise.white_px, noise.correlated_px);
+  if (fit.rms_px <= std::max(kLeastOffPx, kOff * expected_px)) return {};
+  return fmt::format(
+      "the plane {} of group \"{}\" {} not agree with the camera: the pattern's corners are {:.2g} px (rms) from where "
+      "the camera of all views and {} plane put them, and {:.2g} px is what the corners' noise explains",
+      views == 1 ? "view" : "views", group, views == 1 ? "does" : "do", fit.rms_px, views == 1 ? "a" : "one",
+      expected_px);
 }
 
 Restitution Restitution::from_pattern(const Calibration& calibration, const std::vector<BoardCorners>& planes,

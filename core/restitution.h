@@ -16,6 +16,7 @@
 #include <opencv2/core.hpp>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/calibrate.h"
@@ -41,6 +42,12 @@ struct PlaneFit {
 /// neighbours have in common (CornerNoise); the independent part is taken from the residuals.
 PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
                    double correlated_px = 0.0);
+
+/// A sentence where the plane views' corners lie further from where the camera of all views and one plane put them than
+/// three times the corners' own noise (views differ in sharpness and tilt, and their noise with them), and than 0.05 px
+/// (what is below is small beside it); `group` names the views.
+std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
+                                        const std::string& group);
 
 /// The way from pixels to the plane with an error of `sds` standard deviations in one independent direction.
 struct RestitutionMode {

@@ -24,6 +24,9 @@ struct Quantity {
   /// What the estimate has added to it because a kernel bends the law of a line (law_bias.h); without it, what the
   /// lines as they are give.
   std::optional<double> smoothing_correction = {};
+  /// The part of the estimate's standard deviation that is random from clip to clip (the positions' noise and what they
+  /// scatter beyond it), without what all clips share: calibration, clock, scale, mass, the kernel's bias.
+  std::optional<double> noise_sd = {};
 };
 
 /// Why a point of the motion is not in a fit.
@@ -122,6 +125,12 @@ struct LeftOutInterval {
   LeftOut reason = LeftOut::used;
 };
 
+/// Frames that were lost without a trace in the file's times (lost_frames.h).
+struct LostFrames {
+  double after_s = 0.0;   ///< by the file's times: the last frame before them
+  std::size_t count = 0;  ///< how many follow each other
+};
+
 /// Where the marker was seen in one frame; pixels, the centre of the first pixel is (0, 0).
 struct MarkerSighting {
   std::size_t frame = 0;
@@ -152,6 +161,7 @@ struct ClipResult {
   double scale_sd_relative = 0.0;               ///< as in TrackData
   std::optional<double> rounding_m;             ///< step to which the positions are rounded, where that shows
   bool forced = false;                          ///< a known force acts
+  std::vector<LostFrames> lost_frames;          ///< found from the motion; all times of this result allow for them
   std::vector<FreeBlock> blocks;                ///< what a fit of the whole motion rests on
   std::vector<LineFit> segments;                ///< at most one for each direction
   Quantity v_lim_m_s;

@@ -9,7 +9,6 @@ namespace {
 constexpr double kCompleteKernel = 3.0;  // bandwidths from an end beyond which residuals are taken
 constexpr std::size_t kFewest = 40;
 constexpr int kPasses = 4;
-constexpr double kSignificant = 2.0;
 constexpr double kLeastShare = 0.1;  // of the mean variance that is left at any speed: a line has no floor of its own
 
 struct Line {
@@ -58,8 +57,13 @@ std::vector<std::vector<double>> speed_factors(const std::vector<NoisePiece>& pi
   double mean = 0.0;
   for (const double square : y) mean += square / static_cast<double>(y.size());
   if (!(mean > 0.0)) return {};
-  const Line line = fit(z, y, mean);
-  if (!(line.b > kSignificant * line.sd_b)) return {};
+  Line line = fit(z, y, mean);
+  if (!(line.b > line.sd_b)) return {};
+  double mean_z = 0.0;
+  for (const double square : z) mean_z += square / static_cast<double>(z.size());
+  const double doubt = line.sd_b * line.sd_b / line.b;
+  line.a += doubt * mean_z;
+  line.b -= doubt;
   std::vector<std::vector<double>> factors;
   for (const auto& piece : smoothed) {
     factors.emplace_back();

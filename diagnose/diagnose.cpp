@@ -161,7 +161,8 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     }
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
   }
-  const core::AnalysisResults results = core::analyze(folders, {.bandwidth_s = {}, .jobs = options.jobs}, progress);
+  const core::AnalysisResults results = core::analyze(
+      folders, {.bandwidth_s = {}, .jobs = options.jobs, .lost_frames = core::LostFrameTimes::kept}, progress);
   return diagnose_results(results, setups, options, progress);
 }
 

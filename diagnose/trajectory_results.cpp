@@ -14,16 +14,17 @@ namespace {
 
 constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 
-core::Estimate estimate_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient) {
-  double variance = gradient.dot(fit.covariance * gradient);
+core::Quantity quantity_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient) {
+  const double random = gradient.dot(fit.covariance * gradient);
+  double variance = random;
   for (const Eigen::VectorXd& shift : fit.shared) variance += std::pow(gradient.dot(shift), 2);
-  return core::estimate(value, std::sqrt(variance), fit.degrees);
+  return core::determined(core::estimate(value, std::sqrt(variance), fit.degrees), std::sqrt(random));
 }
 
 core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k, double a0,
                               const Eigen::VectorXd& by_a0) {
   if (fit.direction < 0) return core::undetermined("no motion with v > 0");
-  const core::Estimate intercept = estimate_of(fit, a0, by_a0);
+  const core::Estimate intercept = *quantity_of(fit, a0, by_a0).estimate;
   if (k.value - core::kNormal95 * k.sd <= 0.0) {
     return core::undetermined("K/m is not above zero by more than its uncertainty");
   }
@@ -32,18 +33,18 @@ core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k,
   }
   Eigen::VectorXd gradient = by_a0 / k.value;
   gradient[0] = -a0 / (k.value * k.value);
-  return core::determined(estimate_of(fit, a0 / k.value, gradient));
+  return quantity_of(fit, a0 / k.value, gradient);
 }
 
 void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResult& result) {
   const double k = fit.parameters[0];
   Eigen::VectorXd by_k = Eigen::VectorXd::Zero(fit.parameters.size());
   by_k[0] = 1.0;
-  const core::Estimate k_estimate = estimate_of(fit, k, by_k);
-  result.k_over_m_1_s = core::determined(k_estimate);
+  result.k_over_m_1_s = quantity_of(fit, k, by_k);
+  const core::Estimate& k_estimate = *result.k_over_m_1_s.estimate;
   if (fit.direction != 0) {
     Eigen::VectorXd by_a0 = Eigen::Vector2d(0.0, 1.0);
-    const core::Estimate a0 = estimate_of(fit, fit.parameters[1], by_a0);
+    const core::Estimate a0 = *quantity_of(fit, fit.parameters[1], by_a0).estimate;
     const std::string why = fmt::format(
         "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not the two "
         "apart",
@@ -60,12 +61,12 @@ void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResu
   }
   const double cosine = std::sqrt(1.0 - std::pow(drive / gravity_m_s2, 2));
   const double alpha_by_drive = 1.0 / (gravity_m_s2 * cosine);
-  result.alpha_deg = core::determined(estimate_of(fit, std::asin(drive / gravity_m_s2) * kDegreesPerRad,
-                                                  Eigen::Vector3d(0.0, alpha_by_drive * kDegreesPerRad, 0.0)));
+  result.alpha_deg = quantity_of(fit, std::asin(drive / gravity_m_s2) * kDegreesPerRad,
+                                 Eigen::Vector3d(0.0, alpha_by_drive * kDegreesPerRad, 0.0));
   // mu = f / (g cos(alpha)); d mu / d alpha = mu tan(alpha)
   const double mu = friction / (gravity_m_s2 * cosine);
   const double mu_by_drive = mu * drive / gravity_m_s2 / cosine * alpha_by_drive;
-  result.mu = core::determined(estimate_of(fit, mu, Eigen::Vector3d(0.0, mu_by_drive, 1.0 / (gravity_m_s2 * cosine))));
+  result.mu = quantity_of(fit, mu, Eigen::Vector3d(0.0, mu_by_drive, 1.0 / (gravity_m_s2 * cosine)));
 }
 
 /// k, d, f from the lines; where there are none, a glider without friction.

@@ -73,7 +73,8 @@ std::string validation_report(const std::string& title, const core::AnalysisResu
   body +=
       "<p class=\"soft\">sd is the standard deviation that the analysis itself states, camera and scale included; "
       "least sd is what "
-      "the noise of the positions alone allows at all (Cramér-Rao bound), and efficiency (least sd / sd)².</p>\n";
+      "the noise of the positions alone allows at all (Cramér-Rao bound), and efficiency (least sd / noise's part of "
+      "sd)².</p>\n";
   body += meaning_of(comparison);
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);

@@ -20,6 +20,7 @@ QuantityComparison compare_quantity(std::string name, const std::optional<double
   if (!quantity.estimate) return compared;
   compared.value = quantity.estimate->value;
   compared.sd = quantity.estimate->sd;
+  compared.noise_sd = quantity.noise_sd;
   if (truth) compared.error = quantity.estimate->value - *truth;
   return compared;
 }
@@ -62,8 +63,8 @@ std::vector<QuantityComparison> with_bounds(std::vector<QuantityComparison> quan
                              : compared.quantity == "mu"         ? bound->mu
                              : compared.quantity == "alpha_deg"  ? bound->alpha_deg
                                                                  : bound->v_lim_m_s;
-    if (!compared.cramer_rao_sd || !compared.sd || !(*compared.sd > 0.0)) continue;
-    compared.efficiency = std::pow(*compared.cramer_rao_sd / *compared.sd, 2);
+    if (!compared.cramer_rao_sd || !compared.noise_sd || !(*compared.noise_sd > 0.0)) continue;
+    compared.efficiency = std::pow(*compared.cramer_rao_sd / *compared.noise_sd, 2);
   }
   return quantities;
 }

@@ -25,7 +25,9 @@ struct QuantityComparison {
   std::optional<double> error;               ///< value - truth
   std::string why;                           ///< why there is no value
   std::optional<double> cramer_rao_sd = {};  ///< least that the positions' noise allows (cramer_rao.h)
-  std::optional<double> efficiency = {};     ///< (cramer_rao_sd / sd)²
+  std::optional<double> efficiency = {};     ///< (cramer_rao_sd / noise_sd)²
+  /// The part of the sd that the positions' noise makes: the bound knows no clock, calibration or scale either.
+  std::optional<double> noise_sd = {};
 };
 
 struct LineComparison {
@@ -63,7 +65,7 @@ struct Comparison {
 /// The quantities of one estimator, configuration by configuration: K/m, mu, alpha, v_lim.
 std::vector<QuantityComparison> compare_quantities(const core::AnalysisResults& results, const Truth& truth);
 
-/// The same with the bounds of their configurations, and the efficiency where there is a sd.
+/// The same with the bounds of their configurations, and the efficiency where there is a noise_sd.
 std::vector<QuantityComparison> with_bounds(std::vector<QuantityComparison> quantities,
                                             const std::vector<LeastSd>& bounds);
 

@@ -51,14 +51,12 @@ std::optional<double> bound_of(const LeastSd& least, int which) {
 }
 
 /// The same scenario filmed with another clock of its kind: its rate is off by a normal deviate of the standard
-/// deviation that the estimators assume of clocks, and no frame is lost or doubled (a defect of the recording: what it
-/// does is no matter of intervals).
+/// deviation that the estimators assume of clocks. Frames are lost as the scenario says.
 render::Scenario with_other_clock(render::Scenario scenario, std::uint64_t seed) {
   std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0xC10Cu};
   std::mt19937_64 engine(sequence);
   std::normal_distribution<double> deviate(0.0, core::kClockSdRelative);
   scenario.recording.clock.rate_error_ppm = 1e6 * deviate(engine);
-  scenario.recording.clock.dropped_fraction = scenario.recording.clock.duplicated_fraction = 0.0;
   return scenario;
 }
 

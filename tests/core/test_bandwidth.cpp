@@ -15,7 +15,8 @@ const Law kInclined{4.3, 0.0071, 2.77};
 
 core::ClipResult analyze(double noise_m, double rate_hz, unsigned seed, std::optional<double> bandwidth_s = {}) {
   const auto track = tests::film(tests::launch(kInclined, -1.3, 1.7), {rate_hz, 1.7, noise_m, seed});
-  return core::analyze_motion(tests::clip_setup(core::Launched::up, 4.0), track, bandwidth_s, tests::kGravity);
+  return core::analyze_motion(tests::clip_setup(core::Launched::up, 4.0), track,
+                              core::MotionOptions{.bandwidth_s = bandwidth_s});
 }
 
 /// Mean square over 0 <= v <= 1.1 m/s of the error of both lines, over some clips: what the rule wants to be least.
@@ -73,7 +74,7 @@ TEST_CASE("more noise and fewer frames make the bandwidth wider, a faster law ma
   const auto of_law = [](double k_1_s) {
     const auto track = tests::film(tests::launch({0.0, 0.004, k_1_s}, 0.8, 1.0), {500.0, 1.0, 1e-4, 5});
     const auto setup = tests::clip_setup(core::Launched::down, 0.0);
-    return core::analyze_motion(setup, track, {}, tests::kGravity).bandwidth_s;
+    return core::analyze_motion(setup, track, core::MotionOptions{}).bandwidth_s;
   };
   CHECK(of_law(6.0) < of_law(1.5));
 }

@@ -19,7 +19,7 @@ const Law kLevel{0.02, 0.0071, 1.8};
 
 core::ClipResult analyze(const core::ClipSetup& setup, const SimulatedMotion& motion, const Filming& how,
                          std::optional<double> bandwidth_s = {}) {
-  return core::analyze_motion(setup, tests::film(motion, how), bandwidth_s, tests::kGravity);
+  return core::analyze_motion(setup, tests::film(motion, how), core::MotionOptions{.bandwidth_s = bandwidth_s});
 }
 
 std::size_t count(const core::ClipResult& clip, LeftOut reason) {
@@ -181,7 +181,8 @@ TEST_CASE("a hand that carries the glider up before it lets it slide down is lef
   }
   track.frame_t_s = track.t_s;
   track.frame_rate_hz = 200.0;
-  const auto clip = core::analyze_motion(tests::clip_setup(core::Launched::released, 4.0), track, {}, tests::kGravity);
+  const auto clip =
+      core::analyze_motion(tests::clip_setup(core::Launched::released, 4.0), track, core::MotionOptions{});
   CHECK(at(clip, 0.5) == LeftOut::hand);
   REQUIRE(clip.segments.size() == 1);
   CHECK(clip.segments[0].direction == 1);
@@ -202,9 +203,9 @@ TEST_CASE("a glider that never moves gives no line and says so by its rest") {
 TEST_CASE("a constant position, and a rounded one that flickers, are rest") {
   core::TrackData track = tests::film(SimulatedMotion(0.42).rest(10.0), {100.0, 10.0, 0.0});
   const auto setup = tests::clip_setup(core::Launched::released, 2.0);
-  CHECK(count(core::analyze_motion(setup, track, {}, tests::kGravity), LeftOut::rest) == track.t_s.size());
+  CHECK(count(core::analyze_motion(setup, track, core::MotionOptions{}), LeftOut::rest) == track.t_s.size());
   for (std::size_t i = 0; i < track.x_m.size(); ++i) track.x_m[i] = (i / 37) % 3 == 1 ? 0.43 : 0.42;
-  const auto clip = core::analyze_motion(setup, track, {}, tests::kGravity);
+  const auto clip = core::analyze_motion(setup, track, core::MotionOptions{});
   CHECK(clip.segments.empty());
   CHECK(count(clip, LeftOut::used) == 0);
 }
@@ -214,7 +215,7 @@ TEST_CASE("single positions off the motion are left out as outliers, impacts and
   motion.kick(1.1).slide(kInclined, 2.0, 0.45, 0.3);
   core::TrackData track = tests::film(motion, {200.0, 2.0, 2e-5});
   for (const std::size_t frame : {20u, 21u, 60u, 300u}) track.x_m[frame] += 0.01;
-  const auto clip = core::analyze_motion(tests::clip_setup(core::Launched::down, 4.0), track, {}, tests::kGravity);
+  const auto clip = core::analyze_motion(tests::clip_setup(core::Launched::down, 4.0), track, core::MotionOptions{});
   CHECK(count(clip, LeftOut::outlier) == 4);
   for (const std::size_t frame : {20u, 21u, 60u, 300u}) {
     CHECK(clip.motion[frame].left_out == LeftOut::outlier);
@@ -238,7 +239,8 @@ TEST_CASE("frames without a marker are told from the others, and a wide gap from
   };
   drop(100, 101);
   drop(200, 230);
-  const auto clip = core::analyze_motion(tests::clip_setup(core::Launched::down, 4.0), track, 0.02, tests::kGravity);
+  const auto clip = core::analyze_motion(tests::clip_setup(core::Launched::down, 4.0), track,
+                                         core::MotionOptions{.bandwidth_s = 0.02});
   CHECK(clip.detected == 310);
   CHECK(clip.motion[100].left_out == LeftOut::no_marker);
   CHECK(clip.motion[100].smoothed);

@@ -123,7 +123,7 @@ void add_replicate(const Set& set, std::uint64_t seed, std::map<std::string, Sco
     setup.launched = c == 0 ? core::Launched::up : core::Launched::down;
     setup.group = "one";
     setups.push_back(setup);
-    clips.push_back(core::analyze_motion(setup, track, kBandwidth, kGravity));
+    clips.push_back(core::analyze_motion(setup, track, core::MotionOptions{.bandwidth_s = kBandwidth}));
   }
   const auto results = core::join_configurations(setups, clips, kGravity);
   const core::ConfigurationResult& result = results.front();

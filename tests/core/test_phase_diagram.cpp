@@ -21,7 +21,7 @@ struct Analysis {
 };
 
 Analysis analyse(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s = {}) {
-  Analysis analysis{analyze_motion(setup, track, bandwidth_s, kGravity), {}};
+  Analysis analysis{analyze_motion(setup, track, MotionOptions{.bandwidth_s = bandwidth_s}), {}};
   analysis.configuration = join_configurations({setup}, {analysis.clip}, kGravity).front();
   return analysis;
 }

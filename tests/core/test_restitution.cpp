@@ -57,6 +57,27 @@ TEST_CASE("leaving the marker's height out would be seen") {
   CHECK(std::hypot(found->x - 0.6, found->y - 0.1) > 1e-3);
 }
 
+TEST_CASE("a plane view of a bent board does not agree with the camera, one of a flat board does") {
+  const KnownCamera known;
+  cv::RNG random(5);
+  const double noise_px = 0.02;
+  const core::Calibration calibration = core::calibrate_camera(tests::known_views(known, noise_px, random), 0.04);
+  auto corners = tests::known_corners(known, slanted(), 0.04, noise_px, random);
+  const auto said = [&] {
+    const auto plane = core::fit_plane(calibration.camera, {corners}, 0.04, calibration.noise.correlated_px);
+    return core::disagreement(plane, 1, calibration.noise, "level");
+  };
+  CHECK_FALSE(said());
+  // A bow of 1 px from the middle to the ends of the longer row, of which a pose takes the mean: some 0.3 px are left.
+  for (std::size_t i = 0; i < corners.points.size(); ++i) {
+    const double along = (static_cast<double>(i % 9) - 4.0) / 4.0;
+    corners.points[i].y += along * along;
+  }
+  const auto warning = said();
+  REQUIRE(warning);
+  CHECK(warning->find("the plane view of group \"level\" does not agree") != std::string::npos);
+}
+
 TEST_CASE("the centre of a sphere's image is put right to a few micrometres") {
   // The oracle: rays over a fine grid of pixels, those that meet the sphere; their centroid is the centre of the image.
   const KnownCamera known{

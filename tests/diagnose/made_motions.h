@@ -121,7 +121,8 @@ inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, c
       track.x_m.push_back(x + noise_m * normal(random));
     }
     track.frame_t_s = track.t_s;
-    made.results.clips.push_back(core::analyze_motion(setup, track, {}, made.results.gravity_m_s2));
+    made.results.clips.push_back(
+        core::analyze_motion(setup, track, core::MotionOptions{.lost_frames = core::LostFrameTimes::kept}));
     made.setups.push_back(std::move(setup));
   }
   return made;
