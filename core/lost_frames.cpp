@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "core/outliers.h"
 #include "core/quantile.h"
 
 namespace glidelab::core {
@@ -16,6 +17,7 @@ constexpr std::size_t kBefore = 4, kBehind = 4;  // positions that a cubic goes 
 constexpr std::size_t kFewestBehind = 2;         // where another loss follows soon
 constexpr double kEvidence = 50.0;
 constexpr double kExplained = 4.0;      // standard deviations of the noise that residuals may have
+constexpr double kOfWay = 0.1;          // of a frame's way that they may be: a law that changes at a reversal
 constexpr double kOfFrame = 1.0 / 7.0;  // that the jump may be from a whole number of frames
 constexpr double kMarkerMissing = 2.0;  // frames without a marker that a window may hold
 constexpr double kUniform = 0.1;        // of the step
@@ -32,6 +34,7 @@ struct CubicFit {
   double squares = 0.0;   ///< of the residuals
   double off = 0.0;       ///< frames by which those behind lie later still, to first order
   double off_gain = 0.0;  ///< its variance in units of the noise's
+  double way = 0.0;       ///< in one frame, behind the pair
 };
 
 /// The first `before` points keep their times, the others are `lost` frames later.
@@ -56,7 +59,8 @@ CubicFit cubic_through(std::span<const double> t_s, std::span<const double> y_m,
   const auto own = (late - design * qr.solve(late)).eval();
   const double norm = own.squaredNorm();
   return {residual.squaredNorm(), norm > 0.0 ? own.dot(residual) / norm : 0.0,
-          norm > 0.0 ? 1.0 / norm : std::numeric_limits<double>::infinity()};
+          norm > 0.0 ? 1.0 / norm : std::numeric_limits<double>::infinity(),
+          std::abs(late[static_cast<Eigen::Index>(before)])};
 }
 
 /// How many frames are lost between the two sides; 0 where nothing says so.
@@ -74,7 +78,8 @@ int lost_between(std::span<const double> t_s, std::span<const double> y_m, std::
     fit = tried;
   }
   const double scatter = std::max(variance, fit.squares / freedom);
-  const bool explains = without - fit.squares > kEvidence * variance && scatter < kExplained * kExplained * variance;
+  const double explained = std::max(kExplained * noise_m, kOfWay * fit.way);
+  const bool explains = without - fit.squares > kEvidence * scatter && scatter < explained * explained;
   const bool whole = std::abs(fit.off) < kOfFrame && std::sqrt(scatter * fit.off_gain) < kOfFrame;
   return best > 0 && explains && whole ? best : 0;
 }
@@ -104,6 +109,17 @@ std::vector<LostFrames> find_lost_frames(const TrackData& track, const Motion& m
     }
   }
   return all;
+}
+
+std::vector<std::size_t> single_outliers(const Motion& motion) {
+  const std::vector<std::size_t> outliers = find_outliers(motion);
+  std::vector<std::size_t> single;
+  for (std::size_t k = 0; k < outliers.size(); ++k) {
+    const bool before = k > 0 && outliers[k - 1] + 1 == outliers[k];
+    const bool behind = k + 1 < outliers.size() && outliers[k] + 1 == outliers[k + 1];
+    if (!before && !behind) single.push_back(outliers[k]);
+  }
+  return single;
 }
 
 double put_right(double file_s, const std::vector<LostFrames>& lost, double step_s) {

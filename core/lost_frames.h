@@ -6,8 +6,9 @@
 /// times that are later by tau = 0, T, 2T, … kMostLost T. With S(tau) the sum of the squared residuals, frames are lost
 /// where for the best m > 0
 ///
-///     S(0) - S(mT)  is above kEvidence noise variances (7 standard deviations; one pair in 1e11 by chance),
-///     S(mT)         is what the noise explains, up to four of its standard deviations,
+///     S(0) - S(mT)  is above 50 variances of what is left about the cubic (7 standard deviations), or of the noise,
+///     S(mT)         is small: four standard deviations of the noise, or a tenth of a frame's way (no cubic is exact
+///                   where friction turns),
 ///     the tau of least S, to first order about mT, is mT within a seventh of T, and known to that.
 ///
 /// An impact, a push or a single wrong position makes no jump of a whole frame's way with the same smooth motion on
@@ -27,8 +28,11 @@ namespace glidelab::core {
 inline constexpr int kMostLost = 8;
 
 /// In the order of time; none where the frames' times are not uniform to a tenth of a step (stamps that show gaps are
-/// taken at their word). `motion` is the track's, outliers left out.
+/// taken at their word). `motion` is the track's, single outliers left out.
 std::vector<LostFrames> find_lost_frames(const TrackData& track, const Motion& motion);
+
+/// Outliers (outliers.h) that have no other beside them: behind a jump several positions look like some.
+std::vector<std::size_t> single_outliers(const Motion& motion);
 
 /// The file's time with the frames counted in that were lost before it.
 double put_right(double file_s, const std::vector<LostFrames>& lost, double step_s);

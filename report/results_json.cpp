@@ -39,6 +39,12 @@ Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
   object["bandwidth_method"] = clip.bandwidth_method;
   put(object, "position_noise_m", clip.position_noise_m);
   if (clip.rounding_m) put(object, "rounding_m", *clip.rounding_m);
+  if (!clip.lost_frames.empty()) {
+    object["lost_frames"] = Json::array();
+    for (const core::LostFrames& gap : clip.lost_frames) {
+      object["lost_frames"].push_back({{"after_s", gap.after_s}, {"count", gap.count}});
+    }
+  }
   object["segments"] = lines_json(clip.segments);
   put(object, "v_lim_m_s", clip.v_lim_m_s);
   object["stretches"] = Json::array();

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "catch.h"
-#include "core/outliers.h"
 #include "core/phase_diagram.h"
 #include "simulated_track.h"
 
@@ -32,7 +31,7 @@ TrackData film_without(const tests::SimulatedMotion& motion, const tests::Filmin
 
 std::vector<LostFrames> lost_in(const TrackData& track) {
   const Motion motion = motion_of(track, 0.335);
-  return find_lost_frames(track, without(motion, find_outliers(motion)));
+  return find_lost_frames(track, without(motion, single_outliers(motion)));
 }
 
 /// Up a slope and down again.
