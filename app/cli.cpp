@@ -162,6 +162,8 @@ int run(int argc, char** argv) {
   add_blind(app, command);
   add_new(app, command);
   add_pattern(app, command);
+  add_check(app, command);
+  add_explore(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

@@ -22,5 +22,7 @@ void add_diagnose(CLI::App& app, Command& chosen);
 void add_blind(CLI::App& app, Command& chosen);
 void add_new(CLI::App& app, Command& chosen);
 void add_pattern(CLI::App& app, Command& chosen);
+void add_check(CLI::App& app, Command& chosen);
+void add_explore(CLI::App& app, Command& chosen);
 
 }  // namespace glidelab::app

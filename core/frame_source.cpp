@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/errors.h"
+#include "core/frame_times.h"
 #include "core/picture.h"
 
 namespace glidelab::core {
@@ -50,6 +51,7 @@ class RepeatCounter {
     before_ = grey;
     ++count_;
   }
+  std::size_t repeated() const { return repeated_; }
   void tell(std::vector<std::string>& notes) const {
     if (repeated_ == 0) return;
     notes.push_back(fmt::format(
@@ -128,6 +130,15 @@ class VideoFrames final : public FrameSource {
     return frame;
   }
 
+  FrameTimes times() const {
+    FrameTimes times;
+    if (stated_rate_hz_ > 0.0) times.container_rate_hz = stated_rate_hz_;
+    times.irregular_steps = irregular_;
+    times.repeated = repeats_.repeated();
+    times.drift_frames = drift_frames_;
+    return times;
+  }
+
   std::size_t stated_frames() const override { return stated_; }
 
   std::vector<std::string> notes() const override {
@@ -198,6 +209,24 @@ class VideoFrames final : public FrameSource {
     const double tolerance_s = std::max(1.05e-3, 0.05 * median_step_s_);
     irregular_ = static_cast<std::size_t>(std::count_if(
         steps.begin(), steps.end(), [&](double step) { return std::abs(step - median_step_s_) > tolerance_s; }));
+    find_drift();
+  }
+
+  /// The stamps against a straight line through them; a rate that merely plays slowly leaves none.
+  void find_drift() {
+    const double n = static_cast<double>(stamps_s_.size());
+    double sum = 0.0, moment = 0.0;
+    for (std::size_t k = 0; k < stamps_s_.size(); ++k) {
+      const double place = static_cast<double>(k) - 0.5 * (n - 1.0);
+      sum += stamps_s_[k];
+      moment += place * stamps_s_[k];
+    }
+    const double step_s = 12.0 * moment / (n * (n * n - 1.0));
+    if (step_s <= 0.0) return;
+    for (std::size_t k = 0; k < stamps_s_.size(); ++k) {
+      const double place = static_cast<double>(k) - 0.5 * (n - 1.0);
+      drift_frames_ = std::max(drift_frames_, std::abs(stamps_s_[k] - sum / n - step_s * place) / step_s);
+    }
   }
 
   fs::path file_;
@@ -216,6 +245,7 @@ class VideoFrames final : public FrameSource {
   std::size_t irregular_ = 0;
   double median_step_s_ = 0.0;
   double longest_step_s_ = 0.0;
+  double drift_frames_ = 0.0;
 };
 
 class FolderFrames final : public FrameSource {
@@ -297,6 +327,11 @@ bool natural_less(const std::string& a, const std::string& b) {
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
   return a < b;
+}
+
+FrameTimes times_of(const FrameSource& source) {
+  const auto* video = dynamic_cast<const VideoFrames*>(&source);
+  return video == nullptr ? FrameTimes{} : video->times();
 }
 
 std::unique_ptr<FrameSource> open_frames(const fs::path& file, const CameraSettings& camera, bool with_color,

@@ -14,11 +14,11 @@ namespace {
 
 const std::vector<std::string> kCommands = {"simulate", "render",  "analyze", "validate",     "coverage",
                                             "sweep",    "require", "laws",    "characterize", "diagnose",
-                                            "blind",    "new",     "pattern"};
+                                            "blind",    "new",     "pattern", "check",        "explore"};
 
 /// Commands that make something out of nothing but their options.
 bool takes_an_input(const std::string& command) {
-  return command != "blind" && command != "new" && command != "pattern";
+  return command != "blind" && command != "new" && command != "pattern" && command != "explore";
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ TEST_CASE("an unknown command is named together with those that exist") {
   const tests::ProcessResult result = tests::glidelab({"guess", "folder"});
   CHECK(result.err.find("unknown command \"guess\"") != std::string::npos);
   CHECK(result.err.find("simulate, render, analyze, validate, coverage, sweep, require, laws, characterize, diagnose, "
-                        "blind, new, pattern") != std::string::npos);
+                        "blind, new, pattern, check, explore") != std::string::npos);
 }
 
 TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {

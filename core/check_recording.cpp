@@ -1,0 +1,267 @@
+#include "core/check_recording.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <set>
+
+#include "base/errors.h"
+#include "base/parallel.h"
+#include "core/calibrate_fisheye.h"
+#include "core/clip_look.h"
+#include "core/clip_to_track.h"
+#include "core/median.h"
+#include "core/noise.h"
+#include "core/quantile.h"
+#include "core/restitution.h"
+#include "core/track_csv.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kTopSpeed = 0.99;    // quantile: single frames may be wrong
+constexpr std::size_t kSpeedLag = 4;  // frames over which a speed is taken
+constexpr std::size_t kPathPlaces = 200;
+constexpr int kAcross = 8, kDown = 6;  // parts of the picture
+// A step counts as a jump or a stall where the two on either side agree within a quarter, and it is clear of noise.
+constexpr double kAgree = 0.25, kJump = 1.6, kStall = 0.4, kClearOfNoise = 8.0;
+
+struct Speeds {
+  double px_s = 0.0, m_s = 0.0;
+  double px_per_m = 0.0;  ///< along the path; 0 where nothing moves
+};
+
+Speeds speeds_of(const TrackData& track) {
+  std::vector<double> px_s, m_s;
+  double px = 0.0, m = 0.0;
+  for (std::size_t i = kSpeedLag; i < track.x_m.size(); ++i) {
+    const std::size_t k = i - kSpeedLag;
+    const double dt_s = track.t_s[i] - track.t_s[k];
+    if (track.frame[i] - track.frame[k] != kSpeedLag) continue;
+    const double way_m = std::abs(track.x_m[i] - track.x_m[k]);
+    m_s.push_back(way_m / dt_s);
+    if (track.sightings.empty()) continue;
+    const double way_px = std::hypot(track.sightings[i].u_px - track.sightings[k].u_px,
+                                     track.sightings[i].v_px - track.sightings[k].v_px);
+    px_s.push_back(way_px / dt_s);
+    px += way_px;
+    m += way_m;
+  }
+  return {quantile(px_s, kTopSpeed), quantile(m_s, kTopSpeed), m > 0.0 ? px / m : 0.0};
+}
+
+/// Steps from frame to frame that are far longer or shorter than their neighbours, of which two on either side agree.
+void count_odd_steps(const std::vector<MarkerSighting>& sightings, double noise_px, ClipCheck& clip) {
+  const auto step = [&](std::size_t i) {
+    return std::hypot(sightings[i + 1].u_px - sightings[i].u_px, sightings[i + 1].v_px - sightings[i].v_px);
+  };
+  for (std::size_t i = 2; i + 3 < sightings.size(); ++i) {
+    if (sightings[i + 3].frame - sightings[i - 2].frame != 5) continue;
+    const std::array<double, 4> around = {step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
+    const auto [least, most] = std::minmax_element(around.begin(), around.end());
+    const double middle = 0.25 * (around[0] + around[1] + around[2] + around[3]);
+    if (*least < kClearOfNoise * noise_px || *most - *least > kAgree * middle) continue;
+    clip.jumps += step(i) > kJump * middle ? 1 : 0;
+    clip.stalls += step(i) < kStall * middle ? 1 : 0;
+  }
+}
+
+/// One track, or why there is none.
+struct Attempt {
+  TrackData track;
+  std::string failure;
+};
+
+ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const Attempt& attempt,
+                     const FrameOpener& open) {
+  const TrackData& track = attempt.track;
+  ClipCheck clip;
+  clip.name = setup.name;
+  clip.pictures = !setup.file.empty();
+  clip.failure = attempt.failure;
+  if (!clip.failure.empty()) return clip;
+  clip.notes = track.notes;
+  clip.frames = track.frame_t_s.size();
+  clip.seen = track.x_m.size();
+  if (!track.frame.empty()) clip.spanned = track.frame.back() - track.frame.front() + 1;
+  clip.frame_rate_hz = track.frame_rate_hz;
+  if (track.x_m.size() >= kFewestTrackPoints) clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
+  const Speeds speeds = speeds_of(track);
+  clip.top_speed_m_s = speeds.m_s;
+  clip.top_speed_px_s = speeds.px_s;
+  if (!clip.pictures || track.sightings.empty()) return clip;
+  const ClipLook look = look_at_clip(experiment, setup, track.sightings, open);
+  clip.width_px = look.size.width;
+  clip.height_px = look.size.height;
+  clip.container_rate_hz = look.times.container_rate_hz;
+  clip.repeated = look.times.repeated;
+  clip.irregular_steps = look.times.irregular_steps;
+  clip.drift_frames = look.times.drift_frames;
+  clip.saturated = look.exposure.saturated;
+  clip.dark = look.exposure.dark;
+  clip.bright_level = look.exposure.bright_level;
+  clip.contrast = look.contrast;
+  clip.marker_level = look.marker_level;
+  clip.pixel_noise = look.pixel_noise;
+  std::vector<double> radii, sds;
+  for (const MarkerSighting& sighting : track.sightings) {
+    radii.push_back(sighting.radius_px);
+    sds.push_back(sighting.sd_px);
+  }
+  clip.marker_px = 2.0 * median_of(radii);
+  clip.centre_sd_px = median_of(sds);
+  clip.marker_expected_px = experiment.marker->diameter_m * speeds.px_per_m;
+  const CameraSettings& camera = *experiment.camera;
+  if (camera.exposure_s) clip.blur_px = speeds.px_s * *camera.exposure_s;
+  clip.longest_blur_px = speeds.px_s / camera.frame_rate_hz;
+  count_odd_steps(track.sightings, clip.centre_sd_px, clip);
+  const std::size_t every = track.sightings.size() / kPathPlaces + 1;
+  for (std::size_t i = 0; i < track.sightings.size(); i += every) {
+    clip.path.push_back({track.sightings[i].u_px, track.sightings[i].v_px});
+  }
+  clip.sightings = track.sightings;
+  return clip;
+}
+
+/// All pictures of the pattern, each once, and which of them are of the plane.
+std::vector<std::filesystem::path> pattern_files(const Experiment& experiment,
+                                                 std::set<std::filesystem::path>& planes) {
+  std::vector<std::filesystem::path> files = experiment.calibration->views;
+  planes.insert(experiment.calibration->planes.begin(), experiment.calibration->planes.end());
+  for (const GroupSetup& group : experiment.groups) planes.insert(group.planes.begin(), group.planes.end());
+  files.insert(files.end(), planes.begin(), planes.end());
+  return files;
+}
+
+double share_covered(const PatternCheck& pattern) {
+  std::set<int> parts;
+  for (const PatternView& view : pattern.views) {
+    for (const PixelPlace& corner : view.corners) {
+      const int across = static_cast<int>((corner.u_px + 0.5) / pattern.width_px * kAcross);
+      const int down = static_cast<int>((corner.v_px + 0.5) / pattern.height_px * kDown);
+      parts.insert(std::clamp(down, 0, kDown - 1) * kAcross + std::clamp(across, 0, kAcross - 1));
+    }
+  }
+  return static_cast<double>(parts.size()) / (kAcross * kDown);
+}
+
+PatternCheck check_pattern(const Experiment& experiment, int jobs) {
+  PatternCheck pattern;
+  const double square_m = experiment.calibration->square_m;
+  std::set<std::filesystem::path> planes;
+  const std::vector<std::filesystem::path> files = pattern_files(experiment, planes);
+  std::optional<Calibration> camera;
+  BoardViews boards;
+  try {
+    boards = find_board_views(files, experiment.calibration->inner_corners, jobs);
+    camera = calibrate_any_lens(boards, square_m);
+  } catch (const base::InputError& error) {
+    pattern.failure = error.what();
+  }
+  pattern.width_px = boards.picture_size.width;
+  pattern.height_px = boards.picture_size.height;
+  for (const std::filesystem::path& file : boards.without) pattern.without.push_back(file.filename().string());
+  for (const BoardView& board : boards.views) {
+    PatternView view;
+    view.file = board.file.filename().string();
+    view.plane = planes.contains(board.file);
+    for (const cv::Point2d& corner : board.corners.points) view.corners.push_back({corner.x, corner.y});
+    if (camera) {
+      const PlaneFit fit = fit_plane(camera->camera, {board.corners}, square_m, camera->noise.correlated_px);
+      view.rms_px = fit.rms_px;
+      view.tilt_deg = std::acos(std::min(1.0, std::abs(fit.pose.rotation(2, 2)))) * 180.0 / std::numbers::pi;
+    }
+    pattern.views.push_back(std::move(view));
+  }
+  if (!pattern.views.empty()) pattern.covered = share_covered(pattern);
+  return pattern;
+}
+
+/// How much of each clip's path lies where the lens is known.
+void measure_inside(const PatternCheck& pattern, std::vector<ClipCheck>& clips) {
+  std::vector<cv::Point2f> corners, outline;
+  for (const PatternView& view : pattern.views) {
+    for (const PixelPlace& corner : view.corners) {
+      corners.emplace_back(static_cast<float>(corner.u_px), static_cast<float>(corner.v_px));
+    }
+  }
+  if (corners.size() < 3) return;
+  cv::convexHull(corners, outline);
+  for (ClipCheck& clip : clips) {
+    if (clip.path.empty()) continue;
+    const auto inside = std::count_if(clip.path.begin(), clip.path.end(), [&](const PixelPlace& place) {
+      const cv::Point2f here(static_cast<float>(place.u_px), static_cast<float>(place.v_px));
+      return cv::pointPolygonTest(outline, here, false) >= 0.0;
+    });
+    clip.inside_pattern = static_cast<double>(inside) / static_cast<double>(clip.path.size());
+  }
+}
+
+/// A folder with this clip alone, and no plumb line.
+Experiment alone(Experiment experiment, std::size_t clip) {
+  experiment.clips = {experiment.clips[clip]};
+  experiment.plumb.reset();
+  std::erase_if(experiment.groups,
+                [&](const GroupSetup& group) { return group.name != experiment.clips.front().group; });
+  for (GroupSetup& group : experiment.groups) group.plumb.reset();
+  return experiment;
+}
+
+/// All tracks at once, as the analysis takes them; where that fails, one by one, to see which clip it is.
+std::vector<Attempt> attempt_all(const Experiment& experiment, int jobs, const base::Progress& progress,
+                                 const FrameOpener& open, RecordingCheck& check) {
+  std::vector<Attempt> attempts(experiment.clips.size());
+  const auto take = [&](PictureResults seen) {
+    if (check.pattern) check.pattern->calibration = seen.calibration;
+    return std::move(seen.tracks);
+  };
+  try {
+    std::vector<TrackData> tracks = take(tracks_of(experiment, jobs, progress, open));
+    for (std::size_t i = 0; i < tracks.size(); ++i) attempts[i].track = std::move(tracks[i]);
+    return attempts;
+  } catch (const base::InputError& error) {
+    check.plumb_failure = error.what();  // unless a clip fails by itself
+  }
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    try {
+      attempts[i].track = take(tracks_of(alone(experiment, i), jobs, progress, open)).front();
+    } catch (const base::InputError& error) {
+      attempts[i].failure = error.what();
+      check.plumb_failure.clear();
+    }
+  }
+  return attempts;
+}
+
+}  // namespace
+
+RecordingCheck check_recording(const Experiment& experiment, int jobs, const base::Progress& progress,
+                               const FrameOpener& open) {
+  if (experiment.clips.empty()) {
+    throw base::InputError(base::Issue{experiment.file.string(), 0, "clip", "none", "one or more clips or tracks"});
+  }
+  RecordingCheck check;
+  check.name = experiment.name;
+  progress("pattern", 0.0);
+  if (experiment.calibration) check.pattern = check_pattern(experiment, jobs);
+  const bool no_camera = check.pattern && !check.pattern->failure.empty();
+  std::vector<Attempt> attempts(experiment.clips.size());
+  if (no_camera) {
+    for (Attempt& attempt : attempts) attempt.failure = "not looked at: there is no camera without the pattern";
+  } else {
+    attempts = attempt_all(experiment, jobs, progress, open, check);
+  }
+  check.clips.resize(attempts.size());
+  base::for_each_parallel(attempts.size(), jobs, [&](std::size_t i) {
+    check.clips[i] = check_clip(experiment, experiment.clips[i], attempts[i], open);
+  });
+  if (check.pattern) measure_inside(*check.pattern, check.clips);
+  check.findings = findings_of(experiment, check);
+  check.usable = std::none_of(check.findings.begin(), check.findings.end(),
+                              [](const Finding& finding) { return finding.severity == Severity::unusable; });
+  return check;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,237 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check_recording.h"
+
+namespace glidelab::core {
+namespace {
+
+// What each limit rests on is in docs/check.md.
+constexpr std::size_t kEnoughViews = 8;
+constexpr double kFinePatternPx = 0.3, kWorstPatternPx = 1.0;  // rms of the camera's fit, per corner
+constexpr double kFinePlanePx = 0.05, kPlaneRatio = 3.0, kWorstPlanePx = 1.0;
+constexpr double kCovered = 0.5, kInside = 0.95;
+constexpr double kLeastTiltDeg = 20.0;
+constexpr std::size_t kFewestSightings = 20, kEnoughSightings = 60;
+constexpr double kMostlySeen = 0.95, kHalfSeen = 0.5;
+constexpr double kFineMarkerPx = 6.0, kWorstMarkerPx = 3.0, kSizeAgrees = 0.15;
+constexpr double kFineContrast = 0.15, kFineSignal = 20.0, kWorstSignal = 5.0;
+constexpr double kAtTheTop = 0.985, kTooDark = 0.25, kTooBright = 0.05;
+constexpr double kFineBlur = 0.5, kWorstBlur = 2.0;           // marker diameters
+constexpr double kRateAgrees = 1.5e-3;                        // as frame_source.cpp: rates are stated rounded
+constexpr double kWorstMissing = 0.01, kWorstRepeated = 0.1;  // shares of the frames
+constexpr double kDrift = 0.75;                               // frames
+
+std::string percent(double share) {
+  return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  const std::size_t shown = std::min(kMost, names.size());
+  std::string text =
+      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+  return text;
+}
+
+/// Collects what is found about one thing.
+class Notebook {
+ public:
+  Notebook(std::vector<Finding>& findings, std::string about) : findings_(findings), about_(std::move(about)) {}
+  void add(Severity severity, std::string found, std::string advice = {}) {
+    findings_.push_back({severity, about_, std::move(found), std::move(advice)});
+  }
+
+ private:
+  std::vector<Finding>& findings_;
+  std::string about_;
+};
+
+void judge_pattern(const PatternCheck& pattern, Notebook book) {
+  const std::size_t asked = pattern.views.size() + pattern.without.size();
+  if (!pattern.failure.empty()) {
+    book.add(Severity::unusable, pattern.failure,
+             fmt::format("the pattern was found in {} of {} pictures; take them anew: the whole board in sight, sharp, "
+                         "evenly lit, with white around it, and inner_corners as printed",
+                         pattern.views.size(), asked));
+    return;
+  }
+  if (!pattern.without.empty()) {
+    book.add(Severity::change, "no pattern is seen in " + list_of(pattern.without),
+             "take those again with all inner corners in sight and the board evenly lit, or remove them");
+  }
+  if (!pattern.calibration) return;
+  const CalibrationResult& camera = *pattern.calibration;
+  if (pattern.views.size() < kEnoughViews) {
+    book.add(Severity::change, fmt::format("the camera rests on {} views", camera.views_used),
+             "take a dozen, tilted to all sides, near and far");
+  }
+  if (camera.rms_px > kFinePatternPx) {
+    book.add(
+        camera.rms_px > kWorstPatternPx ? Severity::unusable : Severity::change,
+        fmt::format("corners lie {:.2g} px (rms) from where the camera's model puts them", camera.rms_px),
+        "glue the board to something flat, keep it still and sharp in every picture, and leave zoom and focus alone");
+  }
+  if (pattern.covered < kCovered) {
+    book.add(Severity::change, fmt::format("the views cover {} of the picture", percent(pattern.covered)),
+             "hold the board into the picture's edges and corners as well: the lens is known only where it was seen");
+  }
+  double tilt_deg = 0.0;
+  for (const PatternView& view : pattern.views) tilt_deg = std::max(tilt_deg, view.tilt_deg);
+  if (tilt_deg < kLeastTiltDeg) {
+    book.add(Severity::change, fmt::format("the board is tilted by no more than {:.0f} degrees", tilt_deg),
+             "tilt it by 30 to 45 degrees in some views: without that the focal length is hardly known");
+  }
+  if (camera.plane_rms_px > std::max(kFinePlanePx, kPlaneRatio * camera.plane_expected_px)) {
+    book.add(camera.plane_rms_px > kWorstPlanePx ? Severity::unusable : Severity::change,
+             fmt::format(
+                 "the plane views' corners lie {:.2g} px (rms) from where the camera puts them; their noise explains "
+                 "{:.2g} px",
+                 camera.plane_rms_px, camera.plane_expected_px),
+             "take the plane view with the same focus, zoom and picture size as all others, the board flat and still");
+  }
+  for (const std::string& note : camera.notes) {
+    if (!note.starts_with("no pattern in sight")) book.add(Severity::note, note);  // said above, with advice
+  }
+}
+
+void judge_times(const Experiment& experiment, const ClipCheck& clip, Notebook& book) {
+  const auto frames = static_cast<double>(std::max<std::size_t>(clip.frames, 1));
+  const bool by_rate = experiment.camera->time == TimeSource::rate;
+  if (clip.container_rate_hz && std::abs(*clip.container_rate_hz / clip.frame_rate_hz - 1.0) > kRateAgrees) {
+    book.add(by_rate ? Severity::change : Severity::note,
+             fmt::format("the file says {:.6g} frames a second, experiment.toml {:.6g}", *clip.container_rate_hz,
+                         clip.frame_rate_hz),
+             fmt::format("make sure that it was filmed at {:.6g}: a wrong rate makes every speed wrong by as much{}",
+                         clip.frame_rate_hz, by_rate ? "; a file meant for slow motion says its playing rate" : ""));
+  }
+  if (clip.drift_frames > kDrift) {
+    book.add(by_rate ? Severity::unusable : Severity::note,
+             fmt::format("the file's time stamps leave a uniform row by {:.3g} frames; {} steps are irregular",
+                         clip.drift_frames, clip.irregular_steps),
+             by_rate
+                 ? "say time = \"container\" in [camera] if the camera films at a varying rate; else find out which "
+                   "program lost frames"
+                 : "");
+  }
+  if (clip.jumps > 0 && by_rate) {
+    const double share = static_cast<double>(clip.jumps) / static_cast<double>(std::max<std::size_t>(clip.seen, 1));
+    book.add(
+        share > kWorstMissing ? Severity::unusable : Severity::change,
+        fmt::format("the marker jumps {} times by about two frames' way: frames are missing", clip.jumps),
+        "record to a faster disk or in a smaller format, and say time = \"container\" if the file has true stamps");
+  }
+  if (clip.repeated + clip.stalls > 0) {
+    const double share = static_cast<double>(clip.repeated) / frames;
+    book.add(share > kWorstRepeated ? Severity::unusable : Severity::change,
+             clip.stalls > 0
+                 ? fmt::format("the marker stands still for a frame {} times in mid-motion, and {} frames are "
+                               "the very picture before them: frames came twice",
+                               clip.stalls, clip.repeated)
+                 : fmt::format("{} of {} frames are the very picture before them", clip.repeated, clip.frames),
+             "export the clip at the rate at which it was filmed; no converter may add frames");
+  }
+}
+
+void judge_light(const ClipCheck& clip, Notebook& book) {
+  if (clip.marker_level && *clip.marker_level > kAtTheTop) {
+    book.add(Severity::change, "the marker is as white as the camera can say",
+             "shorten the exposure until it is grey: where it is clipped its edge is bent");
+  }
+  if (clip.saturated > kTooBright) {
+    book.add(Severity::change,
+             fmt::format("{} of the pixels are as white as the camera can say", percent(clip.saturated)),
+             "shorten the exposure, or cover what is bright");
+  }
+  if (clip.bright_level < kTooDark) {
+    book.add(Severity::change,
+             fmt::format("the brightest parts reach {} of the camera's range", percent(clip.bright_level)),
+             "use more light: noise is large in dark pictures");
+  }
+  if (clip.contrast && *clip.contrast < kFineContrast) {
+    book.add(Severity::change,
+             fmt::format("the marker stands out of its surroundings by {} of the range", percent(*clip.contrast)),
+             "put a darker (or brighter) sheet behind it, or use a retroreflective marker with a lamp at the camera");
+  }
+  if (clip.contrast && *clip.contrast < kFineSignal * clip.pixel_noise) {
+    const double signal = *clip.contrast / clip.pixel_noise;
+    book.add(signal < kWorstSignal ? Severity::unusable : Severity::change,
+             fmt::format("the marker's contrast is {:.3g} times the noise of a pixel", signal),
+             "use more light and less gain (ISO)");
+  }
+}
+
+void judge_marker(const ClipCheck& clip, Notebook& book) {
+  const double share = static_cast<double>(clip.seen) / static_cast<double>(std::max<std::size_t>(clip.spanned, 1));
+  if (clip.seen < kEnoughSightings) {
+    book.add(clip.seen < kFewestSightings ? Severity::unusable : Severity::change,
+             fmt::format("the marker is seen in {} frames", clip.seen),
+             "film at a higher rate, or let the glider run a longer way in the picture");
+  }
+  if (share < kMostlySeen) {
+    book.add(share < kHalfSeen ? Severity::unusable : Severity::change,
+             fmt::format("the marker is seen in {} of the {} frames between its first and its last", clip.seen,
+                         clip.spanned),
+             "nothing may hide it; more contrast, less blur");
+  }
+  if (clip.marker_px < kFineMarkerPx) {
+    book.add(clip.marker_px < kWorstMarkerPx ? Severity::unusable : Severity::change,
+             fmt::format("the marker is {:.2g} px wide", clip.marker_px), "move closer or use a bigger one");
+  }
+  if (clip.marker_expected_px > 0.0 && std::abs(std::log(clip.marker_px / clip.marker_expected_px)) > kSizeAgrees) {
+    book.add(Severity::change,
+             fmt::format("the marker is {:.3g} px wide, and diameter_m makes it {:.3g} px", clip.marker_px,
+                         clip.marker_expected_px),
+             "measure diameter_m and square_m again: where they disagree one length is wrong, and all speeds with it");
+  }
+  const double blur_px = clip.blur_px.value_or(clip.longest_blur_px);
+  if (blur_px > kFineBlur * clip.marker_px) {
+    const bool stated = clip.blur_px.has_value();
+    book.add(stated && blur_px > kWorstBlur * clip.marker_px ? Severity::unusable : Severity::change,
+             fmt::format("at its highest speed, {:.3g} m/s, the marker is smeared by {}{:.3g} px; it is {:.3g} px wide",
+                         clip.top_speed_m_s, stated ? "" : "up to ", blur_px, clip.marker_px),
+             stated ? "shorten the exposure and use more light"
+                    : "state exposure_s in [camera] (an exposure as long as a frame would smear it so)");
+  }
+  if (clip.inside_pattern < kInside) {
+    book.add(Severity::change,
+             fmt::format("{} of the marker's path lies outside of where the pattern was ever seen",
+                         percent(1.0 - clip.inside_pattern)),
+             "take views of the pattern out to where the glider runs");
+  }
+}
+
+void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook book) {
+  if (!clip.failure.empty()) {
+    book.add(Severity::unusable, clip.failure,
+             "see that the marker is in the picture, moves, and is what [marker] says");
+    return;
+  }
+  if (clip.pictures) {
+    judge_marker(clip, book);
+    judge_light(clip, book);
+    judge_times(experiment, clip, book);
+  } else if (clip.seen < kEnoughSightings) {
+    book.add(clip.seen < kFewestSightings ? Severity::unusable : Severity::change,
+             fmt::format("the track has {} points", clip.seen), "record at a higher rate");
+  }
+  for (const std::string& note : clip.notes) book.add(Severity::note, note);
+}
+
+}  // namespace
+
+std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
+  std::vector<Finding> findings;
+  if (check.pattern) judge_pattern(*check.pattern, {findings, "pattern"});
+  for (const ClipCheck& clip : check.clips) judge_clip(experiment, clip, {findings, clip.name});
+  if (!check.plumb_failure.empty()) findings.push_back({Severity::unusable, "plumb line", check.plumb_failure, {}});
+  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+    return static_cast<int>(a.severity) > static_cast<int>(b.severity);
+  });
+  return findings;
+}
+
+}  // namespace glidelab::core

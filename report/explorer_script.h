@@ -1,0 +1,12 @@
+/// The parts of the explorer's page that do not depend on numbers.
+#pragma once
+
+#include <string_view>
+
+namespace glidelab::report {
+
+extern const std::string_view kExplorerBody;    ///< controls, plots, readout; HTML and its style
+extern const std::string_view kExplorerMotion;  ///< script: a motion from the orbits
+extern const std::string_view kExplorerView;    ///< script: controls and drawing
+
+}  // namespace glidelab::report

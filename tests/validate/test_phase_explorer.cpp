@@ -1,0 +1,41 @@
+#include "validate/phase_explorer.h"
+
+#include <cmath>
+
+#include "catch.h"
+
+using namespace glidelab;
+
+TEST_CASE("the explorer's orbits are those of u' = 1 - u^n, -1 - u^n and -u^n") {
+  const validate::PhaseExplorer explorer = validate::explore_phases();
+  REQUIRE(explorer.laws.size() == 4);
+  for (const validate::LawOrbits& law : explorer.laws) {
+    const auto follows = [&](const validate::Orbit& orbit, double drive) {
+      REQUIRE(orbit.size() >= 2);
+      CHECK(orbit.back().way == 0.0);
+      for (const validate::OrbitPoint& point : orbit) {
+        const double drag = law.exponent == 0.0 ? 0.0 : std::pow(point.u, law.exponent);
+        // Where it comes to rest, u is 0 by the solver's event to 1e-9; elsewhere the slope is the law of this u.
+        CHECK(std::abs(point.slope - (drive - drag)) <= 1e-12 * (1.0 + drag));
+      }
+    };
+    follows(law.rising, 1.0);
+    follows(law.braking, -1.0);
+    follows(law.free, 0.0);
+    if (law.exponent > 0.0) follows(law.falling, 1.0);
+    CHECK(law.braking.back().u == 0.0);
+  }
+}
+
+TEST_CASE("the explorer's viscous orbits are exponentials, the quadratic ones hyperbolic") {
+  const validate::PhaseExplorer explorer = validate::explore_phases();
+  for (const validate::OrbitPoint& point : explorer.laws[0].rising) {
+    CHECK(std::abs(point.u - -std::expm1(-point.tau)) < 1e-11);  // tolerances of 1e-13 over some thousand steps
+  }
+  for (const validate::OrbitPoint& point : explorer.laws[2].rising) {
+    CHECK(std::abs(point.u - std::tanh(point.tau)) < 1e-11);
+  }
+  // From u0 to rest: ln(1 + u0) with a linear drag, atan(u0) with a quadratic one.
+  CHECK(std::abs(explorer.laws[0].braking.back().tau - std::log1p(validate::kFastest)) < 1e-9);
+  CHECK(std::abs(explorer.laws[2].braking.back().tau - std::atan(validate::kFastest)) < 1e-9);
+}
