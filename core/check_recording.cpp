@@ -25,8 +25,9 @@ constexpr double kTopSpeed = 0.99;    // quantile: single frames may be wrong
 constexpr std::size_t kSpeedLag = 4;  // frames over which a speed is taken
 constexpr std::size_t kPathPlaces = 200;
 constexpr int kAcross = 8, kDown = 6;  // parts of the picture
-// A step counts as a jump or a stall where the two on either side agree within a quarter, and it is clear of noise.
-constexpr double kAgree = 0.25, kJump = 1.6, kStall = 0.4, kClearOfNoise = 8.0;
+// A step counts as a jump or a stall where the two on either side lie within an eighth of a straight line, and it is
+// clear of noise.
+constexpr double kAgree = 0.125, kJump = 1.6, kStall = 0.4, kClearOfNoise = 8.0;
 
 struct Speeds {
   double px_s = 0.0, m_s = 0.0;
@@ -60,9 +61,13 @@ void count_odd_steps(const std::vector<MarkerSighting>& sightings, double noise_
   for (std::size_t i = 2; i + 3 < sightings.size(); ++i) {
     if (sightings[i + 3].frame - sightings[i - 2].frame != 5) continue;
     const std::array<double, 4> around = {step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
-    const auto [least, most] = std::minmax_element(around.begin(), around.end());
+    // A speed that changes evenly makes the four a straight line.
     const double middle = 0.25 * (around[0] + around[1] + around[2] + around[3]);
-    if (*least < kClearOfNoise * noise_px || *most - *least > kAgree * middle) continue;
+    const double rise = 0.1 * (2.0 * (around[3] - around[0]) + around[2] - around[1]);
+    const std::array<double, 4> place = {-2.0, -1.0, 1.0, 2.0};
+    double off = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) off = std::max(off, std::abs(around[k] - middle - rise * place[k]));
+    if (middle < kClearOfNoise * noise_px || off > kAgree * middle) continue;
     clip.jumps += step(i) > kJump * middle ? 1 : 0;
     clip.stalls += step(i) < kStall * middle ? 1 : 0;
   }

@@ -89,8 +89,10 @@ TEST_CASE("a recording without a fault is usable, and its numbers are those of t
 TEST_CASE("an exposure that smears the marker is found, as long as it is") {
   const Recording recording(scenario("exposure_s = 0.01"));
   const json check = recording.check(0);
-  // 1.08 m/s (as above) for 10 ms: 3.2 px, a quarter of the marker.
-  CHECK(std::abs(check.at("clips").at(0).at("blur_px").get<double>() - 3.2) < 0.2);
+  // Between 1.07 and 1.2 m/s (as above, and 4 % less in the first frame's own half) for 10 ms: 3.0 to 3.6 px.
+  const double blur_px = check.at("clips").at(0).at("blur_px").get<double>();
+  CHECK(blur_px > 3.0 * 0.96);
+  CHECK(blur_px < 3.6);
   CHECK_FALSE(finds(check, "change", "smeared"));
   // At 25 Hz it may be smeared by 0.04 s times 1 m/s, its width.
   CHECK(finds(Recording(scenario("exposure_s = 0.04", "", 25.0)).check(0), "change", "the marker is smeared by"));
@@ -100,7 +102,7 @@ TEST_CASE("a marker that the sensor clips is found, and one that is not seen for
   const json bright = Recording(scenario("", "[sensor]\nwhite_level = 1.0\n[light]\nlevel = 1.4")).check(0);
   CHECK(finds(bright, "change", "as white as the camera can say"));
   CHECK(bright.at("clips").at(0).at("marker_level").get<double>() > 0.985);
-  const json dark = Recording(scenario("", "[light]\nlevel = 0.12")).check(0);
+  const json dark = Recording(scenario("", "[light]\nlevel = 0.25")).check(0);
   CHECK(finds(dark, "change", "of the camera's range"));
 }
 
