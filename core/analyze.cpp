@@ -75,7 +75,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   std::size_t modes = 0;  // of the cameras so far: folders share none
   std::vector<const Experiment*> experiment_of;
   for (const Experiment& experiment : experiments) {
-    PictureResults seen = tracks_of(experiment, options.jobs, progress, options.open);
+    PictureResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.pictures);
     for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
@@ -97,6 +97,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     results.clips[i] = analyze_motion(
         setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule, options.lines, options.lost_frames});
     results.clips[i].experiment = experiment_of[i]->name;
+    results.clips[i].pictures = tracks[i].pictures;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });
   results.gravity_m_s2 = experiments.front().gravity_m_s2;

@@ -18,6 +18,7 @@
 #include "core/motion_axis.h"
 #include "core/plumb.h"
 #include "core/restitution.h"
+#include "core/scene_watch.h"
 #include "core/track_csv.h"
 
 namespace glidelab::core {
@@ -132,6 +133,7 @@ struct SeenClip {
   std::vector<double> frame_t_s;
   cv::Size size;
   std::vector<std::string> notes;
+  std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
 };
 
 /// Counts frames over all clips for the progress.
@@ -152,8 +154,26 @@ class FrameCounter {
   std::atomic<double> done_ = 0.0;
 };
 
+/// The marker's image in each frame, from the fits that found it.
+std::vector<MarkerLook> looks_of(const TrackedMarker& marker, const std::vector<double>& frame_t_s) {
+  std::vector<MarkerLook> looks;
+  for (std::size_t i = 0; i < marker.fits.size(); ++i) {
+    const MarkerFit& fit = marker.fits[i];
+    const cv::Vec3d& m = fit.shape;
+    const double determinant = m[0] * m[2] - m[1] * m[1];
+    if (!(determinant > 0.0)) continue;  // a centroid has no outline
+    // An ellipse |M d| = 1 has the moments M^-2 / 4.
+    const double a = m[2] / determinant, b = -m[1] / determinant, c = m[0] / determinant;
+    const std::size_t frame = marker.sightings[i].frame;
+    looks.push_back({frame, frame_t_s[frame], fit.centre.x, fit.centre.y, fit.moments[0] - fit.moments[2],
+                     0.25 * b * (a + c), 0.25 * (b * b + c * c), fit.blur_px, fit.amplitude, fit.background,
+                     fit.slope_u, fit.slope_v});
+  }
+  return looks;
+}
+
 SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Setting& setting, const FrameOpener& open,
-                 FrameCounter& counter) {
+                 bool look_at_scene, FrameCounter& counter) {
   const bool with_color = signal_kind(*experiment.marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
@@ -168,13 +188,32 @@ SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Sett
   SeenClip seen;
   const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
   constexpr std::size_t kTellEvery = 10;
+  std::optional<SceneWatch> scene;
+  if (look_at_scene) {
+    scene.emplace();
+    seen.pictures = std::make_shared<PictureRecord>();
+  }
   while (const auto frame = source->next()) {
     seen.size = frame->grey.size();
     seen.frame_t_s.push_back(frame->t_s);
     tracker.add(*frame);
+    if (scene) {
+      scene->add(frame->grey, frame->t_s);
+      seen.pictures->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
+    }
     if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
   }
   seen.marker = tracker.finish();
+  if (scene) {
+    const FileFacts facts = source->facts();
+    seen.pictures->width_px = seen.size.width;
+    seen.pictures->height_px = seen.size.height;
+    seen.pictures->codec = facts.codec;
+    seen.pictures->lossy = facts.lossy;
+    seen.pictures->stamps_missing = facts.stamps_missing;
+    seen.pictures->marker = looks_of(seen.marker, seen.frame_t_s);
+    scene->finish(*seen.pictures);
+  }
   seen.notes = source->notes();
   seen.notes.insert(seen.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
   return seen;
@@ -200,6 +239,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   track.frame_rate_hz = camera.frame_rate_hz;
   track.frame_t_s = seen.frame_t_s;
   track.notes = seen.notes;
+  track.pictures = seen.pictures;
   for (const PlanePoint& point : points) {
     track.frame.push_back(point.sighting.frame);
     // A rolling shutter exposes the marker's row later than the picture's middle row, to which the frame's time
@@ -228,7 +268,7 @@ void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string
 }  // namespace
 
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress,
-                         const FrameOpener& open) {
+                         const FrameOpener& open, bool look_at_scene) {
   PictureResults results;
   results.tracks.resize(experiment.clips.size());
   std::vector<std::size_t> pictures;
@@ -248,7 +288,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, pictures.size());
   base::for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
-    seen[pictures[k]] = look_at(experiment, experiment.clips[pictures[k]], setting, open, counter);
+    seen[pictures[k]] = look_at(experiment, experiment.clips[pictures[k]], setting, open, look_at_scene, counter);
   });
 
   for (const auto& [name, restitution] : setting.restitutions) {

@@ -75,6 +75,21 @@ class RepeatCounter {
   std::size_t count_ = 0;
 };
 
+/// By the four letters that FFmpeg gives; nothing for others.
+std::optional<bool> is_lossy(std::string codec) {
+  std::transform(codec.begin(), codec.end(), codec.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  static const std::set<std::string> kLossy{"mjpg", "h264", "avc1", "x264", "hevc", "hvc1", "hev1", "vp80",
+                                            "vp90", "vp09", "av01", "mp4v", "fmp4", "xvid", "divx", "mpg1",
+                                            "mpg2", "apcn", "apch", "apcs", "ap4h", "wmv3", "dvsd"};
+  static const std::set<std::string> kLossless{"ffv1", "i420", "yv12", "y800", "grey", "huffyuv",
+                                               "hfyu", "ffvh", "ulrg", "uly0", "uly2", "dib ",
+                                               "raw ", "bgr0", "rgb0", "bgra", "yuy2"};
+  if (kLossy.contains(codec)) return true;
+  if (kLossless.contains(codec)) return false;
+  return std::nullopt;
+}
+
 Frame make_frame(const cv::Mat& picture, bool with_color, std::size_t index) {
   Frame frame;
   frame.index = index;
@@ -164,6 +179,15 @@ class VideoFrames final : public FrameSource {
     return notes;
   }
 
+  FileFacts facts() const override {
+    FileFacts facts;
+    const auto letters = static_cast<unsigned>(std::lround(capture_.get(cv::CAP_PROP_FOURCC)));
+    for (unsigned shift = 0; shift < 32; shift += 8) facts.codec.push_back(static_cast<char>(letters >> shift & 255U));
+    facts.lossy = is_lossy(facts.codec);
+    facts.stamps_missing = missing_;
+    return facts;
+  }
+
  private:
   bool read(cv::Mat& picture) {  // as cv::VideoCapture wants it
     try {
@@ -207,6 +231,13 @@ class VideoFrames final : public FrameSource {
     if (longest_step_s_ <= 0.0) return;  // a container without stamps
     // Matroska rounds stamps to 1 ms, so that a regular clip's steps differ by up to that.
     const double tolerance_s = std::max(1.05e-3, 0.05 * median_step_s_);
+    for (const double step : steps) {
+      const double slots = step / median_step_s_;
+      // Whole frame times, as a slot that was left out makes them; a camera that films slower makes any.
+      if (slots > 1.5 && std::abs(slots - std::round(slots)) < 0.1 + 1.05e-3 / median_step_s_) {
+        missing_ += static_cast<std::size_t>(std::lround(slots)) - 1;
+      }
+    }
     irregular_ = static_cast<std::size_t>(std::count_if(
         steps.begin(), steps.end(), [&](double step) { return std::abs(step - median_step_s_) > tolerance_s; }));
     find_drift();
@@ -243,6 +274,7 @@ class VideoFrames final : public FrameSource {
   RepeatCounter repeats_;
   std::size_t unstamped_ = 0;
   std::size_t irregular_ = 0;
+  std::size_t missing_ = 0;
   double median_step_s_ = 0.0;
   double longest_step_s_ = 0.0;
   double drift_frames_ = 0.0;

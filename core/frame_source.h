@@ -25,6 +25,13 @@ struct Frame {
   double t_s = 0.0;
 };
 
+/// What the file itself says of how it was written.
+struct FileFacts {
+  std::string codec;               ///< four letters; empty for a folder of frames
+  std::optional<bool> lossy;       ///< nothing for a codec that is not known here
+  std::size_t stamps_missing = 0;  ///< frames for which the time stamps leave a gap
+};
+
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -40,6 +47,9 @@ class FrameSource {
   /// What a reader should know, once the end is reached: a container with another rate, irregular stamps,
   /// repeated frames.
   virtual std::vector<std::string> notes() const = 0;
+
+  /// Complete once the end is reached.
+  virtual FileFacts facts() const { return {}; }
 };
 
 /// Opens a video or a folder of frames. `size`, where given, is what the frames must measure (the calibration's

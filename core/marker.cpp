@@ -17,9 +17,10 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLargestRatio = 2.0;           // of the fitted radius and the expected one
-constexpr double kLargestResidual = 1.0 / 3.0;  // of the amplitude; a disc leaves noise only
-constexpr int kMaxIterations = 14;              // what is a marker takes 3 to 8
+constexpr double kLargestRatio = 2.0;                         // of the fitted radius and the expected one
+constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitude; a disc leaves noise only
+constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
+constexpr int kMaxIterations = 14;                            // what is a marker takes 3 to 8
 
 struct Window {
   std::vector<double> u, v, value, weight;
@@ -110,7 +111,7 @@ std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& pr
     const double nu = a * mu + b * mv, nv = b * mu + c * mv;  // M^2 d
     const double rho = std::sqrt(mu * mu + mv * mv);
     const double steep = std::max(std::sqrt(nu * nu + nv * nv), 1e-12);
-    const double s = rho * (1.0 - rho) / steep;
+    const double s = rho > 1e-9 ? rho * (1.0 - rho) / steep : far + 1.0;  // a pixel on the very centre has no normal
     if (s < -far) {  // background alone: most of the other terms are zero
       const double residual = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv - window.value[i];
       add_background(equations, residual, du, dv, p[kSlopeU], p[kSlopeV], weigh(window.weight[i], residual));
@@ -222,6 +223,18 @@ std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
   marker.elongation = (mean + spread) / std::max(mean - spread, 1e-9);
   marker.amplitude = p[kBright] - p[kLevel];
   marker.background = p[kLevel];
+  double above = 0.0;
+  const double reach = kMomentReach * guess.radius_px + kMomentMargin_px;  // short of what else moves with the marker
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double du = window.u[i] - p[kU], dv = window.v[i] - p[kV];
+    if (du * du + dv * dv > reach * reach) continue;
+    const double value = window.value[i] - p[kLevel] - p[kSlopeU] * du - p[kSlopeV] * dv;
+    above += value;
+    marker.moments += value * cv::Vec3d(du * du, du * dv, dv * dv);
+  }
+  marker.moments *= 1.0 / above;
+  marker.slope_u = p[kSlopeU];
+  marker.slope_v = p[kSlopeV];
   marker.blur_px = std::exp(p[kLogBlur]);
   marker.rms = found.rms;
   marker.bic = total_weight * std::log(std::max(found.rms * found.rms * (total_weight - N) / total_weight, 1e-12)) +

@@ -291,6 +291,7 @@ TrackedMarker MarkerTracker::finish() {
       continue;
     }
     tracked.sightings.push_back({path.seen[i].frame, fit.centre.x, fit.centre.y, fit.sd_px, fit.radius_px});
+    tracked.fits.push_back(fit);
     places[path.seen[i].frame] = fit.centre;
   }
   if (hidden > 0) {

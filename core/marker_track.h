@@ -30,6 +30,7 @@ using RadiusAt = std::function<double(cv::Point2d)>;
 
 struct TrackedMarker {
   std::vector<MarkerSighting> sightings;  ///< frames rise
+  std::vector<MarkerFit> fits;            ///< of each sighting
   std::vector<std::string> notes;
 };
 

@@ -3,11 +3,14 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glidelab::core {
+
+struct PictureRecord;
 
 /// A number with its standard deviation and its 95 % interval.
 struct Estimate {
@@ -170,6 +173,8 @@ struct ClipResult {
   std::vector<std::string> notes;  ///< what a reader should know: a container's other rate, gaps, …
   std::vector<MotionPoint> motion;
   std::vector<MarkerSighting> sightings;  ///< empty for a track
+  /// What the pictures show besides (picture_record.h); none for a track, and where it was not asked for.
+  std::shared_ptr<const PictureRecord> pictures;
 };
 
 /// All clips of one mass, one stated inclination and one group.

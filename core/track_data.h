@@ -4,9 +4,11 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/picture_record.h"
 #include "core/results.h"
 
 namespace glidelab::core {
@@ -24,6 +26,7 @@ struct TrackData {
   /// calibration's modes); one entry for every mode of the whole analysis, empty where it does not touch this track.
   std::vector<std::vector<double>> shared_m;
   std::vector<MarkerSighting> sightings;  ///< empty for a track from a file
+  std::shared_ptr<const PictureRecord> pictures;  ///< where they were asked for
   std::vector<std::string> notes;
 };
 

@@ -10,6 +10,7 @@
 #include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/line_table.h"
+#include "diagnose/picture_evidence.h"
 #include "diagnose/track_set.h"
 #include "diagnose/verdict.h"
 
@@ -94,12 +95,6 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
                                       stated < 0.0 ? "up" : "down"));
     }
   }
-  if (set.pictures) {
-    set.notes.push_back(
-        "The clips' pictures enter by the positions found in them only; blur, brightness and the scene are not looked "
-        "at "
-        "yet.");
-  }
 }
 
 /// Frames that are missing are taken out first: a jump is no outlier.
@@ -119,14 +114,17 @@ double misfit(const TrackSet& set, const Comparison& comparison) {
 }  // namespace
 
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
-                           const DiagnoseOptions& options, const base::Progress& progress) {
+                           const DiagnoseOptions& options, const base::Progress& progress,
+                           const std::vector<std::optional<core::CameraSettings>>& cameras) {
   const std::vector<std::size_t> without = indices(options.without);
   TrackSet set = track_set(results, setups, true);
   check(set);
   note_limits(setups, set);
   progress("weighing explanations", 0.1);
+  PictureEvidence pictures;
+  if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
   without_tails(set);
-  Comparison comparison = compare_hypotheses(set, without, options.jobs);
+  Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures);
   if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > 1.5)) {
     // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
     TrackSet trimmed = track_set(results, setups, false);
@@ -140,16 +138,17 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
                       set.disputed));
       progress("weighing explanations", 0.5);
       without_tails(set);
-      comparison = compare_hypotheses(set, without, options.jobs);
+      comparison = compare_hypotheses(set, without, options.jobs, &pictures);
     }
   }
   progress("measuring the gap", 0.9);
-  return verdict_of(set, comparison);
+  return verdict_of(set, comparison, std::move(pictures));
 }
 
 Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
                    const base::Progress& progress) {
   std::vector<core::ClipSetup> setups;
+  std::vector<std::optional<core::CameraSettings>> cameras;
   for (const std::filesystem::path& folder : folders) {
     const core::Experiment experiment = core::read_experiment(folder);
     if (experiment.lines) {
@@ -160,10 +159,15 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
       return diagnose_lines(read_lines(*experiment.lines), experiment.gravity_m_s2);
     }
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
+    cameras.resize(setups.size(), experiment.camera);
   }
-  const core::AnalysisResults results = core::analyze(
-      folders, {.bandwidth_s = {}, .jobs = options.jobs, .lost_frames = core::LostFrameTimes::kept}, progress);
-  return diagnose_results(results, setups, options, progress);
+  const core::AnalysisResults results = core::analyze(folders,
+                                                      {.bandwidth_s = {},
+                                                       .jobs = options.jobs,
+                                                       .lost_frames = core::LostFrameTimes::kept,
+                                                       .pictures = true},
+                                                      progress);
+  return diagnose_results(results, setups, options, progress, cameras);
 }
 
 }  // namespace glidelab::diagnose

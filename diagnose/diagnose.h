@@ -8,6 +8,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "base/progress.h"
@@ -27,8 +28,10 @@ struct DiagnoseOptions {
 Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
                    const base::Progress& progress = base::no_progress);
 
-/// The same from an analysis that was made already; `setups` are all folders' clips in order.
+/// The same from an analysis that was made already; `setups` are all folders' clips in order, `cameras` what is stated
+/// of each clip's camera (needed where the analysis kept the pictures).
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
-                           const DiagnoseOptions& options, const base::Progress& progress = base::no_progress);
+                           const DiagnoseOptions& options, const base::Progress& progress = base::no_progress,
+                           const std::vector<std::optional<core::CameraSettings>>& cameras = {});
 
 }  // namespace glidelab::diagnose

@@ -77,6 +77,23 @@ struct Isolability {
   std::vector<std::vector<double>> cosine;  ///< absolute
 };
 
+/// What the pictures of filmed clips say of one effect, whether or not it moves the positions.
+struct PictureFinding {
+  std::string id, stage;
+  bool seen = false;
+  double log_evidence = 0.0;  ///< of its presence against its absence, from the pictures alone
+  std::vector<DiagnosedParameter> parameters;
+  std::string words;  ///< a sentence
+};
+
+/// A measurement in the pictures for the plots: `lengthening` (px², of the marker's image over px/s), `brightness`
+/// (relative, over time), `drift across`, `drift down` (px, of the fixed scene over time).
+struct PictureCurve {
+  std::string what, clip;
+  std::vector<double> at, value, sd;
+  std::vector<double> expected, fitted;  ///< as stated, and as found; empty where there is none
+};
+
 struct Diagnosis {
   std::string verdict;     ///< none, effect, unknown
   std::size_t points = 0;  ///< positions that took part
@@ -91,6 +108,8 @@ struct Diagnosis {
   std::string summary;  ///< a paragraph in plain words
   Isolability isolability;
   std::vector<ResidualCurve> residuals;
+  std::vector<PictureFinding> pictures;  ///< empty for tracks
+  std::vector<PictureCurve> picture_curves;
   std::vector<std::string> notes;       ///< limits that a reader should know
   std::string twin;                     ///< the fitted motions as a scenario file; empty for a table of lines
   std::vector<std::string> twin_lacks;  ///< named effects that a scenario cannot express

@@ -118,6 +118,16 @@ const std::vector<EffectInfo>& effect_list() {
         {"f_hz", &E::camera_hz, false, 0.2, 1e4, 1e-5},
         {"phase", &E::camera_phase, true, -1e3, 1e3, 1e-5}},
        "a camera that sways or shakes"},
+      {"rolling_shutter",
+       "timing",
+       Search::pictures,
+       false,
+       {},
+       "rows that are exposed one after the other, other than stated"},
+      {"exposure_blur", "sensor", Search::pictures, false, {}, "an exposure that is longer than stated"},
+      {"light_flicker", "optics", Search::pictures, false, {}, "light that flickers"},
+      {"light_gradient", "optics", Search::pictures, false, {}, "light that is much brighter on one side"},
+      {"compression", "sensor", Search::pictures, false, {}, "a codec that loses detail"},
       {"heavy_tailed_noise", "tracking", Search::noise, false, {}, "single positions that lie far off"},
   };
   return list;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "diagnose/joined_evidence.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kWorthFitting = 1.0;  // log likelihood gained
 
 bool moves(std::size_t effect) {
   const Search search = effect_list()[effect].search;
-  return search != Search::frames && search != Search::noise;
+  return search != Search::frames && search != Search::noise && search != Search::pictures;
 }
 
 struct Found {
@@ -144,14 +145,19 @@ void weigh(const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    const bool candidate = !without.contains(e) && (!moves(e) || comparison.scans[e].visible);
+    const bool shown = list[e].search == Search::pictures ? comparison.in_pictures.contains(e)
+                                                          : !moves(e) || comparison.scans[e].visible;
+    const bool candidate = !without.contains(e) && shown;
     seen += candidate ? 1.0 : 0.0;
   }
   const double one = std::log(kPriorOne / std::max(1.0, seen));
   const double two = std::log(kPriorTwo / std::max(1.0, 0.5 * seen * (seen - 1.0)));
   std::vector<double> logs;
   for (const Hypothesis& hypothesis : comparison.all) {
-    double prior = hypothesis.effects.empty() ? std::log(kPriorNone) : hypothesis.effects.size() == 1 ? one : two;
+    const std::size_t many = hypothesis.effects.size();
+    double prior = many == 0   ? std::log(kPriorNone)
+                   : many == 1 ? one
+                               : two + static_cast<double>(many - 2) * (two - one);
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
     logs.push_back(prior + hypothesis.log_evidence);
   }
@@ -176,7 +182,8 @@ void weigh(const std::set<std::size_t>& without, Comparison& comparison) {
 
 }  // namespace
 
-Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs) {
+Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs,
+                              const PictureEvidence* pictures) {
   const std::set<std::size_t> left_out(without.begin(), without.end());
   Comparison comparison;
   comparison.fits.push_back(fit_nominal(set));
@@ -220,6 +227,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
     if (!left_out.contains(frame.effect)) comparison.frames.push_back(frame);
   }
   add_frame_effects(comparison);
+  if (pictures != nullptr) join_pictures(set, *pictures, left_out, comparison);
   weigh(left_out, comparison);
   return comparison;
 }

@@ -8,6 +8,7 @@
 /// Prior odds: nothing 0.3, one effect 0.4 (shared by those that these data can show), two 0.1, unnamed 0.2.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@
 namespace glidelab::diagnose {
 
 struct Hypothesis {
-  std::vector<std::size_t> effects;  ///< none, one or two, in the order found
+  std::vector<std::size_t> effects;  ///< none, one or two, in the order found; more where pictures show them
   bool unnamed = false;              ///< and something besides
   double gain = 0.0;                 ///< log likelihood, against nothing
   double log_evidence = 0.0;         ///< against nothing, sizes averaged over their priors
@@ -35,11 +36,15 @@ struct Comparison {
   std::vector<UnnamedFamily> unnamed;       ///< around nothing
   std::vector<UnnamedFamily> unnamed_left;  ///< around the best named explanation
   int left_fit = 0;                         ///< index of its fit
+  std::set<std::size_t> in_pictures;        ///< effects that the pictures speak for or against
   double none = 0.0, unknown = 0.0;
   std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another
 };
 
-/// `without` are effects that are not considered.
-Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1);
+struct PictureEvidence;
+
+/// `without` are effects that are not considered; `pictures`, what filmed clips show besides (null for tracks).
+Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1,
+                              const PictureEvidence* pictures = nullptr);
 
 }  // namespace glidelab::diagnose

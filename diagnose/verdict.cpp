@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "diagnose/held_out.h"
 #include "diagnose/next_experiment.h"
@@ -50,14 +51,20 @@ std::vector<std::string> equivalents(const Comparison& comparison, const Hypothe
   return ids;
 }
 
-std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, const Hypothesis& hypothesis,
-                                              std::size_t effect) {
+std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, const PictureEvidence& pictures,
+                                              const Hypothesis& hypothesis, std::size_t effect) {
   std::vector<DiagnosedParameter> parameters;
+  for (const PictureFinding& finding : pictures.findings) {
+    if (finding.id == effect_list()[effect].id && (finding.seen || effect_list()[effect].search == Search::pictures)) {
+      parameters = finding.parameters;
+    }
+  }
   for (const FrameEffect& frame : comparison.frames) {
     if (frame.effect != effect) continue;
+    if (!parameters.empty()) continue;
     parameters.push_back({effect_list()[effect].id == "timestamp_jitter" ? "sd_s" : "fraction", frame.value, frame.sd});
   }
-  if (comparison.missing.count > 0 && comparison.missing.effect.effect == effect) {
+  if (parameters.empty() && comparison.missing.count > 0 && comparison.missing.effect.effect == effect) {
     parameters.push_back({"fraction", comparison.missing.effect.value, comparison.missing.effect.sd});
   }
   if (hypothesis.fit < 0) return parameters;
@@ -66,6 +73,9 @@ std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, cons
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     if (globals[g].parameter == nullptr || globals[g].effect != effect || globals[g].parameter->key.empty()) continue;
+    const bool known = std::any_of(parameters.begin(), parameters.end(),
+                                   [&](const auto& p) { return p.key == globals[g].parameter->key; });
+    if (known) continue;  // seen in the pictures
     const auto at = static_cast<Eigen::Index>(g);
     const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
     parameters.push_back({std::string(globals[g].parameter->key), value.value,
@@ -107,6 +117,36 @@ void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families
   }
 }
 
+/// Where in the data a named effect shows that only pictures tell.
+void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
+  static const std::map<std::string, std::pair<const char*, const char*>> kWhere = {
+      {"exposure_blur", {"v_m_s", "marker's width"}},  {"rolling_shutter", {"v_px", "marker's shear"}},
+      {"light_flicker", {"t_s", "brightness"}},        {"light_gradient", {"u_px", "brightness"}},
+      {"camera_motion", {"t_s", "the scene's place"}}, {"compression", {"u_px", "steps between blocks"}}};
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    for (const PictureFinding& finding : pictures.findings) {
+      const auto where = kWhere.find(finding.id);
+      if (finding.id != effect.id || !finding.seen || where == kWhere.end() || finding.parameters.empty()) continue;
+      GapRegion region;
+      region.variable = where->second.first;
+      region.what = where->second.second;
+      const core::PictureRecord& record = *pictures.clips.front().record;
+      region.to = region.variable == "u_px"   ? record.width_px
+                  : region.variable == "v_px" ? record.height_px
+                  : record.scene.empty()      ? 0.0
+                                              : record.scene.back().t_s;
+      if (region.variable == "v_m_s" && pictures.clips.front().px_per_m > 0.0) {
+        region.to = pictures.fastest_px_s / pictures.clips.front().px_per_m;
+      }
+      const DiagnosedParameter& size = finding.parameters.front();
+      region.size = size.value;
+      region.unit = size.key;
+      region.excess = std::sqrt(2.0 * finding.log_evidence);
+      diagnosis.regions.push_back(region);
+    }
+  }
+}
+
 /// Parameters that a hypothesis adds to the nominal model.
 std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, const Hypothesis& hypothesis) {
   std::size_t count = 0;
@@ -114,12 +154,14 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
     const EffectInfo& info = effect_list()[e];
     for (const EffectParameter& parameter : info.parameters) count += parameter.own ? set.motions.size() : 1;
     if (info.search == Search::frames) count += 1 + comparison.missing.count;
+    if (info.search == Search::pictures) ++count;
     if (info.search == Search::noise) count += info.id == "heavy_tailed_noise" ? 2 : 1;
   }
   return count;
 }
 
 void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& diagnosis) {
+  std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
   for (const Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
     RankedExplanation ranked{joined(hypothesis.effects),
@@ -129,7 +171,9 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& d
                              parameters_added(set, comparison, hypothesis),
                              {}};
     if (hypothesis.fit >= 0 && set.clips.size() > 1) {
-      ranked.gap_after = held_out_gap(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]).value;
+      const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
+      if (is_new) gap->second = held_out_gap(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]).value;
+      ranked.gap_after = gap->second;
     }
     diagnosis.ranking.push_back(std::move(ranked));
   }
@@ -242,7 +286,7 @@ const Hypothesis* best_named(const Comparison& comparison) {
   return nullptr;
 }
 
-Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison) {
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures) {
   Diagnosis diagnosis;
   diagnosis.notes = set.notes;
   diagnosis.none = comparison.none;
@@ -260,7 +304,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison) {
       const EffectInfo& info = effect_list()[e];
       diagnosis.effects.push_back({std::string(info.id), std::string(info.stage), std::string(info.words),
                                    comparison.effect_probability[e], equivalents(comparison, *best, e),
-                                   parameters_of(comparison, *best, e)});
+                                   parameters_of(comparison, pictures, *best, e)});
     }
     std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });
@@ -275,6 +319,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison) {
       diagnosis.stage = stage_of(beside_named ? comparison.unnamed_left : comparison.unnamed);
     }
   }
+  add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
   if (diagnosis.verdict == "unknown" && set.clips.size() > 1) {
@@ -296,6 +341,8 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison) {
   diagnosis.twin = std::move(twin.toml);
   diagnosis.twin_lacks = std::move(twin.lacks);
   diagnosis.next_experiment = next_experiment(set, comparison, diagnosis);
+  diagnosis.pictures = std::move(pictures.findings);
+  diagnosis.picture_curves = std::move(pictures.curves);
   diagnosis.summary = summary_of(diagnosis);
   return diagnosis;
 }

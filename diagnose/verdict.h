@@ -3,10 +3,11 @@
 
 #include "diagnose/diagnosis.h"
 #include "diagnose/hypotheses.h"
+#include "diagnose/picture_evidence.h"
 
 namespace glidelab::diagnose {
 
-Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison);
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {});
 
 /// The best hypothesis that names something, or null.
 const Hypothesis* best_named(const Comparison& comparison);

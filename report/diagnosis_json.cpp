@@ -5,19 +5,24 @@
 namespace glidelab::report {
 namespace {
 
+Json parameters_json(const std::vector<diagnose::DiagnosedParameter>& parameters) {
+  Json object = Json::object();
+  for (const diagnose::DiagnosedParameter& parameter : parameters) {
+    Json value;
+    put(value, "value", parameter.value);
+    put(value, "sd", parameter.sd);
+    object[parameter.key] = std::move(value);
+  }
+  return object;
+}
+
 Json effect_json(const diagnose::DiagnosedEffect& effect) {
   Json object;
   object["id"] = effect.id;
   object["stage"] = effect.stage;
   put(object, "probability", effect.probability);
   object["equivalent_to"] = effect.equivalent_to;
-  object["parameters"] = Json::object();
-  for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
-    Json value;
-    put(value, "value", parameter.value);
-    put(value, "sd", parameter.sd);
-    object["parameters"][parameter.key] = std::move(value);
-  }
+  object["parameters"] = parameters_json(effect.parameters);
   return object;
 }
 
@@ -93,6 +98,17 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   document["gap"] = diagnosis.gap ? gap_json(*diagnosis.gap) : Json(nullptr);
   document["next_experiment"] = diagnosis.next_experiment;
   document["isolability"] = {{"effects", diagnosis.isolability.ids}, {"cosine", diagnosis.isolability.cosine}};
+  document["pictures"] = Json::array();
+  for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
+    Json one;
+    one["id"] = finding.id;
+    one["stage"] = finding.stage;
+    one["seen"] = finding.seen;
+    put(one, "log_evidence", finding.log_evidence);
+    one["parameters"] = parameters_json(finding.parameters);
+    one["words"] = finding.words;
+    document["pictures"].push_back(std::move(one));
+  }
   document["notes"] = diagnosis.notes;
   return json_text(document);
 }

@@ -12,6 +12,7 @@ namespace glidelab::report {
 namespace {
 
 constexpr std::size_t kBars = 8;
+constexpr std::size_t kPoints = 800;  // of a clip
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::string axis_of(const std::string& variable) {
@@ -117,6 +118,28 @@ Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int varia
           "Residuals before and after"};
 }
 
+Plot lengthening_plot(const diagnose::PictureCurve& curve) {
+  PlotData data{"seen", {}};
+  for (std::size_t p = 0; p < curve.at.size(); ++p) {
+    data.rows.push_back(
+        {curve.at[p], curve.value[p], curve.sd[p], curve.fitted[p], curve.expected.empty() ? kNan : curve.expected[p]});
+  }
+  std::string script(kFrame);
+  script +=
+      "set key top left\nset xlabel 'speed of the marker in the picture  (px/s)'\nset ylabel 'lengthening of its image "
+      " (px^2)'\n";
+  script += fmt::format(
+      "plot $seen using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{}' title 'seen', $seen using 1:4 with "
+      "lines lw 2 lc rgb '{}' title 'as by the exposure found'",
+      kColors[0], kColors[0]);
+  if (!curve.expected.empty()) {
+    script += fmt::format(", $seen using 1:5 with lines lw 2 dt 2 lc rgb '{}' title 'as by the one stated'", kGrey);
+  }
+  return {gnuplot_svg(script + "\n", std::vector{data}),
+          "How much longer than high the marker's image gets the faster it moves: a long exposure smears it",
+          "Lengthening of the marker's image over its speed"};
+}
+
 }  // namespace
 
 std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
@@ -133,6 +156,45 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
   for (const int variable : {1, 0, 2}) {
     if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis.residuals, variable));
   }
+  return plots;
+}
+
+std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
+  std::vector<Plot> plots;
+  PlotData light{"light", {}}, across{"across", {}}, down{"down", {}};
+  for (const diagnose::PictureCurve& curve : diagnosis.picture_curves) {
+    if (curve.what == "lengthening") {
+      plots.push_back(lengthening_plot(curve));
+      continue;
+    }
+    PlotData& into = curve.what == "brightness" ? light : curve.what == "drift across" ? across : down;
+    const double scale = curve.what == "brightness" ? 100.0 : 1.0;
+    const std::size_t step = std::max<std::size_t>(1, curve.at.size() / kPoints);
+    for (std::size_t p = 0; p < curve.at.size(); p += step) into.rows.push_back({curve.at[p], scale * curve.value[p]});
+    into.rows.emplace_back();  // the next clip begins a line of its own
+  }
+  const std::string lines = fmt::format(" using 1:2 with lines lw 1 lc rgb '{}'", kColors[0]);
+  if (!light.rows.empty()) {
+    const std::string script =
+        std::string(kFrame) + "unset key\nset xlabel 'time t  (s)'\nset ylabel 'brightness, change  (%)'\nplot $light" +
+        lines + "\n";
+    plots.push_back(
+        {gnuplot_svg(script, std::vector{light}),
+         "How bright what rests in the scene is, against each clip's first frames; light that flickers makes "
+         "a regular wave",
+         "Brightness of the scene over time"});
+  }
+  if (across.rows.empty() && down.rows.empty()) return plots;
+  for (PlotData* data : {&across, &down}) {
+    if (data->rows.empty()) data->rows = {{kNan, kNan}};
+  }
+  const std::string script =
+      std::string(kFrame) + "set xlabel 'time t  (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot $across" +
+      lines + " title 'to the right'" +
+      fmt::format(", $down using 1:2 with lines lw 1 lc rgb '{}' title 'downwards'\n", kColors[1]);
+  plots.push_back({gnuplot_svg(script, std::vector{across, down}),
+                   "Where what rests in the scene stands in the picture: a camera at rest keeps it at 0, up to noise",
+                   "Drift of the scene in the picture over time"});
   return plots;
 }
 

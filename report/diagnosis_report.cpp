@@ -88,6 +88,17 @@ std::string gap_tables(const diagnose::GapSizes& gap) {
   return text + angles.str();
 }
 
+/// What was looked for in the pictures, what is there first.
+std::string picture_table(const diagnose::Diagnosis& diagnosis) {
+  HtmlTable table({"looked for", "seen", "what the pictures show"}, 3);
+  for (const bool seen : {true, false}) {
+    for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
+      if (finding.seen == seen) table.row({escape(finding.id), seen ? "yes" : "no", escape(finding.words)});
+    }
+  }
+  return table.str();
+}
+
 std::string region_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"variable", "kind", "from", "to", "largest", "over its sd"}, 2);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
@@ -108,6 +119,13 @@ std::string diagnosis_report(const std::string& title, const diagnose::Diagnosis
   for (const std::string& note : diagnosis.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   body += "<h2>The verdict</h2>\n" + effect_table(diagnosis) + figures(verdict_plots(diagnosis));
   body += "<h2>Where the gap lies</h2>\n" + figures(where_plots(diagnosis)) + region_table(diagnosis);
+  if (!diagnosis.pictures.empty()) {
+    body +=
+        "<h2>What the pictures show</h2>\n<p>Some faults of a camera hardly move the positions that are found, and "
+        "show in the pictures "
+        "themselves. Each is looked for, whether or not the positions need it.</p>\n" +
+        picture_table(diagnosis) + figures(picture_plots(diagnosis));
+  }
   const std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
   if (!alike.empty()) body += "<h2>What these data can tell apart</h2>\n" + figures(alike);
   body += "<h2>Numbers</h2>\n" + ranking_table(diagnosis);

@@ -45,6 +45,9 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
       text += fmt::format("{}.{} = {}\n", effect.id, parameter.key, value_and_sd_text(parameter.value, parameter.sd));
     }
   }
+  for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
+    if (finding.seen) text += "pictures: " + wrapped(finding.words);
+  }
   if (diagnosis.gap) {
     text += fmt::format("gap of held-out clips: {:.3f} before, {:.3f} after (floor 1)\n", diagnosis.gap->before,
                         diagnosis.gap->after);

@@ -1,0 +1,65 @@
+/// Watches what rests in a clip: has it moved in the picture, has it become brighter, is a codec to be seen in it?
+///
+/// Some patches of 24 x 24 pixels are chosen in the first frame, those with most structure and some spread over the
+/// picture. In each frame a patch, blurred by 1 px, is compared with its mean R over the first frames, to first order
+/// in a shift d and a gain a,
+///
+///     I = (1 + a) R - d . grad R,
+///
+/// by least squares, R being shifted (cubic interpolation) by what the last frame's shift was. Patches through which
+/// something passes (residuals three times the usual ones, or a shift that is not the others') are not counted in that
+/// frame. The shift is that of all
+/// patches together, weighted by their gradients; gains are told apart by bands of rows, which a rolling shutter
+/// exposes at different times.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <vector>
+
+#include "core/picture_record.h"
+
+namespace glidelab::core {
+
+class SceneWatch {
+ public:
+  void add(const cv::Mat& grey, double t_s);
+  /// Fills what it has seen into the record: scene, steps, noise.
+  void finish(PictureRecord& record);
+
+ private:
+  struct Patch {
+    cv::Rect place;
+    cv::Mat_<float> around;  ///< the mean of the first frames, with a margin for shifts
+    std::vector<float> reference, gu, gv;
+    cv::Matx33d inverse;         ///< of the normal matrix of (gain, shift)
+    cv::Matx22d structure;       ///< of the shift, the gain projected out
+    double gain_variance = 0.0;  ///< of the gain for a pixel's variance of 1
+    double usual_rms = 0.0;
+    std::vector<float> residual, before, before_that;  ///< of the last three frames
+    int good = 0;                                      ///< frames in a row in which it counted
+  };
+  using Pixels = std::vector<std::vector<float>>;  ///< of each patch
+
+  void choose(const cv::Mat& grey);
+  Pixels cut(const cv::Mat& grey) const;
+  void make_reference();
+  static void shift_reference(Patch& patch, cv::Point2d shift);
+  SceneLook compare(const Pixels& pixels);
+  void look(const cv::Mat& grey, double t_s);
+  void add_steps(const cv::Mat& grey);
+
+  cv::Size size_;
+  std::vector<Patch> patches_;
+  std::vector<cv::Mat> early_;
+  std::vector<double> early_t_s_;
+  bool ready_ = false;
+  cv::Point2d shift_;  ///< at which the references stand
+  std::vector<SceneLook> looks_;
+  BlockSteps steps_;
+  double change_one_ = 0.0, change_two_ = 0.0;
+  std::size_t changes_ = 0;
+};
+
+}  // namespace glidelab::core

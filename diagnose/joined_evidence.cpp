@@ -1,0 +1,132 @@
+#include "diagnose/joined_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/score_space.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kWorthJoining =
+    -3.0;  // log evidence: what the pictures speak against any more is not weighed beside others
+constexpr std::size_t kMostTogether = 4;
+
+bool holds(const Hypothesis& hypothesis, std::size_t effect) {
+  return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
+}
+
+bool same_effects(const Hypothesis& a, const Hypothesis& b) {
+  return a.unnamed == b.unnamed &&
+         std::set(a.effects.begin(), a.effects.end()) == std::set(b.effects.begin(), b.effects.end());
+}
+
+/// What the pictures say of a camera that sways as this fit has it.
+double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::size_t effect, double otherwise) {
+  double amplitude_m = 0.0, f_hz = 0.0;
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter == nullptr || globals[g].effect != effect) continue;
+    const double value = fit.at.global[static_cast<Eigen::Index>(g)];
+    if (globals[g].parameter->member == &EffectValues::camera_m) amplitude_m = value;
+    if (globals[g].parameter->member == &EffectValues::camera_hz) f_hz = value;
+  }
+  return f_hz > 0.0 ? camera_sway_support(pictures.clips, amplitude_m, f_hz) : otherwise;
+}
+
+/// Log likelihood of one motion's residuals: variance s²((1 - share) white + share exp(-lag/frames)).
+double correlated_likelihood(const Eigen::VectorXd& r, const std::vector<char>& outlier, double s2, double share,
+                             double frames) {
+  const double keep = std::exp(-1.0 / frames), driven = s2 * share * (1.0 - keep * keep), white = s2 * (1.0 - share);
+  double mean = 0.0, variance = s2 * share, sum = 0.0;
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    if (outlier[static_cast<std::size_t>(i)] == 0) {
+      const double total = variance + white, off = r[i] - mean;
+      sum -= 0.5 * (off * off / total + std::log(total));
+      mean += variance / total * off;
+      variance *= white / total;
+    }
+    mean *= keep;
+    variance = keep * keep * variance + driven;
+  }
+  return sum;
+}
+
+}  // namespace
+
+CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
+  CorrelatedNoise found;
+  const auto of_all = [&](double s2, double share, double frames) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      sum += correlated_likelihood(fit.motions[i].residual, set.motions[i].outlier, s2, share, frames);
+    }
+    return sum;
+  };
+  const double white = of_all(1.0, 0.0, 1.0);
+  std::vector<double> logs;
+  for (const double s : {1.0, 1.2, 1.45, 1.75, 2.1, 2.5, 3.0, 4.0, 5.0}) {
+    for (const double share : {0.15, 0.3, 0.5, 0.7, 0.9}) {
+      for (const double frames : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+        logs.push_back(of_all(s * s, share, frames) - white);
+        if (logs.back() > found.gain) found = {logs.back(), 0.0, share, frames};
+      }
+    }
+  }
+  found.log_evidence = log_mean(logs);
+  return found;
+}
+
+void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
+                   Comparison& comparison) {
+  const std::size_t codec = effect_index("compression"), sway = effect_index("camera_motion"),
+                    jitter = effect_index("timestamp_jitter");
+  std::vector<const PictureFinding*> findings;
+  for (const PictureFinding& finding : pictures.findings) {
+    if (!without.contains(effect_index(finding.id))) findings.push_back(&finding);
+  }
+  std::sort(findings.begin(), findings.end(),
+            [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
+  for (const PictureFinding* finding : findings) {
+    const std::size_t effect = effect_index(finding->id);
+    comparison.in_pictures.insert(effect);
+    const bool lossy =
+        effect == codec && std::any_of(pictures.clips.begin(), pictures.clips.end(),
+                                       [](const FilmedClip& clip) { return clip.record->lossy.value_or(false); });
+    const std::vector<Hypothesis> so_far = comparison.all;
+    for (Hypothesis& hypothesis : comparison.all) {
+      if (!holds(hypothesis, effect)) continue;
+      const bool fitted = effect == sway && hypothesis.fit >= 0;
+      hypothesis.log_evidence += fitted
+                                     ? sway_support(pictures, comparison.fits[static_cast<std::size_t>(hypothesis.fit)],
+                                                    sway, finding->log_evidence)
+                                     : finding->log_evidence;
+    }
+    for (const Hypothesis& other : so_far) {
+      if (holds(other, effect) || other.effects.size() >= kMostTogether) continue;
+      Hypothesis with = other;
+      with.effects.push_back(effect);
+      const bool known = std::any_of(comparison.all.begin(), comparison.all.end(),
+                                     [&](const Hypothesis& h) { return same_effects(h, with); });
+      if (known) continue;
+      double of_tracks = 0.0;
+      if (lossy && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
+        const CorrelatedNoise noise = scan_correlation(set, comparison.fits[static_cast<std::size_t>(other.fit)]);
+        of_tracks = std::max(0.0, noise.log_evidence);
+        with.gain += noise.gain;
+      }
+      // A smeared marker is found less well the faster it moves: what the scatter shows of that is its own.
+      if (finding->id == "exposure_blur" && finding->seen && !holds(other, jitter)) {
+        for (const FrameEffect& frame : comparison.frames) {
+          if (frame.effect == jitter) of_tracks = std::max(0.0, frame.log_evidence);
+        }
+      }
+      if (finding->log_evidence + of_tracks < kWorthJoining) continue;
+      with.log_evidence += finding->log_evidence + of_tracks;
+      with.gain += std::max(0.0, finding->log_evidence);
+      comparison.all.push_back(std::move(with));
+    }
+  }
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,50 @@
+/// What the pictures of filmed clips say about effects, apart from the positions found in them.
+///
+/// Each finding weighs one effect's presence against its absence: a measured size with its standard deviation against
+/// what is stated (or against nothing), averaged over the sizes that the effect may have. Standard deviations come from
+/// the scatter of the measurements themselves, with what neighbouring frames have in common; a floor stands for what
+/// the marker's model and the lens do to them (each derived where it is used).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment.h"
+#include "core/picture_record.h"
+#include "core/results.h"
+#include "diagnose/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+/// A clip's pictures, with what the folder states of the camera.
+struct FilmedClip {
+  std::string name;
+  std::size_t view = 0;  ///< clips of one view (folder and set-up) see a place at the same pixel
+  std::shared_ptr<const core::PictureRecord> record;
+  core::CameraSettings camera;
+  double px_per_m = 0.0;  ///< along the motion; 0 where unknown
+};
+
+/// Filmed clips of an analysis that kept its pictures; empty where there are none. `cameras`: of each clip.
+std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
+                                     const std::vector<std::optional<core::CameraSettings>>& cameras);
+
+struct PictureEvidence {
+  std::vector<PictureFinding> findings;
+  std::vector<PictureCurve> curves;
+  std::vector<FilmedClip> clips;
+  double fastest_px_s = 0.0;  ///< of the marker
+};
+
+PictureEvidence picture_evidence(std::vector<FilmedClip> clips);
+
+/// Log likelihood of the fixed scene's motion under a camera that sways by this (along the motion, in metres) over that
+/// under a camera at rest; 0 where nothing in the scene would show it.
+double camera_sway_support(const std::vector<FilmedClip>& clips, double amplitude_m, double f_hz);
+
+/// Log evidence of a deviation of z standard deviations, equal odds for each factor of ten from 1 to `largest`.
+double log_evidence_of(double z, double largest);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,32 @@
+/// Waves in series that several clips have in common: brightness that flickers, a scene that sways in the picture.
+///
+/// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, a and b free in
+/// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known;
+/// Schwarz's penalty for what is free, and four times the median gain over all frequencies, as it is where noise is not
+/// white.
+#pragma once
+
+#include <vector>
+
+namespace glidelab::diagnose {
+
+struct Series {
+  std::vector<double> t_s, value;
+};
+
+struct Wave {
+  double log_evidence = 0.0;
+  double f_hz = 0.0, sd_hz = 0.0;
+  double amplitude = 0.0, sd = 0.0;  ///< root mean square over the series
+};
+
+/// The strongest wave between 3 periods a series and half the sampling rate.
+Wave strongest_wave(const std::vector<Series>& series);
+
+/// Amplitude at one frequency and its standard deviation (of a component), of one series.
+struct Amplitude {
+  double size = 0.0, sd = 0.0;
+};
+Amplitude amplitude_at(const Series& series, double f_hz);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,120 @@
+#include "core/scene_watch.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr int kWidth = 240, kHeight = 160;
+constexpr double kNoise = 1.0;  // codes
+constexpr double kRate_hz = 100.0;
+
+/// A wall with waves of some pixels' length in all directions.
+double wall(double u, double v) {
+  return 90.0 + 12.0 * std::sin(0.61 * u + 0.2 * v) + 9.0 * std::sin(0.5 * v - 0.13 * u) + 6.0 * std::sin(0.29 * u);
+}
+
+struct Made {
+  std::function<double(double t)> shift_u = [](double) { return 0.0; };
+  std::function<double(double t)> light = [](double) { return 1.0; };
+  bool with_glider = false;  ///< a dark thing of 60 x 40 px that crosses the picture in the clip
+};
+
+core::PictureRecord watched(const Made& made, int frames) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0.0, kNoise);
+  core::SceneWatch watch;
+  for (int k = 0; k < frames; ++k) {
+    const double t = k / kRate_hz;
+    cv::Mat_<unsigned char> picture(kHeight, kWidth);
+    const double left = -60.0 + 300.0 * k / frames;
+    for (int v = 0; v < kHeight; ++v) {
+      for (int u = 0; u < kWidth; ++u) {
+        const bool hidden = made.with_glider && u > left && u < left + 60.0 && v > 60 && v < 100;
+        const double value = hidden ? 30.0 : wall(u - made.shift_u(t), v);
+        picture(v, u) = cv::saturate_cast<unsigned char>(made.light(t) * value + noise(random));
+      }
+    }
+    watch.add(picture, t);
+  }
+  core::PictureRecord record;
+  watch.finish(record);
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("A scene that sways is followed to its stated noise, and beyond the pixel that a first-order step covers",
+          "[scene]") {
+  const auto truth = [](double t) { return 1.6 * std::sin(2.0 * std::numbers::pi * 3.0 * t); };
+  const core::PictureRecord record = watched({truth, [](double) { return 1.0; }, false}, 120);
+  REQUIRE(record.scene.size() == 120);
+  // The reference is the mean of six frames, over which the scene moves: its own place is theirs.
+  double start = 0.0, off = 0.0, variance = 0.0;
+  for (int k = 0; k < 6; ++k) start += truth(k / kRate_hz) / 6.0;
+  for (const core::SceneLook& look : record.scene) {
+    off += std::pow(look.u_px - (truth(look.t_s) - start), 2) / 120.0;
+    variance += look.sd_u_px * look.sd_u_px / 120.0;
+  }
+  // 3 % of the amplitude for a reference that is smeared over a sixth of a period, beside three times the noise.
+  CHECK(std::sqrt(off) < 0.05 + 3.0 * std::sqrt(variance));
+  CHECK(std::sqrt(variance) < 0.05);
+}
+
+TEST_CASE("A scene at rest stays where it is while something dark passes before it", "[scene]") {
+  const core::PictureRecord record = watched({[](double) { return 0.0; }, [](double) { return 1.0; }, true}, 150);
+  for (const core::SceneLook& look : record.scene) {
+    // Five standard deviations of 300 numbers, and a hundredth of a pixel for what touches a patch's rim.
+    CHECK(std::abs(look.u_px) < 5.0 * look.sd_u_px + 0.01);
+    CHECK(std::abs(look.v_px) < 5.0 * look.sd_v_px + 0.01);
+  }
+}
+
+TEST_CASE("The light's change is measured in each band of rows, whatever passes", "[scene]") {
+  const auto light = [](double t) { return 1.0 + 0.02 * std::cos(2.0 * std::numbers::pi * 10.0 * t); };
+  const core::PictureRecord record = watched({[](double) { return 0.0; }, light, true}, 100);
+  double start = 0.0;
+  for (int k = 0; k < 6; ++k) start += light(k / kRate_hz) / 6.0;
+  for (const core::SceneLook& look : record.scene) {
+    for (std::size_t b = 0; b < core::kRowBands; ++b) {
+      if (look.gain_sd[b] == 0.0) continue;
+      // Rounding to codes (0.29 of 90, over hundreds of pixels) is below 1e-4.
+      CHECK(std::abs(look.gain[b] - (light(look.t_s) / start - 1.0)) < 5.0 * look.gain_sd[b] + 1e-4);
+    }
+  }
+}
+
+TEST_CASE("Noise that is new in every frame has no memory, and blocks of eight show at their edges", "[scene]") {
+  const core::PictureRecord record = watched({}, 60);
+  REQUIRE(record.noise_memory);
+  // A ratio of two variances from 54 frames of thousands of pixels each, blurred: below 2 %.
+  CHECK(std::abs(*record.noise_memory - 1.0) < 0.02);
+  // sqrt(1 + 1/12) codes with rounding.
+  CHECK(std::abs(record.noise_code - std::sqrt(kNoise * kNoise + 1.0 / 12.0)) < 0.05);
+
+  core::SceneWatch blocks;
+  cv::Mat_<unsigned char> picture(kHeight, kWidth);
+  for (int v = 0; v < kHeight; ++v) {
+    for (int u = 0; u < kWidth; ++u) picture(v, u) = static_cast<unsigned char>(80 + (u / 8) % 3 + u % 2);
+  }
+  for (int k = 0; k < 8; ++k) blocks.add(picture, k / kRate_hz);
+  core::PictureRecord of_blocks;
+  blocks.finish(of_blocks);
+  for (std::size_t c = 1; c < 8; ++c) CHECK(of_blocks.steps.mean[c] == 1.0);
+  CHECK(of_blocks.steps.mean[0] != 1.0);
+}
+
+TEST_CASE("A picture that is smaller than a patch has nothing to watch", "[scene]") {
+  core::SceneWatch watch;
+  for (int k = 0; k < 10; ++k) watch.add(cv::Mat(20, 20, CV_8U, cv::Scalar(80)), k / kRate_hz);
+  core::PictureRecord record;
+  watch.finish(record);
+  CHECK(record.scene.empty());
+  CHECK_FALSE(record.noise_memory);
+}
