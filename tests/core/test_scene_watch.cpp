@@ -84,8 +84,9 @@ TEST_CASE("The light's change is measured in each band of rows, whatever passes"
   for (const core::SceneLook& look : record.scene) {
     for (std::size_t b = 0; b < core::kRowBands; ++b) {
       if (look.gain_sd[b] == 0.0) continue;
-      // Rounding to codes (0.29 of 90, over hundreds of pixels) is below 1e-4.
-      CHECK(std::abs(look.gain[b] - (light(look.t_s) / start - 1.0)) < 5.0 * look.gain_sd[b] + 1e-4);
+      // The dark thing counts as passing once residuals are three times the usual 0.29 codes: one column of 24 of a
+      // patch may until then be off by 0.87 sqrt(24) codes, 0.002 of the patch's mean of 90.
+      CHECK(std::abs(look.gain[b] - (light(look.t_s) / start - 1.0)) < 5.0 * look.gain_sd[b] + 2e-3);
     }
   }
 }
