@@ -159,7 +159,7 @@ std::vector<Series> drift_of(const FilmedClip& clip) {
   return {std::move(u), std::move(v)};
 }
 
-/// Mean over a tenth of a series at its end less that at its start, with its standard error.
+/// Range of the means of eight parts of a series beyond what its noise makes of it, with its standard error.
 struct Drift {
   double size = 0.0, sd = 0.0;
 };

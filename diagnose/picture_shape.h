@@ -1,15 +1,15 @@
 /// Exposure and line time from the shape of the marker's image.
 ///
 /// An exposure T smears the image of a marker that moves at w px/s over L = |w| T; rows that are exposed one after the
-/// other shear it. With second moments m of the outline, S(L) what a smear adds along the motion more than across it
-/// (found by smearing a disc and fitting it with the very model that measured the clip; L²/12 for short ones), and the
-/// motion's direction phi,
+/// other shear it. With second moments m (of its brightness for the difference, of its outline for the mixed one), the
+/// speed's components w and `line` the time from one row to the next,
 ///
-///     m_uu - m_vv = p(u) + S(|w| T) cos 2 phi - 2 line w_v m_vv,      m_uv = q(u) + S(|w| T) sin(2 phi)/2 + line w_u
-///     m_vv
+///     m_uu - m_vv = p(u) + (w_u² - w_v²) T²/12 - 2 line w_v m_vv
+///     m_uv        = q(u) + w_u w_v T²/12 + line w_u m_vv
 ///
 /// p, q cubic in the place in the picture, one pair for each view: perspective and lens, which do not go with the
-/// speed.
+/// speed. T is found by trying exposures, all else by least squares; outliers beyond seven median deviations are left
+/// out, and variances are multiplied by how long residuals last.
 #pragma once
 
 #include <vector>
