@@ -23,7 +23,8 @@ struct PictureResults {
 
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of
 /// motion, x positive downhill. Clips that are tracks (CSV) are read with read_track_csv. Frames stream; `jobs` clips
-/// at a time. With `look_at_scene` every track has its PictureRecord. InputError for pictures that cannot be used (no pattern, no marker, truncated, of another size, …).
+/// at a time. With `look_at_scene` every track has its PictureRecord. InputError for pictures that cannot be used (no
+/// pattern, no marker, truncated, of another size, …).
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
                          const FrameOpener& open = open_frames, bool look_at_scene = false);
 

@@ -36,13 +36,13 @@ struct MarkerFit {
   cv::Vec3d shape;          ///< the elements uu, uv, vv of M (1/px)
   double amplitude = 0.0;   ///< B - b, in units of the signal
   double background = 0.0;
-  /// Second moments uu, uv, vv (px²) about the centre of what stands above the background in a disc a little larger than the
-  /// marker: of the pixels, whatever the model makes of them.
+  /// Second moments uu, uv, vv (px²) about the centre of what stands above the background in a disc a little larger
+  /// than the marker: of the pixels, whatever the model makes of them.
   cv::Vec3d moments;
   double slope_u = 0.0, slope_v = 0.0;  ///< g, of the background, 1/px
-  double blur_px = 0.0;  ///< sigma
-  double rms = 0.0;      ///< of the residuals, in units of the signal
-  double bic = 0.0;      ///< Bayesian information criterion, to compare surfaces on the same window
+  double blur_px = 0.0;                 ///< sigma
+  double rms = 0.0;                     ///< of the residuals, in units of the signal
+  double bic = 0.0;                     ///< Bayesian information criterion, to compare surfaces on the same window
 };
 
 enum class Surface { uniform, shaded };

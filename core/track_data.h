@@ -25,7 +25,7 @@ struct TrackData {
   /// How all positions change by one standard deviation of each independent error of the camera and the plane (the
   /// calibration's modes); one entry for every mode of the whole analysis, empty where it does not touch this track.
   std::vector<std::vector<double>> shared_m;
-  std::vector<MarkerSighting> sightings;  ///< empty for a track from a file
+  std::vector<MarkerSighting> sightings;          ///< empty for a track from a file
   std::shared_ptr<const PictureRecord> pictures;  ///< where they were asked for
   std::vector<std::string> notes;
 };

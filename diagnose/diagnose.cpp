@@ -161,12 +161,9 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     cameras.resize(setups.size(), experiment.camera);
   }
-  const core::AnalysisResults results = core::analyze(folders,
-                                                      {.bandwidth_s = {},
-                                                       .jobs = options.jobs,
-                                                       .lost_frames = core::LostFrameTimes::kept,
-                                                       .pictures = true},
-                                                      progress);
+  const core::AnalysisResults results = core::analyze(
+      folders, {.bandwidth_s = {}, .jobs = options.jobs, .lost_frames = core::LostFrameTimes::kept, .pictures = true},
+      progress);
   return diagnose_results(results, setups, options, progress, cameras);
 }
 
