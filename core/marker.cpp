@@ -20,7 +20,7 @@ namespace {
 constexpr double kLargestRatio = 2.0;                         // of the fitted radius and the expected one
 constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitude; a disc leaves noise only
 constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
-constexpr int kMaxIterations = 14;                            // what is a marker takes 3 to 8
+constexpr int kMaxIterations = 30;  // what is a marker takes 3 to 8; a clipped one 15 and more
 
 struct Window {
   std::vector<double> u, v, value, weight;
