@@ -94,12 +94,16 @@ TEST_CASE("an exposure that smears the marker is found, as long as it is") {
   CHECK(blur_px > 3.0 * 0.96);
   CHECK(blur_px < 3.6);
   CHECK_FALSE(finds(check, "change", "smeared"));
+  // At 25 Hz it may be smeared by 0.04 s times 1 m/s, its width.
+  CHECK(finds(Recording(scenario("exposure_s = 0.04", "", 25.0)).check(0), "change", "the marker is smeared by"));
 }
 
-TEST_CASE("a marker that the sensor clips is found") {
-  const json bright = Recording(scenario("", "[sensor]\nwhite_level = 1.0\n[light]\nlevel = 1.4")).check(0);
+TEST_CASE("a marker that the sensor clips is found, and one that is not seen for darkness") {
+  const json bright = Recording(scenario("", "[sensor]\nwhite_level = 1.0")).check(0);
   CHECK(finds(bright, "change", "as white as the camera can say"));
   CHECK(bright.at("clips").at(0).at("marker_level").get<double>() > 0.985);
+  const json dark = Recording(scenario("", "[light]\nlevel = 0.25")).check(0);
+  CHECK(finds(dark, "change", "of the camera's range"));
 }
 
 TEST_CASE("views without the pattern are named, and too few of them make the recording unusable") {
@@ -131,6 +135,16 @@ TEST_CASE("a rate that is not the file's is told, and a clip that is not there i
   const tests::ProcessResult gone = tests::glidelab({"check", "r"}, recording.temp.path());
   CHECK(gone.status == 1);
   CHECK(gone.err.find("up.mkv") != std::string::npos);
+}
+
+TEST_CASE("frames that are missing show as jumps of the marker, frames that came twice as stalls") {
+  const json dropped = Recording(scenario("", "[clock]\ndropped_fraction = 0.05")).check(4);
+  CHECK(dropped.at("clips").at(0).at("jumps").get<int>() > 0);
+  CHECK(finds(dropped, "unusable", "frames are missing"));
+  const json twice = Recording(scenario("", "[clock]\nduplicated_fraction = 0.05")).check(0);
+  CHECK(twice.at("clips").at(0).at("repeated_frames").get<int>() > 0);
+  CHECK(twice.at("clips").at(0).at("jumps").get<int>() >= 0);
+  CHECK(finds(twice, "change", "the very picture before them"));
 }
 
 TEST_CASE("a marker that is not there is a finding of its clip, and names from files stay text") {
