@@ -102,6 +102,9 @@ TEST_CASE("a marker that the sensor clips is found, and one that is not seen for
   const json bright = Recording(scenario("", "[sensor]\nwhite_level = 1.0")).check(0);
   CHECK(finds(bright, "change", "as white as the camera can say"));
   CHECK(bright.at("clips").at(0).at("marker_level").get<double>() > 0.985);
+  // Far above what the sensor holds the marker's edge is sharper than a pixel; it is found nonetheless.
+  const json far_above = Recording(scenario("", "[sensor]\nwhite_level = 1.0\n[light]\nlevel = 1.4")).check(0);
+  CHECK(finds(far_above, "change", "as white as the camera can say"));
   const json dark = Recording(scenario("", "[light]\nlevel = 0.25")).check(0);
   CHECK(finds(dark, "change", "of the camera's range"));
 }
