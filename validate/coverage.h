@@ -1,8 +1,8 @@
 /// Do the stated intervals hold the truth as often as they say, and how near is each estimator to the bound?
 ///
 /// A scenario's motions are made and analysed in many replicates that differ in the positions' noise and in the rate of
-/// the camera's clock (made_tracks.h; frames are lost and doubled as the scenario says); each estimator sees the same ones. Of n intervals
-/// of 95 % the number that hold the truth is binomial.
+/// the camera's clock (made_tracks.h; frames are lost and doubled as the scenario says); each estimator sees the same
+/// ones. Of n intervals of 95 % the number that hold the truth is binomial.
 #pragma once
 
 #include <cstdint>
