@@ -20,7 +20,9 @@ namespace {
 constexpr double kLargestRatio = 2.0;                         // of the fitted radius and the expected one
 constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitude; a disc leaves noise only
 constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
-constexpr int kMaxIterations = 30;  // what is a marker takes 3 to 8; a clipped one 15 and more
+constexpr double kSharpEdge_px = 0.29;  // the pixel's own extent, 1/sqrt(12): nothing that is not clipped is sharper
+constexpr int kMaxIterations = 14;      // what is a marker takes 3 to 8
+constexpr int kMoreIterations = 16;     // a disc so far, its edge sharper than a pixel: the sensor clips it
 
 struct Window {
   std::vector<double> u, v, value, weight;
@@ -198,7 +200,11 @@ std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
   step[kLogBlur] = 2e-2;
   const Prior prior{guess.radius_px, guess.blur_px, amplitude};
   const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(window, prior, p, TaperWeight{}); };
-  const LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations);
+  LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations);
+  if (found.stop == FitStop::iterations && found.parameters[kLogBlur] < std::log(kSharpEdge_px) &&
+      found.rms < kLargestResidual * amplitude) {
+    found = fit_least_squares<N>(model, found.parameters, step, kMoreIterations);
+  }
   if (found.stop != FitStop::converged) return std::nullopt;
 
   const auto& p = found.parameters;
