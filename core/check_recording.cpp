@@ -100,10 +100,10 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   const ClipLook look = look_at_clip(experiment, setup, track.sightings, open);
   clip.width_px = look.size.width;
   clip.height_px = look.size.height;
-  clip.container_rate_hz = look.times.container_rate_hz;
-  clip.repeated = look.times.repeated;
-  clip.irregular_steps = look.times.irregular_steps;
-  clip.drift_frames = look.times.drift_frames;
+  clip.container_rate_hz = look.file.container_rate_hz;
+  clip.repeated = look.file.repeated;
+  clip.irregular_steps = look.file.irregular_steps;
+  clip.drift_frames = look.file.drift_frames;
   clip.saturated = look.exposure.saturated;
   clip.dark = look.exposure.dark;
   clip.bright_level = look.exposure.bright_level;

@@ -65,7 +65,7 @@ ClipLook look_at_clip(const Experiment& experiment, const ClipSetup& clip, const
     before = frame->grey;
   }
   look.exposure = watch.result();
-  look.times = times_of(*source);
+  look.file = source->facts();
   const double full = look.exposure.full_code;
   if (!contrast.empty()) look.contrast = quantile(contrast, 0.5) / full;
   if (!level.empty()) look.marker_level = quantile(level, 0.5) / full;

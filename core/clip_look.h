@@ -10,7 +10,6 @@
 #include "core/experiment.h"
 #include "core/exposure_watch.h"
 #include "core/frame_source.h"
-#include "core/frame_times.h"
 #include "core/results.h"
 
 namespace glidelab::core {
@@ -18,7 +17,7 @@ namespace glidelab::core {
 struct ClipLook {
   cv::Size size;
   Exposure exposure;
-  FrameTimes times;
+  FileFacts file;
   /// Of the marker where it was seen, by the fit of core/marker.h in some of those frames, as shares of the largest
   /// code; no contrast for a marker that is known by its hue, and a level for a bright one only.
   std::optional<double> contrast;

@@ -11,7 +11,6 @@
 #include <set>
 
 #include "base/errors.h"
-#include "core/frame_times.h"
 #include "core/picture.h"
 
 namespace glidelab::core {
@@ -145,15 +144,6 @@ class VideoFrames final : public FrameSource {
     return frame;
   }
 
-  FrameTimes times() const {
-    FrameTimes times;
-    if (stated_rate_hz_ > 0.0) times.container_rate_hz = stated_rate_hz_;
-    times.irregular_steps = irregular_;
-    times.repeated = repeats_.repeated();
-    times.drift_frames = drift_frames_;
-    return times;
-  }
-
   std::size_t stated_frames() const override { return stated_; }
 
   std::vector<std::string> notes() const override {
@@ -184,7 +174,11 @@ class VideoFrames final : public FrameSource {
     const auto letters = static_cast<unsigned>(std::lround(capture_.get(cv::CAP_PROP_FOURCC)));
     for (unsigned shift = 0; shift < 32; shift += 8) facts.codec.push_back(static_cast<char>(letters >> shift & 255U));
     facts.lossy = is_lossy(facts.codec);
+    if (stated_rate_hz_ > 0.0) facts.container_rate_hz = stated_rate_hz_;
     facts.stamps_missing = missing_;
+    facts.irregular_steps = irregular_;
+    facts.repeated = repeats_.repeated();
+    facts.drift_frames = drift_frames_;
     return facts;
   }
 
@@ -359,11 +353,6 @@ bool natural_less(const std::string& a, const std::string& b) {
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
   return a < b;
-}
-
-FrameTimes times_of(const FrameSource& source) {
-  const auto* video = dynamic_cast<const VideoFrames*>(&source);
-  return video == nullptr ? FrameTimes{} : video->times();
 }
 
 std::unique_ptr<FrameSource> open_frames(const fs::path& file, const CameraSettings& camera, bool with_color,

@@ -25,11 +25,16 @@ struct Frame {
   double t_s = 0.0;
 };
 
-/// What the file itself says of how it was written.
+/// What a video file says of how it was written and of its times, and frames that came twice. Of a folder of frames,
+/// and of frames from elsewhere, nothing is known.
 struct FileFacts {
-  std::string codec;               ///< four letters; empty for a folder of frames
-  std::optional<bool> lossy;       ///< nothing for a codec that is not known here
-  std::size_t stamps_missing = 0;  ///< frames for which the time stamps leave a gap
+  std::string codec;                        ///< four letters; empty for a folder of frames
+  std::optional<bool> lossy;                ///< nothing for a codec that is not known here
+  std::optional<double> container_rate_hz;  ///< frames a second, as the container says
+  std::size_t stamps_missing = 0;           ///< frames for which the time stamps leave a gap
+  std::size_t irregular_steps = 0;          ///< between time stamps, that differ from the median step
+  std::size_t repeated = 0;                 ///< frames equal to the one before, bit by bit
+  double drift_frames = 0.0;                ///< how far the stamps leave a uniform row, in frames
 };
 
 class FrameSource {

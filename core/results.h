@@ -164,7 +164,7 @@ struct ClipResult {
   double scale_sd_relative = 0.0;               ///< as in TrackData
   std::optional<double> rounding_m;             ///< step to which the positions are rounded, where that shows
   bool forced = false;                          ///< a known force acts
-  std::vector<LostFrames> lost_frames;          ///< found from the motion; all times of this result allow for them
+  std::vector<LostFrames> lost_frames;          ///< found from the motion; what is done about them: MotionOptions
   std::vector<FreeBlock> blocks;                ///< what a fit of the whole motion rests on
   std::vector<LineFit> segments;                ///< at most one for each direction
   Quantity v_lim_m_s;
