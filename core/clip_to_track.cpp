@@ -193,7 +193,7 @@ SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Sett
     scene.emplace();
     seen.pictures = std::make_shared<PictureRecord>();
   }
-  while (const auto frame = source->next()) {
+  while (const auto frame = look_at_scene ? source->next() : source->next_in_parts()) {
     seen.size = frame->grey.size();
     seen.frame_t_s.push_back(frame->t_s);
     tracker.add(*frame);

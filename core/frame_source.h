@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/draw_pixels.h"
 #include "core/experiment.h"
 
 namespace glidelab::core {
@@ -23,6 +24,7 @@ struct Frame {
   cv::Mat color;  ///< BGR, 8 bits, where it was asked for; else empty
   std::size_t index = 0;
   double t_s = 0.0;
+  DrawPixels draw = {};  ///< of next_in_parts(): grey holds nothing but what was drawn with it; else empty
 };
 
 /// What a video file says of how it was written and of its times, and frames that came twice. Of a folder of frames,
@@ -45,6 +47,10 @@ class FrameSource {
   /// another size, for stamps that do not rise where they count, and at the end of a clip that is shorter than its
   /// container says by more than max(2, 1 %), or empty.
   virtual std::optional<Frame> next() = 0;
+
+  /// The next frame for one who looks at parts of it: where a source makes its pixels, the same ones as next() gives,
+  /// it may leave them to Frame::draw, which outlives the source's next frames but not the source.
+  virtual std::optional<Frame> next_in_parts() { return next(); }
 
   /// How many frames the container says there are; 0 where it does not.
   virtual std::size_t stated_frames() const = 0;

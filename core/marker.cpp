@@ -36,6 +36,7 @@ std::optional<Window> cut_window(const Signal& signal, cv::Point2d centre, doubl
   const int top = static_cast<int>(std::ceil(centre.y - radius));
   const int bottom = static_cast<int>(std::floor(centre.y + radius));
   if (left < 0 || top < 0 || right >= signal.values.cols || bottom >= signal.values.rows) return std::nullopt;
+  signal.see({left, top, right - left + 1, bottom - top + 1});
   Window window;
   const double taper_from = radius - std::min(2.0, 0.25 * radius);
   for (int v = top; v <= bottom; ++v) {
@@ -270,6 +271,7 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
   const int side = 2 * static_cast<int>(std::ceil(reach)) + 1;
   const cv::Rect box = cv::Rect(corner.x, corner.y, side, side) & picture;
   if (box.width < 3 || box.height < 3) return std::nullopt;
+  signal.see(box);
 
   // The background from the rim of the box, the peak from the brightest tenth near the guess.
   std::vector<double> rim, near;

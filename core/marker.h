@@ -16,12 +16,20 @@
 
 #include <optional>
 
+#include "core/draw_pixels.h"
+
 namespace glidelab::core {
 
 /// One channel in which the marker is brighter than what surrounds it: the grey picture, its inverse, or the likeness
 /// to the marker's colour. 8 or 16 bits.
 struct Signal {
   cv::Mat values;
+  DrawPixels draw = {};  ///< where the pixels are made as they are looked at: before at() and values, see()
+
+  /// The rectangle, which lies within the picture, is about to be looked at.
+  void see(const cv::Rect& part) const {
+    if (draw) draw(part);
+  }
   double at(int u, int v) const {
     return values.depth() == CV_8U ? static_cast<double>(values.at<unsigned char>(v, u))
                                    : static_cast<double>(values.at<unsigned short>(v, u));

@@ -161,7 +161,8 @@ std::optional<Signal> signal_of(const Frame& frame, const MarkerSetup& marker, S
     if (frame.color.empty()) return std::nullopt;
     return Signal{likeness(frame.color, *marker.color_bgr)};
   }
-  if (kind == SignalKind::bright) return Signal{frame.grey};
+  if (kind == SignalKind::bright) return Signal{frame.grey, frame.draw};
+  if (frame.draw) frame.draw(cv::Rect({}, frame.grey.size()));
   cv::Mat inverse;
   cv::bitwise_not(frame.grey, inverse);
   return Signal{inverse};
@@ -178,6 +179,7 @@ std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
       cv::Rect(region.x - reach, region.y - reach, region.width + 2 * reach, region.height + 2 * reach) & whole;
   if (region.empty() || taken.empty()) return {};
 
+  signal.see(taken);
   cv::Mat small;
   const cv::Size size(std::max(1, static_cast<int>(std::lround(taken.width / shrink))),
                       std::max(1, static_cast<int>(std::lround(taken.height / shrink))));

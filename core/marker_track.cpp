@@ -137,6 +137,7 @@ void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, 
       cv::Rect(static_cast<int>(std::lround(found.fit.centre.x)) - reach,
                static_cast<int>(std::lround(found.fit.centre.y)) - reach, 2 * reach + 1, 2 * reach + 1) &
       cv::Rect(0, 0, signal.values.cols, signal.values.rows);
+  signal.see(box);
   MarkerGuess guess = found.guess;
   guess.centre = found.fit.centre - cv::Point2d(box.x, box.y);
   path.samples.push_back({frame, Signal{signal.values(box).clone()}, box.tl(), guess});

@@ -81,8 +81,8 @@ std::optional<ClipStream::Next> ClipStream::next() {
     if (fate == FrameFate::dropped) continue;
     const double stamp_s = clock_.stamp_s(number);
     const bool repeated = fate == FrameFate::duplicated;
-    if (!repeated) shown_ = std::move(slot);
-    return Next{*shown_, number, repeated, stamp_s};
+    if (!repeated) shown_ = std::make_shared<const FrameMotion>(std::move(*slot));
+    return Next{shown_, number, repeated, stamp_s};
   }
   return std::nullopt;
 }

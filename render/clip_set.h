@@ -70,17 +70,17 @@ class ClipStream {
   ClipStream(std::shared_ptr<const ClipSet> set, std::size_t clip, std::uint64_t seed);
 
   struct Next {
-    const FrameMotion& shown;
+    std::shared_ptr<const FrameMotion> shown;
     std::size_t slot;  ///< of the clock; shown.frame unless repeated
     bool repeated;     ///< the picture before once more
     double stamp_s;    ///< what a container would say of its time
   };
   /// The next frame, or nothing at the end.
   std::optional<Next> next();
-  /// The codes of the frame that next() gave, within `rect`.
+  /// The codes of a frame that next() gave, within `rect`, in any order.
   template <typename Code>
-  void read(const PixelRect& rect, std::span<Code> codes) {
-    renderer_.read(*shown_, rect, codes);
+  void read(const FrameMotion& shown, const PixelRect& rect, std::span<Code> codes) {
+    renderer_.read(shown, rect, codes);
   }
 
  private:
@@ -88,7 +88,7 @@ class ClipStream {
   ClipRenderer renderer_;
   FrameClock clock_;
   FrameMotions motions_;
-  std::optional<FrameMotion> shown_;
+  std::shared_ptr<const FrameMotion> shown_;
 };
 
 }  // namespace glidelab::render

@@ -120,7 +120,7 @@ class ClipTruth {
 
   /// A frame of the file that shows what was exposed in its own slot, or once more what was before.
   void add(const ClipStream::Next& frame, const std::optional<MarkerInPicture>& in_picture) {
-    const sim::State& state = frame.shown.middle;
+    const sim::State& state = frame.shown->middle;
     trajectory_.row().number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
     trajectory_.row().text(sim::name_of(state.mode));
     trajectory_.end_row();
@@ -164,8 +164,8 @@ void write_frames(const Scenario& scenario, const sim::Body& body, ClipStream& s
   std::optional<MarkerInPicture> marker;
   while (const std::optional<ClipStream::Next> next = stream.next()) {
     if (!next->repeated) {
-      stream.read(all, std::span<Code>(codes));
-      marker = marker_in_picture(scenario, body, next->shown);
+      stream.read(*next->shown, all, std::span<Code>(codes));
+      marker = marker_in_picture(scenario, body, *next->shown);
     }
     write_frame(writer, std::span<const Code>(codes),
                 scenario.recording.clock.variable ? std::optional(next->stamp_s) : std::nullopt);

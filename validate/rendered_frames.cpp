@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "base/errors.h"
@@ -9,38 +10,71 @@
 namespace glidelab::validate {
 namespace {
 
+/// Regions are drawn in whole tiles: a marker's window, and what is looked at beside it, is then drawn once.
+constexpr int kTile = 16;
+
+cv::Rect in_tiles(const cv::Rect& part, cv::Size picture) {
+  const int left = part.x / kTile * kTile, top = part.y / kTile * kTile;
+  const int right = std::min((part.br().x + kTile - 1) / kTile * kTile, picture.width);
+  const int bottom = std::min((part.br().y + kTile - 1) / kTile * kTile, picture.height);
+  return {left, top, right - left, bottom - top};
+}
+
 class RenderedFrames : public core::FrameSource {
  public:
   RenderedFrames(std::shared_ptr<const render::ClipSet> set, std::size_t clip, std::uint64_t seed, bool with_color)
       : set_(std::move(set)), stream_(set_, clip, seed), frames_(set_->frames(clip, seed)), with_color_(with_color) {}
 
   std::optional<core::Frame> next() override {
+    std::optional<core::Frame> frame = next_in_parts();
+    if (!frame || !frame->draw) return frame;
+    frame->draw(cv::Rect({}, frame->grey.size()));
+    frame->draw = {};
+    return frame;
+  }
+
+  std::optional<core::Frame> next_in_parts() override {
     const std::optional<render::ClipStream::Next> now = stream_.next();
     if (!now) return std::nullopt;
     const render::Camera& camera = set_->scenario().camera;
-    const render::PixelRect all{0, 0, camera.width_px, camera.height_px};
     const bool deep = set_->scenario().sensor.bit_depth > 8;
     core::Frame frame;
-    frame.grey.create(all.height, all.width, deep ? CV_16U : CV_8U);
-    if (deep) {
-      stream_.read(all, std::span<std::uint16_t>(frame.grey.ptr<std::uint16_t>(), frame.grey.total()));
-    } else {
-      stream_.read(all, std::span<std::uint8_t>(frame.grey.ptr<std::uint8_t>(), frame.grey.total()));
-    }
-    if (with_color_) {
-      cv::Mat shallow = frame.grey;
-      if (deep) frame.grey.convertTo(shallow, CV_8U, 255.0 / set_->scenario().sensor.largest_code());
-      cv::cvtColor(shallow, frame.color, cv::COLOR_GRAY2BGR);
-    }
+    frame.grey = cv::Mat::zeros(camera.height_px, camera.width_px, deep ? CV_16U : CV_8U);
     frame.index = index_++;
     const render::Recording& recording = set_->scenario().recording;
     frame.t_s = recording.clock.variable ? now->stamp_s : static_cast<double>(frame.index) / recording.frame_rate_hz;
+    // Copies of the frame share the picture, and so what of it is drawn.
+    frame.draw = [this, picture = frame.grey, shown = now->shown,
+                  drawn = std::make_shared<std::vector<cv::Rect>>()](const cv::Rect& part) {
+      const cv::Rect rect = in_tiles(part, picture.size());
+      if (std::ranges::any_of(*drawn, [&](const cv::Rect& known) { return (known & rect) == rect; })) return;
+      drawn->push_back(rect);
+      cv::Mat target = picture(rect);
+      if (picture.depth() == CV_16U) {
+        read<std::uint16_t>(*shown, rect, target);
+      } else {
+        read<std::uint8_t>(*shown, rect, target);
+      }
+    };
+    if (!with_color_) return frame;
+    frame.draw(cv::Rect({}, frame.grey.size()));
+    frame.draw = {};
+    cv::Mat shallow = frame.grey;
+    if (deep) frame.grey.convertTo(shallow, CV_8U, 255.0 / set_->scenario().sensor.largest_code());
+    cv::cvtColor(shallow, frame.color, cv::COLOR_GRAY2BGR);
     return frame;
   }
   std::size_t stated_frames() const override { return frames_; }
   std::vector<std::string> notes() const override { return {}; }
 
  private:
+  template <typename Code>
+  void read(const render::FrameMotion& shown, const cv::Rect& rect, cv::Mat& target) {
+    cv::Mat codes(rect.size(), target.type());
+    stream_.read(shown, {rect.x, rect.y, rect.width, rect.height}, std::span<Code>(codes.ptr<Code>(), codes.total()));
+    codes.copyTo(target);
+  }
+
   std::shared_ptr<const render::ClipSet> set_;
   render::ClipStream stream_;
   std::size_t frames_;

@@ -88,6 +88,29 @@ TEST_CASE("Frames in memory are those of the lossless file, and an analysis of t
   CHECK_THROWS_AS(options.open(dir / "other.mkv", *experiment.camera, false, std::nullopt), base::InputError);
 }
 
+TEST_CASE("a frame in parts holds what was looked at, as in the whole frame, also when later frames were given") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", kScenario);
+  const auto set = std::make_shared<const render::ClipSet>(render::read_scenario(dir / "s.toml"), 2);
+  const auto whole = validate::rendered_frames(set, 0, 4), parts = validate::rendered_frames(set, 0, 4);
+  std::vector<core::Frame> expected, partial;
+  for (int k = 0; k < 12; ++k) {
+    expected.push_back(*whole->next());
+    partial.push_back(*parts->next_in_parts());
+    CHECK_FALSE(expected.back().draw);
+    REQUIRE(partial.back().draw);
+  }
+  const cv::Rect all(0, 0, 320, 200);
+  for (const cv::Rect& part : {cv::Rect(100, 60, 41, 33), cv::Rect(310, 190, 10, 10), cv::Rect(120, 70, 60, 60), all}) {
+    for (std::size_t k = partial.size(); k-- > 0;) {
+      partial[k].draw(part);
+      CHECK(cv::countNonZero(partial[k].grey(part) != expected[k].grey(part)) == 0);
+      // Nobody looked at this corner yet: it was not drawn.
+      if (part != all) CHECK(cv::countNonZero(partial[k].grey(cv::Rect(0, 0, 64, 48))) == 0);
+    }
+  }
+}
+
 TEST_CASE("frames in memory are refused where the codec would change them") {
   const tests::TempDir dir;
   base::write_file(dir / "scenario.toml", kScenario + "\n[codec]\nname = \"mjpeg\"\n");
