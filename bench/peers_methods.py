@@ -1,0 +1,122 @@
+"""What people take to get velocity and acceleration out of tracked positions, each as one function.
+
+Every method takes the runs of one experiment (evenly spaced times, metres) and returns for each run an array of three columns,
+x (m), v (m/s), a (m/s^2), NaN where the method gives nothing, and the seconds that it took. It raises Missing where its program is
+not installed.
+"""
+
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+class Missing(Exception):
+    """A peer that is not installed here."""
+
+
+def timed(one_run, runs):
+    started = time.perf_counter()
+    values = [one_run(run) for run in runs]
+    return values, time.perf_counter() - started
+
+
+def step(run):
+    return (run["t"][-1] - run["t"][0]) / (len(run["t"]) - 1)
+
+
+def noise(x):
+    """Standard deviation of a position from third differences, whose sum of squared weights is 20. Of a normal distribution the
+    median of the moduli is 0.6745 standard deviations; where rounding makes it 0 the root mean square stands in its place."""
+    third = np.diff(x, 3) / np.sqrt(20.0)
+    return np.median(np.abs(third)) / 0.6745 or np.sqrt(np.mean(third**2))
+
+
+def tracker(runs):
+    """Tracker's help, "Algorithms": v by the step before and after, a as the parabola through five steps."""
+
+    def one(run):
+        x, dt = run["x"], step(run)
+        out = np.full((len(x), 3), np.nan)
+        out[:, 0] = x
+        out[1:-1, 1] = (x[2:] - x[:-2]) / (2.0 * dt)
+        out[2:-2, 2] = (2.0 * x[4:] - x[3:-1] - 2.0 * x[2:-2] - x[1:-3] + 2.0 * x[:-4]) / (7.0 * dt**2)
+        return out
+
+    return timed(one, runs)
+
+
+def savitzky_golay(runs, window_s):
+    """scipy.signal.savgol_filter, cubic; the window has no default, so that one must be given."""
+    try:
+        from scipy.signal import savgol_filter
+    except ImportError as missing:
+        raise Missing("scipy (python3-scipy)") from missing
+
+    def one(run):
+        dt = step(run)
+        window = max(5, 2 * int(round(window_s / dt / 2.0)) + 1)
+        if window > len(run["x"]):
+            return np.full((len(run["x"]), 3), np.nan)
+        return np.column_stack([savgol_filter(run["x"], window, 3, deriv=d, delta=dt) for d in range(3)])
+
+    return timed(one, runs)
+
+
+def univariate_spline(runs, factor=1.0):
+    """scipy.interpolate.UnivariateSpline of degree 5 with w = 1/sd and s = len(w), as its documentation advises, times a factor."""
+    try:
+        from scipy.interpolate import UnivariateSpline
+    except ImportError as missing:
+        raise Missing("scipy (python3-scipy)") from missing
+
+    def one(run):
+        t, x = run["t"], run["x"]
+        if len(x) < 8:
+            return np.full((len(x), 3), np.nan)
+        spline = UnivariateSpline(t, x, w=np.full(len(x), 1.0 / noise(x)), k=5, s=factor * len(x))
+        return np.column_stack([spline(t, nu=d) for d in range(3)])
+
+    return timed(one, runs)
+
+
+def smoothing_spline(runs, penalty=None):
+    """scipy.interpolate.make_smoothing_spline: the cubic smoothing spline; no penalty: its own, by generalised cross-validation."""
+    try:
+        from scipy.interpolate import make_smoothing_spline
+    except ImportError as missing:
+        raise Missing("scipy 1.10 (python3-scipy)") from missing
+
+    def one(run):
+        t, x = run["t"], run["x"]
+        if len(x) < 8:
+            return np.full((len(x), 3), np.nan)
+        spline = make_smoothing_spline(t, x, lam=penalty)
+        return np.column_stack([spline(t, nu=d) for d in range(3)])
+
+    return timed(one, runs)
+
+
+def kernsmooth(runs, bandwidths_s, degree=None):
+    """R's KernSmooth::locpoly; a bandwidth a run, None for the package's own dpill(); degree None: its default, derivative + 1."""
+    if not shutil.which("Rscript") or subprocess.run(
+        ["Rscript", "-e", "library(KernSmooth)"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    ).returncode:
+        raise Missing("R with KernSmooth (r-cran-kernsmooth)")
+    with tempfile.TemporaryDirectory(prefix="peers") as folder:
+        names = [os.path.join(folder, name) for name in ("in.csv", "out.csv", "time.txt")]
+        with open(names[0], "w", encoding="utf-8") as table:
+            table.write("run,bandwidth_s,degree,t_s,x_m\n")
+            for i, (run, h) in enumerate(zip(runs, bandwidths_s)):
+                width = "NA" if h is None else repr(float(h))
+                table.writelines(f"{i},{width},{degree or 'NA'},{float(t)!r},{float(x)!r}\n" for t, x in zip(run["t"], run["x"]))
+        subprocess.run(["Rscript", os.path.join(HERE, "peers_kernsmooth.R"), *names], check=True)
+        rows = np.genfromtxt(names[1], delimiter=",", skip_header=1)
+        with open(names[2], encoding="utf-8") as text:
+            took = float(text.read())
+    return [rows[rows[:, 0] == i, 1:] for i in range(len(runs))], took
