@@ -82,6 +82,7 @@ struct PictureFinding {
   std::string id, stage;
   bool seen = false;
   double log_evidence = 0.0;  ///< of its presence against its absence, from the pictures alone
+  bool stated = false;        ///< the file itself says so: named only for what it does to the positions
   std::vector<DiagnosedParameter> parameters;
   std::string words;  ///< a sentence
 };

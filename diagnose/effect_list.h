@@ -27,6 +27,7 @@ enum class Search {
   pushes,     ///< a time, with a size in every motion
   frames,     ///< frames that are missing: found one by one
   noise,      ///< the scatter of single points tells, no trajectory
+  rows,       ///< one parameter that acts in proportion, by the row of the picture: on filmed tracks only
   pictures,   ///< the pictures tell, no position need move
 };
 

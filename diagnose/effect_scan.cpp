@@ -13,8 +13,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSeen = 4.0;         // standard deviations that the largest size must make
-constexpr double kNumerical = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
+constexpr double kSeen = 4.0;            // standard deviations that the largest size must make
+constexpr double kNumerical = 1e-15;     // of the raw square: below, the derivatives' errors are all that is left
+constexpr double kLeastWave_px = 0.002;  // in pictures: what finding a marker among pixels errs by itself
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 struct Range {
@@ -105,7 +106,7 @@ std::vector<WavePart> wave_parts(const ScoreSpace& space, double f) {
   return parts;
 }
 
-double log_wave_evidence(const std::vector<WavePart>& parts, double& best_size, double& best_gain) {
+double log_wave_evidence(const std::vector<WavePart>& parts, double least_m, double& best_size, double& best_gain) {
   constexpr int kSizes = 20, kPhases = 24;
   double square = 0.0;
   for (const WavePart& part : parts) square += 0.5 * (part.ss + part.cc);
@@ -117,8 +118,8 @@ double log_wave_evidence(const std::vector<WavePart>& parts, double& best_size, 
     cosine[k] = std::cos(kTurn * static_cast<double>(k) / kPhases);
   }
   for (int a = 0; a < kSizes; ++a) {
-    // Three decades from what begins to show.
-    const double size = 4.0 * std::pow(10.0, 3.0 * a / (kSizes - 1.0)) / std::sqrt(square);
+    // Three decades from what begins to show and can be trusted.
+    const double size = std::max(4.0 / std::sqrt(square), least_m) * std::pow(10.0, 3.0 * a / (kSizes - 1.0));
     double log_likelihood = 0.0, gain = 0.0;
     for (const WavePart& part : parts) {
       double most = -std::numeric_limits<double>::infinity();
@@ -150,8 +151,9 @@ struct Wave {
 Wave find_wave(const ScoreSpace& space) {
   const TrackSet& set = space.set();
   Wave wave;
-  double longest = 0.0, rate = std::numeric_limits<double>::infinity();
+  double longest = 0.0, least_m = 0.0, rate = std::numeric_limits<double>::infinity();
   for (const TrackedMotion& motion : set.motions) {
+    least_m = std::max(least_m, kLeastWave_px * motion.m_per_px);
     longest = std::max(longest, motion.t_s.back() - motion.t_s.front());
     rate = std::min(rate, static_cast<double>(motion.t_s.size() - 1) / (motion.t_s.back() - motion.t_s.front()));
   }
@@ -160,7 +162,7 @@ Wave find_wave(const ScoreSpace& space) {
   std::vector<double> logs;
   for (double f = lowest; f < highest; f += 0.3 / longest) {
     double size = 0.0, gain = 0.0;
-    logs.push_back(log_wave_evidence(wave_parts(space, f), size, gain));
+    logs.push_back(log_wave_evidence(wave_parts(space, f), least_m, size, gain));
     if (gain > wave.gain) wave = {gain, 0.0, size, f};
   }
   if (!logs.empty()) wave.log_evidence = log_mean(logs);
@@ -270,6 +272,7 @@ EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
       return scan_pushes(space, effect);
     case Search::amplitude:
     case Search::shape:
+    case Search::rows:
       return scan_sizes(space, effect);
     default: {
       EffectScan nothing;

@@ -34,6 +34,7 @@ struct EffectValues {
   double perspective_1_m = 0.0;  ///< p: x / (1 + p x)
   double lens_1_m2 = 0.0;        ///< k: x (1 + k (x - x_c)²)
   double lens_x_m = 0.0;         ///< x_c
+  double line_s = 0.0;           ///< time from one row of the picture to the next below, more than stated
   double camera_m = 0.0;         ///< amplitude of a camera that sways, as metres along x
   double camera_hz = 0.0;
   double camera_phase = 0.0;  ///< each motion its own

@@ -29,6 +29,7 @@ Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
   const TrackedMotion& data = set.motions[i];
   const Moved moved = move(model_of(set, *fit.layout, fit.at, i), data.t_s,
                            fit.late.empty() ? std::span<const double>() : std::span(fit.late[i]));
+  const std::vector<double> shared = shared_errors(set, *fit.layout, fit.at, i, moved.x_m);
   const auto n = static_cast<Eigen::Index>(data.t_s.size());
   const auto bumps = static_cast<Eigen::Index>(std::max(4.0, static_cast<double>(n) / kKnotPoints));
   const double span = data.t_s.back() - data.t_s.front(), width = span / static_cast<double>(bumps - 1);
@@ -36,7 +37,7 @@ Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
   Eigen::VectorXd r(n);
   for (Eigen::Index p = 0; p < n; ++p) {
     const auto q = static_cast<std::size_t>(p);
-    r[p] = (data.x_m[q] - moved.x_m[q]) / data.sd_m;
+    r[p] = (data.x_m[q] - moved.x_m[q] - shared[q]) / data.sd_m;
     for (Eigen::Index b = 0; b < bumps; ++b) {
       const double z = (data.t_s[q] - data.t_s.front()) / width - static_cast<double>(b);
       basis(p, b) = std::abs(z) < 4.0 ? std::exp(-0.5 * z * z) : 0.0;
@@ -194,9 +195,40 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
 
 namespace {
 
-/// All points' residuals over their motion's own scatter, so that clips of different noise make no tails.
+constexpr std::size_t kSpeedPoints = 61;  // that give the scatter at a speed: known to a seventh
+
+/// Scatter of values by how fast the marker moves (median of the nearest in speed), over that of all of them.
+std::vector<double> scatter_by_speed(const std::vector<double>& over_sd, const std::vector<double>& v) {
+  std::vector<std::size_t> order(v.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return std::abs(v[a]) < std::abs(v[b]); });
+  const std::size_t many = std::min(kSpeedPoints, order.size());
+  std::vector<double> scatter(v.size(), 0.0);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t from = std::min(k - std::min(k, many / 2), order.size() - many);
+    std::vector<double> near;
+    for (std::size_t j = from; j < from + many; ++j) near.push_back(std::abs(over_sd[order[j]]));
+    std::nth_element(near.begin(), near.begin() + std::ssize(near) / 2, near.end());
+    scatter[order[k]] = std::max(near[near.size() / 2] / 0.6745, 0.05);
+  }
+  return scatter;
+}
+
+/// All points' residuals over their motion's own scatter, so that clips of different noise make no tails; filmed ones
+/// over that at their speed, as a marker that is smeared is found less well.
 std::vector<double> tail_residuals(const TrackSet& set, const MotionFit& fit) {
   std::vector<double> e;
+  if (set.pictures) {
+    std::vector<double> all, v;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      const Leftover left = leftover_of(set, fit, i);
+      all.insert(all.end(), left.over_sd.begin(), left.over_sd.end());
+      v.insert(v.end(), left.v.begin(), left.v.end());
+    }
+    const std::vector<double> scatter = scatter_by_speed(all, v);
+    for (std::size_t p = 0; p < all.size(); ++p) e.push_back(all[p] / scatter[p]);
+    return e;
+  }
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const Leftover left = leftover_of(set, fit, i);
     std::vector<double> size;

@@ -146,6 +146,7 @@ TrackSet split_clip(const TrackSet& set) {
       part.t_s.assign(motion.t_s.begin() + from, motion.t_s.begin() + to);
       part.x_m.assign(motion.x_m.begin() + from, motion.x_m.begin() + to);
       part.outlier.assign(motion.outlier.begin() + from, motion.outlier.begin() + to);
+      if (!motion.row_px.empty()) part.row_px.assign(motion.row_px.begin() + from, motion.row_px.begin() + to);
       for (std::size_t m = 0; m < part.shared_m.size(); ++m) {
         if (part.shared_m[m].empty()) continue;
         part.shared_m[m].assign(motion.shared_m[m].begin() + from, motion.shared_m[m].begin() + to);

@@ -145,8 +145,8 @@ void weigh(const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    const bool shown = list[e].search == Search::pictures ? comparison.in_pictures.contains(e)
-                                                          : !moves(e) || comparison.scans[e].visible;
+    const bool tracked = list[e].search != Search::pictures && (!moves(e) || comparison.scans[e].visible);
+    const bool shown = tracked || comparison.in_pictures.contains(e);
     const bool candidate = !without.contains(e) && shown;
     seen += candidate ? 1.0 : 0.0;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/held_out.h"
 #include "diagnose/score_space.h"
 
 namespace glidelab::diagnose {
@@ -11,6 +12,7 @@ namespace {
 constexpr double kWorthJoining =
     -3.0;  // log evidence: what the pictures speak against any more is not weighed beside others
 constexpr std::size_t kMostTogether = 4;
+constexpr double kSeen = 3.0, kDoubt = 6.0;  // log evidence
 
 bool holds(const Hypothesis& hypothesis, std::size_t effect) {
   return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
@@ -34,6 +36,16 @@ double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::
   return f_hz > 0.0 ? camera_sway_support(pictures.clips, amplitude_m, f_hz) : otherwise;
 }
 
+/// What the marker's shear says of the line time that this fit has.
+double line_support(const PictureEvidence& pictures, const PictureFinding& finding, const MotionFit& fit,
+                    std::size_t effect) {
+  const std::size_t g = fit.layout->first_of(effect);
+  const auto at = static_cast<Eigen::Index>(g);
+  const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(at, at)));
+  const DiagnosedParameter& sheared = finding.parameters.front();
+  return agreement({sheared.value - stated_line_s(pictures.clips.front().camera), sheared.sd}, {fit.at.global[at], sd});
+}
+
 /// Log likelihood of one motion's residuals: variance s²((1 - share) white + share exp(-lag/frames)).
 double correlated_likelihood(const Eigen::VectorXd& r, const std::vector<char>& outlier, double s2, double share,
                              double frames) {
@@ -53,6 +65,12 @@ double correlated_likelihood(const Eigen::VectorXd& r, const std::vector<char>& 
 }
 
 }  // namespace
+
+double agreement(const Measured& in_pictures, const Measured& in_tracks) {
+  const double own = in_pictures.sd * in_pictures.sd, both = own + in_tracks.sd * in_tracks.sd;
+  const double off = in_pictures.value - in_tracks.value;
+  return 0.5 * (in_pictures.value * in_pictures.value / own - off * off / both - std::log(both / own));
+}
 
 CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
   CorrelatedNoise found;
@@ -80,7 +98,8 @@ CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
 void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
                    Comparison& comparison) {
   const std::size_t codec = effect_index("compression"), sway = effect_index("camera_motion"),
-                    jitter = effect_index("timestamp_jitter");
+                    jitter = effect_index("timestamp_jitter"), rows = effect_index("rolling_shutter"),
+                    tails = effect_index("heavy_tailed_noise");
   std::vector<const PictureFinding*> findings;
   for (const PictureFinding& finding : pictures.findings) {
     if (!without.contains(effect_index(finding.id))) findings.push_back(&finding);
@@ -90,17 +109,17 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
   for (const PictureFinding* finding : findings) {
     const std::size_t effect = effect_index(finding->id);
     comparison.in_pictures.insert(effect);
-    const bool lossy =
-        effect == codec && std::any_of(pictures.clips.begin(), pictures.clips.end(),
-                                       [](const FilmedClip& clip) { return clip.record->lossy.value_or(false); });
+    const double of_pictures = finding->stated ? 0.0 : finding->log_evidence;
     const std::vector<Hypothesis> so_far = comparison.all;
     for (Hypothesis& hypothesis : comparison.all) {
       if (!holds(hypothesis, effect)) continue;
-      const bool fitted = effect == sway && hypothesis.fit >= 0;
-      hypothesis.log_evidence += fitted
-                                     ? sway_support(pictures, comparison.fits[static_cast<std::size_t>(hypothesis.fit)],
-                                                    sway, finding->log_evidence)
-                                     : finding->log_evidence;
+      double support = of_pictures;
+      if (hypothesis.fit >= 0) {
+        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+        if (effect == sway) support = sway_support(pictures, fit, sway, finding->log_evidence);
+        if (effect == rows) support = line_support(pictures, *finding, fit, rows);
+      }
+      hypothesis.log_evidence += support;
     }
     for (const Hypothesis& other : so_far) {
       if (holds(other, effect) || other.effects.size() >= kMostTogether) continue;
@@ -109,21 +128,22 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
       const bool known = std::any_of(comparison.all.begin(), comparison.all.end(),
                                      [&](const Hypothesis& h) { return same_effects(h, with); });
       if (known) continue;
-      double of_tracks = 0.0;
-      if (lossy && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
+      double of_tracks = 0.0, scatter = 0.0;
+      if (!holds(other, jitter) && !holds(other, tails)) {
+        for (const FrameEffect& frame : comparison.frames) scatter = std::max(scatter, frame.log_evidence);
+      }
+      if (effect == codec && finding->stated && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
         const CorrelatedNoise noise = scan_correlation(set, comparison.fits[static_cast<std::size_t>(other.fit)]);
         of_tracks = std::max(0.0, noise.log_evidence);
         with.gain += noise.gain;
+        // Its errors grow with what changes in the picture; more than a doubt is another matter.
+        if (of_tracks > kSeen) of_tracks += std::min(kDoubt, scatter);
       }
       // A smeared marker is found less well the faster it moves: what the scatter shows of that is its own.
-      if (finding->id == "exposure_blur" && finding->seen && !holds(other, jitter)) {
-        for (const FrameEffect& frame : comparison.frames) {
-          if (frame.effect == jitter) of_tracks = std::max(0.0, frame.log_evidence);
-        }
-      }
-      if (finding->log_evidence + of_tracks < kWorthJoining) continue;
-      with.log_evidence += finding->log_evidence + of_tracks;
-      with.gain += std::max(0.0, finding->log_evidence);
+      if (finding->id == "exposure_blur" && finding->seen) of_tracks = scatter;
+      if (of_pictures + of_tracks < kWorthJoining) continue;
+      with.log_evidence += of_pictures + of_tracks;
+      with.gain += std::max(0.0, of_pictures);
       comparison.all.push_back(std::move(with));
     }
   }

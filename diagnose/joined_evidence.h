@@ -3,7 +3,8 @@
 ///
 /// What the pictures show of an effect is independent of the positions' noise, so that logs add up. An effect that they
 /// show joins every explanation of the tracks, named or not, without competing with it: light may flicker beside any
-/// force. A camera that sways in the tracks must be seen to sway, by about as much, in what rests in the scene.
+/// force. A camera that sways in the tracks must be seen to sway, by about as much, in what rests in the scene; a line
+/// time that tracks show must be the one that shears the marker.
 #pragma once
 
 #include <set>
@@ -16,6 +17,13 @@ namespace glidelab::diagnose {
 /// `without` are effects that are not considered.
 void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
                    Comparison& comparison);
+
+/// Log likelihood of a size that pictures measured (0: absent) under the one that tracks found, both with their
+/// standard deviations, over that under its absence: log N(p; t, sp² + st²) - log N(p; 0, sp²).
+struct Measured {
+  double value = 0.0, sd = 0.0;
+};
+double agreement(const Measured& in_pictures, const Measured& in_tracks);
 
 /// Log evidence that positions' noise is correlated over up to 16 frames, as a codec makes it, against white noise: an
 /// exponential correlation beside a white part, both of free size, by a Kalman filter over the fit's residuals.

@@ -58,16 +58,8 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
   FitMotion of;
   Moved base = moved(set, layout, at, i, late);
   of.v_m_s = base.v_m_s;
-  std::vector<double> shared(data.t_s.size(), 0.0);
   const auto& globals = layout.globals();
-  for (std::size_t g = 0; g < globals.size(); ++g) {
-    if (!touches(set, globals[g], i)) continue;
-    const double c = at.global[static_cast<Eigen::Index>(g)];
-    for (std::size_t p = 0; p < shared.size(); ++p) {
-      if (globals[g].kind == Global::Kind::mode) shared[p] += c * data.shared_m[globals[g].index][p];
-      if (globals[g].kind == Global::Kind::scale) shared[p] += c * data.scale_sd * base.x_m[p];
-    }
-  }
+  const std::vector<double> shared = shared_errors(set, layout, at, i, base.x_m);
   std::vector<double> weight(data.t_s.size());
   for (std::size_t p = 0; p < weight.size(); ++p) weight[p] = data.outlier[p] ? 0.0 : 1.0 / data.sd_m;
   of.residual.resize(n);
@@ -262,6 +254,7 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
   model.x_mid_m = set.groups[data.group].x_mid_m;
   model.x_mid_all_m = set.x_mid_m;
   model.unnamed = unnamed;
+  model.row_px = data.row_px;
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
     const double value = at.global[static_cast<Eigen::Index>(g)];
@@ -278,6 +271,22 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
     member_of(model.effects, *layout.own()[o]) = at.own[motion][static_cast<Eigen::Index>(2 + o)];
   }
   return model;
+}
+
+std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
+                                  std::size_t motion, const std::vector<double>& x_m) {
+  const TrackedMotion& data = set.motions[motion];
+  std::vector<double> shared(x_m.size(), 0.0);
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    if (!touches(set, global, motion)) continue;
+    const double c = at.global[static_cast<Eigen::Index>(g)];
+    for (std::size_t p = 0; p < shared.size(); ++p) {
+      if (global.kind == Global::Kind::mode) shared[p] += c * data.shared_m[global.index][p];
+      if (global.kind == Global::Kind::scale) shared[p] += c * data.scale_sd * x_m[p];
+    }
+  }
+  return shared;
 }
 
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,

@@ -84,6 +84,10 @@ struct MotionFit {
 TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
                     const UnnamedForce* unnamed = nullptr);
 
+/// What the shared errors (of camera, plane, scale, pixels) at this point add to a motion's modelled positions `x_m`.
+std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
+                                  std::size_t motion, const std::vector<double>& x_m);
+
 /// From a point in the layout of these effects.
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late = {});

@@ -129,9 +129,7 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   evidence.findings.push_back(std::move(blur));
 
   PictureFinding shutter = finding_of("rolling_shutter");
-  const double stated = camera.shutter == core::Shutter::global ? 0.0
-                        : camera.bottom_row_first               ? -camera.line_readout_s
-                                                                : camera.line_readout_s;
+  const double stated = stated_line_s(camera);
   // Of the height of the marker's image: a hundredth of a pixel is as far as its outline can be trusted.
   const double least_line_s = 0.01 / (2.0 * fit.radius_px * fit.fastest_px_s);
   const double sd = std::hypot(fit.line_sd_s, least_line_s, 0.05 * stated);
@@ -294,7 +292,8 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   }
   PictureFinding finding = finding_of("compression");
   const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // seven columns tell their scatter poorly
-  // A file with loss is no fault by itself: blocks that show, or positions whose noise lasts over frames, are.
+  // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
+  finding.stated = lossy > 0;
   finding.log_evidence =
       std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks, log_evidence_of((memory - 1.1) / kMemory, 1.0 / kMemory));
   finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
@@ -332,6 +331,11 @@ void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
 }
 
 }  // namespace
+
+double stated_line_s(const core::CameraSettings& camera) {
+  if (camera.shutter == core::Shutter::global) return 0.0;
+  return camera.bottom_row_first ? -camera.line_readout_s : camera.line_readout_s;
+}
 
 double log_evidence_of(double z, double largest) {
   std::vector<double> logs;

@@ -44,6 +44,9 @@ PictureEvidence picture_evidence(std::vector<FilmedClip> clips);
 /// under a camera at rest; 0 where nothing in the scene would show it.
 double camera_sway_support(const std::vector<FilmedClip>& clips, double amplitude_m, double f_hz);
 
+/// Time from one row to the next below, as stated: 0 for a global shutter, below 0 where the bottom row is first.
+double stated_line_s(const core::CameraSettings& camera);
+
 /// Log evidence of a deviation of z standard deviations, equal odds for each factor of ten from 1 to `largest`.
 double log_evidence_of(double z, double largest);
 

@@ -152,7 +152,8 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   const double stretch = 1.0 + model.effects.rate_error;
   double t = stretch * times_s.front();
   for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const double next = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]);
+    const double rows = model.row_px.empty() ? 0.0 : model.row_px[i] - model.row_px.front();
+    const double next = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + model.effects.line_s * rows;
     if (next > t) s = mover.advance(s, t, next);
     t = std::max(t, next);
     moved.x_m.push_back(seen(model.effects, s.x, times_s[i]));

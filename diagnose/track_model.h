@@ -33,6 +33,7 @@ struct TrackModel {
   double v0_m_s = 0.0;
   EffectValues effects;
   const UnnamedForce* unnamed = nullptr;
+  std::span<const double> row_px;  ///< of the marker at each of the times; empty: not filmed
 };
 
 struct Moved {

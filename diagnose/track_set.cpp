@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/noise.h"
+#include "diagnose/pixel_modes.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -99,8 +100,9 @@ double mode_at(const core::ClipResult& clip, std::size_t mode, double t) {
   return 0.0;
 }
 
-TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all) {
+TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, std::size_t camera_modes) {
   TrackedMotion motion;
+  std::vector<std::size_t> frames;
   const double first = clip.motion.front().t_s;
   // Where it borders on something else, the border is known to about a bandwidth.
   double from = clip.motion[run.from].t_s, to = clip.motion[run.to].t_s;
@@ -113,6 +115,7 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all) 
     motion.t_s.push_back(point.t_s - first);
     motion.x_m.push_back(*point.measured_m);
     motion.outlier.push_back(point.left_out == core::LeftOut::outlier ? 1 : 0);
+    frames.push_back(i);
   }
   if (motion.t_s.empty()) return motion;
   motion.start_s = motion.t_s.front();
@@ -126,6 +129,7 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all) 
     if (!any) motion.shared_m[m].clear();
   }
   motion.scale_sd = clip.scale_sd_relative;
+  add_pixel_modes(clip, frames, camera_modes, motion);
   return motion;
 }
 
@@ -199,6 +203,10 @@ double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all) {
   TrackSet set;
   set.gravity_m_s2 = results.gravity_m_s2;
+  std::size_t camera_modes = 0;
+  for (const core::ClipResult& clip : results.clips) {
+    for (const core::FreeBlock& block : clip.blocks) camera_modes = std::max(camera_modes, block.shared_m.size());
+  }
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     const core::ClipResult& clip = results.clips[c];
     const double duration = clip.motion.empty() ? 0.0 : clip.motion.back().t_s - clip.motion.front().t_s;
@@ -215,7 +223,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     }
     bool any = false;
     for (const Run& run : runs_of(clip, all)) {
-      TrackedMotion motion = motion_of(clip, run, all);
+      TrackedMotion motion = motion_of(clip, run, all, camera_modes);
       if (motion.t_s.size() < kFewestPoints) continue;
       motion.clip = c;
       motion.group = group_of(setups[c], set);

@@ -23,6 +23,8 @@ struct TrackedMotion {
   double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
   std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
   double scale_sd = 0.0;                      ///< relative
+  double m_per_px = 0.0;                      ///< along the motion; 0: not filmed
+  std::vector<double> row_px;                 ///< of the picture, where the marker is; empty: not filmed
 };
 
 struct TrackedMass {

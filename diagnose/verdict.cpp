@@ -77,7 +77,10 @@ std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, cons
                                    [&](const auto& p) { return p.key == globals[g].parameter->key; });
     if (known) continue;  // seen in the pictures
     const auto at = static_cast<Eigen::Index>(g);
-    const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
+    ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
+    if (globals[g].parameter->member == &EffectValues::line_s && !pictures.clips.empty()) {
+      value.value += stated_line_s(pictures.clips.front().camera);  // tracks show what it is more than stated
+    }
     parameters.push_back({std::string(globals[g].parameter->key), value.value,
                           std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_member)});
   }
