@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "core/calibrate_fisheye.h"
+#include "core/even_times.h"
 #include "core/frame_source.h"
 #include "core/marker_track.h"
 #include "core/mode_axis.h"
@@ -172,6 +173,17 @@ std::vector<MarkerLook> looks_of(const TrackedMarker& marker, const std::vector<
   return looks;
 }
 
+/// Times of an even camera instead of its rounded stamps.
+void put_even(SeenClip& seen) {
+  std::optional<EvenTimes> even = even_times(seen.frame_t_s);
+  if (!even) return;
+  seen.notes.push_back(
+      fmt::format("the container's time stamps are whole multiples of {:.4g} ms, and frames at an even distance of "
+                  "{:.6g} ms (to {:.0f} parts in a million) explain them all: these times count",
+                  even->tick_s * 1e3, even->step_s * 1e3, std::ceil(even->half_width_s / even->step_s * 1e6)));
+  seen.frame_t_s = std::move(even->t_s);
+}
+
 SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Setting& setting, const FrameOpener& open,
                  bool look_at_scene, FrameCounter& counter) {
   const bool with_color = signal_kind(*experiment.marker) == SignalKind::colored;
@@ -204,6 +216,8 @@ SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Sett
     if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
   }
   seen.marker = tracker.finish();
+  seen.notes = source->notes();
+  if (experiment.camera->time == TimeSource::container) put_even(seen);
   if (scene) {
     const FileFacts facts = source->facts();
     seen.pictures->width_px = seen.size.width;
@@ -214,7 +228,6 @@ SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Sett
     seen.pictures->marker = looks_of(seen.marker, seen.frame_t_s);
     scene->finish(*seen.pictures);
   }
-  seen.notes = source->notes();
   seen.notes.insert(seen.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
   return seen;
 }
