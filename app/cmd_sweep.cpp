@@ -16,6 +16,7 @@
 #include "validate/sweep_design.h"
 #include "validate/sweep_scenario.h"
 #include "validate/sweep_summary.h"
+#include "version_of_build.h"
 
 namespace glidelab::app {
 namespace {

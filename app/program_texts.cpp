@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "version_of_build.h"
+
 namespace glidelab::app {
 namespace {
 

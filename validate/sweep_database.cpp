@@ -20,7 +20,7 @@ constexpr const char* kTables = R"sql(
 CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE "schema" ("table" TEXT, "column" TEXT, unit TEXT, meaning TEXT, PRIMARY KEY ("table", "column")) WITHOUT ROWID;
 CREATE TABLE result (run INTEGER, configuration TEXT, estimator TEXT, quantity TEXT, truth REAL, value REAL, sd REAL,
-                     low95 REAL, high95 REAL, least_sd REAL, why TEXT,
+                     low95 REAL, high95 REAL, least_sd REAL, why TEXT, uncorrected REAL,
                      PRIMARY KEY (run, configuration, estimator, quantity)) WITHOUT ROWID;
 CREATE TABLE clip (run INTEGER, clip TEXT, estimator TEXT, frames INTEGER, detected INTEGER, bandwidth_s REAL,
                    position_noise_m REAL, r2_up REAL, r2_down REAL, a_rms_error_m_s2 REAL,
@@ -39,6 +39,7 @@ INSERT INTO "schema" VALUES
  ('result', 'high95', 'of the quantity', 'upper end of the stated 95 % interval'),
  ('result', 'least_sd', 'of the quantity', 'Cramer-Rao bound of the standard deviation; of tracks only'),
  ('result', 'why', '', 'why there is no value'),
+ ('result', 'uncorrected', 'of the quantity', 'value before the smoothing''s bias was taken off; null where none was'),
  ('clip', 'estimator', '', 'how it was analysed'), ('clip', 'frames', '', 'of the clip'),
  ('clip', 'detected', '', 'frames in which the marker was found'),
  ('clip', 'bandwidth_s', 's', 'standard deviation of the smoothing kernel'),
@@ -177,7 +178,7 @@ SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std
   std::string marks;
   for (std::size_t i = 0; i < axes_; ++i) marks += fmt::format(", ?{}", 7 + i);
   add_run_ = database_.prepare(fmt::format("INSERT INTO run VALUES (?1, ?2, ?3, ?4, ?5, ?6{})", marks));
-  add_result_ = database_.prepare("INSERT INTO result VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)");
+  add_result_ = database_.prepare("INSERT INTO result VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)");
   add_clip_ = database_.prepare("INSERT INTO clip VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)");
   add_timing_ = database_.prepare("INSERT INTO timing VALUES (?1, ?2)");
 }
@@ -220,6 +221,7 @@ void SweepDatabase::add(const RunRecord& record, double wall_s) {
     add_result_->bind(4, std::string_view(row.quantity)).bind(5, row.truth).bind(6, row.value).bind(7, row.sd);
     add_result_->bind(8, row.low95).bind(9, row.high95).bind(10, row.least_sd);
     if (!row.why.empty()) add_result_->bind(11, std::string_view(row.why));
+    add_result_->bind(12, row.uncorrected);
     add_result_->run();
   }
   for (const ClipRow& row : record.clips) {

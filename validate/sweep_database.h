@@ -3,7 +3,7 @@
 ///     sweep   key, value                what was swept: the sweep's and the scenario's text, the program's version
 ///     schema  table, column, unit, meaning
 ///     run     run, point, replicate, seed, status, why, and a column for each varied key
-///     result  run, configuration, estimator, quantity, truth, value, sd, low95, high95, least_sd, why
+///     result  run, configuration, estimator, quantity, truth, value, sd, low95, high95, least_sd, why, uncorrected
 ///     clip    run, clip, estimator, frames, detected, bandwidth_s, position_noise_m, r2_up, r2_down,
 ///             a_rms_error_m_s2
 ///     timing  run, wall_s

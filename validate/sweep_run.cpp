@@ -33,6 +33,7 @@ QuantityRow row_of(const char* quantity, const std::optional<double>& truth, con
   row.sd = found.estimate->sd;
   row.low95 = found.estimate->low95;
   row.high95 = found.estimate->high95;
+  if (found.smoothing_correction) row.uncorrected = row.value.value() - *found.smoothing_correction;
   return row;
 }
 

@@ -6,6 +6,7 @@
 #include "catch.h"
 #include "run_process.h"
 #include "temp_dir.h"
+#include "test_paths.h"
 #include "tiny_scenario.h"
 
 using namespace glidelab;
@@ -55,6 +56,9 @@ TEST_CASE("the version is printed and nothing else is done") {
   const tests::ProcessResult result = tests::glidelab({"--version"});
   CHECK(result.status == 0);
   CHECK(result.out.starts_with("glidelab "));
+  // Two builds of one version differ in the commit that they are of.
+  const bool checkout = std::filesystem::exists(tests::kSourceDir + std::string("/.git"));
+  CHECK((result.out.find(" (") < result.out.find("\n")) == checkout);
 }
 
 TEST_CASE("a wrong command line is status 2, one message, and nothing on standard output") {
