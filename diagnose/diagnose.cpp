@@ -10,6 +10,7 @@
 #include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/line_table.h"
+#include "diagnose/missing_frames.h"
 #include "diagnose/picture_evidence.h"
 #include "diagnose/track_set.h"
 #include "diagnose/verdict.h"

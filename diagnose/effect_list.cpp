@@ -116,6 +116,8 @@ const std::vector<EffectInfo>& effect_list() {
        false,
        {{"amplitude_m", &E::camera_m, false, 0.0, 0.05, 1e-8},
         {"f_hz", &E::camera_hz, false, 0.2, 1e4, 1e-5},
+        {"", &E::camera_slope_1_m, false, -2.0, 2.0, 1e-4},
+        {"", &E::camera_bend_1_m2, false, -2.0, 2.0, 1e-4},
         {"phase", &E::camera_phase, true, -1e3, 1e3, 1e-5}},
        "a camera that sways or shakes"},
       {"rolling_shutter",

@@ -38,6 +38,8 @@ struct EffectValues {
   double camera_m = 0.0;         ///< amplitude of a camera that sways, as metres along x
   double camera_hz = 0.0;
   double camera_phase = 0.0;  ///< each motion its own
+  /// A turning camera moves what is at the picture's sides by more: A (1 + slope (x - x_mid) + bend (x - x_mid)²).
+  double camera_slope_1_m = 0.0, camera_bend_1_m2 = 0.0;
 };
 
 }  // namespace glidelab::diagnose

@@ -12,11 +12,9 @@ namespace {
 
 constexpr double kLeastFilmedJitter = 1e-5;  // s; a hundredth of a short exposure
 
-constexpr int kMostMissing = 60;
 constexpr std::size_t kFewestScatter = 50;  // points from which a scatter's shape tells anything
 constexpr double kMostAside = 0.2;
 constexpr double kTailsBeyondDoubt = 5.0;  // log evidence
-constexpr double kClear = 12.0;            // log likelihood that a missing frame must gain
 constexpr double kKnotPoints = 14.0;       // points a bump of the smooth curve
 
 struct Leftover {
@@ -65,78 +63,7 @@ Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
   return left;
 }
 
-/// Best place for one more missing frame in a motion: the gain, and the point from which on all are late.
-struct Place {
-  double gain = 0.0;
-  std::size_t point = 0;
-  double step_s = 0.0;
-};
-
-/// `known`: frames are missing elsewhere for certain, so that one more needs no jump that shows by itself.
-Place best_place(const ScoreSpace& space, std::size_t i, bool known) {
-  const TrackedMotion& data = space.set().motions[i];
-  const auto n = static_cast<Eigen::Index>(data.t_s.size());
-  const auto& v = space.fit().motions[i].v_m_s;
-  const double step = 1.0 / space.set().clips[data.clip].frame_rate_hz;
-  const auto r = space.residual().rest.segment(space.offset(i), n);
-  Place best;
-  const Eigen::Index margin = known ? 1 : 3;
-  for (Eigen::Index from = margin; from + margin <= n - (known ? 0 : 1); ++from) {
-    const auto f = static_cast<std::size_t>(from);
-    if (std::abs(v[f]) * step < (known ? 1.0 : 5.0) * data.sd_m) continue;  // too slow to tell
-    // The neighbours must show the jump themselves.
-    const bool last = from + 1 == n;
-    const double after = last ? data.x_m[f - 1] - data.x_m[f - 2] : data.x_m[f + 1] - data.x_m[f];
-    const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
-    const double jump = data.x_m[f] - data.x_m[f - 1] - 0.5 * (before + after);
-    if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_m) continue;
-    if (!known && std::abs(jump) < 3.0 * data.sd_m) continue;
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index p = from; p < n; ++p) change[p] = v[static_cast<std::size_t>(p)] * step;
-    const Eigen::VectorXd c = space.own_rest(i, change);
-    const double gain = c.dot(r) - 0.5 * c.squaredNorm();
-    if (gain > best.gain) best = {gain, f, step};
-  }
-  return best;
-}
-
 }  // namespace
-
-MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
-  MissingFrames found;
-  found.effect.effect = effect_index("dropped_frames");
-  found.fit = fit;
-  Lateness late;
-  for (const TrackedMotion& motion : set.motions) late.emplace_back(motion.t_s.size(), 0.0);
-  double points = 0.0, penalty = 0.0;
-  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
-  for (int round = 0; round < kMostMissing; ++round) {
-    const ScoreSpace space(set, found.fit);
-    Lateness tried = late;
-    std::size_t added = 0;
-    for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      const Place place = best_place(space, i, found.count > 0);
-      if (place.gain < kClear) continue;
-      for (std::size_t p = place.point; p < tried[i].size(); ++p) tried[i][p] += place.step_s;
-      ++added;
-    }
-    if (added == 0) break;
-    MotionFit next = fit_motions(set, fit.effects, found.fit.at, tried);
-    if (!(next.cost < found.fit.cost - 2.0 * kClear)) break;
-    late = std::move(tried);
-    found.fit = std::move(next);
-    found.count += added;
-  }
-  if (found.count == 0) return found;
-  // Where each one is costs the logarithm of the places; the fraction, evenly over its logarithm from 1e-4 to 0.1.
-  const double share = static_cast<double>(found.count) / points;
-  penalty = -static_cast<double>(found.count) * std::log(share) + points * share + std::log(7.0);
-  found.effect.gain = 0.5 * (fit.cost - found.fit.cost);
-  found.effect.log_evidence = found.effect.gain - penalty;
-  found.effect.value = share;
-  found.effect.sd = std::sqrt(static_cast<double>(found.count)) / points;
-  return found;
-}
 
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
   FrameEffect found;

@@ -1,4 +1,4 @@
-/// Effects that single frames show: missing frames, uneven times, outliers among the positions.
+/// Effects that single frames show: uneven times, outliers among the positions (and missing_frames.h).
 ///
 /// They are judged by what a smooth curve through each motion's residuals leaves, so that a force that the model lacks
 /// is not taken for them.
@@ -15,15 +15,6 @@ struct FrameEffect {
   double value = 0.0;  ///< fraction of frames, or seconds
   double sd = 0.0;
 };
-
-/// Missing frames, found one by one where all later positions are ahead by one or more frames' way; the fit that goes
-/// with them has their lateness.
-struct MissingFrames {
-  FrameEffect effect;
-  std::size_t count = 0;
-  MotionFit fit;
-};
-MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit);
 
 /// Scatter that goes with the speed: variance sd² + (v tau)².
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit);

@@ -14,6 +14,7 @@
 
 #include "diagnose/effect_scan.h"
 #include "diagnose/frame_effects.h"
+#include "diagnose/missing_frames.h"
 #include "diagnose/unnamed.h"
 
 namespace glidelab::diagnose {

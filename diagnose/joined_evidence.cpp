@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/held_out.h"
+#include "diagnose/picture_sway.h"
 #include "diagnose/score_space.h"
 
 namespace glidelab::diagnose {
@@ -12,7 +13,7 @@ namespace {
 constexpr double kWorthJoining =
     -3.0;  // log evidence: what the pictures speak against any more is not weighed beside others
 constexpr std::size_t kMostTogether = 4;
-constexpr double kSeen = 3.0, kDoubt = 6.0;  // log evidence
+constexpr double kDoubt = 6.0;  // log evidence
 
 bool holds(const Hypothesis& hypothesis, std::size_t effect) {
   return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
@@ -83,17 +84,35 @@ CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
   };
   const double white = of_all(1.0, 0.0, 1.0);
   std::vector<double> logs;
-  for (const double s : {1.0, 1.2, 1.45, 1.75, 2.1, 2.5, 3.0, 4.0, 5.0}) {
-    for (const double share : {0.15, 0.3, 0.5, 0.7, 0.9}) {
-      for (const double frames : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+  for (const double s : {1.0, 1.2, 1.45, 1.75, 2.1}) {
+    for (const double share : {0.15, 0.3, 0.5, 0.7}) {
+      for (const double frames : {1.0, 2.0, 4.0, 8.0}) {
         logs.push_back(of_all(s * s, share, frames) - white);
-        if (logs.back() > found.gain) found = {logs.back(), 0.0, share, frames};
+        if (logs.back() <= found.gain) continue;
+        // 1 + 2 sum of exp(-lag/frames) of the part that lasts.
+        const double keep = std::exp(-1.0 / frames);
+        found = {logs.back(), 0.0, share, frames, s * s * (1.0 - share + share * (1.0 + keep) / (1.0 - keep))};
       }
     }
   }
   found.log_evidence = log_mean(logs);
   return found;
 }
+
+namespace {
+
+/// In a file with loss, noise that lasts over frames imitates whatever is slow: the log evidence of every explanation
+/// by a motion counts as much less as that noise has more variance where it is slow, beyond the best explanation of
+/// all.
+void temper(const TrackSet& set, Comparison& comparison) {
+  const CorrelatedNoise left = scan_correlation(set, comparison.fits[static_cast<std::size_t>(comparison.left_fit)]);
+  if (left.log_evidence < kSeenInPictures) return;
+  for (Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.log_evidence > 0.0) hypothesis.log_evidence /= std::max(1.0, left.inflation);
+  }
+}
+
+}  // namespace
 
 void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
                    Comparison& comparison) {
@@ -106,6 +125,9 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
   }
   std::sort(findings.begin(), findings.end(),
             [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
+  if (std::any_of(findings.begin(), findings.end(), [](const auto* finding) { return finding->stated; })) {
+    temper(set, comparison);
+  }
   for (const PictureFinding* finding : findings) {
     const std::size_t effect = effect_index(finding->id);
     comparison.in_pictures.insert(effect);
@@ -128,16 +150,21 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
       const bool known = std::any_of(comparison.all.begin(), comparison.all.end(),
                                      [&](const Hypothesis& h) { return same_effects(h, with); });
       if (known) continue;
-      double of_tracks = 0.0, scatter = 0.0;
+      double of_tracks = 0.0, scatter = 0.0, outliers = 0.0;
       if (!holds(other, jitter) && !holds(other, tails)) {
-        for (const FrameEffect& frame : comparison.frames) scatter = std::max(scatter, frame.log_evidence);
+        for (const FrameEffect& frame : comparison.frames) {
+          scatter = std::max(scatter, frame.log_evidence);
+          if (frame.effect == tails) outliers = std::max(outliers, frame.log_evidence);
+        }
       }
       if (effect == codec && finding->stated && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
         const CorrelatedNoise noise = scan_correlation(set, comparison.fits[static_cast<std::size_t>(other.fit)]);
         of_tracks = std::max(0.0, noise.log_evidence);
         with.gain += noise.gain;
-        // Its errors grow with what changes in the picture; more than a doubt is another matter.
-        if (of_tracks > kSeen) of_tracks += std::min(kDoubt, scatter);
+        // Its errors grow with what changes in the picture, and single ones are large where its blocks are seen.
+        if (of_tracks > kSeenInPictures) {
+          of_tracks += std::max(std::min(kDoubt, scatter), finding->seen ? outliers : 0.0);
+        }
       }
       // A smeared marker is found less well the faster it moves: what the scatter shows of that is its own.
       if (finding->id == "exposure_blur" && finding->seen) of_tracks = scatter;

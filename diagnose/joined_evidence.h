@@ -25,11 +25,12 @@ struct Measured {
 };
 double agreement(const Measured& in_pictures, const Measured& in_tracks);
 
-/// Log evidence that positions' noise is correlated over up to 16 frames, as a codec makes it, against white noise: an
+/// Log evidence that positions' noise is correlated over up to 8 frames, as a codec makes it, against white noise: an
 /// exponential correlation beside a white part, both of free size, by a Kalman filter over the fit's residuals.
 struct CorrelatedNoise {
   double gain = 0.0, log_evidence = 0.0;
   double share = 0.0, frames = 0.0;  ///< of the variance; how long it lasts
+  double inflation = 1.0;            ///< variance of what is slow among such noise, over that of white noise
 };
 CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit);
 

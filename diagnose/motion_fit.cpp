@@ -229,6 +229,9 @@ ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> e
   if (scale) globals_.push_back({Kind::scale});
   for (const std::size_t effect : effects_) {
     for (const EffectParameter& parameter : effect_list()[effect].parameters) {
+      const bool turning =
+          parameter.member == &EffectValues::camera_slope_1_m || parameter.member == &EffectValues::camera_bend_1_m2;
+      if (turning && !set.pictures) continue;  // positions of nobody knows which camera: one size everywhere
       if (parameter.own) {
         own_.push_back(&parameter);
       } else {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/experiment.h"
@@ -40,9 +41,10 @@ struct PictureEvidence {
 
 PictureEvidence picture_evidence(std::vector<FilmedClip> clips);
 
-/// Log likelihood of the fixed scene's motion under a camera that sways by this (along the motion, in metres) over that
-/// under a camera at rest; 0 where nothing in the scene would show it.
-double camera_sway_support(const std::vector<FilmedClip>& clips, double amplitude_m, double f_hz);
+inline constexpr double kSeenInPictures = 3.0;  ///< log evidence from which a finding counts as seen
+
+/// An empty finding of an effect of the list.
+PictureFinding finding_of(std::string_view id);
 
 /// Time from one row to the next below, as stated: 0 for a global shutter, below 0 where the bottom row is first.
 double stated_line_s(const core::CameraSettings& camera);

@@ -131,11 +131,16 @@ class Mover {
   bool pushed_ = false;
 };
 
-double seen(const EffectValues& e, double x, double t) {
+double seen(const TrackModel& model, double x, double t) {
+  const EffectValues& e = model.effects;
+  const double off = x - model.x_mid_all_m;
   if (e.lens_1_m2 != 0.0) x *= 1.0 + e.lens_1_m2 * (x - e.lens_x_m) * (x - e.lens_x_m);
   if (e.perspective_1_m != 0.0) x /= 1.0 + e.perspective_1_m * x;
   x *= 1.0 + e.scale_error;
-  if (e.camera_m != 0.0) x += e.camera_m * std::sin(2.0 * std::numbers::pi * e.camera_hz * t + e.camera_phase);
+  if (e.camera_m != 0.0) {
+    const double size = e.camera_m * (1.0 + e.camera_slope_1_m * off + e.camera_bend_1_m2 * off * off);
+    x += size * std::sin(2.0 * std::numbers::pi * e.camera_hz * t + e.camera_phase);
+  }
   return x;
 }
 
@@ -156,7 +161,7 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     const double next = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + model.effects.line_s * rows;
     if (next > t) s = mover.advance(s, t, next);
     t = std::max(t, next);
-    moved.x_m.push_back(seen(model.effects, s.x, times_s[i]));
+    moved.x_m.push_back(seen(model, s.x, times_s[i]));
     moved.v_m_s.push_back(s.v);
   }
   return moved;

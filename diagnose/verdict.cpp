@@ -10,6 +10,7 @@
 #include "diagnose/held_out.h"
 #include "diagnose/next_experiment.h"
 #include "diagnose/twin.h"
+#include "diagnose/verdict_regions.h"
 #include "diagnose/verdict_words.h"
 
 namespace glidelab::diagnose {
@@ -17,9 +18,6 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
 constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
-constexpr double kNotable = 3.0;       // log evidence of an unnamed family that is worth a region
-constexpr std::size_t kMostRegions = 6;
-constexpr std::size_t kMostCurves = 4;
 constexpr std::size_t kPlotted = 250;
 
 std::string joined(const std::vector<std::size_t>& effects) {
@@ -73,81 +71,22 @@ std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, cons
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     if (globals[g].parameter == nullptr || globals[g].effect != effect || globals[g].parameter->key.empty()) continue;
-    const bool known = std::any_of(parameters.begin(), parameters.end(),
-                                   [&](const auto& p) { return p.key == globals[g].parameter->key; });
-    if (known) continue;  // seen in the pictures
+    const auto known = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const auto& p) { return p.key == globals[g].parameter->key; });
     const auto at = static_cast<Eigen::Index>(g);
     ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
     if (globals[g].parameter->member == &EffectValues::line_s && !pictures.clips.empty()) {
       value.value += stated_line_s(pictures.clips.front().camera);  // tracks show what it is more than stated
     }
-    parameters.push_back({std::string(globals[g].parameter->key), value.value,
-                          std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_member)});
+    const DiagnosedParameter tracked{std::string(globals[g].parameter->key), value.value,
+                                     std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_member)};
+    if (known == parameters.end()) {
+      parameters.push_back(tracked);
+    } else if (tracked.sd < known->sd) {  // seen in the pictures as well, but less well
+      *known = tracked;
+    }
   }
   return parameters;
-}
-
-void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis) {
-  std::vector<const UnnamedFamily*> sorted;
-  for (const UnnamedFamily& family : families) sorted.push_back(&family);
-  std::sort(sorted.begin(), sorted.end(),
-            [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
-  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
-  for (const UnnamedFamily* family : sorted) {
-    if (family->log_evidence < notable) break;
-    const bool drawn = std::any_of(diagnosis.curves.begin(), diagnosis.curves.end(), [&](const GapCurve& curve) {
-      return curve.variable == family->variable && curve.what == family->what;
-    });
-    if (drawn) continue;  // the same at another width
-    if (family->names.empty() && !family->at.empty() && diagnosis.curves.size() < kMostCurves) {
-      diagnosis.curves.push_back(
-          {family->variable, family->what, family->unit, family->log_evidence, family->at, family->size, family->sd});
-    }
-    std::vector<UnnamedRegion> regions = family->regions;
-    std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.excess > b.excess; });
-    for (std::size_t r = 0; r < regions.size() && r < 2 && diagnosis.regions.size() < kMostRegions; ++r) {
-      GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
-                       regions[r].size,  family->unit,    family->what,  ""};
-      if (family->variable == "clip") {  // a clip as a whole
-        const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
-        region.variable = std::string("t_s");
-        region.clip = clip.name;
-        region.from = 0.0;
-        region.to = clip.duration_s;
-      }
-      diagnosis.regions.push_back(region);
-    }
-  }
-}
-
-/// Where in the data a named effect shows that only pictures tell.
-void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
-  static const std::map<std::string, std::pair<const char*, const char*>> kWhere = {
-      {"exposure_blur", {"v_m_s", "marker's width"}},  {"rolling_shutter", {"v_px", "marker's shear"}},
-      {"light_flicker", {"t_s", "brightness"}},        {"light_gradient", {"u_px", "brightness"}},
-      {"camera_motion", {"t_s", "the scene's place"}}, {"compression", {"u_px", "steps between blocks"}}};
-  for (const DiagnosedEffect& effect : diagnosis.effects) {
-    for (const PictureFinding& finding : pictures.findings) {
-      const auto where = kWhere.find(finding.id);
-      if (finding.id != effect.id || !finding.seen || where == kWhere.end() || finding.parameters.empty()) continue;
-      GapRegion region;
-      region.variable = where->second.first;
-      region.what = where->second.second;
-      const core::PictureRecord& record = *pictures.clips.front().record;
-      region.to = region.variable == "u_px"   ? record.width_px
-                  : region.variable == "v_px" ? record.height_px
-                  : record.scene.empty()      ? 0.0
-                                              : record.scene.back().t_s;
-      if (region.variable == "v_m_s" && pictures.clips.front().px_per_m > 0.0) {
-        region.to = pictures.fastest_px_s / pictures.clips.front().px_per_m;
-      }
-      const DiagnosedParameter& size = finding.parameters.front();
-      region.size = size.value;
-      region.unit = size.key;
-      region.excess = std::sqrt(2.0 * finding.log_evidence);
-      diagnosis.regions.push_back(region);
-    }
-  }
 }
 
 /// Parameters that a hypothesis adds to the nominal model.

@@ -8,6 +8,7 @@
 #include "catch.h"
 #include "diagnose/picture_scene.h"
 #include "diagnose/picture_shape.h"
+#include "diagnose/picture_sway.h"
 
 using namespace glidelab;
 

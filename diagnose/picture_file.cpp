@@ -1,0 +1,84 @@
+#include "diagnose/picture_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kMemory = 0.05;  // of a ratio of variances that should be 1
+
+/// Larger steps between pixels where blocks of 8 meet, against the other seven columns' scatter.
+double block_excess(const core::BlockSteps& steps, double& relative) {
+  double mean = 0.0, square = 0.0;
+  for (std::size_t c = 1; c < 8; ++c) mean += steps.mean[c] / 7.0;
+  for (std::size_t c = 1; c < 8; ++c) square += std::pow(steps.mean[c] - mean, 2) / 6.0;
+  relative = mean > 0.0 ? steps.mean[0] / mean - 1.0 : 0.0;
+  const double floor = 0.02 * mean;  // columns of a real scene differ by as much
+  return (steps.mean[0] - mean) / std::max(1e-12, std::hypot(std::sqrt(square), floor));
+}
+
+}  // namespace
+
+void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  double excess = 0.0, relative = 0.0, memory = 0.0;
+  std::size_t lossy = 0, lossless = 0;
+  std::string codec;
+  for (const FilmedClip& clip : clips) {
+    double mine = 0.0;
+    const double z = block_excess(clip.record->steps, mine);
+    if (z > excess) {
+      excess = z;
+      relative = mine;
+    }
+    memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
+    if (clip.record->lossy) ++(*clip.record->lossy ? lossy : lossless);
+    if (codec.empty()) codec = clip.record->codec;
+  }
+  const bool changes = std::any_of(evidence.findings.begin(), evidence.findings.end(), [](const PictureFinding& other) {
+    return (other.id == "light_flicker" || other.id == "camera_motion") && other.log_evidence > kSeenInPictures;
+  });
+  PictureFinding finding = finding_of("compression");
+  const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // seven columns tell their scatter poorly
+  // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
+  finding.stated = lossy > 0;
+  finding.log_evidence = std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks,
+                                  changes ? blocks : log_evidence_of((memory - 1.1) / kMemory, 1.0 / kMemory));
+  finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
+  finding.words = fmt::format("{}; steps between pixels are {:.1f} % {} at the edges of 8 x 8 blocks than elsewhere.",
+                              lossy > 0      ? fmt::format("The file is compressed with loss ({})", codec)
+                              : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
+                                             : std::string("What the file was compressed with is not known"),
+                              100.0 * std::abs(relative), relative < 0.0 ? "smaller" : "larger");
+  if (memory > 1.1)
+    finding.words +=
+        fmt::format(" Noise lasts over frames (changes over two frames are {:.2f} times those over one).", memory);
+  evidence.findings.push_back(std::move(finding));
+}
+
+void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  std::size_t missing = 0, repeated = 0, frames = 0;
+  for (const FilmedClip& clip : clips) {
+    missing += clip.record->stamps_missing;
+    const auto& looks = clip.record->marker;
+    frames += looks.size();
+    for (std::size_t i = 2; i < looks.size(); ++i) {
+      const bool same = looks[i].u_px == looks[i - 1].u_px && looks[i].v_px == looks[i - 1].v_px;
+      if (same && std::abs(looks[i - 1].u_px - looks[i - 2].u_px) > 0.05) ++repeated;
+    }
+  }
+  if (missing + repeated == 0) return;
+  PictureFinding finding = finding_of("dropped_frames");
+  finding.log_evidence = std::min(50.0, 5.0 * static_cast<double>(missing + repeated));
+  const double count = static_cast<double>(missing + repeated);
+  finding.parameters = {
+      {"fraction", count / static_cast<double>(frames), std::sqrt(count) / static_cast<double>(frames)}};
+  finding.words =
+      fmt::format("{} frames repeat the picture before, and the time stamps leave a gap for {}.", repeated, missing);
+  evidence.findings.push_back(std::move(finding));
+}
+
+}  // namespace glidelab::diagnose
