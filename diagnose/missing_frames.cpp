@@ -51,7 +51,13 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known) {
     const auto f = static_cast<std::size_t>(from);
     if (std::abs(v[f]) * step < (known ? 1.0 : 5.0) * data.sd_m) continue;  // too slow to tell
     // The neighbours must show the jump themselves.
-    const double jump = data.x_m[f] - data.x_m[f - 1] - usual_step(data.x_m, f).size;
+    // Against the six steps around, or, where they differ much as near a reversal, the two beside it.
+    const double way = data.x_m[f] - data.x_m[f - 1];
+    const double after = f + 1 < data.x_m.size() ? data.x_m[f + 1] - data.x_m[f] : data.x_m[f - 1] - data.x_m[f - 2];
+    const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
+    double jump = way - usual_step(data.x_m, f).size;
+    const double beside = way - 0.5 * (before + after);
+    if (std::abs(beside - v[f] * step) < std::abs(jump - v[f] * step)) jump = beside;
     if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_m) continue;
     if (!known && std::abs(jump) < 3.0 * data.sd_m) continue;
     Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
