@@ -94,7 +94,7 @@ void analyze(const AnalyzeOptions& options) {
   }
   write_analysis_files(results, staged.dir());
   const std::vector<core::Preview> previews = previews_of(folders, results, progress, options.bare);
-  base::write_file(staged.dir() / "report.html", report::analysis_report(title, results, previews, progress));
+  report::write_page(staged.dir(), "report.html", report::analysis_report(title, results, previews, progress));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

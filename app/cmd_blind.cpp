@@ -53,7 +53,7 @@ void blind(const BlindCommand& options) {
   const std::string json = report::blind_json(run);
   base::StagedOutput staged(out);
   base::write_file(staged.dir() / "blind.json", json);
-  base::write_file(staged.dir() / "report.html", report::blind_page(run));
+  report::write_page(staged.dir(), "report.html", report::blind_page(run));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

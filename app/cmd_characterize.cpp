@@ -38,7 +38,7 @@ void characterize(const CharacterizeOptions& options) {
   const std::string json = report::camera_json(camera);
   base::write_file(staged.dir() / "camera.toml", core::camera_toml(camera));
   base::write_file(staged.dir() / "characterize.json", json);
-  base::write_file(staged.dir() / "report.html", report::camera_report(camera));
+  report::write_page(staged.dir(), "report.html", report::camera_report(camera));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

@@ -51,7 +51,7 @@ void check(const CheckOptions& options) {
   const core::RecordingCheck found = core::check_recording(experiment, options.common.jobs, display.callback());
   const std::string json = report::check_json(found);
   base::write_file(staged.dir() / "check.json", json);
-  base::write_file(staged.dir() / "report.html", report::check_report(found, previews_of(experiment, found)));
+  report::write_page(staged.dir(), "report.html", report::check_report(found, previews_of(experiment, found)));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

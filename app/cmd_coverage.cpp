@@ -44,8 +44,8 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
   const validate::Coverage coverage = validate::measure_coverage(scenario, wanted, display.callback());
   const std::string json = report::coverage_json(coverage);
   base::write_file(staged.dir() / "coverage.json", json);
-  base::write_file(staged.dir() / "report.html",
-                   report::coverage_page(fmt::format("Coverage: {}", scenario.motion.name), coverage));
+  report::write_page(staged.dir(), "report.html",
+                     report::coverage_page(fmt::format("Coverage: {}", scenario.motion.name), coverage));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

@@ -68,7 +68,7 @@ void plan(const DiagnoseCommand& options) {
   const diagnose::Plan plan = planned(options);
   base::write_file(staged.dir() / "plan.json", report::plan_json(plan));
   const std::string title = "Plan: " + fs::path(options.experiments.front()).stem().string();
-  if (!options.no_page) base::write_file(staged.dir() / "plan.html", report::plan_page(title, plan));
+  if (!options.no_page) report::write_page(staged.dir(), "plan.html", report::plan_page(title, plan));
   throw_if_interrupted();
   staged.publish_files();
   print_result(options.common.json ? report::plan_json(plan) : report::plan_text(plan));
@@ -90,7 +90,7 @@ void diagnose(const DiagnoseCommand& options) {
       diagnose::diagnose(folders, {.without = options.without, .jobs = options.common.jobs}, display.callback());
   base::write_file(staged.dir() / "diagnosis.json", report::diagnosis_json(diagnosis));
   if (!options.no_page) {
-    base::write_file(staged.dir() / "report.html", report::diagnosis_report(title, diagnosis));
+    report::write_page(staged.dir(), "report.html", report::diagnosis_report(title, diagnosis));
   }
   throw_if_interrupted();
   staged.publish_files();

@@ -19,7 +19,7 @@ void explore(const CommonOptions& options) {
   const fs::path out = output_folder(options, "explore", "page");
   check_writable(out);
   base::StagedOutput staged(out);
-  base::write_file(staged.dir() / "explore.html", report::explorer_page(validate::explore_phases()));
+  report::write_page(staged.dir(), "explore.html", report::explorer_page(validate::explore_phases()));
   staged.publish_files();
   const std::string page = (out / "explore.html").string();
   print_result(options.json ? report::json_text({{"page", page}}) : page + "\n");

@@ -52,7 +52,7 @@ void laws(const LawsOptions& options) {
   std::vector<validate::LawStudy> studies;
   for (const fs::path& file : files) studies.push_back(validate::study_law(file));
   base::StagedOutput staged(out);
-  base::write_file(staged.dir() / "laws.html", report::laws_report(studies, display.callback()));
+  report::write_page(staged.dir(), "laws.html", report::laws_report(studies, display.callback()));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

@@ -45,7 +45,7 @@ void require_command(const RequireOptions& options) {
   const validate::Requirement requirement = validate::find_requirement(sweep, how, display.callback());
   const std::string json = report::requirement_json(requirement);
   base::write_file(staged.dir() / "require.json", json);
-  base::write_file(staged.dir() / "report.html", report::requirement_report(requirement));
+  report::write_page(staged.dir(), "report.html", report::requirement_report(requirement));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

@@ -83,7 +83,7 @@ void finish(const SweepOptions& options, const validate::Sweep& sweep, validate:
             const fs::path& out, const base::Progress& progress, ProgressDisplay& display) {
   const validate::SweepSummary summary = validate::summarize(sweep, database.database());
   base::StagedOutput staged(out);
-  base::write_file(staged.dir() / "report.html", report::sweep_report(summary, progress));
+  report::write_page(staged.dir(), "report.html", report::sweep_report(summary, progress));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

@@ -62,8 +62,9 @@ void validate_command(const ValidateOptions& options) {
   const std::string comparison = report::comparison_json(result.comparison);
   base::write_file(staged.dir() / "comparison.json", comparison);
   const std::vector<core::Preview> previews = previews_of({experiment}, result.results, progress);
-  base::write_file(staged.dir() / "report.html", report::validation_report(scenario.motion.name, result.results,
-                                                                           result.comparison, previews, progress));
+  report::write_page(
+      staged.dir(), "report.html",
+      report::validation_report(scenario.motion.name, result.results, result.comparison, previews, progress));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

@@ -8,8 +8,8 @@
 
 namespace glidelab::report {
 
-std::string analysis_report(const std::string& title, const core::AnalysisResults& results,
-                            const std::vector<core::Preview>& previews, const base::Progress& progress) {
+Page analysis_report(const std::string& title, const core::AnalysisResults& results,
+                     const std::vector<core::Preview>& previews, const base::Progress& progress) {
   std::size_t frames = 0;
   std::size_t detected = 0;
   bool pictures = false;
@@ -18,8 +18,8 @@ std::string analysis_report(const std::string& title, const core::AnalysisResult
     frames += clip.frames;
     detected += clip.detected;
   }
-  std::string body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, estimator {}.</p>\n",
-                                 escape(title), escape(results.estimator));
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, estimator {}.</p>\n", escape(title),
+                          escape(results.estimator));
   body += fmt::format(
       "<div class=\"tiles\"><div class=\"tile\"><b>{}</b><span>configurations</span></div>"
       "<div class=\"tile\"><b>{}</b><span>clips</span></div><div class=\"tile\"><b>{}</b><span>frames</span></div>"
@@ -29,10 +29,7 @@ std::string analysis_report(const std::string& title, const core::AnalysisResult
   body += recovered_section(results);
   body += meaning_of(results);
   body += phase_section(results);
-  body += lines_section(results);
-  body += camera_section(results);
-  body += clips_section(results, previews, progress);
-  body += method_section();
+  body += details_sections(results, previews, progress);
   return page(title, body);
 }
 

@@ -7,13 +7,13 @@
 #include "base/progress.h"
 #include "core/preview.h"
 #include "core/results.h"
+#include "report/html.h"
 
 namespace glidelab::report {
 
 /// `title` names what was analysed; `previews` is empty or has one for each clip of the results. EnvironmentError
 /// where gnuplot fails.
-std::string analysis_report(const std::string& title, const core::AnalysisResults& results,
-                            const std::vector<core::Preview>& previews,
-                            const base::Progress& progress = base::no_progress);
+Page analysis_report(const std::string& title, const core::AnalysisResults& results,
+                     const std::vector<core::Preview>& previews, const base::Progress& progress = base::no_progress);
 
 }  // namespace glidelab::report

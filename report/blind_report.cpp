@@ -9,6 +9,7 @@
 #include "report/html.h"
 #include "report/json_numbers.h"
 #include "report/number_text.h"
+#include "report/plot_style.h"
 #include "report/text_table.h"
 
 namespace glidelab::report {
@@ -131,7 +132,7 @@ Plot reliability_plot(const validate::BlindScore& score) {
                              "plot x with lines lw 1.5 lc rgb '#9a9a9a' title 'as stated', "
                              "$bins using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.5 lc rgb '#0072b2' title 'cases'\n";
   const std::vector<PlotData> all = {data};
-  return {gnuplot_svg(script, all),
+  return {Drawing{script, all},
           fmt::format("Stated probability of the verdict and how often it was right, with 95 % intervals; expected "
                       "calibration error {}",
                       number_text(score.calibration_error, 2)),
@@ -158,7 +159,7 @@ Plot methods_plot(const validate::BlindScore& score) {
                           gnuplot_quoted(method.name));
     data.push_back(std::move(rows));
   }
-  return {gnuplot_svg(script, data, {480, 400}), "How often each way of deciding is right, by kind of case",
+  return {Drawing{script, data, {480, 400}}, "How often each way of deciding is right, by kind of case",
           "Share of right answers of four methods"};
 }
 
@@ -263,9 +264,9 @@ std::string blind_text(const BlindRun& run) {
   return text;
 }
 
-std::string blind_page(const BlindRun& run) {
+Page blind_page(const BlindRun& run) {
   const validate::BlindScore& score = run.score;
-  std::string body = fmt::format(
+  Html body = fmt::format(
       "<h1>Blind cases</h1>\n<p class=\"soft\">{} experiments of tracks, seed {}, made by a generator that shares no "
       "model with the diagnosis; each was diagnosed by another process that was given the experiment folder "
       "only.</p>\n",

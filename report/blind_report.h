@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "report/html.h"
 #include "validate/blind_score.h"
 
 namespace glidelab::report {
@@ -18,6 +19,6 @@ struct BlindRun {
 std::string blind_json(const BlindRun& run);
 std::string blind_text(const BlindRun& run);
 /// EnvironmentError where gnuplot fails.
-std::string blind_page(const BlindRun& run);
+Page blind_page(const BlindRun& run);
 
 }  // namespace glidelab::report

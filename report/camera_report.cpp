@@ -9,6 +9,7 @@
 #include "report/camera_rows.h"
 #include "report/gnuplot.h"
 #include "report/html.h"
+#include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
@@ -58,7 +59,7 @@ Plot transfer_plot(const core::CameraMeasurement& camera) {
       0.7 * camera.saturation_dn, kGrey, color(1), color(0), tick_step(camera));
   const std::vector<PlotData> data = {line_of(camera), points_of(camera, "used", true),
                                       points_of(camera, "others", false)};
-  return {gnuplot_svg(script, data),
+  return {Drawing{script, data},
           "Photon transfer: variance of the pixels from frame to frame, rounding subtracted, over the mean. The slope "
           "is the gain. Bars: 2 sd; dashed: 70 % of saturation",
           "Variance over mean of every level, with the fitted line"};
@@ -77,7 +78,7 @@ std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
       "set xlabel 'exposure (ms)'\nset ylabel 'mean above dark (DN)'\nset xrange [0:*]\nset yrange [0:*]\nunset "
       "key\nplot $levels using 1:2 with linespoints pt 7 ps 0.7 lc rgb '{}'\n",
       color(0));
-  return {{gnuplot_svg(script, std::vector<PlotData>{data}), "Linearity: mean over exposure",
+  return {{Drawing{script, std::vector<PlotData>{data}}, "Linearity: mean over exposure",
            "Mean of every level over its exposure"}};
 }
 
@@ -94,8 +95,8 @@ std::string numbers_table(const core::CameraMeasurement& camera) {
 
 }  // namespace
 
-std::string camera_report(const core::CameraMeasurement& camera) {
-  std::string body = fmt::format(
+Page camera_report(const core::CameraMeasurement& camera) {
+  Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} x {} pixels, {} bits, by photon "
       "transfer (EMVA 1288).</p>\n",
       escape(camera.folder.name), camera.frames, camera.picture.width, camera.picture.height, camera.folder.bit_depth);

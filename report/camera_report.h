@@ -4,10 +4,11 @@
 #include <string>
 
 #include "core/camera_measurement.h"
+#include "report/html.h"
 
 namespace glidelab::report {
 
 /// A self-contained HTML page. EnvironmentError where gnuplot fails.
-std::string camera_report(const core::CameraMeasurement& camera);
+Page camera_report(const core::CameraMeasurement& camera);
 
 }  // namespace glidelab::report

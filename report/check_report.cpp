@@ -7,6 +7,7 @@
 #include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/number_text.h"
+#include "report/plot_style.h"
 #include "report/text_table.h"
 
 namespace glidelab::report {
@@ -79,18 +80,18 @@ Plot coverage_plot(const core::RecordingCheck& check) {
     script += fmt::format("{}${} using 1:2 {}", data.empty() ? "" : ", ", name, how);
     data.push_back(places(name, from));
   };
-  add("corners", corners, fmt::format("with points pt 7 ps 0.3 lc rgb '{}' title 'corners of the views'", color(4)));
-  add("plane", plane, fmt::format("with points pt 7 ps 0.5 lc rgb '{}' title 'plane view'", color(0)));
+  add("corners", corners, fmt::format("with points pt 7 ps 0.3 lc rgb '{}' title 'views'", color(4)));
+  add("plane", plane, fmt::format("with points pt 7 ps 0.5 lc rgb '{}' title 'plane of motion'", color(0)));
   add("path", path, fmt::format("with points pt 7 ps 0.4 lc rgb '{}' title 'marker'", color(1)));
-  return {gnuplot_svg(script, data, {520, 420}),
+  return {Drawing{script, data, {520, 420}},
           "The picture: where the pattern was seen, and where the marker runs. The lens is known where corners are.",
           "Corners of the pattern and path of the marker in the picture"};
 }
 
-std::string pattern_section(const core::RecordingCheck& check) {
+Html pattern_section(const core::RecordingCheck& check) {
   if (!check.pattern) return {};
   const core::PatternCheck& pattern = *check.pattern;
-  std::string text = "<h2>Pattern and camera</h2>\n";
+  Html text = "<h2>Pattern and camera</h2>\n";
   text += fmt::format("<p>Found in {} of {} pictures. ", pattern.views.size(),
                       pattern.views.size() + pattern.without.size());
   if (pattern.calibration) {
@@ -194,8 +195,8 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
 
 }  // namespace
 
-std::string check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
-  std::string body = fmt::format(
+Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
+  Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">A look at the recording before any analysis.</p>\n"
       "<p class=\"note\"><b class=\"{}\">{}.</b></p>\n",
       escape(check.name), check.usable ? "good" : "bad", verdict_of(check));

@@ -6,11 +6,12 @@
 
 #include "core/preview.h"
 #include "core/recording_check.h"
+#include "report/html.h"
 
 namespace glidelab::report {
 
 /// `previews` is empty or has one for each clip. EnvironmentError where gnuplot fails.
-std::string check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews);
+Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews);
 
 /// The findings with their advice, and a line for each clip.
 std::string check_text(const core::RecordingCheck& check);

@@ -9,6 +9,7 @@
 #include "report/html.h"
 #include "report/json_numbers.h"
 #include "report/number_text.h"
+#include "report/plot_style.h"
 #include "report/quantity_names.h"
 #include "report/text_table.h"
 
@@ -61,17 +62,17 @@ Plot coverage_plot(const validate::Coverage& coverage) {
   }
   script += fmt::format(
       "unset offsets\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
-      "set xlabel 'intervals of 95 % that hold the truth  (%)'\nset key bottom left\n"
+      "set xlabel 'intervals of 95 % that hold the truth  (%)'\nset key outside bottom center horizontal maxcols 2\n"
       "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
-      lowest, row_number + 3.5, tics);
+      lowest, row_number + 0.7, tics);
   for (std::size_t e = 0; e < estimators.size(); ++e) {
     if (data[e].rows.empty()) continue;
     script += fmt::format("{}${} using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}' title {}",
                           script.ends_with("plot ") ? "" : ", ", data[e].name, color(e),
                           gnuplot_quoted(estimator_name(estimators[e])));
   }
-  const int height = std::max(330, 110 + static_cast<int>(row_number) * 18);
-  return {gnuplot_svg(script, data, {560, height}), "Coverage of the stated intervals, with its own 95 % interval",
+  const int height = 150 + 18 * std::max(10, static_cast<int>(row_number));
+  return {Drawing{script, data, {560, height}}, "Coverage of the stated intervals, with its own 95 % interval",
           "Coverage of each quantity by each estimator"};
 }
 
@@ -162,8 +163,8 @@ std::string coverage_text(const validate::Coverage& coverage) {
   return text_table(rows, 3);
 }
 
-std::string coverage_page(const std::string& title, const validate::Coverage& coverage) {
-  std::string body = fmt::format(
+Page coverage_page(const std::string& title, const validate::Coverage& coverage) {
+  Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} of independent "
       "noise in every position{}, a clock that is off by 20 ppm (one standard deviation) and no lost frames, analysed "
       "by each estimator.</p>\n",

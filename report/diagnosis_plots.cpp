@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "report/gnuplot.h"
+#include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
@@ -49,7 +50,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   script += fmt::format(
       "set style fill solid 0.85 noborder\nplot $bars using (0.5*$2):1:(0.5*$2):(0.36) with boxxyerror lc rgb '{}'\n",
       kColors[0]);
-  return {gnuplot_svg(script, std::vector{data}, {620, 340}), "How probable each explanation is, given these data",
+  return {Drawing{script, std::vector{data}, {620, 340}}, "How probable each explanation is, given these data",
           "Bar chart of the probabilities of the explanations"};
 }
 
@@ -71,7 +72,7 @@ Plot clip_gaps(const diagnose::GapSizes& gap) {
       "plot $gaps using 2:1 with points pt 6 ps 1.1 lw 2 lc rgb '{}' title 'before', "
       "$gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'\n",
       kGrey, kColors[1], kColors[0]);
-  return {gnuplot_svg(script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}),
+  return {Drawing{script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}},
           "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
           "Dots for each clip's gap before and after"};
 }
@@ -86,7 +87,7 @@ Plot curve_plot(const diagnose::GapCurve& curve) {
       "plot $curve using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25, "
       "$curve using 1:2 with lines lw 2 lc rgb '{}', 0 with lines lw 1 lc rgb '{}'\n",
       kColors[0], kColors[0], kGrey);
-  return {gnuplot_svg(script, std::vector{data}),
+  return {Drawing{script, std::vector{data}},
           fmt::format("The smooth {} over {} that would fill the gap, with two standard deviations", curve.what,
                       axis_of(curve.variable)),
           fmt::format("Curve of a {} over {}", curve.what, axis_of(curve.variable))};
@@ -111,7 +112,7 @@ Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int varia
       "plot $before using 1:2 with points pt 7 ps 0.2 lc rgb '{}' title 'before', "
       "$after using 1:2 with points pt 7 ps 0.2 lc rgb '{}' title 'after'\n",
       kColors[1], kColors[0]);
-  return {gnuplot_svg(script, std::vector{before, after}),
+  return {Drawing{script, std::vector{before, after}},
           fmt::format("What the fit leaves of all clips, over {}", variable == 0   ? "the place"
                                                                    : variable == 1 ? "the speed"
                                                                                    : "the time"),
@@ -135,7 +136,7 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
   if (!curve.expected.empty()) {
     script += fmt::format(", $seen using 1:5 with lines lw 2 dt 2 lc rgb '{}' title 'as by the one stated'", kGrey);
   }
-  return {gnuplot_svg(script + "\n", std::vector{data}),
+  return {Drawing{script + "\n", std::vector{data}},
           "How much longer than high the marker's image gets the faster it moves: a long exposure smears it",
           "Lengthening of the marker's image over its speed"};
 }
@@ -179,7 +180,7 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
         std::string(kFrame) + "unset key\nset xlabel 'time t  (s)'\nset ylabel 'brightness, change  (%)'\nplot $light" +
         lines + "\n";
     plots.push_back(
-        {gnuplot_svg(script, std::vector{light}),
+        {Drawing{script, std::vector{light}},
          "How bright what rests in the scene is, against each clip's first frames; light that flickers makes "
          "a regular wave",
          "Brightness of the scene over time"});
@@ -192,7 +193,7 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
       std::string(kFrame) + "set xlabel 'time t  (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot $across" +
       lines + " title 'to the right'" +
       fmt::format(", $down using 1:2 with lines lw 1 lc rgb '{}' title 'downwards'\n", kColors[1]);
-  plots.push_back({gnuplot_svg(script, std::vector{across, down}),
+  plots.push_back({Drawing{script, std::vector{across, down}},
                    "Where what rests in the scene stands in the picture: a camera at rest keeps it at 0, up to noise",
                    "Drift of the scene in the picture over time"});
   return plots;
@@ -220,7 +221,7 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
       "plot $cells using 1:2:3 with image pixels\n",
       static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {
-      {gnuplot_svg(script, std::vector{data}, {680, 560}),
+      {Drawing{script, std::vector{data}, {680, 560}},
        "How alike what two effects do to these clips is, after everything else is fitted: 1 cannot be told apart, 0 "
        "can",
        "Matrix of likeness between effects"}};

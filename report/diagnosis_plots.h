@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diagnose/diagnosis.h"
-#include "report/plot_style.h"
+#include "report/plot.h"
 
 namespace glidelab::report {
 

@@ -111,8 +111,8 @@ std::string region_table(const diagnose::Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::string diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis) {
-  std::string body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
+Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis) {
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
   body += tiles(diagnosis);
   body += fmt::format("<p>{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(diagnosis.summary),
                       escape(diagnosis.next_experiment));

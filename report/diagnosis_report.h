@@ -4,10 +4,11 @@
 #include <string>
 
 #include "diagnose/diagnosis.h"
+#include "report/html.h"
 
 namespace glidelab::report {
 
 /// `title` names what was diagnosed. EnvironmentError where gnuplot fails.
-std::string diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis);
+Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis);
 
 }  // namespace glidelab::report

@@ -42,7 +42,7 @@ std::string data_of(const validate::PhaseExplorer& explorer) {
 
 }  // namespace
 
-std::string explorer_page(const validate::PhaseExplorer& explorer) {
+Page explorer_page(const validate::PhaseExplorer& explorer) {
   std::string body(kExplorerBody);
   body += "<script>\n'use strict';\n" + data_of(explorer);
   body += kExplorerMotion;

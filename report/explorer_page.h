@@ -6,10 +6,11 @@
 
 #include <string>
 
+#include "report/html.h"
 #include "validate/phase_explorer.h"
 
 namespace glidelab::report {
 
-std::string explorer_page(const validate::PhaseExplorer& explorer);
+Page explorer_page(const validate::PhaseExplorer& explorer);
 
 }  // namespace glidelab::report

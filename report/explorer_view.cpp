@@ -26,7 +26,7 @@ const std::string_view kExplorerBody = R"html(<style>
 </style>
 <h1>Friction in the phase plane</h1>
 <p>A glider on a track, x positive downhill: m dv/dt = m g sin α − drag(v) − sign(v) μ m g cos α. Choose the law, its strength, the
-slope and the push; the point runs along x(t), v(t) and a(v) together.</p>
+slope and the push; the point runs along x(t), v(t) and a(v) together. On the keyboard: Tab to a slider, then the arrow keys.</p>
 <div id="explorer">
 <form id="controls" onsubmit="return false">
 <label>Drag<select id="law"><option value="0">viscous: K v</option><option value="1">C v |v|^½ (power 3/2)</option>

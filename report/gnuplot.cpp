@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -40,16 +42,88 @@ void check_status(int status, const fs::path& log) {
   if (!how.empty()) throw base::EnvironmentError(fmt::format("gnuplot {}: {}", how, base::read_file(log)));
 }
 
-std::string data_block(const PlotData& data) {
-  std::string text = fmt::format("${} << END_OF_DATA\n", data.name);
-  for (const std::vector<double>& row : data.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i > 0) text += ' ';
-      text += std::isfinite(row[i]) ? fmt::format("{:.7g}", row[i]) : "NaN";  // 7 digits: far below a pixel
+/// Blocks of rows two blank lines apart, as gnuplot counts them; what would look like such a gap within a block is
+/// closed.
+std::string csv_of(const Drawing& drawing) {
+  std::string text;
+  for (const PlotData& data : drawing.data) {
+    text += fmt::format("{}# {}\n", text.empty() ? "" : "\n\n", data.name);
+    bool gap = false, any = false;
+    for (const std::vector<double>& row : data.rows) {
+      if (row.empty()) {
+        gap = any;
+        continue;
+      }
+      if (gap) text += '\n';
+      gap = false;
+      any = true;
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        if (i > 0) text += ',';
+        text += std::isfinite(row[i]) ? fmt::format("{:.7g}", row[i]) : "NaN";  // 7 digits: far below a pixel
+      }
+      text += '\n';
     }
-    text += '\n';
   }
-  return text + "END_OF_DATA\n";
+  return text;
+}
+
+bool of_a_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// The script with every `$block` outside of its texts replaced by where the block stands in the file of data.
+std::string with_files(const Drawing& drawing) {
+  const std::string& script = drawing.script;
+  std::string text;
+  bool quoted = false;
+  for (std::size_t i = 0; i < script.size(); ++i) {
+    if (script[i] == '\'') quoted = !quoted;
+    const bool block =
+        !quoted && script[i] == '$' && i + 1 < script.size() && std::isalpha(static_cast<unsigned char>(script[i + 1]));
+    if (!block) {
+      text += script[i];
+      continue;
+    }
+    std::size_t end = i + 1;
+    while (end < script.size() && of_a_name(script[end])) ++end;
+    const std::string name = script.substr(i + 1, end - i - 1);
+    const auto found =
+        std::find_if(drawing.data.begin(), drawing.data.end(), [&](const PlotData& data) { return data.name == name; });
+    text += found == drawing.data.end() ? "$" + name  // gnuplot says that there is none
+                                        : fmt::format("name.'.csv' index {}", found - drawing.data.begin());
+    i = end - 1;
+  }
+  return text;
+}
+
+/// Both files come from one script, run twice. At the font size 15 text is still 11 pixels high where the page shows
+/// the plot 350 pixels wide; a point of the PDF is a pixel of the SVG.
+std::string script_of(const Drawing& drawing, const std::string& name) {
+  constexpr double kPointsPerInch = 72.0;
+  return fmt::format(
+      "# gnuplot {0}.gp  draws {0}.svg and {0}.pdf from {0}.csv\n"
+      "name = '{0}'\n"
+      "set encoding utf8\n"
+      "do for [kind in 'svg pdf'] {{\n"
+      "reset\n"
+      "set datafile separator comma\n"
+      "if (kind eq 'svg') {{ set terminal svg noenhanced size {1},{2} dynamic font 'sans-serif,15' background "
+      "'#ffffff' }}\n"
+      "if (kind eq 'pdf') {{ set terminal pdfcairo noenhanced size {3:.4f}in,{4:.4f}in font 'sans-serif,15' }}\n"
+      "set output name.'.'.kind\n"
+      "{5}\n"
+      "unset output\n"
+      "}}\n",
+      name, drawing.size.width, drawing.size.height, drawing.size.width / kPointsPerInch,
+      drawing.size.height / kPointsPerInch, with_files(drawing));
+}
+
+/// cairo writes the time of day into a PDF; the same numbers shall give the same file.
+std::string without_date(std::string pdf) {
+  constexpr std::string_view kKey = "/CreationDate (D:", kEpoch = "19700101000000";
+  const std::size_t found = pdf.find(kKey);
+  if (found != std::string::npos) pdf.replace(found + kKey.size(), kEpoch.size(), kEpoch);
+  return pdf;
 }
 
 }  // namespace
@@ -66,23 +140,47 @@ std::string gnuplot_quoted(std::string_view text) {
   return quoted + "'";
 }
 
-std::string gnuplot_svg(std::string_view script, std::span<const PlotData> data, PlotSize size) {
+std::vector<std::string> plot_file_names(std::span<const Plot> plots) {
+  constexpr std::size_t kLongest = 60;  // characters; longer names are cut by some archives
+  std::vector<std::string> names;
+  for (const Plot& plot : plots) {
+    std::string name = fmt::format("{:02}-", names.size() + 1);
+    for (const char c : plot.description) {
+      const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 0x80;
+      if (plain) name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      if (!plain && name.back() != '-') name += '-';
+      if (name.size() == kLongest) break;
+    }
+    while (name.back() == '-') name.pop_back();
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<DrawnPlot> draw_plots(std::span<const Plot> plots, std::span<const std::string> names) {
+  assert(plots.size() == names.size());
+  if (plots.empty()) return {};
   const base::TemporaryFolder folder("plot");
-  const fs::path svg = folder / "plot.svg";
   const fs::path log = folder / "log.txt";
-  // At the font size 15 text is still 11 pixels high where the page shows the plot 350 pixels wide.
-  std::string text = fmt::format(
-      "set terminal svg noenhanced size {},{} dynamic font 'sans-serif,15' background '#ffffff'\n"
-      "set output {}\nset encoding utf8\n",
-      size.width, size.height, gnuplot_quoted(svg.string()));
-  for (const PlotData& block : data) text += data_block(block);
-  text += script;
-  text += "\nunset output\n";
-  base::write_file(folder / "plot.gp", text);
-  check_status(run({"-d", (folder / "plot.gp").string()}, log), log);
-  std::error_code missing;
-  if (!fs::exists(svg, missing)) throw base::EnvironmentError("gnuplot: no plot written: " + base::read_file(log));
-  return base::read_file(svg);
+  std::vector<DrawnPlot> drawn;
+  std::vector<std::string> arguments = {"-d", "-e", "cd " + gnuplot_quoted(folder.path().string())};
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    drawn.push_back({names[i], {}, {}, script_of(plots[i].drawing, names[i]), csv_of(plots[i].drawing)});
+    base::write_file(folder / (names[i] + ".gp"), drawn[i].script);
+    base::write_file(folder / (names[i] + ".csv"), drawn[i].csv);
+    arguments.push_back(names[i] + ".gp");
+  }
+  check_status(run(std::move(arguments), log), log);
+  for (DrawnPlot& plot : drawn) {
+    const fs::path svg = folder / (plot.name + ".svg"), pdf = folder / (plot.name + ".pdf");
+    std::error_code missing;
+    if (!fs::exists(svg, missing) || !fs::exists(pdf, missing)) {
+      throw base::EnvironmentError(fmt::format("gnuplot: no plot {} written: {}", plot.name, base::read_file(log)));
+    }
+    plot.svg = base::read_file(svg);
+    plot.pdf = without_date(base::read_file(pdf));
+  }
+  return drawn;
 }
 
 void check_gnuplot() {

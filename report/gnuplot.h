@@ -1,7 +1,8 @@
-/// Plots as SVG, drawn by gnuplot as a child process.
+/// Plots drawn by gnuplot as a child process: each as SVG and as PDF, with the script and the data that draw it again.
 ///
-/// A script and its data go into a temporary folder of their own, gnuplot runs there with its default settings and the
-/// C locale, and the SVG is read back. Texts from files are quoted, so that a clip's name is never a command.
+/// One run draws all plots of a page. Each has a script NAME.gp that reads NAME.csv and writes NAME.svg and NAME.pdf:
+/// `gnuplot NAME.gp`, run where they lie, makes the same plot. gnuplot runs with its default settings and the C locale.
+/// Texts from files are quoted, so that a clip's name is never a command.
 #pragma once
 
 #include <span>
@@ -9,22 +10,25 @@
 #include <string_view>
 #include <vector>
 
+#include "report/plot.h"
+
 namespace glidelab::report {
 
-/// Columns of numbers under the name that the script calls them by: `plot $name using 1:2`. NaN breaks a line.
-struct PlotData {
-  std::string name;
-  std::vector<std::vector<double>> rows;  ///< an empty row stands for a blank line, which breaks a line as well
+/// The four files of one plot.
+struct DrawnPlot {
+  std::string name;  ///< of the files, without what follows the dot
+  std::string svg;
+  std::string pdf;     ///< without the date at which it was drawn
+  std::string script;  ///< NAME.gp
+  std::string csv;     ///< the blocks of data, each under its name in a comment, two blank lines apart
 };
 
-/// Size in points of the SVG's own coordinates; the page scales it.
-struct PlotSize {
-  int width = 480;
-  int height = 330;
-};
+/// Draws the plots; names[i] is that of plots[i]'s files. EnvironmentError where gnuplot is missing or fails (with its
+/// message).
+std::vector<DrawnPlot> draw_plots(std::span<const Plot> plots, std::span<const std::string> names);
 
-/// Runs the script and returns the SVG. EnvironmentError where gnuplot is missing or fails (with its message).
-std::string gnuplot_svg(std::string_view script, std::span<const PlotData> data, PlotSize size = {});
+/// Names for the files of a page's plots, in order: "01-residuals-of-the-fitted-lines-over-v", of ASCII only.
+std::vector<std::string> plot_file_names(std::span<const Plot> plots);
 
 /// EnvironmentError where gnuplot cannot be started: to be found before the long work, not after it.
 void check_gnuplot();

@@ -5,6 +5,9 @@
 #include <cassert>
 #include <cstdint>
 
+#include "base/staged_output.h"
+#include "report/gnuplot.h"
+
 namespace glidelab::report {
 namespace {
 
@@ -29,8 +32,10 @@ code { overflow-wrap: anywhere; }
 .scroll { overflow-x: auto; margin: 0.6rem 0; }
 table { border-collapse: collapse; font-size: 0.94rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.3rem 0.75rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
-th { background: var(--tint); font-weight: 600; white-space: nowrap; }
-td.n, th.n { text-align: right; white-space: nowrap; }
+th { background: var(--tint); font-weight: 600; vertical-align: bottom; }
+td:first-child { min-width: 9ch; }
+td.n, th.n { text-align: right; }
+td.n { white-space: nowrap; }
 tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }
 td.why { white-space: normal; color: var(--soft); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 0.6rem; margin: 1rem 0; padding: 0; }
@@ -131,23 +136,64 @@ std::string HtmlTable::str() const {
   return text + "</tr></thead><tbody>\n" + rows_ + "</tbody></table></div>\n";
 }
 
-std::string figures(const std::vector<Plot>& plots) {
-  if (plots.empty()) return {};
-  std::string text = plots.size() % 3 == 0 ? "<div class=\"figures\">\n" : "<div class=\"figures large\">\n";
-  for (const Plot& plot : plots) {
-    // As an image of its own: gnuplot gives every plot the same ids, which would clash within one page.
-    text += fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption>{}</figcaption></figure>\n",
-                        escape(plot.description), data_uri("image/svg+xml", plot.svg), escape(plot.caption));
-  }
-  return text + "</div>\n";
+Html& Html::operator+=(const Html& next) {
+  texts_.back() += next.texts_.front();
+  texts_.insert(texts_.end(), next.texts_.begin() + 1, next.texts_.end());
+  plots_.insert(plots_.end(), next.plots_.begin(), next.plots_.end());
+  return *this;
 }
 
-std::string page(std::string_view title, std::string_view body) {
-  return fmt::format(
+void Html::plot(Plot plot) {
+  plots_.push_back(std::move(plot));
+  texts_.emplace_back();
+}
+
+Html figures(const std::vector<Plot>& plots) {
+  if (plots.empty()) return {};
+  Html html(plots.size() % 3 == 0 ? "<div class=\"figures\">\n" : "<div class=\"figures large\">\n");
+  for (const Plot& plot : plots) {
+    // As an image of its own: gnuplot gives every plot the same ids, which would clash within one page.
+    html += fmt::format("<figure><img alt=\"{}\" src=\"", escape(plot.description));
+    html.plot(plot);
+    html += fmt::format("\"><figcaption>{}</figcaption></figure>\n", escape(plot.caption));
+  }
+  return html + "</div>\n";
+}
+
+Page page(std::string_view title, const Html& body) {
+  Page made;
+  std::string text;
+  const std::vector<DrawnPlot> drawn = draw_plots(body.plots(), plot_file_names(body.plots()));
+  for (std::size_t i = 0; i < body.texts().size(); ++i) {
+    text += body.texts()[i];
+    if (i == drawn.size()) break;
+    text += data_uri("image/svg+xml", drawn[i].svg);
+    const std::string stem = "plots/" + drawn[i].name;
+    made.files[stem + ".svg"] = drawn[i].svg;
+    made.files[stem + ".pdf"] = drawn[i].pdf;
+    made.files[stem + ".gp"] = drawn[i].script;
+    made.files[stem + ".csv"] = drawn[i].csv;
+  }
+  if (!drawn.empty()) {
+    text +=
+        "<p class=\"soft\">Each plot also lies in the folder <code>plots</code> beside this page: SVG, PDF, its "
+        "numbers (CSV), and the "
+        "script that draws it (<code>gnuplot NAME.gp</code>).</p>\n";
+  }
+  made.html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
       "<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-      escape(title), kStyle, body);
+      escape(title), kStyle, text);
+  return made;
+}
+
+void write_page(const std::filesystem::path& folder, const std::string& name, const Page& page) {
+  base::write_file(folder / name, page.html);
+  for (const auto& [path, bytes] : page.files) {
+    std::filesystem::create_directories((folder / path).parent_path());
+    base::write_file(folder / path, bytes);
+  }
 }
 
 }  // namespace glidelab::report

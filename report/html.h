@@ -1,13 +1,16 @@
 /// The pieces of a page that needs nothing but itself: style, tables, pictures as data URIs.
 ///
-/// Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.
+/// Plots are drawn when the page is made, all in one run of gnuplot; beside the page their files are laid in a folder
+/// "plots". Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.
 #pragma once
 
+#include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "report/plot_style.h"
+#include "report/plot.h"
 
 namespace glidelab::report {
 
@@ -37,10 +40,39 @@ class HtmlTable {
   std::string rows_;
 };
 
-/// Plots side by side where there is room, each on white paper with its caption.
-std::string figures(const std::vector<Plot>& plots);
+/// A part of a page: HTML, and between its texts the plots that are yet to be drawn.
+class Html {
+ public:
+  Html() : texts_(1) {}
+  Html(std::string text) : texts_{std::move(text)} {}  // NOLINT(google-explicit-constructor): most parts are text
+  Html(const char* text) : texts_{text} {}             // NOLINT(google-explicit-constructor)
+  Html& operator+=(const Html& next);
+  friend Html operator+(Html first, const Html& next) { return first += next; }
+  /// The plot's SVG as a data URI goes here.
+  void plot(Plot plot);
 
-/// A whole HTML document. The title is text, the body HTML.
-std::string page(std::string_view title, std::string_view body);
+  /// One more than plots: texts()[i] stands before plots()[i].
+  const std::vector<std::string>& texts() const { return texts_; }
+  const std::vector<Plot>& plots() const { return plots_; }
+
+ private:
+  std::vector<std::string> texts_;
+  std::vector<Plot> plots_;
+};
+
+/// Plots side by side where there is room, each on white paper with its caption.
+Html figures(const std::vector<Plot>& plots);
+
+/// A whole HTML document and the files of its plots, by their path beside it ("plots/NAME.svg", .pdf, .gp, .csv).
+struct Page {
+  std::string html;
+  std::map<std::string, std::string> files;
+};
+
+/// The title is text. EnvironmentError where gnuplot fails.
+Page page(std::string_view title, const Html& body);
+
+/// Writes the document under the name and the files of its plots into the folder.
+void write_page(const std::filesystem::path& folder, const std::string& name, const Page& page);
 
 }  // namespace glidelab::report

@@ -8,6 +8,7 @@
 #include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/number_text.h"
+#include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
@@ -31,7 +32,7 @@ Plot position_plot(const LawStudy& study) {
     script += fmt::format("{}${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", i == 0 ? "" : ", ",
                           data.back().name, i % 2 == 0 ? 1 : 2, color(i), gnuplot_quoted(study.motions[i].clip));
   }
-  return {gnuplot_svg(script, data), "Position over time", "x(t) of " + study.name};
+  return {Drawing{script, data}, "Position over time", "x(t) of " + study.name};
 }
 
 Plot phase_plot(const LawStudy& study) {
@@ -69,7 +70,7 @@ Plot phase_plot(const LawStudy& study) {
           fmt::format("with points pt 7 ps 1 lc rgb '#000000' {}", c == 0 ? "title 'equilibrium'" : "notitle"));
     }
   }
-  return {gnuplot_svg(script, data), "Acceleration over velocity; the dot is where the motion tends to",
+  return {Drawing{script, data}, "Acceleration over velocity; the dot is where the motion tends to",
           "a(v) of " + study.name};
 }
 
@@ -171,8 +172,8 @@ std::string equilibrium_text(const LawStudy& study) {
 
 }  // namespace
 
-std::string laws_report(const std::vector<LawStudy>& studies, const base::Progress& progress) {
-  std::string body =
+Page laws_report(const std::vector<LawStudy>& studies, const base::Progress& progress) {
+  Html body =
       "<h1>Laws of friction in a(v)</h1>\n<p>How a glider moves under each law: launched up or down, let go from rest, "
       "or "
       "started above its limit. Every point is the program's own solution of the equation of motion.</p>\n<nav><ul>";

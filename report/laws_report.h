@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "report/html.h"
 #include "validate/law_study.h"
 
 namespace glidelab::report {
 
 /// One page that needs nothing but itself. EnvironmentError where gnuplot fails.
-std::string laws_report(const std::vector<validate::LawStudy>& studies,
-                        const base::Progress& progress = base::no_progress);
+Page laws_report(const std::vector<validate::LawStudy>& studies, const base::Progress& progress = base::no_progress);
 
 }  // namespace glidelab::report

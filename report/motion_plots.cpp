@@ -10,6 +10,7 @@
 
 #include "report/decimate.h"
 #include "report/gnuplot.h"
+#include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
@@ -135,7 +136,7 @@ Plot motion_plot(const core::ClipResult& clip, Variable variable) {
                         kGrey, kColors[0]);
   const char* const name = variable == Variable::x ? "Position" : variable == Variable::v ? "Velocity" : "Acceleration";
   Plot plot;
-  plot.svg = gnuplot_svg(script, data);
+  plot.drawing = {script, data};
   plot.caption =
       variable == Variable::x ? "Position x(t)" : fmt::format("{} {}(t), with two standard deviations", name, axis[0]);
   plot.description = fmt::format("{} of clip {} over time", name, clip.name);

@@ -8,6 +8,7 @@
 
 #include "report/decimate.h"
 #include "report/gnuplot.h"
+#include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
@@ -160,7 +161,7 @@ Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group
                           gnuplot_quoted(configuration_label(results, group, cloud.configuration)));
     ++n;
   }
-  return {gnuplot_svg(script, data), "Residuals of the lines: what a(v) leaves unexplained",
+  return {Drawing{script, data}, "Residuals of the lines: what a(v) leaves unexplained",
           "Residuals of the fitted lines over v"};
 }
 
@@ -202,14 +203,14 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
 
   std::vector<PlotData> data;
   std::string script = std::string(kFrame) + axes(y) + diagram(results, group, all, -HUGE_VAL, HUGE_VAL, 0.3, data);
-  std::vector<Plot> plots = {{gnuplot_svg(script, data),
+  std::vector<Plot> plots = {{Drawing{script, data},
                               "Phase diagram: points as measured and smoothed, lines fitted for v < 0 and v > 0",
                               "Acceleration over velocity with fitted lines"}};
   const Window window = detail_window(results, group, v_max);
   data.clear();
   const std::string detail = diagram(results, group, all, window.from_v, window.to_v, 0.3, data);
   script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + detail;
-  plots.push_back({gnuplot_svg(script, data),
+  plots.push_back({Drawing{script, data},
                    "Near v = 0: the gap between the lines is twice the Coulomb friction, their crossing of a = 0 the "
                    "limit velocity",
                    "Detail of the phase diagram near v = 0"});

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/results.h"
-#include "report/plot_style.h"
+#include "report/plot.h"
 
 namespace glidelab::report {
 

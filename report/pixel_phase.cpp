@@ -10,6 +10,7 @@
 #include "report/decimate.h"
 #include "report/gnuplot.h"
 #include "report/number_text.h"
+#include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
@@ -174,7 +175,7 @@ std::vector<Plot> pixel_phase_plot(const std::vector<PhasePoint>& points, bool f
                                 "$means using 1:2:3 with yerrorbars pt 7 ps 0.6 lw 1.5 lc rgb '{}'",
                                 -reach, reach, from_truth ? "measured − true" : "measured − smoothed", kGrey,
                                 harmonic.mean, harmonic.cosine, harmonic.sine, color(1), color(0));
-  return {{gnuplot_svg(script, data),
+  return {{Drawing{script, data},
            fmt::format("Error of the marker's centre over its place within a pixel ({}), with means; a finder that is "
                        "drawn to pixels shows a wave. First harmonic: {} ± {} px",
                        from_truth ? "against the truth" : "against the smoothed motion",

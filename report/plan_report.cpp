@@ -75,8 +75,8 @@ std::string plan_text(const diagnose::Plan& plan) {
   return text;
 }
 
-std::string plan_page(const std::string& title, const diagnose::Plan& plan) {
-  std::string body = fmt::format(
+Page plan_page(const std::string& title, const diagnose::Plan& plan) {
+  Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">What this experiment will be able to tell apart.</p>\n"
       "<p>{}</p>\n",
       escape(title), escape(lead(plan)));

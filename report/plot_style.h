@@ -18,13 +18,6 @@ inline std::string color(std::size_t index) {
   return std::string(kColors[index % kColors.size()]);
 }
 
-/// A plot as it stands on a page: the SVG, and a text for who cannot see it.
-struct Plot {
-  std::string svg;
-  std::string caption;      ///< HTML-free text under the plot
-  std::string description;  ///< for the alt attribute
-};
-
 /// Light grid, thin frame, zero lines, tics that do not crowd.
 inline constexpr std::string_view kFrame =
     "set border 3 lw 1 lc rgb '#555555'\n"

@@ -9,6 +9,7 @@
 #include "report/html.h"
 #include "report/json_numbers.h"
 #include "report/number_text.h"
+#include "report/plot_style.h"
 #include "report/quantity_names.h"
 #include "report/text_table.h"
 
@@ -98,15 +99,15 @@ Plot front_plot(const Requirement& requirement) {
   add(front, fmt::format("with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
   add(met, fmt::format("with points pt 7 ps 0.8 lc rgb '{}' title 'reaches all targets'", kColors[2]));
   add(missed, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' title 'does not'", kColors[1]));
-  return {gnuplot_svg(script, data, {620, 420}),
+  return {Drawing{script, data, {620, 420}},
           "What each camera reaches over what it costs; the line joins those that no cheaper one beats",
           "Reached accuracy over cost"};
 }
 
 }  // namespace
 
-std::string requirement_report(const Requirement& requirement) {
-  std::string body = fmt::format("<h1>{}</h1>\n<p>What reaches ", escape(requirement.name));
+Page requirement_report(const Requirement& requirement) {
+  Html body = fmt::format("<h1>{}</h1>\n<p>What reaches ", escape(requirement.name));
   for (std::size_t t = 0; t < requirement.targets.size(); ++t) {
     body += fmt::format("{}{} at most {}", t == 0 ? "" : ", ", escape(target_name(requirement.targets[t])),
                         number_text(requirement.targets[t].value, 4));

@@ -3,12 +3,13 @@
 
 #include <string>
 
+#include "report/html.h"
 #include "validate/requirement.h"
 
 namespace glidelab::report {
 
 /// EnvironmentError where gnuplot fails.
-std::string requirement_report(const validate::Requirement& requirement);
+Page requirement_report(const validate::Requirement& requirement);
 std::string requirement_text(const validate::Requirement& requirement);
 std::string requirement_json(const validate::Requirement& requirement);
 

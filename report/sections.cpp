@@ -87,9 +87,9 @@ std::string pictures(const core::ClipResult& clip, const core::Preview& preview)
   return text;
 }
 
-std::string clip_html(const core::ClipResult& clip, std::size_t index, const std::string& phase_file,
-                      const core::Preview* preview) {
-  std::string text = fmt::format("<h3 id=\"{}\">{}</h3>\n", clip_anchor(index), escape(clip.name));
+Html clip_html(const core::ClipResult& clip, std::size_t index, const std::string& phase_file,
+               const core::Preview* preview) {
+  Html text = fmt::format("<h3 id=\"{}\">{}</h3>\n", clip_anchor(index), escape(clip.name));
   std::size_t used = 0;
   for (const core::MotionPoint& point : clip.motion) {
     if (point.smoothed && point.left_out == core::LeftOut::used) ++used;
@@ -109,75 +109,6 @@ std::string clip_html(const core::ClipResult& clip, std::size_t index, const std
   return text;
 }
 
-}  // namespace
-
-std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
-  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
-  return value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
-}
-
-/// What the lines give as they are, and what the kernel's bias adds to it; nothing where none was taken off.
-std::string corrections_html(const core::AnalysisResults& results) {
-  HtmlTable table({"mass", "stated incline", "quantity", "of the lines as they are", "correction", "recovered"}, 3);
-  for (const core::ConfigurationResult& c : results.configurations) {
-    const std::array<std::pair<std::string_view, const core::Quantity*>, 4> quantities = {
-        std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
-        std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)};
-    for (const auto& [name, quantity] : quantities) {
-      if (!quantity->estimate || !quantity->smoothing_correction) continue;
-      const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), std::string(name),
-                 value_text(quantity->estimate->value - correction, sd), error_text(correction, sd),
-                 value_and_sd_text(quantity->estimate->value, sd)});
-    }
-  }
-  if (table.empty()) return {};
-  return "<details><summary>What the smoothing bends, and what is taken off for it</summary>\n" + table.str() +
-         "<p class=\"soft\">Smoothing bends the law of a line. The law that was found is put through the same "
-         "smoothing and "
-         "the same fit without noise; what comes out too much is taken off. The lines themselves, their slopes and R² "
-         "stay as they are.</p></details>\n";
-}
-
-std::string recovered_section(const core::AnalysisResults& results) {
-  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
-                   "R² (v&gt;0)"});
-  std::string reasons;
-  for (const core::ConfigurationResult& c : results.configurations) {
-    table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
-               quantity_html(c.k_over_m_1_s, ""), quantity_html(c.mu, ""), quantity_html(c.alpha_deg, ""),
-               quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1)});
-    for (const auto& [name, quantity] :
-         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
-          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
-      if (quantity->estimate) continue;
-      reasons += fmt::format("<li>{:.6g} kg, {:.4g}°: {} is not determined: {}</li>\n", c.mass_kg, c.incline_deg, name,
-                             escape(quantity->why));
-    }
-  }
-  std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();
-  std::vector<std::string> notes;
-  for (const core::ConfigurationResult& c : results.configurations) {
-    for (const std::string& note : c.notes)
-      notes.push_back(fmt::format("{:.6g} kg, {:.4g}°: {}", c.mass_kg, c.incline_deg, note));
-  }
-  text += notes_html(notes) + corrections_html(results);
-  text += "<p class=\"soft\">± is one standard deviation. α is the inclination that the motion itself shows.</p>\n";
-  if (!reasons.empty()) text += "<ul class=\"soft\">\n" + reasons + "</ul>\n";
-  return text;
-}
-
-std::string phase_section(const core::AnalysisResults& results) {
-  std::string text = "<h2 id=\"phase\">Phase diagrams</h2>\n";
-  const std::vector<PhaseGroup> groups = phase_groups(results);
-  for (const PhaseGroup& group : groups) {
-    const std::vector<Plot> plots = phase_plots(results, group);
-    text += fmt::format("<h3>Track inclined {:.4g}° (as stated)</h3>\n", group.incline_deg);
-    text += plots.empty() ? "<p>No point of these clips could be used.</p>\n" : figures(plots);
-  }
-  return text;
-}
-
 std::string lines_section(const core::AnalysisResults& results) {
   HtmlTable table({"clip", "v", "points", "K/m (1/s)", "a<sub>0</sub> (m/s²)", "R²", "speeds (m/s)"}, 2);
   for (const core::ClipResult& clip : results.clips) {
@@ -192,10 +123,10 @@ std::string lines_section(const core::AnalysisResults& results) {
   return text + (table.empty() ? "<p>No line could be fitted.</p>\n" : table.str());
 }
 
-std::string clips_section(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
-                          const base::Progress& progress) {
+Html clips_section(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
+                   const base::Progress& progress) {
   const std::vector<std::string> files = phase_file_names(results);
-  std::string text = "<h2 id=\"clips\">Clips</h2>\n<nav><ul>\n";
+  Html text = "<h2 id=\"clips\">Clips</h2>\n<nav><ul>\n";
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     text += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", clip_anchor(c), escape(results.clips[c].name));
   }
@@ -207,9 +138,9 @@ std::string clips_section(const core::AnalysisResults& results, const std::vecto
   return text;
 }
 
-std::string camera_section(const core::AnalysisResults& results) {
+Html camera_section(const core::AnalysisResults& results) {
   if (results.calibrations.empty() && results.plumbs.empty()) return {};
-  std::string text = "<h2 id=\"camera\">Camera and plumb line</h2>\n";
+  Html text = "<h2 id=\"camera\">Camera and plumb line</h2>\n";
   for (const core::CalibrationResult& calibration : results.calibrations) {
     text += fmt::format(
         "<p>{}: calibrated from {} views, corners reprojected to {} px (rms). In the plane of motion the pattern's "
@@ -266,6 +197,81 @@ std::string method_section() {
          "v &gt; 0, both of slope −K/m. Half the sum of their values at v = 0 is g sin α, half their difference is "
          "µ g cos α, and the line for v &gt; 0 meets a = 0 at the limit velocity. Points where the kernel would "
          "reach over a reversal or over an end of the free motion are left out.</p>\n";
+}
+
+/// What the lines give as they are, and what the kernel's bias adds to it; nothing where none was taken off.
+std::string corrections_html(const core::AnalysisResults& results) {
+  HtmlTable table({"mass", "stated incline", "quantity", "of the lines as they are", "correction", "recovered"}, 3);
+  for (const core::ConfigurationResult& c : results.configurations) {
+    const std::array<std::pair<std::string_view, const core::Quantity*>, 4> quantities = {
+        std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
+        std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)};
+    for (const auto& [name, quantity] : quantities) {
+      if (!quantity->estimate || !quantity->smoothing_correction) continue;
+      const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
+      table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), std::string(name),
+                 value_text(quantity->estimate->value - correction, sd), error_text(correction, sd),
+                 value_and_sd_text(quantity->estimate->value, sd)});
+    }
+  }
+  if (table.empty()) return {};
+  return "<details><summary>What the smoothing bends, and what is taken off for it</summary>\n" + table.str() +
+         "<p class=\"soft\">Smoothing bends the law of a line. The law that was found is put through the same "
+         "smoothing and "
+         "the same fit without noise; what comes out too much is taken off. The lines themselves, their slopes and R² "
+         "stay as they are.</p></details>\n";
+}
+
+}  // namespace
+
+std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
+  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
+  return value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
+}
+
+std::string recovered_section(const core::AnalysisResults& results) {
+  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
+                   "R² (v&gt;0)"});
+  std::string reasons;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
+               quantity_html(c.k_over_m_1_s, ""), quantity_html(c.mu, ""), quantity_html(c.alpha_deg, ""),
+               quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1)});
+    for (const auto& [name, quantity] :
+         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
+          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
+      if (quantity->estimate) continue;
+      reasons += fmt::format("<li>{:.6g} kg, {:.4g}°: {} is not determined: {}</li>\n", c.mass_kg, c.incline_deg, name,
+                             escape(quantity->why));
+    }
+  }
+  std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();
+  std::vector<std::string> notes;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    for (const std::string& note : c.notes)
+      notes.push_back(fmt::format("{:.6g} kg, {:.4g}°: {}", c.mass_kg, c.incline_deg, note));
+  }
+  text += notes_html(notes) + corrections_html(results);
+  text += "<p class=\"soft\">± is one standard deviation. α is the inclination that the motion itself shows.</p>\n";
+  if (!reasons.empty()) text += "<ul class=\"soft\">\n" + reasons + "</ul>\n";
+  return text;
+}
+
+Html phase_section(const core::AnalysisResults& results) {
+  Html text = "<h2 id=\"phase\">Phase diagrams</h2>\n";
+  const std::vector<PhaseGroup> groups = phase_groups(results);
+  for (const PhaseGroup& group : groups) {
+    const std::vector<Plot> plots = phase_plots(results, group);
+    text += fmt::format("<h3>Track inclined {:.4g}° (as stated)</h3>\n", group.incline_deg);
+    text += plots.empty() ? "<p>No point of these clips could be used.</p>\n" : figures(plots);
+  }
+  return text;
+}
+
+Html details_sections(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
+                      const base::Progress& progress) {
+  return lines_section(results) + camera_section(results) + clips_section(results, previews, progress) +
+         method_section();
 }
 
 }  // namespace glidelab::report

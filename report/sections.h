@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "core/preview.h"
 #include "core/results.h"
+#include "report/html.h"
 
 namespace glidelab::report {
 
@@ -17,19 +18,12 @@ std::string quantity_html(const core::Quantity& quantity, std::string_view unit)
 std::string recovered_section(const core::AnalysisResults& results);
 
 /// The phase diagrams of every set-up.
-std::string phase_section(const core::AnalysisResults& results);
+Html phase_section(const core::AnalysisResults& results);
 
-/// The fitted lines of every clip, as the paper's tables 1 and 3.
-std::string lines_section(const core::AnalysisResults& results);
-
-/// Every clip: facts, plots, pictures, what was left out and why, notes. `previews` is empty or has one for each clip.
-std::string clips_section(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
-                          const base::Progress& progress);
-
-/// Calibration and plumb line; empty where there are neither.
-std::string camera_section(const core::AnalysisResults& results);
-
-/// The method in a few sentences, for who reads the page without the paper.
-std::string method_section();
+/// What stands behind the values: the fitted lines (as the paper's tables 1 and 3), calibration and plumb line where
+/// there are any, every clip (facts, plots, pictures, what was left out and why, notes), and the method in a few
+/// sentences. `previews` is empty or has one for each clip.
+Html details_sections(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
+                      const base::Progress& progress);
 
 }  // namespace glidelab::report

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "report/gnuplot.h"
+#include "report/plot_style.h"
 #include "report/quantity_names.h"
 
 namespace glidelab::report {
@@ -98,10 +99,10 @@ std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity
   const int legend = 14 * static_cast<int>((data.size() + 2) / 2);
   const PlotSize size{480, (axis.words ? 420 : 310) + legend};
   const std::string over = fmt::format("{} over {}", symbol, axis.name);
-  return {{gnuplot_svg(errors, data, size), "Root mean square error (solid) and stated standard deviation (dashed)",
+  return {{Drawing{errors, data, size}, "Root mean square error (solid) and stated standard deviation (dashed)",
            "Error and standard deviation of " + over},
-          {gnuplot_svg(bias, data, size), "Mean error with two standard errors", "Bias of " + over},
-          {gnuplot_svg(coverage, data, size), "Coverage of the stated intervals, with two standard errors",
+          {Drawing{bias, data, size}, "Mean error with two standard errors", "Bias of " + over},
+          {Drawing{coverage, data, size}, "Coverage of the stated intervals, with two standard errors",
            "Coverage of " + over}};
 }
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "report/plot_style.h"
+#include "report/plot.h"
 #include "validate/sweep_summary.h"
 
 namespace glidelab::report {

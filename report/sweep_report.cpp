@@ -74,8 +74,8 @@ Json statistics_json(const ErrorStatistics& of) {
 
 }  // namespace
 
-std::string sweep_report(const SweepSummary& summary, const base::Progress& progress) {
-  std::string body = fmt::format(
+Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
+  Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">Sweep by Glidelab. Errors are recovered minus true "
       "values, over all configurations of the scenario.</p>\n",
       escape(summary.name));
@@ -100,7 +100,7 @@ std::string sweep_report(const SweepSummary& summary, const base::Progress& prog
       progress("drawing", done++ / static_cast<double>(summary.axes.size() * kQuantities.size()));
       const std::vector<Plot> plots = sweep_plots(axis, quantity.key);
       if (plots.empty()) continue;
-      body += fmt::format("<h3>{}</h3>\n{}", escape(name_of(std::string(quantity.key))), figures(plots));
+      body += fmt::format("<h3>{}</h3>\n", escape(name_of(std::string(quantity.key)))) + figures(plots);
     }
   }
   return page(summary.name, body);

@@ -4,12 +4,13 @@
 #include <string>
 
 #include "base/progress.h"
+#include "report/html.h"
 #include "validate/sweep_summary.h"
 
 namespace glidelab::report {
 
 /// EnvironmentError where gnuplot fails.
-std::string sweep_report(const validate::SweepSummary& summary, const base::Progress& progress = base::no_progress);
+Page sweep_report(const validate::SweepSummary& summary, const base::Progress& progress = base::no_progress);
 
 /// The table over all runs, for a terminal.
 std::string sweep_text(const validate::SweepSummary& summary);

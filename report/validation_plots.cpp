@@ -9,6 +9,7 @@
 #include "report/decimate.h"
 #include "report/gnuplot.h"
 #include "report/pixel_phase.h"
+#include "report/plot_style.h"
 #include "report/quantity_names.h"
 
 namespace glidelab::report {
@@ -60,7 +61,7 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
                           data.back().name, open[order[n]] ? 6 : 7, color(n % 4));
   }
   const int height = std::max(330, 80 + static_cast<int>(row_of.size()) * 22);
-  return {{gnuplot_svg(script, data, {480, height}),
+  return {{Drawing{script, data, {480, height}},
            "Error of each recovered value in units of its own standard deviation; about 95 % belong within the band. "
            "Filled: from the lines; open: from the whole motion",
            "Errors in units of their standard deviation"}};
@@ -90,7 +91,7 @@ std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
                           color(c));
     data.push_back(std::move(block));
   }
-  return {{gnuplot_svg(script, data), "Error of the measured position over the field, one colour a clip",
+  return {{Drawing{script, data}, "Error of the measured position over the field, one colour a clip",
            "Restitution error over the true position"}};
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/results.h"
-#include "report/plot_style.h"
+#include "report/plot.h"
 #include "validate/comparison.h"
 
 namespace glidelab::report {

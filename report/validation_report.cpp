@@ -51,13 +51,13 @@ std::string comparison_table(const validate::Comparison& comparison) {
 
 }  // namespace
 
-std::string validation_report(const std::string& title, const core::AnalysisResults& results,
-                              const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
-                              const base::Progress& progress) {
+Page validation_report(const std::string& title, const core::AnalysisResults& results,
+                       const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
+                       const base::Progress& progress) {
   double lowest_r2 = 1.0;
   for (const validate::LineComparison& line : comparison.lines) lowest_r2 = std::min(lowest_r2, line.r2);
   const validate::RestitutionComparison& restitution = comparison.restitution;
-  std::string body = fmt::format(
+  Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the pictures alone "
       "by the lines of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n",
       escape(title));
@@ -79,10 +79,7 @@ std::string validation_report(const std::string& title, const core::AnalysisResu
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);
   body += recovered_section(results);
-  body += lines_section(results);
-  body += camera_section(results);
-  body += clips_section(results, previews, progress);
-  body += method_section();
+  body += details_sections(results, previews, progress);
   return page(title, body);
 }
 

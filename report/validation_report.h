@@ -7,13 +7,14 @@
 #include "base/progress.h"
 #include "core/preview.h"
 #include "core/results.h"
+#include "report/html.h"
 #include "validate/comparison.h"
 
 namespace glidelab::report {
 
 /// `previews` is empty or has one for each clip of the results. EnvironmentError where gnuplot fails.
-std::string validation_report(const std::string& title, const core::AnalysisResults& results,
-                              const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
-                              const base::Progress& progress = base::no_progress);
+Page validation_report(const std::string& title, const core::AnalysisResults& results,
+                       const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
+                       const base::Progress& progress = base::no_progress);
 
 }  // namespace glidelab::report

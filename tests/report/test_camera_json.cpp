@@ -74,7 +74,7 @@ TEST_CASE("the camera's table shows digits that the sd supports, limits as such,
 }
 
 TEST_CASE("the camera's page holds both plots and escapes names") {
-  const std::string page = report::camera_report(made_camera());
+  const std::string page = report::camera_report(made_camera()).html;
   CHECK(contains(page, "a &lt;b&gt; camera"));
   CHECK_FALSE(contains(page, "a <b> camera"));
   CHECK(contains(page, "Photon transfer"));
@@ -90,7 +90,7 @@ TEST_CASE("a camera without a gain still has a page, which says why") {
     point.used = false;
     point.exposure_s.reset();
   }
-  const std::string page = report::camera_report(camera);
+  const std::string page = report::camera_report(camera).html;
   CHECK(contains(page, "neighbouring pixels is correlated"));
   CHECK_FALSE(contains(page, "Linearity: mean over exposure"));
   CHECK(nlohmann::json::parse(report::camera_json(camera)).at("line_intercept_dn2").is_null());

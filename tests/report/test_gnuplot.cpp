@@ -2,10 +2,13 @@
 
 #include <stdlib.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
 #include "base/errors.h"
+#include "base/staged_output.h"
 #include "catch.h"
 #include "temp_dir.h"
 
@@ -35,17 +38,64 @@ class Environment {
   std::optional<std::string> old_;
 };
 
+const std::vector<report::PlotData> kPoints = {{"points", {{0.0, 1.0}, {1.0, 2.0}, {}, {2.0, std::nan("")}}}};
+
+report::DrawnPlot drawn(const report::Drawing& drawing) {
+  const std::vector<report::Plot> plots = {{drawing, "caption", "one plot"}};
+  return report::draw_plots(plots, report::plot_file_names(plots)).front();
+}
+
 }  // namespace
 
-TEST_CASE("a plot of data is an SVG of the size that was asked for") {
-  const std::vector<report::PlotData> data = {{"points", {{0.0, 1.0}, {1.0, 2.0}, {}, {2.0, std::nan("")}}}};
-  const std::string svg = report::gnuplot_svg("plot $points using 1:2 with lines", data, {500, 300});
-  CHECK(svg.find("<svg") != std::string::npos);
-  CHECK(svg.find("viewBox=\"0 0 500 300\"") != std::string::npos);
+TEST_CASE("a plot of data is an SVG and a PDF of the size that was asked for") {
+  const report::DrawnPlot plot = drawn({"plot $points using 1:2 with lines", kPoints, {500, 300}});
+  CHECK(plot.svg.find("<svg") != std::string::npos);
+  CHECK(plot.svg.find("viewBox=\"0 0 500 300\"") != std::string::npos);
+  CHECK(plot.pdf.starts_with("%PDF-"));
+  CHECK(plot.csv == "# points\n0,1\n1,2\n\n2,NaN\n");
+}
+
+TEST_CASE("blocks of data are found whatever blank lines stand in them") {
+  // A block with blank lines at its ends and doubled ones would shift those behind it, as gnuplot counts blocks by
+  // them.
+  const std::vector<report::PlotData> data = {{"first", {{}, {0.0, 1.0}, {}, {}, {1.0, 2.0}, {}}},
+                                              {"last", {{5.0, 7.0}, {6.0, 8.0}}}};
+  const std::string only_last =
+      drawn({"set xrange [0:10]\nset yrange [0:10]\nunset key\nplot $last using 1:2 title 'last'",
+             {{"last", data[1].rows}}})
+          .svg;
+  CHECK(drawn({"set xrange [0:10]\nset yrange [0:10]\nunset key\nplot $last using 1:2 title 'last'", data}).svg ==
+        only_last);
+}
+
+TEST_CASE("the script and the numbers beside a plot draw the very same plot again") {
+  const report::DrawnPlot plot =
+      drawn({"set xlabel 'a } b { # $points'\nplot $points using 1:2 with lines title 'seen'", kPoints});
+  const tests::TempDir temp;
+  base::write_file(temp / (plot.name + ".gp"), plot.script);
+  base::write_file(temp / (plot.name + ".csv"), plot.csv);
+  const std::string command =
+      "cd '" + temp.path().string() + "' && LC_ALL=C.UTF-8 gnuplot '" + plot.name + ".gp' 2>log";
+  REQUIRE(std::system(command.c_str()) == 0);
+  CHECK(base::read_file(temp / (plot.name + ".svg")) == plot.svg);
+  CHECK(base::read_file(temp / (plot.name + ".pdf")).size() == plot.pdf.size());  // but for its date
+}
+
+TEST_CASE("plots that are drawn twice are the same bytes") {
+  CHECK(drawn({"plot $points using 1:2", kPoints}).pdf == drawn({"plot $points using 1:2", kPoints}).pdf);
+}
+
+TEST_CASE("a plot's files are named by place and what it shows, in plain characters") {
+  const std::vector<report::Plot> plots = {{{}, "", "a(v) of ../<b>/É"}, {{}, "", std::string(300, 'x')}, {{}, "", ""}};
+  const std::vector<std::string> names = report::plot_file_names(plots);
+  CHECK(names[0] == "01-a-v-of-b");
+  CHECK(names[1].size() == 60);
+  CHECK(names[2] == "03");
 }
 
 TEST_CASE("a script that gnuplot rejects is an environment error with gnuplot's message") {
-  CHECK_THROWS_AS(report::gnuplot_svg("plot no_such_thing(", {}), base::EnvironmentError);
+  CHECK_THROWS_AS(drawn({"plot no_such_thing(", {}}), base::EnvironmentError);
+  CHECK_THROWS_AS(drawn({"plot $no_such_block using 1:2", {}}), base::EnvironmentError);
 }
 
 TEST_CASE("a missing gnuplot is an environment error that names it") {
@@ -61,14 +111,14 @@ TEST_CASE("a text is quoted so that it stays one text") {
   CHECK(report::gnuplot_quoted("a\nb") == "'a b'");
   const tests::TempDir temp;
   const std::string evil = "'; system 'touch " + (temp / "made").string() + "'\n!touch " + (temp / "made").string();
-  report::gnuplot_svg("plot sin(x) title " + report::gnuplot_quoted(evil), {});
+  drawn({"plot sin(x) title " + report::gnuplot_quoted(evil), {}});
   CHECK_FALSE(std::filesystem::exists(temp / "made"));
 }
 
 TEST_CASE("no plot leaves a temporary folder behind") {
   const tests::TempDir temp;
   const Environment folder("TMPDIR", temp.path().string());
-  report::gnuplot_svg("plot sin(x)", {});
-  CHECK_THROWS(report::gnuplot_svg("no command", {}));
+  drawn({"plot sin(x)", {}});
+  CHECK_THROWS(drawn({"no command", {}}));
   CHECK(std::filesystem::is_empty(temp.path()));
 }

@@ -42,19 +42,32 @@ TEST_CASE("no name from a file reaches the page as markup") {
   validate::Comparison comparison;
   comparison.quantities = {{evil, 0.335, 4.0, evil, evil, 1.0, 1.1, 0.1, 0.1, evil}};
   comparison.lines = {{evil, -1, 0.9999}};
-  CHECK(report::analysis_report(evil, results, {}).find("<script") == std::string::npos);
-  CHECK(report::validation_report(evil, results, comparison, {}).find("<script") == std::string::npos);
+  CHECK(report::analysis_report(evil, results, {}).html.find("<script") == std::string::npos);
+  CHECK(report::validation_report(evil, results, comparison, {}).html.find("<script") == std::string::npos);
 }
 
 TEST_CASE("a page needs nothing but itself, says its values, and stays small for long tracks") {
   core::AnalysisResults results = tests::made_results();
   results.clips[0] = tests::made_clip("m1-up", 2.768, 0.8063, 0.667, 25000);
-  const std::string page = report::analysis_report("a long track", results, {});
+  const report::Page made = report::analysis_report("a long track", results, {});
+  const std::string& page = made.html;
   CHECK(page.find("2.7680 ± 0.0060") != std::string::npos);
   CHECK(page.find("src=\"http") == std::string::npos);
   CHECK(page.find("href=\"http") == std::string::npos);
   CHECK(page.find("src=\"data:image/svg+xml;base64,") != std::string::npos);
+  CHECK(made.files.contains("plots/01-acceleration-over-velocity-with-fitted-lines.svg"));
   CHECK(page.size() < 3'000'000);  // 10 MB allow twelve clips of a quarter of this each
+}
+
+TEST_CASE("parts of a page keep their order, and a plot stands where it was put") {
+  report::Html first("<p>a</p>");
+  first.plot({{"plot 1", {}}, "one", "one"});
+  report::Html second("<p>b</p>");
+  second.plot({{"plot 2", {}}, "two", "two"});
+  const report::Html both = first + (second + "<p>c</p>");
+  CHECK(both.texts() == std::vector<std::string>{"<p>a</p>", "<p>b</p>", "<p>c</p>"});
+  REQUIRE(both.plots().size() == 2);
+  CHECK(both.plots()[1].caption == "two");
 }
 
 TEST_CASE("results without any usable point still make a page that says so") {
@@ -68,6 +81,6 @@ TEST_CASE("results without any usable point still make a page that says so") {
     configuration.k_over_m_1_s = configuration.mu = configuration.alpha_deg =
         configuration.v_lim_m_s = {std::nullopt, "no free motion was found"};
   }
-  const std::string page = report::analysis_report("nothing", results, {});
+  const std::string page = report::analysis_report("nothing", results, {}).html;
   CHECK(page.find("no free motion was found") != std::string::npos);
 }
