@@ -68,6 +68,19 @@ def savitzky_golay(runs, window_s):
     return timed(one, runs)
 
 
+def along_splines(runs, spline_of):
+    """One spline a run and its derivatives; runs of fewer than 8 positions have none."""
+
+    def one(run):
+        t, x = run["t"], run["x"]
+        if len(x) < 8:
+            return np.full((len(x), 3), np.nan)
+        spline = spline_of(t, x)
+        return np.column_stack([spline(t, nu=d) for d in range(3)])
+
+    return timed(one, runs)
+
+
 def univariate_spline(runs, factor=1.0):
     """scipy.interpolate.UnivariateSpline of degree 5 with w = 1/sd and s = len(w), as its documentation advises, times a factor."""
     try:
@@ -75,14 +88,7 @@ def univariate_spline(runs, factor=1.0):
     except ImportError as missing:
         raise Missing("scipy (python3-scipy)") from missing
 
-    def one(run):
-        t, x = run["t"], run["x"]
-        if len(x) < 8:
-            return np.full((len(x), 3), np.nan)
-        spline = UnivariateSpline(t, x, w=np.full(len(x), 1.0 / noise(x)), k=5, s=factor * len(x))
-        return np.column_stack([spline(t, nu=d) for d in range(3)])
-
-    return timed(one, runs)
+    return along_splines(runs, lambda t, x: UnivariateSpline(t, x, w=np.full(len(x), 1.0 / noise(x)), k=5, s=factor * len(x)))
 
 
 def smoothing_spline(runs, penalty=None):
@@ -92,14 +98,7 @@ def smoothing_spline(runs, penalty=None):
     except ImportError as missing:
         raise Missing("scipy 1.10 (python3-scipy)") from missing
 
-    def one(run):
-        t, x = run["t"], run["x"]
-        if len(x) < 8:
-            return np.full((len(x), 3), np.nan)
-        spline = make_smoothing_spline(t, x, lam=penalty)
-        return np.column_stack([spline(t, nu=d) for d in range(3)])
-
-    return timed(one, runs)
+    return along_splines(runs, lambda t, x: make_smoothing_spline(t, x, lam=penalty))
 
 
 def kernsmooth(runs, bandwidths_s, degree=None):

@@ -81,7 +81,7 @@ Plot coverage_plot(const core::RecordingCheck& check) {
     data.push_back(places(name, from));
   };
   add("corners", corners, fmt::format("with points pt 7 ps 0.3 lc rgb '{}' title 'views'", color(4)));
-  add("plane", plane, fmt::format("with points pt 7 ps 0.5 lc rgb '{}' title 'plane of motion'", color(0)));
+  add("plane", plane, fmt::format("with points pt 7 ps 0.5 lc rgb '{}' title 'plane view'", color(0)));
   add("path", path, fmt::format("with points pt 7 ps 0.4 lc rgb '{}' title 'marker'", color(1)));
   return {Drawing{script, data, {520, 420}},
           "The picture: where the pattern was seen, and where the marker runs. The lens is known where corners are.",

@@ -33,7 +33,7 @@ code { overflow-wrap: anywhere; }
 table { border-collapse: collapse; font-size: 0.94rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.3rem 0.75rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 th { background: var(--tint); font-weight: 600; vertical-align: bottom; }
-td:first-child { min-width: 9ch; }
+td:first-child { min-width: 11ch; }  /* a name with a hyphen stays on one line */
 td.n, th.n { text-align: right; }
 td.n { white-space: nowrap; }
 tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "report/gnuplot.h"
 #include "report/plot_style.h"
@@ -36,6 +37,17 @@ std::string x_axis(const AxisSummary& axis) {
   return script;
 }
 
+/// On a logarithmic axis of less than a few decades gnuplot labels hardly anything: the values that were run, where
+/// they are few.
+std::string tics_of_values(const std::vector<PlotData>& data) {
+  constexpr std::size_t kMost = 7;  // labels that stand apart in a plot of 480 points
+  std::set<double> values;
+  for (const PlotData& block : data) {
+    for (const std::vector<double>& row : block.rows) values.insert(row.front());
+  }
+  return values.size() > kMost ? std::string() : fmt::format("set xtics ({:.4g})\n", fmt::join(values, ", "));
+}
+
 /// Columns: position, rms, sd, least sd, bias, two standard errors of it, coverage, two standard errors of it.
 std::vector<PlotData> data_of(const AxisSummary& axis, std::string_view quantity, std::vector<std::string>& titles) {
   std::vector<PlotData> data;
@@ -65,7 +77,8 @@ std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity
   const std::vector<PlotData> data = data_of(axis, quantity, titles);
   if (data.empty()) return {};
   const std::string symbol = symbol_of(quantity), unit = unit_of(quantity);
-  const std::string frame = std::string(kFrame) + "set key font ',11' maxcols 2 samplen 1\n" + x_axis(axis);
+  std::string frame = std::string(kFrame) + "set key font ',11' maxcols 2 samplen 1\n" + x_axis(axis);
+  if (!axis.words && axis.logarithmic) frame += tics_of_values(data);
   std::string errors = frame + fmt::format(
                                    "set ylabel {}\nset logscale y\nset format y '%.0e'\nset offsets 0,0,0,0\n"
                                    "set yrange [*:*] noextend\nplot ",

@@ -132,7 +132,10 @@ TEST_CASE("analyze without --json prints a table, and the same files for any num
     CHECK(result.err.find("report: ") != std::string::npos);
     CHECK(result.err.find('\r') == std::string::npos);  // no bar where there is no terminal
   }
-  for (const char* file : {"results.json", "phase-up.csv", "motion-up.csv", "report.html"}) {
+  const std::string plot = "plots/01-acceleration-over-velocity-with-fitted-lines.";
+  for (const std::string& file :
+       {std::string("results.json"), std::string("phase-up.csv"), std::string("motion-up.csv"),
+        std::string("report.html"), plot + "svg", plot + "pdf", plot + "gp", plot + "csv"}) {
     CHECK(base::read_file(temp / "1" / file) == base::read_file(temp / "2" / file));
   }
 }
