@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "report/configuration_name.h"
 #include "report/html.h"
 #include "report/number_text.h"
 #include "report/quantity_names.h"
@@ -15,12 +16,7 @@ namespace {
 
 constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
 
-/// "0.335 kg at 4°"
-std::string name_of(const core::ConfigurationResult& configuration) {
-  return fmt::format("{:.4g} kg at {:.4g}°", configuration.mass_kg, configuration.incline_deg);
-}
-
-std::string sentence_of(const core::ConfigurationResult& c) {
+std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
   if (c.k_over_m_1_s.estimate) {
     const double rate = c.k_over_m_1_s.estimate->value;
@@ -43,7 +39,7 @@ std::string sentence_of(const core::ConfigurationResult& c) {
                         value_and_sd_text(c.v_lim_m_s.estimate->value, c.v_lim_m_s.estimate->sd));
   }
   if (text.empty()) text = "the data determine neither drag nor friction; the table says why";
-  return fmt::format("<li><b>{}:</b> {}.</li>\n", escape(name_of(c)), text);
+  return fmt::format("<li><b>{}:</b> {}.</li>\n", escape(configuration_name(results, c)), text);
 }
 
 /// The K of each mass, where it is the same for all within its errors, says that the drag does not depend on the load.
@@ -90,7 +86,8 @@ std::string damping_sentence(const core::AnalysisResults& results) {
 
 std::string meaning_of(const core::AnalysisResults& results) {
   std::string text = "<h2 id=\"meaning\">What this means</h2>\n<ul>\n";
-  for (const core::ConfigurationResult& configuration : results.configurations) text += sentence_of(configuration);
+  for (const core::ConfigurationResult& configuration : results.configurations)
+    text += sentence_of(results, configuration);
   text += "</ul>\n" + damping_sentence(results);
   double worst = 1.0;
   for (const core::ConfigurationResult& configuration : results.configurations) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "report/configuration_name.h"
 #include "report/file_names.h"
 #include "report/html.h"
 #include "report/motion_plots.h"
@@ -201,7 +202,7 @@ std::string method_section() {
 
 /// What the lines give as they are, and what the kernel's bias adds to it; nothing where none was taken off.
 std::string corrections_html(const core::AnalysisResults& results) {
-  HtmlTable table({"mass", "stated incline", "quantity", "of the lines as they are", "correction", "recovered"}, 3);
+  HtmlTable table({"configuration", "quantity", "of the lines as they are", "correction", "recovered"}, 2);
   for (const core::ConfigurationResult& c : results.configurations) {
     const std::array<std::pair<std::string_view, const core::Quantity*>, 4> quantities = {
         std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
@@ -209,7 +210,7 @@ std::string corrections_html(const core::AnalysisResults& results) {
     for (const auto& [name, quantity] : quantities) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
       const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), std::string(name),
+      table.row({escape(configuration_name(results, c)), std::string(name),
                  value_text(quantity->estimate->value - correction, sd), error_text(correction, sd),
                  value_and_sd_text(quantity->estimate->value, sd)});
     }
@@ -241,7 +242,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
          {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
           std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
       if (quantity->estimate) continue;
-      reasons += fmt::format("<li>{:.6g} kg, {:.4g}°: {} is not determined: {}</li>\n", c.mass_kg, c.incline_deg, name,
+      reasons += fmt::format("<li>{}: {} is not determined: {}</li>\n", escape(configuration_name(results, c)), name,
                              escape(quantity->why));
     }
   }
@@ -249,7 +250,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
   std::vector<std::string> notes;
   for (const core::ConfigurationResult& c : results.configurations) {
     for (const std::string& note : c.notes)
-      notes.push_back(fmt::format("{:.6g} kg, {:.4g}°: {}", c.mass_kg, c.incline_deg, note));
+      notes.push_back(fmt::format("{}: {}", configuration_name(results, c), note));
   }
   text += notes_html(notes) + corrections_html(results);
   text += "<p class=\"soft\">± is one standard deviation. α is the inclination that the motion itself shows.</p>\n";

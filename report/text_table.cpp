@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "report/configuration_name.h"
 #include "report/number_text.h"
 #include "report/quantity_names.h"
 
@@ -73,13 +74,13 @@ std::string analysis_text(const core::AnalysisResults& results) {
           std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
       if (!quantity->estimate) {
         reasons +=
-            fmt::format("{:.6g} kg, {:.4g}°: no {}: {}\n", c.mass_kg, c.incline_deg, name, printable(quantity->why));
+            fmt::format("{}: no {}: {}\n", printable(configuration_name(results, c)), name, printable(quantity->why));
       }
     }
   }
   std::string text = text_table(rows, 3);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
-  rows = {{"mass (kg)", "incline (°)", "quantity", "of the lines as they are", "taken off for smoothing"}};
+  rows = {{"configuration", "quantity", "of the lines as they are", "taken off for smoothing"}};
   std::string notes;
   for (const core::ConfigurationResult& c : results.configurations) {
     for (const auto& [name, quantity] :
@@ -87,14 +88,14 @@ std::string analysis_text(const core::AnalysisResults& results) {
           std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
       const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), std::string(name),
+      rows.push_back({configuration_name(results, c), std::string(name),
                       value_text(quantity->estimate->value - correction, sd), error_text(-correction, sd)});
     }
     for (const std::string& note : c.notes) {
-      notes += fmt::format("{:.6g} kg, {:.4g}°: {}\n", c.mass_kg, c.incline_deg, printable(note));
+      notes += fmt::format("{}: {}\n", printable(configuration_name(results, c)), printable(note));
     }
   }
-  if (rows.size() > 1) text.append("\n").append(text_table(rows, 3));
+  if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));
   if (!notes.empty()) text.append("\n").append(notes);
   return text;
 }
