@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "app/allow_outside.h"
 #include "app/analysis_files.h"
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -155,6 +156,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
   command->add_option("--incline", options->bare.incline_deg, "Of a file: inclination in degrees, as stated")
       ->type_name("DEG")
       ->check(CLI::Range(-89.9, 89.9));
+  add_allow_outside(*command, options->bare.outside);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted as by every command; an analysis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "app/allow_outside.h"
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/interrupt.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 struct CheckOptions {
   CommonOptions common;
   std::string folder;
+  core::OutsideFiles outside = core::OutsideFiles::refused;
 };
 
 /// One frame of every clip in which the marker was seen.
@@ -42,7 +44,7 @@ std::vector<core::Preview> previews_of(const core::Experiment& experiment, const
 }
 
 void check(const CheckOptions& options) {
-  const core::Experiment experiment = core::read_experiment(options.folder);
+  const core::Experiment experiment = core::read_experiment(options.folder, options.outside);
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "check", options.folder);
   check_writable(out);
@@ -72,6 +74,7 @@ void add_check(CLI::App& app, Command& chosen) {
   command->add_option("FOLDER", options->folder, "A folder that holds an experiment.toml")
       ->type_name("DIR")
       ->required();
+  add_allow_outside(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/check-<name of the folder>",
                      "Accepted as by every command; nothing here draws random numbers");
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/check.md).");

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "app/allow_outside.h"
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/interrupt.h"
@@ -36,6 +37,7 @@ struct DiagnoseCommand {
   std::string twin;
   bool plan = false;
   double noise_m = 0.0;
+  core::OutsideFiles outside = core::OutsideFiles::refused;
 };
 
 /// What is planned: a scenario's motions with noise, or folders that were recorded.
@@ -45,10 +47,14 @@ diagnose::Plan planned(const DiagnoseCommand& options) {
     const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
     std::vector<core::ClipSetup> setups;
     for (const fs::path& folder : folders) {
-      const core::Experiment experiment = core::read_experiment(folder);
+      const core::Experiment experiment = core::read_experiment(folder, options.outside);
       setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     }
-    return diagnose::plan_of(core::analyze(folders, {.bandwidth_s = {}, .jobs = options.common.jobs}), setups);
+    return diagnose::plan_of(
+        core::analyze(folders, {.bandwidth_s = {},
+                                .jobs = options.common.jobs,
+                                .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .outside = options.outside}}),
+        setups);
   }
   if (!(options.noise_m > 0.0)) {
     throw base::InputError(base::Issue{first.string(), 0, "--noise-m", "nothing",
@@ -78,7 +84,7 @@ void plan(const DiagnoseCommand& options) {
 void diagnose(const DiagnoseCommand& options) {
   if (options.plan) return plan(options);
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
-  std::string title = core::read_experiment(folders.front()).name;
+  std::string title = core::read_experiment(folders.front(), options.outside).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
   if (!options.no_page) report::check_gnuplot();
   const fs::path out = output_folder(options.common, "diagnose", folders.front());
@@ -87,7 +93,8 @@ void diagnose(const DiagnoseCommand& options) {
 
   ProgressDisplay display(options.common.quiet, options.common.verbose);
   const diagnose::Diagnosis diagnosis =
-      diagnose::diagnose(folders, {.without = options.without, .jobs = options.common.jobs}, display.callback());
+      diagnose::diagnose(folders, {.without = options.without, .jobs = options.common.jobs, .outside = options.outside},
+                         display.callback());
   base::write_file(staged.dir() / "diagnosis.json", report::diagnosis_json(diagnosis));
   if (!options.no_page) {
     report::write_page(staged.dir(), "report.html", report::diagnosis_report(title, diagnosis));
@@ -135,6 +142,7 @@ void add_diagnose(CLI::App& app, Command& chosen) {
   command->add_option("--noise-m", options->noise_m,
                       "With --plan and a scenario: standard deviation of a position's noise in metres");
   command->add_flag("--no-page", options->no_page, "Write diagnosis.json only, no report.html");
+  add_allow_outside(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/diagnose-<name of the first folder>",
                      "Accepted as by every command; a diagnosis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { diagnose(*options); }; });

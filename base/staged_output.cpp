@@ -6,9 +6,13 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <system_error>
+#include <vector>
 
 #include "base/append_file.h"
 #include "base/errors.h"
@@ -19,9 +23,46 @@ namespace {
 
 std::atomic<int> next_staging_number{0};
 
-fs::path staging_name(const fs::path& final_dir, std::string_view kind) {
+/// Says of which machine, since which start, and of which process-number space a process is: only among those does the
+/// number of a process tell whether it still runs. Zero where the system does not say.
+std::size_t place_of_processes() {
+  std::error_code error;
+  std::ifstream boot("/proc/sys/kernel/random/boot_id");
+  std::string text;
+  const fs::path space = fs::read_symlink("/proc/self/ns/pid", error);
+  if (!std::getline(boot, text) || error) return 0;
+  return std::hash<std::string>{}(text + space.string());
+}
+
+/// "<name>.part-<place>-": with a process and a count behind it, the name of what that process writes.
+std::string staging_prefix(const fs::path& final_dir) {
+  static const std::size_t place = place_of_processes();
+  return fmt::format("{}.part-{:016x}-", final_dir.filename().string(), place);
+}
+
+fs::path staging_name(const fs::path& final_dir, std::string_view kind = "") {
   return final_dir.parent_path() /
-         fmt::format("{}.{}-{}-{}", final_dir.filename().string(), kind, ::getpid(), next_staging_number++);
+         fmt::format("{}{}-{}{}", staging_prefix(final_dir), ::getpid(), next_staging_number++, kind);
+}
+
+/// What processes that were killed left beside `final_dir`. Of another machine's, or of one that runs, nothing is
+/// touched.
+void clear_leftovers(const fs::path& final_dir) {
+  const std::string prefix = staging_prefix(final_dir);
+  if (prefix.find("-0000000000000000-") != std::string::npos) return;
+  std::error_code ignored;  // what cannot be looked at or removed stays: it is no reason to fail
+  std::vector<fs::path> leftovers;
+  for (fs::directory_iterator entry(final_dir.parent_path(), ignored), end; entry != end; entry.increment(ignored)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    long process = 0;
+    int number = 0, length = 0;
+    const char* rest = name.c_str() + prefix.size();
+    if (std::sscanf(rest, "%ld-%d%n", &process, &number, &length) != 2 || rest[length] != '\0' || process <= 0)
+      continue;
+    if (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) leftovers.push_back(entry->path());
+  }
+  for (const fs::path& leftover : leftovers) fs::remove_all(leftover, ignored);
 }
 
 /// "a/b/" and "a/b" name one folder; the staging folder stands beside it, so the name must be the last component.
@@ -36,10 +77,13 @@ void rename_or_throw(const fs::path& from, const fs::path& to) {
   if (error) throw_system_error(to.string(), "cannot be put in place", error.value());
 }
 
-/// Puts `from` where `to` stands; what stood there is removed only after the new one is in place.
+/// Puts `from` where `to` stands. What stood there is in the place of `from` afterwards, or removed: a kill between
+/// leaves one of the two whole. A file system that cannot exchange names has an instant between two renames.
 void swap_in(const fs::path& from, const fs::path& to) {
   if (!fs::is_directory(fs::symlink_status(to))) return rename_or_throw(from, to);
-  const fs::path old = staging_name(to, "part-old");
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
+  if (errno != EINVAL && errno != ENOSYS) throw_system_error(to.string(), "cannot be put in place", errno);
+  const fs::path old = staging_name(to, ".old");
   rename_or_throw(to, old);
   try {
     rename_or_throw(from, to);
@@ -54,11 +98,12 @@ void swap_in(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 StagedOutput::StagedOutput(fs::path final_dir)
-    : final_(without_trailing_slash(std::move(final_dir))), staging_(staging_name(final_, "part")) {
+    : final_(without_trailing_slash(std::move(final_dir))), staging_(staging_name(final_)) {
   std::error_code error;
   if (fs::exists(final_, error) && !fs::is_directory(final_, error)) {
     throw_system_error(final_.string(), "cannot be an output folder", ENOTDIR);
   }
+  clear_leftovers(final_);
   fs::create_directories(staging_, error);
   if (error) throw_system_error(final_.string(), "output folder cannot be written", error.value());
 }
@@ -72,9 +117,9 @@ void StagedOutput::publish_files() {
   std::error_code error;
   fs::create_directories(final_, error);
   if (error) throw_system_error(final_.string(), "output folder cannot be made", error.value());
-  for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
-    swap_in(entry.path(), final_ / entry.path().filename());
-  }
+  std::vector<fs::path> staged;  // listed first: exchanging changes the folder that is listed
+  for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) staged.push_back(entry.path());
+  for (const fs::path& path : staged) swap_in(path, final_ / path.filename());
 }
 
 void StagedOutput::publish_whole() {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -41,6 +42,10 @@ class Setter {
     const std::size_t open = part.find('[');
     step.key = std::string(part.substr(0, open));
     if (step.key.empty()) fail("an empty part", kForm);
+    const auto bare = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    };
+    if (!std::all_of(step.key.begin(), step.key.end(), bare)) fail(fmt::format("\"{}\"", part), kForm);
     if (open == std::string_view::npos) return step;
     if (part.back() != ']') fail(fmt::format("\"{}\"", part), kForm);
     const std::string_view inner = part.substr(open + 1, part.size() - open - 2);

@@ -5,7 +5,8 @@
 ///     configuration[*].force[law=viscous].k_over_m_1_s   of all, and of those whose `law` is "viscous"
 ///     camera.position_m[3]                            an element of an array
 ///
-/// A key that nobody knows is found by whoever reads the document (strict_toml.h), not here.
+/// Keys are of letters, digits, - and _. A key that nobody knows is found by whoever reads the document
+/// (strict_toml.h), not here.
 #pragma once
 
 #include <string>

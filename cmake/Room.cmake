@@ -11,6 +11,7 @@ endif()
 
 option(GLIDELAB_WERROR "Treat warnings as errors" OFF)
 option(GLIDELAB_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
+option(GLIDELAB_FUZZ "Build libFuzzer targets of the readers (tests/fuzz; clang only)" OFF)
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
@@ -22,6 +23,10 @@ get_filename_component(GLIDELAB_ROOT ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
 if(GLIDELAB_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+endif()
+
+if(GLIDELAB_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 function(glidelab_warnings target)

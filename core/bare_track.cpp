@@ -9,7 +9,7 @@ bool is_bare_track(const std::filesystem::path& path) {
 }
 
 Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options) {
-  if (!is_bare_track(path)) return read_experiment(path);
+  if (!is_bare_track(path)) return read_experiment(path, options.outside);
   Experiment experiment;
   experiment.folder = path.parent_path();
   experiment.file = path;

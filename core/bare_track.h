@@ -1,4 +1,5 @@
-/// A track's file on its own in place of an experiment folder: what the analysis needs beside it comes from options.
+/// What the analysis is given: an experiment folder, or a track's file on its own, for which options say what the
+/// analysis needs beside it.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <string>
 
 #include "core/experiment.h"
+#include "core/folder_files.h"
 
 namespace glidelab::core {
 
@@ -13,6 +15,7 @@ struct BareTrackOptions {
   std::string column;                 ///< of x in an exported table (track_import.h); empty: found by its header
   std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
   std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
+  OutsideFiles outside = OutsideFiles::refused;  ///< of a folder: whether it may name files outside (folder_files.h)
 };
 
 /// A regular file that is not experiment.toml.

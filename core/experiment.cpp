@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/strict_toml.h"
-#include "core/file_glob.h"
+#include "core/folder_files.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
@@ -47,30 +47,7 @@ CameraSettings read_camera(const TomlTable& table) {
   return camera;
 }
 
-/// The files that a key with wildcards names; at least one.
-std::vector<fs::path> read_files(const TomlTable& table, std::string_view key, const fs::path& folder) {
-  const std::string pattern = table.text(key);
-  if (pattern.empty()) return {};
-  std::vector<fs::path> files = files_matching(folder, pattern);
-  if (files.empty()) {
-    table.reject(key, fmt::format("no file {}", (folder / pattern).string()),
-                 "the name of one or more files that exist");
-  }
-  return files;
-}
-
-fs::path read_file_name(const TomlTable& table, std::string_view key, const fs::path& folder, bool or_folder = false) {
-  const std::string name = table.text(key);
-  if (name.empty()) return {};
-  fs::path path = folder / name;
-  std::error_code ignored;
-  if (fs::is_regular_file(path, ignored) || (or_folder && fs::is_directory(path, ignored))) return path;
-  table.reject(key, fmt::format("no file {}", path.string()),
-               or_folder ? "the name of a file or a folder of frames that exists" : "the name of a file that exists");
-  return path;
-}
-
-CalibrationSetup read_calibration(const TomlTable& table, const fs::path& folder) {
+CalibrationSetup read_calibration(const TomlTable& table, const FolderFiles& folder) {
   CalibrationSetup setup;
   table.word("pattern", {"chessboard"});
   const std::vector<double> corners = table.numbers("inner_corners", 2, base::between(3, 100));
@@ -80,8 +57,8 @@ CalibrationSetup read_calibration(const TomlTable& table, const fs::path& folder
     table.reject("inner_corners", fmt::format("[{}, {}]", corners[0], corners[1]), "two whole numbers");
   }
   setup.square_m = table.number("square_m", base::above(0.0));
-  setup.views = read_files(table, "views", folder);
-  if (table.has("plane")) setup.planes = read_files(table, "plane", folder);
+  setup.views = folder.files(table, "views");
+  if (table.has("plane")) setup.planes = folder.files(table, "plane");
   return setup;
 }
 
@@ -108,9 +85,9 @@ ScaleSetup read_scale(const TomlTable& table) {
   return setup;
 }
 
-PlumbSetup read_plumb(const TomlTable& table, const fs::path& folder) {
+PlumbSetup read_plumb(const TomlTable& table, const FolderFiles& folder) {
   PlumbSetup setup;
-  setup.view = read_file_name(table, "view", folder);
+  setup.view = folder.file(table, "view");
   const std::vector<double> region = table.numbers("region", 4, base::between(0, kLargestPicturePx));
   if (!std::isfinite(region[0])) return setup;
   if (region[2] < 3.0 || region[3] < 3.0) {
@@ -158,7 +135,7 @@ Launched read_launched(const TomlTable& table) {
   return word == "down" ? Launched::down : Launched::released;
 }
 
-ClipSetup read_clip(const TomlTable& table, const fs::path& folder) {
+ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
   ClipSetup clip;
   clip.name = table.text("name");
   // The name becomes part of file names (phase-NAME.csv).
@@ -170,11 +147,12 @@ ClipSetup read_clip(const TomlTable& table, const fs::path& folder) {
     table.reject("track", "a track beside a file", "either file or track");
   }
   if (table.has("track")) {
-    clip.track = read_file_name(table, "track", folder);
+    clip.track = folder.file(table, "track");
     clip.column = table.maybe_text("column").value_or("");
-    if (table.has("file")) clip.file = folder / table.text("file");
+    if (table.has("file"))
+      clip.file = folder.folder / table.text("file");  // an error already; the sections are asked for
   } else {
-    clip.file = read_file_name(table, "file", folder, true);
+    clip.file = folder.file(table, "file", true);
   }
   clip.mass_kg = table.number("mass_kg", base::above(0.0));
   clip.mass_sd_kg = table.number_or("mass_sd_kg", 0.0, base::at_least(0.0));
@@ -192,10 +170,10 @@ ClipSetup read_clip(const TomlTable& table, const fs::path& folder) {
   return clip;
 }
 
-GroupSetup read_group(const TomlTable& table, const fs::path& folder) {
+GroupSetup read_group(const TomlTable& table, const FolderFiles& folder) {
   GroupSetup group;
   group.name = table.text("name");
-  if (table.has("plane")) group.planes = read_files(table, "plane", folder);
+  if (table.has("plane")) group.planes = folder.files(table, "plane");
   if (const auto plumb = table.maybe_table("plumb")) group.plumb = read_plumb(*plumb, folder);
   if (table.has("downhill")) group.downhill = read_downhill(table);
   return group;
@@ -271,10 +249,15 @@ void check_sections(const Experiment& experiment, const TomlTable& root) {
 
 }  // namespace
 
-Experiment read_experiment(const fs::path& folder) {
+Experiment read_experiment(const fs::path& path) {
+  return read_experiment(path, OutsideFiles::refused);
+}
+
+Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
+  const FolderFiles folder{path, outside};
   Experiment experiment;
-  experiment.folder = folder;
-  experiment.file = folder / "experiment.toml";
+  experiment.folder = path;
+  experiment.file = path / "experiment.toml";
   const base::TomlFile file = base::TomlFile::load(experiment.file);
   const TomlTable root = file.root();
 
@@ -287,7 +270,7 @@ Experiment read_experiment(const fs::path& folder) {
   if (const auto table = root.maybe_table("scale")) experiment.scale = read_scale(*table);
   if (const auto table = root.maybe_table("plumb")) experiment.plumb = read_plumb(*table, folder);
   if (const auto table = root.maybe_table("marker")) experiment.marker = read_marker(*table);
-  if (root.has("lines")) experiment.lines = read_file_name(root, "lines", folder);
+  if (root.has("lines")) experiment.lines = folder.file(root, "lines");
 
   const std::vector<TomlTable> clip_tables =
       experiment.lines || root.has("lines") ? root.tables_or_none("clip") : root.tables("clip");

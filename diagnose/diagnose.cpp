@@ -151,7 +151,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
   std::vector<core::ClipSetup> setups;
   std::vector<std::optional<core::CameraSettings>> cameras;
   for (const std::filesystem::path& folder : folders) {
-    const core::Experiment experiment = core::read_experiment(folder);
+    const core::Experiment experiment = core::read_experiment(folder, options.outside);
     if (experiment.lines) {
       if (folders.size() > 1) {
         throw base::InputError(base::Issue{experiment.file.string(), 0, "lines",
@@ -162,9 +162,14 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     cameras.resize(setups.size(), experiment.camera);
   }
-  const core::AnalysisResults results = core::analyze(
-      folders, {.bandwidth_s = {}, .jobs = options.jobs, .lost_frames = core::LostFrameTimes::kept, .pictures = true},
-      progress);
+  const core::AnalysisResults results =
+      core::analyze(folders,
+                    {.bandwidth_s = {},
+                     .jobs = options.jobs,
+                     .lost_frames = core::LostFrameTimes::kept,
+                     .pictures = true,
+                     .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .outside = options.outside}},
+                    progress);
   return diagnose_results(results, setups, options, progress, cameras);
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/progress.h"
 #include "core/experiment.h"
+#include "core/folder_files.h"
 #include "core/results.h"
 #include "diagnose/diagnosis.h"
 
@@ -21,6 +22,7 @@ namespace glidelab::diagnose {
 struct DiagnoseOptions {
   std::vector<std::string> without;  ///< effects that are not considered
   int jobs = 1;
+  core::OutsideFiles outside = core::OutsideFiles::refused;  ///< whether a folder may name files outside
 };
 
 /// InputError for what is wrong with a folder, for data that carry no verdict (too few positions, nothing that moves

@@ -199,6 +199,20 @@ std::string baseline_json(const Baseline& baseline) {
   return document.dump(2) + "\n";
 }
 
+namespace {
+
+/// A conversion of a negative or broken number to a count would be undefined.
+std::uint64_t count_at(const nlohmann::json& of, const char* key, const std::filesystem::path& file) {
+  const nlohmann::json& value = of.at(key);
+  if (!value.is_number_unsigned()) {
+    throw base::InputError(base::Issue{file.string(), 0, key, value.is_number() ? value.dump() : value.type_name(),
+                                       "a whole number, 0 or more"});
+  }
+  return value;
+}
+
+}  // namespace
+
 Baseline read_baseline(const std::filesystem::path& file) {
   Baseline baseline;
   try {
@@ -206,10 +220,11 @@ Baseline read_baseline(const std::filesystem::path& file) {
     if (document.at("format") != 1) throw base::InputError(base::Issue{file.string(), 0, "format", "another one", "1"});
     baseline.scenario = document.at("scenario");
     baseline.noise_m = document.at("noise_m");
-    baseline.runs = document.at("runs");
+    baseline.runs = count_at(document, "runs", file);
     for (const nlohmann::json& of : document.at("records")) {
-      baseline.records.push_back({of.at("configuration"), of.at("estimator"), of.at("quantity"), of.at("runs"),
-                                  of.at("answers"), of.at("covered"), of.at("mean_error"), of.at("sd_error"),
+      baseline.records.push_back({of.at("configuration"), of.at("estimator"), of.at("quantity"),
+                                  count_at(of, "runs", file), count_at(of, "answers", file),
+                                  count_at(of, "covered", file), of.at("mean_error"), of.at("sd_error"),
                                   of.at("mean_deviation"), of.at("sd_deviation"), of.at("efficiency")});
       const ErrorRecord& record = baseline.records.back();
       if (record.runs == 0 || record.answers > record.runs || record.covered > record.answers) {

@@ -275,11 +275,10 @@ std::string_view strength_word(const BlindOutcome& outcome) {
   return gain > kStrong ? "strong" : gain >= kModerate ? "moderate" : "weak";
 }
 
-BlindVerdict read_blind_verdict(const std::filesystem::path& file) {
-  const Json document = Json::parse(base::read_file(file), nullptr, false);
-  if (!document.is_object() || document.value("format", 0) != 1 || !document.contains("verdict")) {
-    throw base::InputError(base::Issue{file.string(), 0, "", "no diagnosis", "a diagnosis.json"});
-  }
+namespace {
+
+/// Json::exception where something is missing or of another type.
+BlindVerdict verdict_of(const Json& document) {
   BlindVerdict verdict;
   verdict.verdict = document.at("verdict");
   verdict.points = document.at("points");
@@ -306,6 +305,20 @@ BlindVerdict read_blind_verdict(const std::filesystem::path& file) {
     verdict.gap_error = gap.at("standard_error");
   }
   return verdict;
+}
+
+}  // namespace
+
+BlindVerdict read_blind_verdict(const std::filesystem::path& file) {
+  const Json document = Json::parse(base::read_file(file), nullptr, false);
+  if (!document.is_object() || document.value("format", Json()) != 1 || !document.contains("verdict")) {
+    throw base::InputError(base::Issue{file.string(), 0, "", "no diagnosis", "a diagnosis.json"});
+  }
+  try {
+    return verdict_of(document);
+  } catch (const Json::exception& error) {
+    throw base::InputError(base::Issue{file.string(), 0, "", error.what(), "a diagnosis.json"});
+  }
 }
 
 BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {

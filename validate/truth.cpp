@@ -85,7 +85,9 @@ class Reader {
   }
   void reject(const char* key, const json* found, std::string expected) const {
     constexpr std::size_t kShown = 40;  // characters: enough to recognise a value, short enough for one line
-    std::string shown = found == nullptr ? "nothing" : found->dump();
+    // Not the text of an array or an object: writing one that is nested a million deep needs a stack as deep.
+    const bool large = found != nullptr && found->is_structured() && !found->empty();
+    std::string shown = found == nullptr ? "nothing" : large ? std::string("an ") + found->type_name() : found->dump();
     if (shown.size() > kShown) shown = shown.substr(0, kShown) + "…";
     reject(key, std::move(shown), std::move(expected));
   }
@@ -138,6 +140,8 @@ Truth read_truth(const fs::path& truth_dir) {
     document = json::parse(bytes);
   } catch (const json::parse_error& error) {
     throw base::InputError(base::Issue{name, 0, fmt::format("byte {}", error.byte), "no valid JSON", "a JSON object"});
+  } catch (const json::out_of_range& error) {  // a number beyond any double
+    throw base::InputError(base::Issue{name, 0, "", error.what(), "numbers that fit into a double"});
   }
   if (!document.is_object()) throw base::InputError(base::Issue{name, 0, "", "no object", "a JSON object"});
 

@@ -1,6 +1,8 @@
 #include "base/staged_output.h"
 
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -49,6 +51,40 @@ TEST_CASE("an output that is not published leaves nothing behind") {
   const glidelab::tests::TempDir temp;
   { StagedOutput output(temp / "out"); }
   CHECK(entries(temp.path()) == 0);
+}
+
+TEST_CASE("what a killed process left is cleared by the next output of that name, what a running one writes is not") {
+  const glidelab::tests::TempDir temp;
+  fs::create_directories(temp / "out.part-mine");
+  const auto child_with_output = [&](const char* name, bool stays) {
+    int ready[2];
+    REQUIRE(::pipe(ready) == 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      StagedOutput output(temp / name);
+      write_file(output.dir() / "half.txt", "half");
+      (void)!::write(ready[1], "x", 1);
+      while (stays) ::pause();
+      ::_exit(0);  // as a kill: no destructor runs
+    }
+    char byte = 0;
+    REQUIRE(::read(ready[0], &byte, 1) == 1);
+    ::close(ready[0]);
+    ::close(ready[1]);
+    if (!stays) ::waitpid(child, nullptr, 0);
+    return child;
+  };
+  const pid_t running = child_with_output("out", true);
+  child_with_output("out", false);
+  child_with_output("other", false);
+  CHECK(entries(temp.path()) == 4);
+  { StagedOutput output(temp / "out"); }
+  CHECK(entries(temp.path()) == 3);  // the folder "mine", the running one's, and the other output's
+  ::kill(running, SIGKILL);
+  ::waitpid(running, nullptr, 0);
+  { StagedOutput output(temp / "out"); }
+  CHECK(entries(temp.path()) == 2);
+  CHECK(fs::exists(temp / "out.part-mine"));
 }
 
 TEST_CASE("an output whose name is taken by a file is an environment error") {

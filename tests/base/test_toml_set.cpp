@@ -84,4 +84,5 @@ TEST_CASE("A path that leads nowhere is an error that names it") {
   CHECK_THAT(message("camera.place[0]"), Contains("[0]"));
   CHECK_THAT(message("camera.place[9]"), Contains("number 9 of 3"));
   CHECK_THAT(message("camera.rate[1]"), Contains("no array"));
+  CHECK_THAT(message("camera.\"a'b"), Contains("a path as"));
 }

@@ -9,6 +9,7 @@
 #include "base/staged_output.h"
 #include "catch.h"
 #include "core/file_glob.h"
+#include "core/folder_files.h"
 #include "temp_dir.h"
 
 using namespace glidelab;
@@ -271,6 +272,46 @@ TEST_CASE("a folder without experiment.toml, and one that is no TOML, are errors
   const Folder folder;
   CHECK_THROWS_WITH(core::read_experiment(folder.dir / "nowhere"), Catch::Contains("nowhere/experiment.toml"));
   CHECK(contains(folder.message("format = 1\nname = \n"), "experiment.toml:2: column"));
+}
+
+TEST_CASE("names that leave the folder are refused with the option that permits them, and followed where it is given") {
+  const Folder folder;
+  const TempDir elsewhere;
+  base::write_file(elsewhere / "other.csv", "");
+  const std::string up = fs::relative(elsewhere.path(), folder.dir.path()).string();
+  const auto track = [](const std::string& name) {
+    return kHead + kTrack + "[[clip]]\nname = \"a\"\ntrack = \"" + name +
+           "\"\nmass_kg = 1\nincline_deg = 0\nlaunched = \"up\"\n";
+  };
+  const std::string outside[] = {
+      track((elsewhere / "other.csv").string()),
+      track(up + "/other.csv"),
+      track("clips/../" + up + "/other.csv"),
+      kHead + "lines = \"" + up + "/other.csv\"\n" + kTrack,
+  };
+  for (const std::string& text : outside) {
+    const std::string message = folder.message(text);
+    INFO(message);
+    CHECK(contains(message, "experiment.toml:"));
+    CHECK(contains(message, "outside the folder"));
+    CHECK(contains(message, "--allow-outside"));
+    CHECK_NOTHROW(core::read_experiment(folder.dir.path(), core::OutsideFiles::allowed));
+  }
+  CHECK(contains(folder.message(with(kWhole, "clips/a.mkv", "..")), "outside the folder"));
+  CHECK(contains(folder.message(with(kWhole, "calibration/view-*.png", up + "/*")), "outside the folder"));
+  CHECK(contains(folder.message(with(kWhole, "calibration/plane.png", "/*/*")), "outside the folder"));
+  CHECK(contains(folder.message(with(kWhole, "clips/a.mkv", "clips/a.mkv\\u0000.png")), "zero byte"));
+}
+
+TEST_CASE("a detour within the folder and a link that its owner put there are followed") {
+  const Folder folder;
+  const TempDir elsewhere;
+  base::write_file(elsewhere / "c.mkv", "");
+  CHECK(folder.read(with(kWhole, "clips/a.mkv", "clips/../clips/./b.mkv")).clips[0].file == folder.dir / "clips/b.mkv");
+  fs::create_symlink(elsewhere.path(), folder.dir / "card");
+  CHECK(folder.read(with(kWhole, "clips/a.mkv", "card/c.mkv")).clips[0].file == folder.dir / "card/c.mkv");
+  // Beside the link, not beside what it leads to.
+  CHECK(contains(folder.message(with(kWhole, "clips/a.mkv", "card/../c.mkv")), "no file c.mkv"));
 }
 
 TEST_CASE("wildcards match within one part of a path and results are sorted") {
