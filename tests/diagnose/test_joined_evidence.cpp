@@ -79,7 +79,7 @@ TEST_CASE("what pictures show joins every explanation with its own log evidence,
   CHECK(comparison.in_pictures == std::set<std::size_t>{diagnose::effect_index("light_flicker")});
 }
 
-TEST_CASE("two findings join one another; what pictures speak against joins nothing, and what is left out neither") {
+TEST_CASE("two findings join one another, what pictures speak against joins nothing, and what is left out neither") {
   diagnose::Comparison comparison = weighed();
   diagnose::PictureEvidence pictures;
   pictures.findings = {finding("light_flicker", 11.0), finding("light_gradient", 7.0), finding("camera_motion", -40.0)};
