@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "base/parallel.h"
 #include "diagnose/joined_evidence.h"
@@ -16,6 +17,8 @@ constexpr std::size_t kFitted = 9;   // effects of the short list that are fitte
 constexpr std::size_t kLeaders = 3;  // that are tried with a second one
 constexpr std::size_t kSeconds = 4;
 constexpr double kWorthFitting = 1.0;  // log likelihood gained
+constexpr double kTrifle = 6.0;        // log evidence
+constexpr double kTriflePart = 0.01;   // of that of the effects
 
 bool moves(std::size_t effect) {
   const Search search = effect_list()[effect].search;
@@ -114,7 +117,8 @@ void add_unnamed(const TrackSet& set, Comparison& comparison) {
     std::vector<UnnamedFamily> families = unnamed_families(space);
     Hypothesis both = named;
     both.unnamed = true;
-    both.log_evidence += log_unnamed_evidence(families);
+    both.unnamed_log_evidence = log_unnamed_evidence(families);
+    both.log_evidence += both.unnamed_log_evidence;
     for (const UnnamedFamily& family : families) both.gain = std::max(both.gain, named.gain + family.gain);
     comparison.all.push_back(both);
     if (first) {
@@ -141,7 +145,24 @@ void add_frame_effects(Comparison& comparison) {
   }
 }
 
-void weigh(const std::set<std::size_t>& without, Comparison& comparison) {
+/// Something unnamed that shows weakly beside effects of a hundred times its log evidence leaves them their name, in
+/// filmed experiments: a lens, a sensor and a tracker leave some micrometres that no list holds, and the better an
+/// effect shows, the better they show beside it. Their probability is that of the effects then. (A rest that shows well
+/// is none of this: an effect takes up most of many a thing that is not in the list.)
+void give_trifles_to_their_effects(Comparison& comparison) {
+  for (Hypothesis& with : comparison.all) {
+    if (!with.unnamed || with.effects.empty()) continue;
+    const double of_effects = with.log_evidence - with.unnamed_log_evidence;
+    if (with.unnamed_log_evidence >= std::min(kTrifle, kTriflePart * of_effects)) continue;
+    const auto named = std::find_if(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& other) {
+      return !other.unnamed && other.effects == with.effects;
+    });
+    if (named == comparison.all.end()) continue;
+    named->probability += std::exchange(with.probability, 0.0);
+  }
+}
+
+void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
@@ -165,9 +186,9 @@ void weigh(const std::set<std::size_t>& without, Comparison& comparison) {
   double sum = 0.0;
   for (double& l : logs) sum += l = std::exp(l - most);
   comparison.effect_probability.assign(list.size(), 0.0);
-  for (std::size_t h = 0; h < logs.size(); ++h) {
-    Hypothesis& hypothesis = comparison.all[h];
-    hypothesis.probability = logs[h] / sum;
+  for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
+  if (set.pictures) give_trifles_to_their_effects(comparison);
+  for (const Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.unnamed) {
       comparison.unknown += hypothesis.probability;
     } else if (hypothesis.effects.empty()) {
@@ -228,7 +249,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   }
   add_frame_effects(comparison);
   if (pictures != nullptr) join_pictures(set, *pictures, left_out, comparison);
-  weigh(left_out, comparison);
+  weigh(set, left_out, comparison);
   return comparison;
 }
 

@@ -3,7 +3,8 @@
 /// Score tests make a short list; each of it is fitted in full, alone and with a second one; the log evidence is that
 /// of the linear neighbourhood (sizes and shapes averaged over their prior) with the gain of the full fit in place of
 /// the linear one. Something unnamed competes as unnamed.h has it, beside nothing and beside each leading explanation:
-/// what an effect leaves unexplained counts against its name.
+/// what an effect leaves unexplained counts against its name, unless it shows weakly in a filmed experiment, and is
+/// worth less than a hundredth of the effect.
 ///
 /// Prior odds: nothing 0.3, one effect 0.4 (shared by those that these data can show), two 0.1, unnamed 0.2.
 #pragma once
@@ -25,7 +26,8 @@ struct Hypothesis {
   double gain = 0.0;                 ///< log likelihood, against nothing
   double log_evidence = 0.0;         ///< against nothing, sizes averaged over their priors
   double probability = 0.0;
-  int fit = -1;  ///< index in Comparison::fits
+  int fit = -1;                       ///< index in Comparison::fits
+  double unnamed_log_evidence = 0.0;  ///< the part of it that something unnamed has beside effects
 };
 
 struct Comparison {

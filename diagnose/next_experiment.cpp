@@ -13,6 +13,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kDecides = 5.0;  // expected log likelihood at which a clip is worth recording
+constexpr double kSlowest = 0.2;  // launch that is suggested, of the fastest one that there is
 
 struct Candidate {
   std::string words;
@@ -42,7 +43,8 @@ std::vector<Candidate> candidates_of(const TrackSet& set, const MotionFit& fit) 
         set.groups.size() > 1 ? fmt::format(" on set-up \"{}\"", set.groups[g].name) : std::string();
     for (const int direction : {-1, 1}) {
       for (const double mass : {light, heavy, 1.6 * heavy, 0.6 * light}) {
-        for (const double v : {0.5 * slow, fast, 1.8 * fast}) {
+        // Where a motion was released, half of the slowest launch is no launch.
+        for (const double v : {std::max(0.5 * slow, kSlowest * fast), fast, 1.8 * fast}) {
           const bool new_mass = mass != light && mass != heavy;
           candidates.push_back({fmt::format("a launch {}{} with {}{:.0f} g", speed_words(direction * v), where,
                                             new_mass ? "the mass changed to " : "", 1000.0 * mass),

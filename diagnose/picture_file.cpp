@@ -48,11 +48,14 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   finding.log_evidence = std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks,
                                   changes ? blocks : log_evidence_of((memory - 1.1) / kMemory, 1.0 / kMemory));
   finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
-  finding.words = fmt::format("{}; steps between pixels are {:.1f} % {} at the edges of 8 x 8 blocks than elsewhere.",
+  const std::string steps =
+      relative > 2.0 ? fmt::format("{:.2g} times as large", 1.0 + relative)
+                     : fmt::format("{:.1f} % {}", 100.0 * std::abs(relative), relative < 0.0 ? "smaller" : "larger");
+  finding.words = fmt::format("{}; steps between pixels are {} at the edges of 8 x 8 blocks {} elsewhere.",
                               lossy > 0      ? fmt::format("The file is compressed with loss ({})", codec)
                               : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
                                              : std::string("What the file was compressed with is not known"),
-                              100.0 * std::abs(relative), relative < 0.0 ? "smaller" : "larger");
+                              steps, relative > 2.0 ? "as" : "than");
   if (memory > 1.1)
     finding.words +=
         fmt::format(" Noise lasts over frames (changes over two frames are {:.2f} times those over one).", memory);
