@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "report/configuration_name.h"
 #include "report/file_names.h"
@@ -88,6 +89,12 @@ std::string pictures(const core::ClipResult& clip, const core::Preview& preview)
   return text;
 }
 
+/// With its standard deviation, s / sqrt(2 n) for n residuals of white noise.
+std::string noise_text(double noise_mm, std::size_t points) {
+  return points > 0 ? value_and_sd_text(noise_mm, noise_mm / std::sqrt(2.0 * static_cast<double>(points)))
+                    : number_text(noise_mm, 3);
+}
+
 Html clip_html(const core::ClipResult& clip, std::size_t index, const std::string& phase_file,
                const core::Preview* preview) {
   Html text = fmt::format("<h3 id=\"{}\">{}</h3>\n", clip_anchor(index), escape(clip.name));
@@ -100,7 +107,7 @@ Html clip_html(const core::ClipResult& clip, std::size_t index, const std::strin
       "Numbers: <code>{}</code>; every frame, with residuals: <code>{}</code>.</p>\n",
       clip.sightings.empty() ? fmt::format("{} positions", clip.frames)
                              : fmt::format("{} frames, the marker found in {},", clip.frames, clip.detected),
-      number_text(clip.frame_rate_hz, 5), used, number_text(clip.position_noise_m * 1e3, 3),
+      number_text(clip.frame_rate_hz, 5), used, noise_text(clip.position_noise_m * 1e3, used),
       number_text(clip.bandwidth_s * 1e3, 3), clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method),
       escape(phase_file), escape("motion" + phase_file.substr(phase_file.find('-'))));
   text += notes_html(clip.notes);
@@ -223,6 +230,14 @@ std::string corrections_html(const core::AnalysisResults& results) {
          "stay as they are.</p></details>\n";
 }
 
+std::size_t points_of(const std::vector<core::LineFit>& lines, int direction) {
+  std::size_t points = 0;
+  for (const core::LineFit& line : lines) {
+    if (line.direction == direction) points += line.points;
+  }
+  return points;
+}
+
 }  // namespace
 
 std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
@@ -232,12 +247,13 @@ std::string quantity_html(const core::Quantity& quantity, std::string_view unit)
 
 std::string recovered_section(const core::AnalysisResults& results) {
   HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
-                   "R² (v&gt;0)"});
+                   "R² (v&gt;0)", "points of the lines (v&lt;0, v&gt;0)"});
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
                quantity_html(c.k_over_m_1_s, ""), quantity_html(c.mu, ""), quantity_html(c.alpha_deg, ""),
-               quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1)});
+               quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1),
+               fmt::format("{}, {}", points_of(c.lines, -1), points_of(c.lines, 1))});
     for (const auto& [name, quantity] :
          {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
           std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
