@@ -37,9 +37,10 @@ const core::LineFit* line_of(const std::vector<core::LineFit>& lines, int direct
   return found == lines.end() ? nullptr : &*found;
 }
 
+/// With the number of points that the line rests on.
 std::string r2_of(const std::vector<core::LineFit>& lines, int direction) {
   const core::LineFit* line = line_of(lines, direction);
-  return line == nullptr ? "–" : r2_text(line->r2);
+  return line == nullptr ? "–" : fmt::format("{}<br><small>{} points</small>", r2_text(line->r2), line->points);
 }
 
 std::string clip_anchor(std::size_t index) {
@@ -230,14 +231,6 @@ std::string corrections_html(const core::AnalysisResults& results) {
          "stay as they are.</p></details>\n";
 }
 
-std::size_t points_of(const std::vector<core::LineFit>& lines, int direction) {
-  std::size_t points = 0;
-  for (const core::LineFit& line : lines) {
-    if (line.direction == direction) points += line.points;
-  }
-  return points;
-}
-
 }  // namespace
 
 std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
@@ -247,13 +240,12 @@ std::string quantity_html(const core::Quantity& quantity, std::string_view unit)
 
 std::string recovered_section(const core::AnalysisResults& results) {
   HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
-                   "R² (v&gt;0)", "points of the lines (v&lt;0, v&gt;0)"});
+                   "R² (v&gt;0)"});
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
                quantity_html(c.k_over_m_1_s, ""), quantity_html(c.mu, ""), quantity_html(c.alpha_deg, ""),
-               quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1),
-               fmt::format("{}, {}", points_of(c.lines, -1), points_of(c.lines, 1))});
+               quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1)});
     for (const auto& [name, quantity] :
          {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
           std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
