@@ -8,8 +8,8 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/parallel.h"
 #include "core/calibrate_fisheye.h"
+#include "core/camera_and_planes.h"
 #include "core/clip_look.h"
 #include "core/clip_to_track.h"
 #include "core/median.h"
@@ -73,14 +73,15 @@ void count_odd_steps(const std::vector<MarkerSighting>& sightings, double noise_
   }
 }
 
-/// One track, or why there is none.
+/// One track with the fits behind it, or why there is none.
 struct Attempt {
   TrackData track;
+  std::vector<MarkerFit> fits;
   std::string failure;
 };
 
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const Attempt& attempt,
-                     const FrameOpener& open) {
+                     const ClipWatches& watches) {
   const TrackData& track = attempt.track;
   ClipCheck clip;
   clip.name = setup.name;
@@ -97,7 +98,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;
   if (!clip.pictures || track.sightings.empty()) return clip;
-  const ClipLook look = look_at_clip(experiment, setup, track.sightings, open);
+  const ClipLook look = watches.of(setup.file).look(*experiment.marker, track.sightings, attempt.fits);
   clip.width_px = look.size.width;
   clip.height_px = look.size.height;
   clip.container_rate_hz = look.file.container_rate_hz;
@@ -130,16 +131,6 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   return clip;
 }
 
-/// All pictures of the pattern, each once, and which of them are of the plane.
-std::vector<std::filesystem::path> pattern_files(const Experiment& experiment,
-                                                 std::set<std::filesystem::path>& planes) {
-  std::vector<std::filesystem::path> files = experiment.calibration->views;
-  planes.insert(experiment.calibration->planes.begin(), experiment.calibration->planes.end());
-  for (const GroupSetup& group : experiment.groups) planes.insert(group.planes.begin(), group.planes.end());
-  files.insert(files.end(), planes.begin(), planes.end());
-  return files;
-}
-
 double share_covered(const PatternCheck& pattern) {
   std::set<int> parts;
   for (const PatternView& view : pattern.views) {
@@ -152,16 +143,22 @@ double share_covered(const PatternCheck& pattern) {
   return static_cast<double>(parts.size()) / (kAcross * kDown);
 }
 
-PatternCheck check_pattern(const Experiment& experiment, int jobs) {
+/// The pictures of the planes of motion.
+std::set<std::filesystem::path> all_planes(const Experiment& experiment) {
+  std::set<std::filesystem::path> planes(experiment.calibration->planes.begin(), experiment.calibration->planes.end());
+  for (const GroupSetup& group : experiment.groups) planes.insert(group.planes.begin(), group.planes.end());
+  return planes;
+}
+
+/// What the pictures of the pattern show; `seen` becomes the corners and the camera, where there is one.
+PatternCheck check_pattern(const Experiment& experiment, int jobs, std::optional<SeenPattern>& seen) {
   PatternCheck pattern;
   const double square_m = experiment.calibration->square_m;
-  std::set<std::filesystem::path> planes;
-  const std::vector<std::filesystem::path> files = pattern_files(experiment, planes);
-  std::optional<Calibration> camera;
+  const std::set<std::filesystem::path> planes = all_planes(experiment);
   BoardViews boards;
   try {
-    boards = find_board_views(files, experiment.calibration->inner_corners, jobs);
-    camera = calibrate_any_lens(boards, square_m);
+    boards = find_board_views(pattern_files(experiment), experiment.calibration->inner_corners, jobs);
+    seen = SeenPattern{boards, calibrate_any_lens(boards, square_m)};
   } catch (const base::InputError& error) {
     pattern.failure = error.what();
   }
@@ -173,8 +170,9 @@ PatternCheck check_pattern(const Experiment& experiment, int jobs) {
     view.file = board.file.filename().string();
     view.plane = planes.contains(board.file);
     for (const cv::Point2d& corner : board.corners.points) view.corners.push_back({corner.x, corner.y});
-    if (camera) {
-      const PlaneFit fit = fit_plane(camera->camera, {board.corners}, square_m, camera->noise.correlated_px);
+    if (seen) {
+      const Calibration& camera = seen->calibration;
+      const PlaneFit fit = fit_plane(camera.camera, {board.corners}, square_m, camera.noise.correlated_px);
       view.rms_px = fit.rms_px;
       view.tilt_deg = std::acos(std::min(1.0, std::abs(fit.pose.rotation(2, 2)))) * 180.0 / std::numbers::pi;
     }
@@ -216,22 +214,26 @@ Experiment alone(Experiment experiment, std::size_t clip) {
 
 /// All tracks at once, as the analysis takes them; where that fails, one by one, to see which clip it is.
 std::vector<Attempt> attempt_all(const Experiment& experiment, int jobs, const base::Progress& progress,
-                                 const FrameOpener& open, RecordingCheck& check) {
+                                 ClipWatches& watches, const SeenPattern* seen_pattern, RecordingCheck& check) {
   std::vector<Attempt> attempts(experiment.clips.size());
-  const auto take = [&](PictureResults seen) {
+  /// Tracks what `part` has, the first of whose clips is the experiment's clip `first`.
+  const auto attempt = [&](const Experiment& part, std::size_t first) {
+    PictureResults seen = tracks_of(part, jobs, progress, watches.opener(), false, seen_pattern);
     if (check.pattern) check.pattern->calibration = seen.calibration;
-    return std::move(seen.tracks);
+    for (std::size_t i = 0; i < seen.tracks.size(); ++i) {
+      attempts[first + i].track = std::move(seen.tracks[i]);
+      attempts[first + i].fits = std::move(seen.fits[i]);
+    }
   };
   try {
-    std::vector<TrackData> tracks = take(tracks_of(experiment, jobs, progress, open));
-    for (std::size_t i = 0; i < tracks.size(); ++i) attempts[i].track = std::move(tracks[i]);
+    attempt(experiment, 0);
     return attempts;
   } catch (const base::InputError& error) {
     check.plumb_failure = error.what();  // unless a clip fails by itself
   }
   for (std::size_t i = 0; i < attempts.size(); ++i) {
     try {
-      attempts[i].track = take(tracks_of(alone(experiment, i), jobs, progress, open)).front();
+      attempt(alone(experiment, i), i);
     } catch (const base::InputError& error) {
       attempts[i].failure = error.what();
       check.plumb_failure.clear();
@@ -250,18 +252,20 @@ RecordingCheck check_recording(const Experiment& experiment, int jobs, const bas
   RecordingCheck check;
   check.name = experiment.name;
   progress("pattern", 0.0);
-  if (experiment.calibration) check.pattern = check_pattern(experiment, jobs);
+  std::optional<SeenPattern> seen_pattern;
+  if (experiment.calibration) check.pattern = check_pattern(experiment, jobs, seen_pattern);
   const bool no_camera = check.pattern && !check.pattern->failure.empty();
+  ClipWatches watches(open);
   std::vector<Attempt> attempts(experiment.clips.size());
   if (no_camera) {
     for (Attempt& attempt : attempts) attempt.failure = "not looked at: there is no camera without the pattern";
   } else {
-    attempts = attempt_all(experiment, jobs, progress, open, check);
+    attempts = attempt_all(experiment, jobs, progress, watches, seen_pattern ? &*seen_pattern : nullptr, check);
   }
   check.clips.resize(attempts.size());
-  base::for_each_parallel(attempts.size(), jobs, [&](std::size_t i) {
-    check.clips[i] = check_clip(experiment, experiment.clips[i], attempts[i], open);
-  });
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    check.clips[i] = check_clip(experiment, experiment.clips[i], attempts[i], watches);
+  }
   if (check.pattern) measure_inside(*check.pattern, check.clips);
   check.findings = findings_of(experiment, check);
   check.usable = std::none_of(check.findings.begin(), check.findings.end(),

@@ -11,14 +11,13 @@
 
 #include "base/errors.h"
 #include "base/parallel.h"
-#include "core/calibrate_fisheye.h"
+#include "core/camera_and_planes.h"
 #include "core/even_times.h"
 #include "core/frame_source.h"
 #include "core/marker_track.h"
 #include "core/mode_axis.h"
 #include "core/motion_axis.h"
 #include "core/plumb.h"
-#include "core/restitution.h"
 #include "core/scene_watch.h"
 #include "core/track_csv.h"
 
@@ -29,103 +28,9 @@ namespace {
 
 constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track up to a few degrees"
 
-const GroupSetup* group_of(const Experiment& experiment, const std::string& name) {
-  for (const GroupSetup& group : experiment.groups) {
-    if (group.name == name) return &group;
-  }
-  return nullptr;
-}
-
 int downhill_of(const Experiment& experiment, const std::string& name) {
   const GroupSetup* group = group_of(experiment, name);
   return group != nullptr && group->downhill ? *group->downhill : experiment.track.downhill;
-}
-
-std::vector<fs::path> planes_of(const Experiment& experiment, const std::string& name) {
-  const GroupSetup* group = group_of(experiment, name);
-  return group != nullptr && !group->planes.empty() ? group->planes : experiment.calibration->planes;
-}
-
-/// The camera and, for each group that has clips made of pictures, the way from pixels to its plane.
-struct Setting {
-  std::optional<cv::Size> size;
-  std::optional<CalibrationResult> calibration;
-  std::map<std::string, Restitution> restitutions;
-};
-
-std::set<std::string> groups_with_pictures(const Experiment& experiment) {
-  std::set<std::string> names;
-  for (const ClipSetup& clip : experiment.clips) {
-    if (!clip.file.empty()) names.insert(clip.group);
-  }
-  return names;
-}
-
-Setting calibrated(const Experiment& experiment, int jobs) {
-  const CalibrationSetup& setup = *experiment.calibration;
-  std::vector<fs::path> files = setup.views;
-  files.insert(files.end(), setup.planes.begin(), setup.planes.end());
-  for (const std::string& name : groups_with_pictures(experiment)) {
-    const std::vector<fs::path> planes = planes_of(experiment, name);
-    files.insert(files.end(), planes.begin(), planes.end());
-  }
-  const BoardViews boards = find_board_views(files, setup.inner_corners, jobs);
-  const auto corners_in = [&](const fs::path& file) -> const BoardCorners& {
-    for (const BoardView& view : boards.views) {
-      if (view.file == file) return view.corners;
-    }
-    throw base::InputError(base::Issue{
-        file.string(), 0, "calibration.plane", "no pattern in sight",
-        fmt::format("all {} x {} inner corners in sight", setup.inner_corners.width, setup.inner_corners.height)});
-  };
-
-  Setting setting;
-  std::vector<std::pair<std::string, std::vector<BoardCorners>>> planes;
-  for (const std::string& name : groups_with_pictures(experiment)) {
-    planes.emplace_back(name, std::vector<BoardCorners>{});
-    for (const fs::path& file : planes_of(experiment, name)) planes.back().second.push_back(corners_in(file));
-  }
-  const Calibration calibration = calibrate_any_lens(boards, setup.square_m);
-  setting.size = calibration.camera.size;
-  CalibrationResult result;
-  result.experiment = experiment.name;
-  result.rms_px = calibration.rms_px;
-  const CameraModel& camera = calibration.camera;
-  result.camera_matrix = {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
-  result.distortion.assign(camera.distortion.begin(), camera.distortion.end());
-  if (camera.lens == LensKind::fisheye) result.distortion.resize(4);
-  for (Eigen::Index k = 0; k < calibration.covariance.rows(); ++k) {
-    result.sd.push_back(std::sqrt(calibration.covariance(k, k)));
-  }
-  result.model = calibration.model;
-  result.views_used = calibration.views_used;
-  result.notes = calibration.notes;
-  double sum = 0.0, count = 0.0;
-  for (const auto& [name, corners] : planes) {
-    const auto [place, is_new] = setting.restitutions.emplace(
-        name, Restitution::from_pattern(calibration, corners, setup.square_m, experiment.marker->height_m,
-                                        experiment.marker->diameter_m));
-    const PlaneFit& fit = *place->second.plane();
-    const auto views = static_cast<double>(corners.size());
-    sum += views * fit.rms_m * fit.rms_m;
-    count += views;
-    result.plane_rms_px = std::max(result.plane_rms_px, fit.rms_px);
-    result.plane_expected_px = std::hypot(calibration.noise.white_px, calibration.noise.correlated_px);
-    const auto warning = disagreement(fit, corners.size(), calibration.noise, name);
-    if (warning) result.notes.push_back(*warning);
-  }
-  result.restitution_rms_m = std::sqrt(sum / count);
-  setting.calibration = std::move(result);
-  return setting;
-}
-
-Setting setting_of(const Experiment& experiment, int jobs) {
-  if (experiment.calibration) return calibrated(experiment, jobs);
-  Setting setting;
-  for (const std::string& name : groups_with_pictures(experiment)) {
-    setting.restitutions.emplace(name, Restitution::from_scale(*experiment.scale, experiment.marker->diameter_m));
-  }
-  return setting;
 }
 
 /// What one clip's pictures say, in pixels.
@@ -184,8 +89,8 @@ void put_even(SeenClip& seen) {
   seen.frame_t_s = std::move(even->t_s);
 }
 
-SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Setting& setting, const FrameOpener& open,
-                 bool look_at_scene, FrameCounter& counter) {
+SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+                 const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
   const bool with_color = signal_kind(*experiment.marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
@@ -281,9 +186,10 @@ void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string
 }  // namespace
 
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress,
-                         const FrameOpener& open, bool look_at_scene) {
+                         const FrameOpener& open, bool look_at_scene, const SeenPattern* seen_pattern) {
   PictureResults results;
   results.tracks.resize(experiment.clips.size());
+  results.fits.resize(experiment.clips.size());
   std::vector<std::size_t> pictures;
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
     const ClipSetup& clip = experiment.clips[i];
@@ -296,7 +202,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   if (pictures.empty()) return results;
 
   progress("calibration", 0.0);
-  const Setting setting = setting_of(experiment, jobs);
+  const CameraAndPlanes setting = camera_and_planes_of(experiment, jobs, seen_pattern);
   progress("calibration", 1.0);
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, pictures.size());
@@ -345,6 +251,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
     if (plumb) results.plumbs.push_back({name, plumb_angle(*plumb, restitution, axis, setting.size, modes)});
     results.modes += modes.size() - camera_modes;
   }
+  for (const std::size_t i : pictures) results.fits[i] = std::move(seen[i].marker.fits);
   results.calibration = setting.calibration;
   return results;
 }
