@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "base/temporary_folder.h"
 #include "core/clip_to_track.h"
+#include "core/folder_files.h"
 #include "diagnose/trajectory_results.h"
 #include "render/clip_set.h"
 #include "render/render_experiment.h"
@@ -86,7 +87,7 @@ MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int
   core::FrameOpener open = core::open_frames;
   if (!lossy) open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, jobs), seed);
   MadeTracks made = make_tracks(scenario, seed);
-  const core::Experiment experiment = core::read_experiment(pictures);
+  const core::Experiment experiment = core::read_experiment(pictures, core::OutsideFiles::refused);
   made.setups = experiment.clips;
   made.tracks = core::tracks_of(experiment, jobs, base::no_progress, open).tracks;
   return made;

@@ -1,8 +1,10 @@
 /// Damaged recordings through the analysis: small experiments in five codecs are rendered, and each run damages one of
-/// their files (clip, frame, view of the pattern, plane) and analyses the folder in a process of its own.
+/// their files (clip, frame, view of the pattern, plane) and analyses the folder in a process of its own. One run in
+/// eight has the pattern, whose pictures take most of an analysis; the others have a scale, and only clips to damage.
 ///
 ///     mutate_clips GLIDELAB RUNS [SEED] [--command]
 ///
+/// Works in /dev/shm where that is, unless TMPDIR says otherwise; what is found is kept in the working directory.
 /// Allowed: a result, or an InputError or NumericalError; within 30 s of processor time and 512 MiB. With --command the
 /// program itself is run (`glidelab analyze`), with what a person sees: exit status 0, or 1 with one message and
 /// nothing left under --out or beside it. Else the analysis is called without the report, which is ten times as quick.
@@ -23,6 +25,7 @@
 #include "base/temporary_folder.h"
 #include "core/analyze.h"
 #include "damage.h"
+#include "one_glider.h"
 
 using namespace glidelab;
 namespace fs = std::filesystem;
@@ -31,6 +34,8 @@ namespace {
 
 constexpr rlim_t kSeconds = 30;
 constexpr long kMostKilobytes = 512 * 1024;
+constexpr int kWidthPx = 320, kScaledWidthPx = 240;  // with the pattern, whose corners need them, and with a scale
+constexpr std::size_t kCalibrated = 8;               // one run in so many is with the pattern
 
 std::string scenario(const std::string& codec, int width_px) {
   return fmt::format(R"(format = 1
@@ -51,22 +56,19 @@ diameter_m = 0.06
 [codec]
 name = "{}"
 {}
-[[configuration]]
-name = "m1"
-mass_kg = 0.335
-incline_deg = 4.0
-[[configuration.force]]
-law = "viscous"
-k_over_m_1_s = 2.768
-[[configuration.clip]]
-name = "up"
-launched = "up"
-x0_m = 0.2
-v0_m_s = -1.2
-duration_s = 0.4
 )",
                      width_px, width_px * 3 / 4, width_px * 3 / 2, width_px * 3 / 2, codec,
-                     codec == "h264" ? "[clock]\nvariable = true" : "");
+                     codec == "h264" ? "[clock]\nvariable = true" : "") +
+         tests::one_glider(4.0, 2.768, 0.0, {{"up", 0.2, -1.2, 0.4}});
+}
+
+/// Puts the scale that the scenario's camera has in the place of the calibration and its pictures.
+void take_scale(const fs::path& folder, int width_px) {
+  std::string experiment = base::read_file(folder / "experiment.toml");
+  const std::size_t from = experiment.find("[calibration]"), to = experiment.find("\n[", from);
+  base::write_file(folder / "experiment.toml",
+                   experiment.replace(from, to - from, fmt::format("[scale]\npx_per_m = {}\n", width_px * 1.5 / 2.4)));
+  fs::remove_all(folder / "calibration");
 }
 
 struct Child {
@@ -144,10 +146,11 @@ int main(int argc, char** argv) {
   const long runs = std::strtol(argv[2], nullptr, 10);
   const bool command = std::string_view(argv[argc - 1]) == "--command";
   const auto seed = static_cast<std::uint64_t>(argc > 3 && argv[3][0] != '-' ? std::strtoull(argv[3], nullptr, 10) : 1);
+  if (fs::is_directory("/dev/shm")) ::setenv("TMPDIR", "/dev/shm", 0);
   const base::TemporaryFolder place("damage");
   const std::vector<std::string> codecs = {"ffv1", "raw", "mjpeg", "h264", "png"};
   for (const std::string& codec : codecs) {
-    for (const int width_px : {320, 240}) {  // the second one is what another size is taken from
+    for (const int width_px : {kWidthPx, kScaledWidthPx}) {
       const fs::path file = place / fmt::format("{}-{}.toml", codec, width_px);
       base::write_file(file, scenario(codec, width_px));
       const Child child = in_child(place / "log", [&] {
@@ -159,17 +162,29 @@ int main(int argc, char** argv) {
       }
     }
   }
+  for (const std::string& codec : codecs) {
+    take_scale(place / fmt::format("{}-{}", codec, kScaledWidthPx), kScaledWidthPx);
+    for (const int width_px : {kWidthPx, kScaledWidthPx}) {
+      const fs::path folder = place / fmt::format("{}-{}", codec, width_px);
+      if (in_child(place / "log", [&] { return analyse(folder); }).status == 0) continue;
+      std::fprintf(stderr, "undamaged, and refused: %s\n", base::read_file(place / "log").c_str());
+      return 1;
+    }
+  }
   std::map<int, long> outcomes;
   long found = 0, most_kilobytes = 0;
   const fs::path scratch = place / "run";
   for (long run = 0; run < runs; ++run) {
     fuzz::Random random(seed * 1'000'003u + static_cast<std::uint64_t>(run));
     const std::string codec = codecs[fuzz::below(random, codecs.size())];
-    const fs::path whole = place / (codec + "-320"), other = place / (codec + "-240");
+    const bool calibrated = fuzz::below(random, kCalibrated) == 0;
+    const fs::path whole = place / fmt::format("{}-{}", codec, calibrated ? kWidthPx : kScaledWidthPx);
+    const fs::path other = place / fmt::format("{}-{}", codec, calibrated ? kScaledWidthPx : kWidthPx);
     std::vector<fs::path> files = files_of(whole);
-    // Half of the damage to what moves, half to what does not.
-    const bool clip = fuzz::below(random, 2) == 0;
-    std::erase_if(files, [&](const fs::path& file) { return (*file.begin() == "clips") != clip; });
+    if (calibrated) {  // half of the damage to what moves, half to what does not
+      const bool clip = fuzz::below(random, 2) == 0;
+      std::erase_if(files, [&](const fs::path& file) { return (*file.begin() == "clips") != clip; });
+    }
     const fs::path file = files[fuzz::below(random, files.size())];
     const std::string kind = fuzz::kDamages[fuzz::below(random, fuzz::kDamages.size())];
     fs::remove_all(scratch);
@@ -192,7 +207,7 @@ int main(int argc, char** argv) {
     if (wrong.empty() && command) wrong = wrong_with_command(child, scratch);
     if (wrong.empty()) continue;
     ++found;
-    const fs::path kept = fs::temp_directory_path() / fmt::format("glidelab-damaged-{}-{}", seed, run);
+    const fs::path kept = fs::current_path() / fmt::format("damaged-{}-{}", seed, run);
     fs::remove_all(kept);
     fs::copy(scratch / "damaged", kept, fs::copy_options::recursive);
     std::printf("run %ld: %s of %s in %s: %s; kept as %s\n%s\n", run, kind.c_str(), file.c_str(), codec.c_str(),
