@@ -38,6 +38,15 @@ std::string diagnose_apart(const fs::path& folder, const fs::path& out, const st
   return how.empty() ? "" : fmt::format("{}: {}", how, said);
 }
 
+/// The same of the renderer, which knows the scenario and nothing of the diagnosis.
+std::string render_apart(const fs::path& scenario, const fs::path& folder) {
+  const fs::path log = folder.parent_path() / "log.txt";
+  const std::string how = base::how_it_failed(base::run_program(
+      "/proc/self/exe", {"render", scenario.string(), "-o", folder.string(), "--jobs", "1", "--quiet"}, log));
+  throw_if_interrupted();
+  return how.empty() ? "" : fmt::format("{}: {}", how, base::read_file(log));
+}
+
 void blind(const BlindCommand& options) {
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "blind", "cases");
@@ -48,7 +57,8 @@ void blind(const BlindCommand& options) {
   wanted.jobs = options.common.jobs;
   report::BlindRun run;
   run.seed = wanted.seed;
-  run.outcomes = validate::run_blind(wanted, out, diagnose_apart, display.callback());
+  run.pictures = wanted.pictures;
+  run.outcomes = validate::run_blind(wanted, out, diagnose_apart, display.callback(), render_apart);
   run.score = validate::score_blind(run.outcomes);
   const std::string json = report::blind_json(run);
   base::StagedOutput staged(out);
@@ -73,6 +83,9 @@ void add_blind(CLI::App& app, Command& chosen) {
   command
       ->add_option("--only", options->blind.only, "Every case has this effect (default: nothing, one, two, unlisted)")
       ->type_name("EFFECT");
+  command->add_flag(
+      "--pictures", options->blind.pictures,
+      "Filmed experiments, rendered as clips, in place of tracks; their effects are those that pictures show");
   command->add_flag("--leave-out", options->blind.leave_out,
                     "Diagnose each case of one effect once more with that effect taken from the list");
   add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");

@@ -14,6 +14,7 @@ struct BlindRun {
   std::uint64_t seed = 0;
   std::vector<validate::BlindOutcome> outcomes;
   validate::BlindScore score;
+  bool pictures = false;  ///< filmed experiments, not tracks
 };
 
 std::string blind_json(const BlindRun& run);

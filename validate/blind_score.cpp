@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "validate/blind_effects.h"
+#include "validate/blind_scene_effects.h"
 
 namespace glidelab::validate {
 namespace {
@@ -29,24 +30,28 @@ std::vector<std::string> split(const std::string& id) {
   return {id.substr(0, plus), id.substr(plus + 3)};
 }
 
-bool holds(const std::set<std::string>& set, const std::string& id) {
-  return set.contains(blind_class(id));
-}
-
-std::set<std::string> classes_of(const std::vector<BlindCause>& causes) {
+std::set<std::string> classes_of(const BlindOutcome& outcome) {
   std::set<std::string> classes;
-  for (const BlindCause& cause : causes) classes.insert(blind_class(cause.id));
+  for (const BlindCause& cause : outcome.causes) classes.insert(blind_class(cause.id, outcome.filmed));
   return classes;
 }
 
+std::string true_class(const BlindOutcome& outcome) {
+  return blind_class(outcome.causes.front().id, outcome.filmed);
+}
+
 /// All that a verdict names: its effects and their equals.
-std::set<std::string> named_by(const BlindVerdict& verdict) {
+std::set<std::string> named_by(const BlindOutcome& outcome) {
   std::set<std::string> named;
-  for (const BlindNamed& effect : verdict.effects) {
-    named.insert(blind_class(effect.id));
-    for (const std::string& id : effect.equivalent_to) named.insert(blind_class(id));
+  for (const BlindNamed& effect : outcome.verdict.effects) {
+    named.insert(blind_class(effect.id, outcome.filmed));
+    for (const std::string& id : effect.equivalent_to) named.insert(blind_class(id, outcome.filmed));
   }
   return named;
+}
+
+const std::vector<std::string>& library_of(const BlindOutcome& outcome) {
+  return outcome.filmed ? filmed_effects() : library_effects();
 }
 
 /// What a way of deciding says of one case: none, unknown, or names (the first first).
@@ -103,18 +108,18 @@ void count(BlindShare& share, bool yes) {
 }
 
 void count_saying(const BlindOutcome& outcome, const Saying& saying, BlindMethod& method) {
-  const std::set<std::string> truth = classes_of(outcome.causes);
+  const std::set<std::string> truth = classes_of(outcome);
   std::size_t found = 0;
   for (const std::string& cause : truth) {
     found += std::any_of(saying.names.begin(), saying.names.end(),
-                         [&](const std::string& name) { return blind_class(name) == cause; });
+                         [&](const std::string& name) { return blind_class(name, outcome.filmed) == cause; });
   }
   switch (outcome.kind) {
     case BlindKind::none:
       return count(method.none, saying.word == "none");
     case BlindKind::single:
       return count(method.single[std::string(strength_word(outcome))],
-                   !saying.names.empty() && holds(truth, saying.names.front()));
+                   !saying.names.empty() && truth.contains(blind_class(saying.names.front(), outcome.filmed)));
     case BlindKind::pair:
       return count(method.pair, found == truth.size());
     case BlindKind::outside:
@@ -126,14 +131,15 @@ void count_saying(const BlindOutcome& outcome, const Saying& saying, BlindMethod
 BlindMethod picking(const std::vector<BlindOutcome>& outcomes) {
   BlindMethod method{"picking at random", {}, {}, {}, {}};
   constexpr std::size_t kTries = 10000;
-  const double words = static_cast<double>(library_effects().size()) + 2.0;
+  const double words =
+      2.0 + static_cast<double>((outcomes.empty() ? library_effects() : library_of(outcomes.front())).size());
   const auto expected = [&](double share) { return static_cast<std::size_t>(std::lround(share * kTries)); };
   std::map<std::string, std::pair<double, double>> single;
   for (const BlindOutcome& outcome : outcomes) {
     if (outcome.kind != BlindKind::single) continue;
     double same = 0.0;
-    for (const std::string& id : library_effects()) {
-      same += blind_class(id) == blind_class(outcome.causes.front().id) ? 1.0 : 0.0;
+    for (const std::string& id : library_of(outcome)) {
+      same += blind_class(id, outcome.filmed) == true_class(outcome) ? 1.0 : 0.0;
     }
     auto& [sum, of] = single[std::string(strength_word(outcome))];
     sum += same / words;
@@ -146,11 +152,11 @@ BlindMethod picking(const std::vector<BlindOutcome>& outcomes) {
 }
 
 /// The likeliest word of a verdict with its probability, classes of effects summed up.
-std::pair<std::string, double> likeliest(const BlindVerdict& verdict) {
+std::pair<std::string, double> likeliest(const BlindVerdict& verdict, bool filmed) {
   std::map<std::string, double> sums = {{"none", verdict.none}, {"unknown", verdict.unknown}};
   for (const BlindRanked& ranked : verdict.ranking) {
     std::set<std::string> classes;
-    for (const std::string& id : ranked.ids) classes.insert(blind_class(id));
+    for (const std::string& id : ranked.ids) classes.insert(blind_class(id, filmed));
     for (const std::string& id : classes) sums[id] += ranked.probability;
   }
   const auto best =
@@ -161,7 +167,7 @@ std::pair<std::string, double> likeliest(const BlindVerdict& verdict) {
 bool is_right(const BlindOutcome& outcome, const std::string& said) {
   if (outcome.kind == BlindKind::none) return said == "none";
   if (outcome.kind == BlindKind::outside) return said == "unknown";
-  return holds(classes_of(outcome.causes), said) || classes_of(outcome.causes).contains(said);
+  return classes_of(outcome).contains(said);
 }
 
 void add_reliability(const std::vector<BlindOutcome>& outcomes, BlindScore& score) {
@@ -174,7 +180,7 @@ void add_reliability(const std::vector<BlindOutcome>& outcomes, BlindScore& scor
   }
   for (const BlindOutcome& outcome : outcomes) {
     if (outcome.verdict.verdict == "failed") continue;
-    const auto [said, p] = likeliest(outcome.verdict);
+    const auto [said, p] = likeliest(outcome.verdict, outcome.filmed);
     const auto bin = std::min(kBins - 1, static_cast<std::size_t>(p * kBins));
     sums[bin] += p;
     count(score.reliability[bin].right, is_right(outcome, said));
@@ -206,9 +212,9 @@ std::string verdict_without(const BlindOutcome& outcome) {
   const BlindVerdict& without = *outcome.left_out;
   if (without.verdict != "effect") return without.verdict;
   // Equals of the truth on these data, as the full diagnosis says it, may take its place.
-  const std::set<std::string> named = named_by(outcome.verdict);
-  const bool truth_named = holds(named, outcome.causes.front().id);
-  if (truth_named && holds(named, without.effects.front().id)) return "equivalent";
+  const std::set<std::string> named = named_by(outcome);
+  const bool truth_named = named.contains(true_class(outcome));
+  if (truth_named && named.contains(blind_class(without.effects.front().id, outcome.filmed))) return "equivalent";
   const bool sure = std::any_of(without.effects.begin(), without.effects.end(),
                                 [](const BlindNamed& effect) { return effect.probability > kSure; });
   return sure ? "another name, probability over 0.8" : "another name";
@@ -219,7 +225,7 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
   const std::string strength(strength_word(outcome));
   if (outcome.kind == BlindKind::none) count(score.false_alarm, verdict.verdict != "none");
   if (outcome.kind == BlindKind::single) {
-    count(score.in_set[strength], holds(named_by(verdict), outcome.causes.front().id));
+    count(score.in_set[strength], named_by(outcome).contains(true_class(outcome)));
     count(score.exact[strength], !verdict.effects.empty() && verdict.effects.front().id == outcome.causes.front().id);
     if (outcome.left_out) {
       const std::string said = verdict_without(outcome);
@@ -254,7 +260,7 @@ void add_confusion(const BlindOutcome& outcome, BlindScore& score) {
   std::string said = verdict.effects.empty() ? verdict.verdict : verdict.effects.front().id;
   if (outcome.kind == BlindKind::pair && !verdict.effects.empty()) {
     std::size_t found = 0;
-    for (const std::string& cause : classes_of(outcome.causes)) found += named_by(verdict).contains(cause);
+    for (const std::string& cause : classes_of(outcome)) found += named_by(outcome).contains(cause);
     said = fmt::format("{} of the two named", found);
   }
   ++row->said[said];
@@ -262,9 +268,9 @@ void add_confusion(const BlindOutcome& outcome, BlindScore& score) {
 
 }  // namespace
 
-std::string blind_class(const std::string& id) {
+std::string blind_class(const std::string& id, bool filmed) {
   if (id == "frame_rate_error") return "scale_error";
-  if (id == "base_vibration") return "camera_motion";
+  if (id == "base_vibration" && !filmed) return "camera_motion";
   return id;
 }
 
@@ -321,6 +327,18 @@ BlindVerdict read_blind_verdict(const std::filesystem::path& file) {
   }
 }
 
+void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict) {
+  const auto is_told = [&](const std::string& id) { return std::find(told.begin(), told.end(), id) != told.end(); };
+  if (told.empty() || verdict.verdict == "failed") return;
+  std::erase_if(verdict.effects, [&](const BlindNamed& effect) { return is_told(effect.id); });
+  if (verdict.verdict == "effect" && verdict.effects.empty()) verdict.verdict = "none";
+  for (BlindRanked& ranked : verdict.ranking) {
+    std::erase_if(ranked.ids, is_told);
+    if (ranked.ids.empty()) verdict.none += ranked.probability;
+  }
+  std::erase_if(verdict.ranking, [](const BlindRanked& ranked) { return ranked.ids.empty(); });
+}
+
 BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
   BlindScore score;
   score.methods = {{"glidelab diagnose", {}, {}, {}, {}},
@@ -338,7 +356,7 @@ BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
   BlindShare both;
   for (const BlindOutcome& outcome : outcomes) {
     if (outcome.kind != BlindKind::pair) continue;
-    const std::set<std::string> truth = classes_of(outcome.causes), named = named_by(outcome.verdict);
+    const std::set<std::string> truth = classes_of(outcome), named = named_by(outcome);
     count(both,
           outcome.verdict.effects.size() > 1 && std::includes(named.begin(), named.end(), truth.begin(), truth.end()));
   }

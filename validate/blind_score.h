@@ -1,8 +1,8 @@
 /// Diagnoses of blind cases held against their truths.
 ///
 /// Two pairs of effects are the same thing on tracks and count as one (effects.md: "cannot be told apart, always"):
-/// scale_error and frame_rate_error; camera_motion and base_vibration. Weak cases gain less than 15 in log likelihood,
-/// moderate ones 15 to 50, strong ones more.
+/// scale_error and frame_rate_error; camera_motion and base_vibration. Pictures tell the second pair apart. Weak cases
+/// gain less than 15 in log likelihood, moderate ones 15 to 50, strong ones more.
 #pragma once
 
 #include <filesystem>
@@ -44,6 +44,10 @@ struct BlindVerdict {
 /// InputError where the file is not a diagnosis.
 BlindVerdict read_blind_verdict(const std::filesystem::path& diagnosis_json);
 
+/// Takes effects that the folder itself tells of out of what a verdict names: what held them besides others counts for
+/// the others, what held them alone for none.
+void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict);
+
 struct BlindOutcome {
   std::size_t index = 0;
   BlindKind kind = BlindKind::none;
@@ -51,10 +55,11 @@ struct BlindOutcome {
   std::size_t clips = 0;
   BlindVerdict verdict;
   std::optional<BlindVerdict> left_out;  ///< with the true effect taken from the list
+  bool filmed = false;
 };
 
-/// scale_error and frame_rate_error give one word, so do camera_motion and base_vibration.
-std::string blind_class(const std::string& id);
+/// scale_error and frame_rate_error give one word; so do camera_motion and base_vibration on tracks.
+std::string blind_class(const std::string& id, bool filmed);
 /// "weak", "moderate", "strong"; of a pair by its weaker cause.
 std::string_view strength_word(const BlindOutcome& outcome);
 

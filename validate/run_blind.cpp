@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "base/staged_output.h"
 #include "validate/blind_effects.h"
+#include "validate/blind_scene_effects.h"
 
 namespace glidelab::validate {
 namespace {
@@ -24,7 +26,9 @@ void check(const BlindOptions& options) {
   }
   if (options.only.empty()) return;
   std::string known;
-  for (const auto* list : {&library_effects(), &outside_effects()}) {
+  const auto& library = options.pictures ? filmed_effects() : library_effects();
+  const auto& outside = options.pictures ? filmed_outside_effects() : outside_effects();
+  for (const auto* list : {&library, &outside}) {
     for (const std::string& id : *list) {
       if (id == options.only) return;
       known += (known.empty() ? "" : ", ") + id;
@@ -35,7 +39,8 @@ void check(const BlindOptions& options) {
 
 /// What makes two runs the same but for their number of cases.
 void check_same_run(const BlindOptions& options, const fs::path& out) {
-  const Json wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
+  Json wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
+  if (options.pictures) wanted["pictures"] = true;
   const fs::path file = out / "run.json";
   if (!fs::exists(file)) {
     base::StagedOutput staged(out);
@@ -59,23 +64,52 @@ BlindVerdict verdict_in(const fs::path& file, const std::string& failure) {
   return read_blind_verdict(file);
 }
 
+/// A case of either sort.
+struct Made {
+  BlindKind kind = BlindKind::none;
+  std::vector<BlindCause> causes;
+  std::size_t clips = 0;
+  std::vector<std::string> told;
+  std::string truth_json;
+  std::function<void(const fs::path& folder)> write;
+};
+
+Made make_case(const BlindOptions& options, const fs::path& out, std::size_t index, const FilmRenderer& render) {
+  if (!options.pictures) {
+    const auto one = std::make_shared<BlindCase>(make_blind_case(options.seed, index, {options.only}));
+    return {
+        one->kind, one->causes, one->design.clips.size(), {}, blind_truth_json(*one), [one](const fs::path& folder) {
+          write_blind_folder(*one, folder);
+        }};
+  }
+  const auto one = std::make_shared<FilmedCase>(make_filmed_case(options.seed, index, {options.only}));
+  const fs::path scratch = out / fmt::format("making-{:04d}", index);
+  return {one->kind,
+          one->causes,
+          one->scene.motion.clips.size(),
+          one->told,
+          filmed_truth_json(*one),
+          [=](const fs::path& folder) { film_blind_folder(*one, folder, scratch, render); }};
+}
+
 /// One whole case; what it leaves on disk is complete once the truth is there.
-BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::size_t index, const Diagnoser& diagnose) {
-  const BlindCase one = make_blind_case(options.seed, index, {options.only});
+BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::size_t index, const Diagnoser& diagnose,
+                      const FilmRenderer& render) {
+  const Made one = make_case(options, out, index, render);
   const std::string name = fmt::format("{:04d}", index);
   const fs::path folder = out / "cases" / name, diagnosis = out / "diagnoses" / name;
   const fs::path truth = out / "truth" / (name + ".json"), failure_file = diagnosis / "failure.txt";
   const bool leaves_out = options.leave_out && one.kind == BlindKind::single;
   const fs::path without = diagnosis / "left-out";
   const bool done = fs::exists(truth) && (fs::exists(diagnosis / "diagnosis.json") || fs::exists(failure_file));
-  if (done && base::read_file(truth) != blind_truth_json(one)) {
+  if (done && base::read_file(truth) != one.truth_json) {
     throw base::InputError(base::Issue{truth.string(), 0, "", "a case of another version of this program",
                                        "an empty folder, or the version that made it"});
   }
   if (!done) {
     fs::remove_all(folder);
     fs::remove_all(diagnosis);
-    write_blind_folder(one, folder);
+    one.write(folder);
     fs::create_directories(diagnosis);
     const std::string failure = diagnose(folder, diagnosis, {});
     if (!failure.empty()) base::write_file(failure_file, failure);
@@ -86,14 +120,16 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
   }
   if (!done) {
     base::StagedOutput staged(out / "truth");
-    base::write_file(staged.dir() / truth.filename(), blind_truth_json(one));
+    base::write_file(staged.dir() / truth.filename(), one.truth_json);
     staged.publish_files();
   }
-  BlindOutcome outcome{index, one.kind, one.causes, one.design.clips.size(), {}, {}};
+  BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.pictures};
   outcome.verdict =
       verdict_in(diagnosis / "diagnosis.json", fs::exists(failure_file) ? base::read_file(failure_file) : "");
+  set_aside(one.told, outcome.verdict);
   if (leaves_out && fs::exists(without / "diagnosis.json")) {
     outcome.left_out = read_blind_verdict(without / "diagnosis.json");
+    set_aside(one.told, *outcome.left_out);
   }
   return outcome;
 }
@@ -101,7 +137,7 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
 }  // namespace
 
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path& out, const Diagnoser& diagnose,
-                                    const base::Progress& progress) {
+                                    const base::Progress& progress, const FilmRenderer& render) {
   check(options);
   fs::create_directories(out);
   check_same_run(options, out);
@@ -109,7 +145,7 @@ std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path&
   std::atomic<std::size_t> done{0};
   base::for_each_parallel(options.cases, options.jobs, [&](std::size_t i) {
     progress("diagnosing blind cases", static_cast<double>(done) / static_cast<double>(options.cases));
-    outcomes[i] = run_case(options, out, i, diagnose);
+    outcomes[i] = run_case(options, out, i, diagnose, render);
     ++done;
   });
   return outcomes;

@@ -6,6 +6,8 @@
 ///     OUT/diagnoses/0012/              diagnosis.json, diagnosis-left-out.json
 ///     OUT/truth/0012.json              written after the diagnosis
 ///
+/// With pictures a case is rendered in OUT/making-0012/, which is gone before the diagnosis begins.
+///
 /// Run again, it goes on where it stopped: a case counts as done when its truth is there.
 #pragma once
 
@@ -16,6 +18,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "validate/blind_filmed_case.h"
 #include "validate/blind_score.h"
 
 namespace glidelab::validate {
@@ -27,6 +30,7 @@ struct BlindOptions {
   std::size_t cases = 0;
   bool leave_out = false;  ///< diagnose each case of one effect once more, its effect taken from the list
   std::string only;        ///< an effect that every case has
+  bool pictures = false;   ///< filmed experiments in place of tracks
   int jobs = 1;
 };
 
@@ -34,8 +38,9 @@ struct BlindOptions {
 using Diagnoser = std::function<std::string(const std::filesystem::path& folder, const std::filesystem::path& out,
                                             const std::vector<std::string>& without)>;
 
-/// InputError for no cases, for an unknown effect, and where OUT holds another run.
+/// InputError for no cases, for an unknown effect, and where OUT holds another run. `render` is for pictures only.
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
-                                    const Diagnoser& diagnose, const base::Progress& progress = base::no_progress);
+                                    const Diagnoser& diagnose, const base::Progress& progress = base::no_progress,
+                                    const FilmRenderer& render = {});
 
 }  // namespace glidelab::validate

@@ -139,6 +139,25 @@ TEST_CASE("a truth is written after its diagnosis, a second run goes on, and ano
   CHECK_THROWS_AS(validate::run_blind(options, temp / "none", diagnoser), base::InputError);
 }
 
+TEST_CASE("pictures tell a camera that shakes from a table that does, and what a file says itself is no alarm") {
+  using validate::BlindKind;
+  auto shaken = outcome(BlindKind::single, "camera_motion", 100.0, "effect", "base_vibration", 0.9);
+  CHECK(validate::score_blind({shaken}).methods.front().single.at("strong").yes == 1);
+  shaken.filmed = true;
+  CHECK(validate::score_blind({shaken}).methods.front().single.at("strong").yes == 0);
+
+  auto lossy = outcome(BlindKind::none, "", 0.0, "effect", "compression", 0.9);
+  lossy.filmed = true;
+  CHECK(validate::score_blind({lossy}).false_alarm.yes == 1);
+  validate::set_aside({"compression"}, lossy.verdict);
+  CHECK(lossy.verdict.verdict == "none");
+  CHECK(lossy.verdict.none == 0.9);
+  CHECK(validate::score_blind({lossy}).false_alarm.yes == 0);
+  auto other = outcome(BlindKind::none, "", 0.0, "effect", "stribeck", 0.9);
+  validate::set_aside({"compression"}, other.verdict);
+  CHECK(other.verdict.verdict == "effect");
+}
+
 TEST_CASE("a score counts names, alarms and what was not recognised") {
   using validate::BlindKind;
   const auto score = validate::score_blind({
