@@ -15,7 +15,8 @@ namespace glidelab::core {
 namespace {
 
 constexpr int kLargestForDetection = 1600;  // px; larger pictures are halved for finding, not for refining
-constexpr double kWindowShare = 0.7;        // of the distance to the next edge
+constexpr int kLeastSide = 20;        // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
+constexpr double kWindowShare = 0.7;  // of the distance to the next edge
 constexpr double kLargestWindowPx = 14.0;
 constexpr double kSmallestWindowPx = 2.5;
 
@@ -38,6 +39,7 @@ cv::Mat to_8_bits(const cv::Mat& grey) {
 }
 
 std::vector<cv::Point2f> detect(const cv::Mat& eight, cv::Size inner_corners, BoardDetector detector) {
+  if (std::min(eight.cols, eight.rows) < kLeastSide) return {};
   std::vector<cv::Point2f> corners;
   bool found = false;
   if (detector != BoardDetector::sector_based) {
@@ -312,7 +314,8 @@ std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corne
   const int largest = std::max(eight.cols, eight.rows);
   const double shrink = largest > kLargestForDetection ? static_cast<double>(kLargestForDetection) / largest : 1.0;
   cv::Mat small = eight;
-  if (shrink < 1.0) cv::resize(eight, small, cv::Size(), shrink, shrink, cv::INTER_AREA);
+  const auto shrunk = [shrink](int length) { return std::max(1, static_cast<int>(std::lround(shrink * length))); };
+  if (shrink < 1.0) cv::resize(eight, small, {shrunk(eight.cols), shrunk(eight.rows)}, 0.0, 0.0, cv::INTER_AREA);
   std::vector<cv::Point2f> corners = detect(small, inner_corners, detector);
   if (corners.empty() && shrink < 1.0) {  // small squares may have got lost
     small = eight;

@@ -1,6 +1,7 @@
 #include "run_process.h"
 
 #include <fcntl.h>
+#include <grp.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,7 +14,8 @@
 namespace glidelab::tests {
 namespace fs = std::filesystem;
 
-Process::Process(std::vector<std::string> arguments, const fs::path& working_dir) {
+Process::Process(std::vector<std::string> arguments, const fs::path& working_dir, User user) {
+  constexpr uid_t kNobody = 65534;
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
@@ -28,6 +30,9 @@ Process::Process(std::vector<std::string> arguments, const fs::path& working_dir
     ::signal(SIGINT, SIG_DFL);
     ::signal(SIGTERM, SIG_DFL);
     if (!working_dir.empty() && ::chdir(working_dir.c_str()) != 0) ::_exit(126);
+    if (user == User::nobody && (::setgroups(0, nullptr) != 0 || ::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) {
+      ::_exit(126);
+    }
     ::execvp(pointers[0], pointers.data());
     ::_exit(127);
   }
@@ -61,8 +66,8 @@ ProcessResult Process::wait() {
   return result;
 }
 
-ProcessResult run(std::vector<std::string> arguments, const fs::path& working_dir) {
-  return Process(std::move(arguments), working_dir).wait();
+ProcessResult run(std::vector<std::string> arguments, const fs::path& working_dir, User user) {
+  return Process(std::move(arguments), working_dir, user).wait();
 }
 
 ProcessResult glidelab(std::vector<std::string> arguments, const fs::path& working_dir) {

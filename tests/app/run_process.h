@@ -17,11 +17,15 @@ struct ProcessResult {
   std::string err;
 };
 
+/// Whom a child runs as: who runs the test, or nobody (65534), whom permissions hold back, as only root can ask for.
+enum class User { same, nobody };
+
 /// A child that runs until it is waited for. Both outputs go to files in a folder of its own.
 class Process {
  public:
   /// The first argument is the program, looked up in PATH. `working_dir` empty: the test's own.
-  explicit Process(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {});
+  explicit Process(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {},
+                   User user = User::same);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -35,7 +39,8 @@ class Process {
   base::TemporaryFolder folder_{"process"};
 };
 
-ProcessResult run(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {});
+ProcessResult run(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {},
+                  User user = User::same);
 
 /// The program under test with these arguments.
 ProcessResult glidelab(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {});

@@ -1,4 +1,6 @@
 /// What a person's disk, names and impatience may do to the program: nothing half-written, one clear message.
+#include <fmt/format.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -33,10 +35,44 @@ bool says(const tests::ProcessResult& result, const std::string& part) {
   return result.err.find(part) != std::string::npos;
 }
 
-/// Permissions do not hold back root, who runs the tests in containers.
-bool is_root() {
-  return ::geteuid() == 0;
+/// Permissions do not hold back root, who runs the tests in containers: nobody then runs the program.
+tests::User held_back_by_permissions() {
+  return ::geteuid() == 0 ? tests::User::nobody : tests::User::same;
 }
+
+/// Whether that user can run the program at all: a checkout below somebody's home may be closed to others.
+bool can_run(tests::User user) {
+  return tests::run({tests::kBinary, "--version"}, "/", user).status == 0;
+}
+
+/// Everybody may read what is in a test's folder.
+void open_to_all(const fs::path& folder) {
+  constexpr fs::perms kRead = fs::perms::group_read | fs::perms::others_read;
+  constexpr fs::perms kEnter = fs::perms::group_exec | fs::perms::others_exec;
+  fs::permissions(folder, kRead | kEnter, fs::perm_options::add);
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    fs::permissions(entry.path(), entry.is_directory() ? kRead | kEnter : kRead, fs::perm_options::add);
+  }
+}
+
+/// A file system in memory of this size, for as long as this lives; not there where it may not be mounted.
+class SmallDisk {
+ public:
+  SmallDisk(fs::path place, const char* size) : place_(std::move(place)) {
+    fs::create_directories(place_);
+    there_ = ::mount("tmpfs", place_.c_str(), "tmpfs", 0, fmt::format("size={}", size).c_str()) == 0;
+  }
+  ~SmallDisk() {
+    if (there_) ::umount2(place_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool there() const { return there_; }
+
+ private:
+  fs::path place_;
+  bool there_ = false;
+};
 
 }  // namespace
 
@@ -94,23 +130,82 @@ TEST_CASE("experiment.toml reaches outside its folder with --allow-outside only"
 }
 
 TEST_CASE("an output folder in a read-only place is an error of the environment that names it") {
-  if (is_root()) {
-    WARN("skipped: root may write everywhere");
+  const tests::User user = held_back_by_permissions();
+  if (!can_run(user)) {
+    WARN("skipped: nobody may not run the program where it lies");
     return;
   }
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");
   fs::create_directories(temp / "locked");
-  fs::permissions(temp / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-  const tests::ProcessResult result =
-      tests::glidelab({"analyze", (temp / "made").string(), "-q", "--out", (temp / "locked/out").string()});
+  open_to_all(temp.path());
+  fs::permissions(temp / "locked", fs::perms::owner_read | fs::perms::owner_exec, fs::perm_options::replace);
+  fs::permissions(temp / "locked", fs::perms::others_read | fs::perms::others_exec, fs::perm_options::add);
+  for (const char* command : {"analyze", "diagnose", "check"}) {
+    INFO(command);
+    const tests::ProcessResult result = tests::run(
+        {tests::kBinary, command, (temp / "made").string(), "-q", "--out", (temp / "locked/out").string()}, "/", user);
+    INFO(result.err);
+    CHECK(result.status == 3);
+    CHECK(says(result, "locked"));
+    CHECK(names_in(temp / "locked").empty());
+  }
   fs::permissions(temp / "locked", fs::perms::owner_all);
-  CHECK(result.status == 3);
-  CHECK(says(result, "locked"));
-  CHECK(names_in(temp / "locked").empty());
 }
 
-TEST_CASE("a result on a full disk is an error of the environment") {
+TEST_CASE("files that may not be read are wrong input that names them, and leave nothing behind") {
+  const tests::User user = held_back_by_permissions();
+  if (!can_run(user)) {
+    WARN("skipped: nobody may not run the program where it lies");
+    return;
+  }
+  for (const char* closed : {"made/experiment.toml", "made/tracks/up.csv"}) {
+    INFO(closed);
+    const tests::TempDir temp;
+    tests::write_track_experiment(temp / "made");
+    fs::create_directories(temp / "place");
+    open_to_all(temp.path());
+    fs::permissions(temp / "place", fs::perms::all);
+    fs::permissions(temp / closed, fs::perms::none);
+    const tests::ProcessResult result = tests::run(
+        {tests::kBinary, "analyze", (temp / "made").string(), "-q", "--out", (temp / "place/out").string()}, "/", user);
+    INFO(result.err);
+    CHECK(result.status == 1);
+    CHECK(says(result, fs::path(closed).filename().string()));
+    CHECK(names_in(temp / "place").empty());
+  }
+}
+
+TEST_CASE("on a full disk a command ends with an error of the environment and takes back what it wrote") {
+  const tests::TempDir temp;
+  const SmallDisk disk(temp / "disk", "64k");
+  if (!disk.there()) {
+    WARN("skipped: no file system may be mounted");
+    return;
+  }
+  tests::write_track_experiment(temp / "made");
+  tests::write_tiny_scenario(temp / "tiny.toml");
+  struct Run {
+    const char* command;
+    const char* input;
+    std::size_t own_kib;  ///< of the disk's 64 that something of a person's takes: what is left is filled on the way
+  };
+  for (const auto& [command, input, own_kib] :
+       {Run{"analyze", "made", 60}, Run{"diagnose", "made", 60}, Run{"check", "made", 60},
+        Run{"render", "tiny.toml", 60}, Run{"simulate", "tiny.toml", 64}}) {
+    INFO(command);
+    base::write_file(temp / "disk/own", std::string(own_kib * 1024, 'x'));
+    const tests::ProcessResult result =
+        tests::glidelab({command, (temp / input).string(), "-q", "--out", (temp / "disk/out").string()});
+    INFO(result.err);
+    CHECK(result.status == 3);
+    CHECK(says(result, "No space left"));
+    CHECK(names_in(temp / "disk") == std::vector<std::string>{"own"});
+    CHECK(fs::file_size(temp / "disk/own") == own_kib * 1024);
+  }
+}
+
+TEST_CASE("a result that the standard output has no room for is an error of the environment") {
   if (!fs::exists("/dev/full")) {
     WARN("skipped: no /dev/full");
     return;

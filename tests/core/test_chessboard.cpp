@@ -179,6 +179,16 @@ TEST_CASE("a 16-bit picture with 12 bits used gives the same corners as an 8-bit
   for (std::size_t i = 0; i < 54; ++i) CHECK(distance(eight->points[i], sixteen->points[i]) < 0.01);
 }
 
+TEST_CASE("a picture of any size without the board gives nothing") {
+  for (const cv::Size size :
+       {cv::Size(1, 1), cv::Size(65535, 1), cv::Size(1, 65535), cv::Size(5, 9), cv::Size(20000, 9)}) {
+    for (const core::BoardDetector detector : {core::BoardDetector::classic, core::BoardDetector::sector_based}) {
+      INFO(size);
+      CHECK_FALSE(core::find_board(cv::Mat(size, CV_8U, cv::Scalar(90)), {9, 6}, detector));
+    }
+  }
+}
+
 TEST_CASE("a picture without the board gives nothing") {
   const cv::Mat grey = tests::expose(cv::Mat(240, 320, CV_64F, cv::Scalar(100.0)), 3.0, 5);
   CHECK_FALSE(core::find_board(grey, {9, 6}));
