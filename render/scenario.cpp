@@ -30,10 +30,11 @@ void section(const TomlTable& root, std::string_view key, const Read& read) {
 void read_pattern(const TomlTable& root, PatternSetup& pattern) {
   section(root, "calibration", [&](const TomlTable& table) {
     if (const auto corners = table.maybe_numbers("inner_corners", 2, base::between(3.0, 100.0))) {
-      pattern.inner_columns = static_cast<int>((*corners)[0]);
-      pattern.inner_rows = static_cast<int>((*corners)[1]);
-      if (pattern.inner_columns != (*corners)[0] || pattern.inner_rows != (*corners)[1] ||
-          pattern.inner_columns < pattern.inner_rows) {
+      const double columns = (*corners)[0], rows = (*corners)[1];
+      if (columns == std::floor(columns) && rows == std::floor(rows) && columns >= rows) {
+        pattern.inner_columns = static_cast<int>(columns);
+        pattern.inner_rows = static_cast<int>(rows);
+      } else if (std::isfinite(columns)) {  // else it is an error already
         table.reject("inner_corners", fmt::format("[{}, {}]", (*corners)[0], (*corners)[1]),
                      "two whole numbers, the larger one first");
       }
