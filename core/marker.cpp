@@ -41,7 +41,8 @@ std::optional<Window> cut_window(const Signal& signal, cv::Point2d centre, doubl
   const double taper_from = radius - std::min(2.0, 0.25 * radius);
   for (int v = top; v <= bottom; ++v) {
     for (int u = left; u <= right; ++u) {
-      const double distance = std::hypot(u - centre.x, v - centre.y);
+      const double du = u - centre.x, dv = v - centre.y;
+      const double distance = std::sqrt(du * du + dv * dv);
       if (distance >= radius) continue;
       window.u.push_back(u);
       window.v.push_back(v);
@@ -177,7 +178,8 @@ template <int N>
 std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
   std::vector<double> inside, around;
   for (std::size_t i = 0; i < window.size(); ++i) {
-    const double share = std::hypot(window.u[i] - guess.centre.x, window.v[i] - guess.centre.y) / guess.radius_px;
+    const double du = window.u[i] - guess.centre.x, dv = window.v[i] - guess.centre.y;
+    const double share = std::sqrt(du * du + dv * dv) / guess.radius_px;
     if (share < 0.7) inside.push_back(window.value[i]);
     if (share > 1.0) around.push_back(window.value[i]);
   }

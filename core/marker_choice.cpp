@@ -258,6 +258,7 @@ bool MarkerTracker::is_place_of_another(const Path& path, const Seen& sighting) 
 }
 
 TrackedMarker MarkerTracker::finish() {
+  search_rest();
   for (Path& path : paths_) {
     if (path.method == Method::undecided) choose_method(path);
   }

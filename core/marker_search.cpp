@@ -8,6 +8,9 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/contrast_parts.h"
+#include "core/pixel_noise.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -17,6 +20,7 @@ constexpr double kOwnColor = 200.0;       // of 255: the likeness of the marker'
 constexpr double kWorkingRadiusPx = 3.0;  // the picture is shrunk until the marker has this radius
 constexpr double kNoiseSigmas = 5.0;
 constexpr double kShareOfBest = 0.04;  // of the highest contrast in the region
+constexpr int kLargePx = 200 * 200;    // a smaller region is looked at as a whole
 
 cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
   const double grey = (color[0] + color[1] + color[2]) / 3.0;
@@ -46,25 +50,11 @@ cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
   return values;
 }
 
-/// Standard deviation of the noise from second differences along the rows (their median is not moved by edges).
-double noise_of(const cv::Mat& values) {
-  std::vector<float> differences;
-  const int step = std::max(1, values.rows / 60);
-  for (int v = 0; v < values.rows; v += step) {
-    const auto* row = values.ptr<float>(v);
-    for (int u = 1; u + 1 < values.cols; ++u) differences.push_back(std::abs(row[u - 1] - 2.0F * row[u] + row[u + 1]));
-  }
-  if (differences.empty()) return 0.0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
-}
-
 /// Means over squares of 2 half + 1 pixels, of what of them lies inside the picture, for centres in the picture and up
 /// to `beyond` pixels outside; NaN where nothing does. Sums are those of an integral picture.
 cv::Mat square_means(const cv::Mat& sums, int half, int beyond) {
   const int width = sums.cols - 1, height = sums.rows - 1;
-  cv::Mat means(height + 2 * beyond, width + 2 * beyond, CV_64F);
+  cv::Mat means(height + 2 * beyond, width + 2 * beyond, CV_32F);
   std::vector<int> left(static_cast<std::size_t>(means.cols)), right(left.size());
   for (int u = 0; u < means.cols; ++u) {
     left[static_cast<std::size_t>(u)] = std::max(u - beyond - half, 0);
@@ -72,18 +62,29 @@ cv::Mat square_means(const cv::Mat& sums, int half, int beyond) {
   }
   for (int v = 0; v < means.rows; ++v) {
     const int top = std::max(v - beyond - half, 0), bottom = std::min(v - beyond + half + 1, height);
-    auto* row = means.ptr<double>(v);
+    auto* row = means.ptr<float>(v);
     if (top >= bottom) {
-      std::fill(row, row + means.cols, std::numeric_limits<double>::quiet_NaN());
+      std::fill(row, row + means.cols, std::numeric_limits<float>::quiet_NaN());
       continue;
     }
     const auto* upper = sums.ptr<double>(top);
     const auto* lower = sums.ptr<double>(bottom);
-    for (int u = 0; u < means.cols; ++u) {
+    const auto mean_at = [&](int u) {
       const int l = left[static_cast<std::size_t>(u)], r = right[static_cast<std::size_t>(u)];
+      if (l >= r) return std::numeric_limits<float>::quiet_NaN();
       const double area = static_cast<double>(r - l) * (bottom - top);
-      row[u] = l < r ? (lower[r] - upper[r] - lower[l] + upper[l]) / area : std::numeric_limits<double>::quiet_NaN();
+      return static_cast<float>((lower[r] - upper[r] - lower[l] + upper[l]) / area);
+    };
+    // Between the borders all squares are whole.
+    const int first = std::min(half + beyond, means.cols), last = std::max(first, width - half + beyond);
+    for (int u = 0; u < first; ++u) row[u] = mean_at(u);
+    const double share = 1.0 / (static_cast<double>(2 * half + 1) * (bottom - top));
+    for (int u = first; u < last; ++u) {
+      const int l = u - beyond - half, r = u - beyond + half + 1;
+      const double sum = lower[r] - upper[r] - lower[l] + upper[l];
+      row[u] = static_cast<float>(sum * share);
     }
+    for (int u = last; u < means.cols; ++u) row[u] = mean_at(u);
   }
   return means;
 }
@@ -96,95 +97,76 @@ int outer_half(double radius) {
   return std::max(0, static_cast<int>(std::lround(0.4 * radius - 0.3)));
 }
 
-/// By how much a disc of this radius stands out of its surroundings at each pixel of the region: its inner mean above
+/// How a picture is looked at for discs of a radius.
+struct Scale {
+  double shrink;  ///< of the picture
+  double radius;  ///< of the disc, in the shrunk picture
+
+  explicit Scale(double radius_px) : shrink(std::max(1.0, radius_px / kWorkingRadiusPx)), radius(radius_px / shrink) {}
+  int inner() const { return inner_half(radius); }
+  int outer() const { return outer_half(radius); }
+  /// From the disc's centre to those of the squares beside it.
+  int away() const { return static_cast<int>(std::lround(radius + 1.0 + outer() + 0.3 * radius)); }
+  /// What lies as far around a centre in the region belongs to the picture that is looked at.
+  int surroundings_px() const { return static_cast<int>(std::ceil(3.0 * radius * shrink + 3.0)); }
+  /// No pixel that is farther away counts for the contrast at a place.
+  int sight_px() const { return static_cast<int>(std::ceil((away() + outer() + 1.0) * shrink)) + 1; }
+};
+
+/// By how much a disc stands out of its surroundings at each pixel of the region: its inner mean above
 /// the brightest but `bright_neighbours` of the means at eight places around it; 0 where more of these are as bright.
-cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, double radius, int bright_neighbours) {
-  const int outer = outer_half(radius);
-  const int away = static_cast<int>(std::lround(radius + 1.0 + outer + 0.3 * radius));
+cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, const Scale& scale, int bright_neighbours) {
+  const int away = scale.away();
   const int diagonal = static_cast<int>(std::lround(away * 0.75));
   const std::array<cv::Point, 8> around{
       cv::Point(away, 0),  cv::Point(diagonal, diagonal),   cv::Point(0, away),  cv::Point(-diagonal, diagonal),
       cv::Point(-away, 0), cv::Point(-diagonal, -diagonal), cv::Point(0, -away), cv::Point(diagonal, -diagonal)};
   cv::Mat sums;
   cv::integral(values, sums, CV_64F);
-  const cv::Mat in = square_means(sums, inner_half(radius), 0);
-  const cv::Mat out = square_means(sums, outer, away);
+  const cv::Mat in = square_means(sums, scale.inner(), 0);
+  const cv::Mat out = square_means(sums, scale.outer(), away);
   std::array<std::ptrdiff_t, 8> step{};
   for (std::size_t k = 0; k < around.size(); ++k) {
     step[k] = static_cast<std::ptrdiff_t>(around[k].y) * out.cols + around[k].x;
   }
   cv::Mat response(values.size(), CV_32F, cv::Scalar(0.0F));
-  std::vector<std::int64_t> brighter(static_cast<std::size_t>(values.cols));
+  std::vector<std::int32_t> brighter(static_cast<std::size_t>(values.cols));
   for (int v = region.y; v < region.br().y; ++v) {
-    const auto* inside = in.ptr<double>(v);
-    const double* beside = out.ptr<double>(v + away) + away;
+    const auto* inside = in.ptr<float>(v);
+    const float* beside = out.ptr<float>(v + away) + away;
     auto* result = response.ptr<float>(v);
     std::ranges::fill(brighter, 0);
     for (const std::ptrdiff_t k : step) {
-      for (int u = region.x; u < region.br().x; ++u) {
-        brighter[static_cast<std::size_t>(u)] += beside[u + k] >= inside[u] ? 1 : 0;
-      }
+      const float* const there = beside + k;
+      std::int32_t* const count = brighter.data();
+      for (int u = region.x; u < region.br().x; ++u) count[u] += there[u] >= inside[u] ? 1 : 0;
     }
     for (int u = region.x; u < region.br().x; ++u) {
       if (brighter[static_cast<std::size_t>(u)] > bright_neighbours) continue;
-      std::array<double, 8> means{};
+      std::array<float, 8> means{};
       std::size_t count = 0;
       for (const std::ptrdiff_t k : step) {
-        const double mean = beside[u + k];
+        const float mean = beside[u + k];
         if (!std::isnan(mean)) means[count++] = mean;
       }
       if (static_cast<int>(count) <= bright_neighbours) continue;
       const auto rank = means.begin() + bright_neighbours;
       std::nth_element(means.begin(), rank, means.begin() + static_cast<std::ptrdiff_t>(count), std::greater<>());
-      result[u] = static_cast<float>(inside[u] - *rank);
+      result[u] = inside[u] - *rank;
     }
   }
   return response;
 }
 
-}  // namespace
-
-SignalKind signal_kind(const MarkerSetup& marker) {
-  if (!marker.color_bgr) return SignalKind::bright;
-  const cv::Vec3b& c = *marker.color_bgr;
-  const int high = std::max({c[0], c[1], c[2]}), low = std::min({c[0], c[1], c[2]});
-  if (high - low >= kColorful) return SignalKind::colored;
-  return (c[0] + c[1] + c[2]) / 3.0 < kDark ? SignalKind::dark : SignalKind::bright;
-}
-
-double least_contrast(SignalKind kind) {
-  return kind == SignalKind::colored ? kOwnColor / 6.0 : 0.0;
-}
-
-std::optional<Signal> signal_of(const Frame& frame, const MarkerSetup& marker, SignalKind kind) {
-  if (kind == SignalKind::colored) {
-    if (frame.color.empty()) return std::nullopt;
-    return Signal{likeness(frame.color, *marker.color_bgr)};
-  }
-  if (kind == SignalKind::bright) return Signal{frame.grey, frame.draw};
-  if (frame.draw) frame.draw(cv::Rect({}, frame.grey.size()));
-  cv::Mat inverse;
-  cv::bitwise_not(frame.grey, inverse);
-  return Signal{inverse};
-}
-
-std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
-  const double shrink = std::max(1.0, search.radius_px / kWorkingRadiusPx);
-  const double radius = search.radius_px / shrink;
-  // What lies around a centre in the region belongs to the picture that is looked at.
-  const int reach = static_cast<int>(std::ceil(3.0 * search.radius_px + 3.0));
-  const cv::Rect whole(0, 0, signal.values.cols, signal.values.rows);
-  const cv::Rect region = search.region & whole;
-  const cv::Rect taken =
-      cv::Rect(region.x - reach, region.y - reach, region.width + 2 * reach, region.height + 2 * reach) & whole;
-  if (region.empty() || taken.empty()) return {};
-
-  signal.see(taken);
+/// Adds what stands out in the region. The noise, where it is given, is that of the shrunk picture's pixels.
+void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& search, const Scale& scale,
+               const std::optional<double>& noise, std::vector<Blob>& blobs) {
+  const cv::Rect taken = with_border(region, scale.surroundings_px()) & cv::Rect({}, values.size());
   cv::Mat small;
-  const cv::Size size(std::max(1, static_cast<int>(std::lround(taken.width / shrink))),
-                      std::max(1, static_cast<int>(std::lround(taken.height / shrink))));
-  signal.values(taken).convertTo(small, CV_32F);
-  if (shrink > 1.0) cv::resize(small, small, size, 0, 0, cv::INTER_AREA);
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(taken.width / scale.shrink))),
+                      std::max(1, static_cast<int>(std::lround(taken.height / scale.shrink))));
+  values(taken).convertTo(small, CV_32F);
+  if (scale.shrink > 1.0) cv::resize(small, small, size, 0, 0, cv::INTER_AREA);
   const double fu = static_cast<double>(taken.width) / small.cols;
   const double fv = static_cast<double>(taken.height) / small.rows;
   const auto to_picture = [&](double u, double v) {
@@ -201,14 +183,14 @@ std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
   const auto line = [&](int v) { return to_picture(0, v).y; };
   const cv::Point begin(first_in(small.cols, region.x - 0.5, column), first_in(small.rows, region.y - 0.5, line));
   const cv::Point end(first_in(small.cols, region.br().x, column), first_in(small.rows, region.br().y, line));
-  const cv::Mat response = response_of(small, cv::Rect(begin, end), radius, search.bright_neighbours);
+  const cv::Mat response = response_of(small, cv::Rect(begin, end), scale, search.bright_neighbours);
   double best = 0.0;
   cv::minMaxLoc(response, nullptr, &best);
-  const double noise = noise_of(small) / (2.0 * std::min(inner_half(radius), outer_half(radius)) + 1.0);
+  const double of_pixel = noise ? *noise : noise_of(small);
+  const double of_mean = of_pixel / (2.0 * std::min(scale.inner(), scale.outer()) + 1.0);
   const double least =
-      std::max({kNoiseSigmas * std::sqrt(2.0) * noise, kShareOfBest * best, search.least_contrast, 1e-6});
+      std::max({kNoiseSigmas * std::sqrt(2.0) * of_mean, kShareOfBest * best, search.least_contrast, 1e-6});
 
-  std::vector<Blob> blobs;
   for (int v = 0; v < small.rows; ++v) {
     for (int u = 0; u < small.cols; ++u) {
       const float here = response.at<float>(v, u);
@@ -238,9 +220,54 @@ std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
       blobs.push_back({to_picture(u + su / sum, v + sv / sum), static_cast<double>(here)});
     }
   }
+}
+
+}  // namespace
+
+SignalKind signal_kind(const MarkerSetup& marker) {
+  if (!marker.color_bgr) return SignalKind::bright;
+  const cv::Vec3b& c = *marker.color_bgr;
+  const int high = std::max({c[0], c[1], c[2]}), low = std::min({c[0], c[1], c[2]});
+  if (high - low >= kColorful) return SignalKind::colored;
+  return (c[0] + c[1] + c[2]) / 3.0 < kDark ? SignalKind::dark : SignalKind::bright;
+}
+
+double least_contrast(SignalKind kind) {
+  return kind == SignalKind::colored ? kOwnColor / 6.0 : 0.0;
+}
+
+std::optional<Signal> signal_of(const Frame& frame, const MarkerSetup& marker, SignalKind kind) {
+  if (kind == SignalKind::colored) {
+    if (frame.color.empty()) return std::nullopt;
+    return Signal{likeness(frame.color, *marker.color_bgr)};
+  }
+  if (kind == SignalKind::bright) return Signal{frame.grey, frame.draw};
+  if (frame.draw) frame.draw(cv::Rect({}, frame.grey.size()));
+  cv::Mat inverse;
+  cv::bitwise_not(frame.grey, inverse);
+  return Signal{inverse};
+}
+
+std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
+  const cv::Rect whole({}, signal.values.size());
+  const cv::Rect region = search.region & whole;
+  const Scale scale(search.radius_px);
+  const cv::Rect taken = with_border(region, scale.surroundings_px()) & whole;
+  if (region.empty() || taken.empty()) return {};
+  signal.see(taken);
+  std::vector<Blob> blobs;
+  if (search.least_contrast > 0.0 && region.area() > kLargePx) {
+    const double noise = noise_when_shrunk(signal.values(taken), static_cast<int>(std::lround(scale.shrink)));
+    for (const cv::Rect& part : parts_with_contrast(signal.values, region, search.least_contrast, scale.sight_px())) {
+      add_blobs(signal.values, part, search, scale, noise, blobs);
+    }
+  } else {
+    add_blobs(signal.values, region, search, scale, std::nullopt, blobs);
+  }
   std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) { return a.contrast > b.contrast; });
   std::vector<Blob> apart;
   for (const Blob& blob : blobs) {
+    if (blob.contrast < kShareOfBest * blobs.front().contrast) break;
     const bool near = std::any_of(apart.begin(), apart.end(), [&](const Blob& other) {
       return cv::norm(blob.centre - other.centre) < 1.2 * search.radius_px;
     });

@@ -44,7 +44,8 @@ struct BlobSearch {
 
 /// The mean of a box inside the expected disc against the means of eight boxes around it: local maxima of its excess
 /// above the (bright_neighbours + 1)-th brightest of them, down to five standard deviations of the noise. Highest
-/// contrast first.
+/// contrast first. Where a contrast is asked for, only those parts of a large picture are looked at in which pixels
+/// differ by as much within a blob's surroundings.
 std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search);
 
 }  // namespace glidelab::core

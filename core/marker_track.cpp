@@ -11,6 +11,9 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kSearchPeriod = 10;    // frames from one search of the whole picture to the next
+constexpr std::size_t kRarestPeriod = 40;    // the same while the marker is followed
+constexpr double kRarest_s = 0.2;            // in which nothing crosses the picture
+constexpr std::size_t kPastBytes = 1 << 27;  // of the frames between, which are kept
 constexpr std::size_t kSamples = 24;         // windows that decide how a path is measured
 constexpr std::size_t kAwake = 10;           // resting paths that are followed nonetheless
 constexpr std::size_t kLostAfter = 25;       // frames without a sighting
@@ -282,6 +285,29 @@ void MarkerTracker::tidy(std::size_t frame) {
   std::erase_if(paths_, [](const Path& path) { return path.ended && path.seen.size() < kFewestSightings; });
 }
 
+/// A piece of the marker or a second one that is found late is followed back through the frames that are kept; only
+/// what comes and goes in between is missed.
+bool MarkerTracker::is_time_to_search(const Signal& signal, const Frame& frame) const {
+  if (frame.index % kSearchPeriod != 0) return false;
+  const bool any_lost = std::any_of(paths_.begin(), paths_.end(), [&](const Path& path) {
+    return !path.ended && !path.asleep && path.seen.back().frame < frame.index && path.seen.size() >= kFewestSightings;
+  });
+  if (any_lost || mover(frame.index) == nullptr) return true;
+  const std::size_t bytes = std::max<std::size_t>(signal.values.total() * signal.values.elemSize(), 1);
+  const std::size_t period = std::clamp(kPastBytes / bytes, kSearchPeriod, kRarestPeriod);
+  const double since = frames_between(searched_, frame.index), until_next = since + kSearchPeriod;
+  const double until_next_s = (frame.t_s - searched_s_) * until_next / since;
+  return until_next > static_cast<double>(period) || until_next_s > kRarest_s + 1e-9;
+}
+
+/// What came since the last search, if that was long ago.
+void MarkerTracker::search_rest() {
+  if (past_.size() < kSearchPeriod) return;
+  const Past last = past_.back();
+  past_.pop_back();
+  search_whole(last.signal, last.frame);
+}
+
 void MarkerTracker::add(const Frame& frame) {
   const auto signal = signal_of(frame, marker_, kind_);
   if (!signal) fail("a clip without colours", "a clip in colour, as [marker] color asks for");
@@ -290,13 +316,17 @@ void MarkerTracker::add(const Frame& frame) {
     radius_px_ = std::max(radius_at_(middle), kSmallestRadiusPx);
   }
   follow(*signal, frame.index);
-  if (frame.index % kSearchPeriod == 0) {
+  if (is_time_to_search(*signal, frame)) {
     search_whole(*signal, frame.index);
+    searched_ = frame.index;
+    searched_s_ = frame.t_s;
+    past_.clear();
+  }
+  if (frame.index % kSearchPeriod == 0) {
     put_to_sleep(frame.index);
     tidy(frame.index);
   }
-  past_.push_back({frame.index, *signal});
-  if (past_.size() >= kSearchPeriod) past_.pop_front();
+  if (frame.index != searched_) past_.push_back({frame.index, *signal});
   frames_ = frame.index + 1;
 }
 

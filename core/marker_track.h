@@ -3,8 +3,9 @@
 /// Frames stream through once. Every blob of about the marker's size begins a path; a path is followed by fitting the
 /// marker's model around where it should be (constant velocity), or by searching a window where that fails. The whole
 /// picture is searched in the first frame and every tenth one after it, and a path that begins there is followed back
-/// through the frames between. At the end the marker is the path that moves and has the right size and brightness, not
-/// the brightest one; what rests all the time is part of the scene. Frames in which it is not seen stay without.
+/// through the frames between; while something like the marker is seen moving and nothing else is lost, less often (up
+/// to forty frames within 0.2 s). At the end the marker is the path that moves and has the right size and brightness,
+/// not the brightest one; what rests all the time is part of the scene. Frames in which it is not seen stay without.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -92,6 +93,8 @@ class MarkerTracker {
   const Path* mover(std::size_t frame) const;
   void put_to_sleep(std::size_t frame);
   void tidy(std::size_t frame);
+  void search_rest();
+  bool is_time_to_search(const Signal& signal, const Frame& frame) const;
   std::vector<cv::Point2d> places_at(std::size_t frame) const;
 
   void choose_method(Path& path) const;
@@ -109,7 +112,9 @@ class MarkerTracker {
   RadiusAt radius_at_;
   double radius_px_ = 0.0;  ///< in the middle of the picture
   std::vector<Path> paths_;
-  std::deque<Past> past_;
+  std::deque<Past> past_;  ///< since the last search of the whole picture
+  std::size_t searched_ = 0;
+  double searched_s_ = 0.0;
   std::size_t frames_ = 0;
 };
 

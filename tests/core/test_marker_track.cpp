@@ -219,6 +219,16 @@ TEST_CASE("two equal markers that move alike are an error, unless start_px says 
   CHECK(error_px(tracked, [&](std::size_t k) { return place(k) + off; }) < kNoiseLimitPx);
 }
 
+TEST_CASE("a second marker that comes while the first is followed is found, and followed back to where it came") {
+  for (const std::size_t came : {23u, 35u}) {
+    const std::string error = error_of(clip([&](cv::Mat& p, std::size_t k) {
+      tests::put_disc(p, place(k), kRadius, 210.0);
+      if (k >= came) tests::put_disc(p, {229.5 - 5.5 * static_cast<double>(k - came), 140.0}, kRadius, 210.0);
+    }));
+    CHECK_THAT(error, Catch::Contains("two markers") && Catch::Contains("in frame " + std::to_string(came)));
+  }
+}
+
 TEST_CASE("a clip without a marker is an error, and so is a start_px with nothing there") {
   CHECK_THAT(error_of(clip([](cv::Mat&, std::size_t) {})), Catch::Contains("clip.mkv") && Catch::Contains("no marker"));
   // Two things rest and none moves.

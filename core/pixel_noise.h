@@ -1,0 +1,14 @@
+/// The noise of a picture's pixels from second differences along its rows: their median is not moved by edges.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+namespace glidelab::core {
+
+/// Standard deviation of one pixel, of a picture of floats.
+double noise_of(const cv::Mat& values);
+
+/// The same of the picture shrunk by a whole number, from some of its rows; values of any depth.
+double noise_when_shrunk(const cv::Mat& values, int shrink);
+
+}  // namespace glidelab::core
