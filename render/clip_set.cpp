@@ -1,45 +1,61 @@
 #include "render/clip_set.h"
 
+#include <algorithm>
 #include <set>
+#include <stdexcept>
 
 #include "base/parallel.h"
 #include "render/static_painter.h"
 
 namespace glidelab::render {
 
-ClipSet::ClipSet(const Scenario& scenario, int jobs, const std::function<void()>& drawn)
-    : scenario_(as_in_clips(scenario)), rays_(make_ray_table(scenario_.camera, scenario_.vignetting)) {
+std::shared_ptr<const Stage> set_stage(const Scenario& before, int jobs, const std::function<void()>& drawn) {
+  const Scenario scenario = as_in_clips(before);
+  const auto stage = std::make_shared<Stage>();
+  stage->rays = make_ray_table(scenario.camera, scenario.vignetting);
   double longest_s = 0.0;
-  for (const sim::ConfigurationSetup& configuration : scenario_.motion.configurations) {
-    SetUp& set_up = set_ups_[configuration.group];
-    if (set_up.scene.boxes.empty()) set_up.scene = empty_track(scenario_, configuration.body.incline_rad);
-    for (const sim::MotionSetup& motion : configuration.motions) {
-      clips_.push_back({&configuration, &motion, &set_up});
-      longest_s = std::max(longest_s, motion.duration_s);
-    }
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    Stage::SetUp& set_up = stage->set_ups[configuration.group];
+    if (set_up.scene.boxes.empty()) set_up.scene = empty_track(scenario, configuration.body.incline_rad);
+    for (const sim::MotionSetup& motion : configuration.motions) longest_s = std::max(longest_s, motion.duration_s);
   }
-  std::vector<SetUp*> set_ups;
-  for (auto& [name, set_up] : set_ups_) set_ups.push_back(&set_up);
-  const double white_e = electrons_of_white(scenario_);
+  std::vector<Stage::SetUp*> set_ups;
+  for (auto& [name, set_up] : stage->set_ups) set_ups.push_back(&set_up);
+  const double white_e = electrons_of_white(scenario);
   base::in_parallel(jobs, set_ups.size(), [&](const auto& next) {
-    StaticPainter painter(scenario_.camera, rays_, scenario_.focus);
+    StaticPainter painter(scenario.camera, stage->rays, scenario.focus);
     for (std::size_t i = next(); i < set_ups.size(); i = next()) {
-      SetUp& set_up = *set_ups[i];
+      Stage::SetUp& set_up = *set_ups[i];
       set_up.background_e = painter.paint(set_up.scene);
       for (float& value : set_up.background_e.values) {
         value = static_cast<float>(static_cast<double>(value) * white_e);
       }
-      if (scenario_.mount.moves()) {
-        set_up.fine = fine_picture(scenario_.camera, scenario_.mount, scenario_.focus, set_up.scene, longest_s);
+      if (scenario.mount.moves()) {
+        set_up.fine = fine_picture(scenario.camera, scenario.mount, scenario.focus, set_up.scene, longest_s);
       }
       if (drawn) drawn();
     }
   });
+  return stage;
+}
+
+ClipSet::ClipSet(const Scenario& scenario, int jobs, const std::function<void()>& drawn)
+    : ClipSet(scenario, set_stage(scenario, jobs, drawn)) {}
+
+ClipSet::ClipSet(const Scenario& scenario, std::shared_ptr<const Stage> stage)
+    : scenario_(as_in_clips(scenario)), stage_(std::move(stage)) {
+  for (const sim::ConfigurationSetup& configuration : scenario_.motion.configurations) {
+    const auto found = stage_->set_ups.find(configuration.group);
+    if (found == stage_->set_ups.end()) throw std::logic_error("the stage has no group " + configuration.group);
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      clips_.push_back({&configuration, &motion, &found->second});
+    }
+  }
 }
 
 ClipRenderer ClipSet::renderer(std::size_t clip, std::uint64_t seed) const {
   const Clip& one = clips_.at(clip);
-  return ClipRenderer(scenario_, *one.configuration, one.set_up->scene, rays_, one.set_up->background_e, seed,
+  return ClipRenderer(scenario_, *one.configuration, one.set_up->scene, stage_->rays, one.set_up->background_e, seed,
                       static_cast<std::uint32_t>(clip), one.set_up->fine ? &*one.set_up->fine : nullptr);
 }
 

@@ -11,12 +11,29 @@
 
 namespace glidelab::render {
 
-/// Draws what stands still for every set-up of the track, on up to `jobs` threads, and keeps it. Not to be moved or
-/// copied: renderers refer to it.
+/// What stands still, drawn for every set-up of the track. It has no noise, and nothing of the motions in it: clips of
+/// one camera share it, whatever their motions, seed, clock, shutter or codec.
+struct Stage {
+  struct SetUp {
+    StaticScene scene;
+    FloatPicture background_e;        ///< in electrons
+    std::optional<FinePicture> fine;  ///< where the camera moves
+  };
+  RayTable rays;                         ///< of the camera as in the clips
+  std::map<std::string, SetUp> set_ups;  ///< by group
+};
+
+/// Drawn on up to `jobs` threads. `drawn`, where there is one, is called for every set-up that is done, perhaps from
+/// several threads at once.
+std::shared_ptr<const Stage> set_stage(const Scenario& scenario, int jobs, const std::function<void()>& drawn = {});
+
+/// Not to be moved or copied: renderers refer to it.
 class ClipSet {
  public:
-  /// `drawn`, where there is one, is called for every set-up that is done, perhaps from several threads at once.
   explicit ClipSet(const Scenario& scenario, int jobs = 1, const std::function<void()>& drawn = {});
+  /// Before a stage that was set for this scenario, or one that differs in what a stage has nothing of.
+  /// std::logic_error where the stage lacks one of the scenario's groups.
+  ClipSet(const Scenario& scenario, std::shared_ptr<const Stage> stage);
   ClipSet(const ClipSet&) = delete;
   ClipSet& operator=(const ClipSet&) = delete;
 
@@ -31,27 +48,21 @@ class ClipSet {
   /// As in the clips (render/mount.h).
   const Scenario& scenario() const { return scenario_; }
   /// Of the camera as in the clips.
-  const RayTable& rays() const { return rays_; }
+  const RayTable& rays() const { return stage_->rays; }
 
   /// One for each thread; the frames of a clip are the same as in the file that render_experiment writes with this
   /// seed.
   ClipRenderer renderer(std::size_t clip, std::uint64_t seed) const;
 
  private:
-  struct SetUp {
-    StaticScene scene;
-    FloatPicture background_e;
-    std::optional<FinePicture> fine;
-  };
   struct Clip {
     const sim::ConfigurationSetup* configuration;
     const sim::MotionSetup* motion;
-    const SetUp* set_up;
+    const Stage::SetUp* set_up;
   };
 
   Scenario scenario_;
-  RayTable rays_;
-  std::map<std::string, SetUp> set_ups_;
+  std::shared_ptr<const Stage> stage_;
   std::vector<Clip> clips_;
 };
 

@@ -235,8 +235,8 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   make_folder(truth_dir);
 
   const ClipCount count = count_clips(scenario, options.seed);
-  const std::size_t pictures =
-      1 + stills_of(scenario, options.seed).size() + (options.clips ? count_set_ups(scenario) : 0);
+  const std::size_t pictures = (options.stills ? 1 + stills_of(scenario, options.seed).size() : 0) +
+                               (options.clips ? count_set_ups(scenario) : 0);
   const double all_work =
       kStillWork * static_cast<double>(pictures) + (options.clips ? static_cast<double>(count.frames) : 0.0);
   std::atomic<double> done{0.0};
@@ -248,7 +248,7 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
   };
   const auto picture_done = [&] { advance(kStillWork); };
 
-  render_stills(scenario, options, experiment_dir, picture_done);
+  if (options.stills) render_stills(scenario, options, experiment_dir, picture_done);
   if (options.clips) {
     const auto set = std::make_shared<const ClipSet>(scenario, options.jobs, picture_done);
     base::for_each_parallel(set->size(), options.jobs, [&](std::size_t clip) {

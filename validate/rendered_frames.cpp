@@ -10,20 +10,43 @@
 namespace glidelab::validate {
 namespace {
 
-/// Regions are drawn in whole tiles: a marker's window, and what is looked at beside it, is then drawn once.
-constexpr int kTile = 16;
+/// A frame's pixels and what of them is drawn; the rest is 0.
+struct Canvas {
+  cv::Mat picture;
+  std::vector<cv::Rect> drawn;
+};
 
-cv::Rect in_tiles(const cv::Rect& part, cv::Size picture) {
-  const int left = part.x / kTile * kTile, top = part.y / kTile * kTile;
-  const int right = std::min((part.br().x + kTile - 1) / kTile * kTile, picture.width);
-  const int bottom = std::min((part.br().y + kTile - 1) / kTile * kTile, picture.height);
-  return {left, top, right - left, bottom - top};
-}
+/// Canvases that nobody looks at any more are drawn on again: a new one would have to be cleared as a whole.
+class Canvases {
+ public:
+  Canvases(cv::Size size, int type) : size_(size), type_(type) {}
+
+  std::shared_ptr<Canvas> clear_one() {
+    for (const std::shared_ptr<Canvas>& canvas : all_) {
+      if (canvas.use_count() > 1 || canvas->picture.u->refcount > 1) continue;
+      for (const cv::Rect& rect : canvas->drawn) canvas->picture(rect).setTo(0);
+      canvas->drawn.clear();
+      return canvas;
+    }
+    all_.push_back(std::make_shared<Canvas>(Canvas{cv::Mat::zeros(size_, type_), {}}));
+    return all_.back();
+  }
+
+ private:
+  cv::Size size_;
+  int type_;
+  std::vector<std::shared_ptr<Canvas>> all_;
+};
 
 class RenderedFrames : public core::FrameSource {
  public:
   RenderedFrames(std::shared_ptr<const render::ClipSet> set, std::size_t clip, std::uint64_t seed, bool with_color)
-      : set_(std::move(set)), stream_(set_, clip, seed), frames_(set_->frames(clip, seed)), with_color_(with_color) {}
+      : set_(std::move(set)),
+        stream_(set_, clip, seed),
+        frames_(set_->frames(clip, seed)),
+        with_color_(with_color),
+        deep_(set_->scenario().sensor.bit_depth > 8),
+        canvases_({set_->scenario().camera.width_px, set_->scenario().camera.height_px}, deep_ ? CV_16U : CV_8U) {}
 
   std::optional<core::Frame> next() override {
     std::optional<core::Frame> frame = next_in_parts();
@@ -36,31 +59,29 @@ class RenderedFrames : public core::FrameSource {
   std::optional<core::Frame> next_in_parts() override {
     const std::optional<render::ClipStream::Next> now = stream_.next();
     if (!now) return std::nullopt;
-    const render::Camera& camera = set_->scenario().camera;
-    const bool deep = set_->scenario().sensor.bit_depth > 8;
     core::Frame frame;
-    frame.grey = cv::Mat::zeros(camera.height_px, camera.width_px, deep ? CV_16U : CV_8U);
+    const std::shared_ptr<Canvas> canvas = canvases_.clear_one();
+    frame.grey = canvas->picture;
     frame.index = index_++;
     const render::Recording& recording = set_->scenario().recording;
     frame.t_s = recording.clock.variable ? now->stamp_s : static_cast<double>(frame.index) / recording.frame_rate_hz;
-    // Copies of the frame share the picture, and so what of it is drawn.
-    frame.draw = [this, picture = frame.grey, shown = now->shown,
-                  drawn = std::make_shared<std::vector<cv::Rect>>()](const cv::Rect& part) {
-      const cv::Rect rect = in_tiles(part, picture.size());
-      if (std::ranges::any_of(*drawn, [&](const cv::Rect& known) { return (known & rect) == rect; })) return;
-      drawn->push_back(rect);
-      cv::Mat target = picture(rect);
+    // Copies of the frame share the canvas.
+    frame.draw = [this, canvas, shown = now->shown](const cv::Rect& part) {
+      cv::Mat& picture = canvas->picture;
+      if (std::ranges::any_of(canvas->drawn, [&](const cv::Rect& known) { return (known & part) == part; })) return;
+      canvas->drawn.push_back(part);
+      cv::Mat target = picture(part);
       if (picture.depth() == CV_16U) {
-        read<std::uint16_t>(*shown, rect, target);
+        read<std::uint16_t>(*shown, part, target);
       } else {
-        read<std::uint8_t>(*shown, rect, target);
+        read<std::uint8_t>(*shown, part, target);
       }
     };
     if (!with_color_) return frame;
     frame.draw(cv::Rect({}, frame.grey.size()));
     frame.draw = {};
     cv::Mat shallow = frame.grey;
-    if (deep) frame.grey.convertTo(shallow, CV_8U, 255.0 / set_->scenario().sensor.largest_code());
+    if (deep_) frame.grey.convertTo(shallow, CV_8U, 255.0 / set_->scenario().sensor.largest_code());
     cv::cvtColor(shallow, frame.color, cv::COLOR_GRAY2BGR);
     return frame;
   }
@@ -79,6 +100,8 @@ class RenderedFrames : public core::FrameSource {
   render::ClipStream stream_;
   std::size_t frames_;
   bool with_color_;
+  bool deep_;
+  Canvases canvases_;
   std::size_t index_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "core/quantile.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/comparison.h"
+#include "validate/film_studio.h"
 #include "validate/made_tracks.h"
 #include "validate/sweep_design.h"
 #include "validate/sweep_run.h"

@@ -1,26 +1,18 @@
 #include "validate/sweep_run.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "base/errors.h"
-#include "base/temporary_folder.h"
-#include "core/clip_to_track.h"
-#include "core/folder_files.h"
 #include "diagnose/trajectory_results.h"
-#include "render/clip_set.h"
-#include "render/render_experiment.h"
 #include "validate/cramer_rao.h"
+#include "validate/film_studio.h"
 #include "validate/naive_lines.h"
 #include "validate/oracle_bandwidth.h"
-#include "validate/rendered_frames.h"
 #include "validate/sweep_design.h"
 #include "validate/sweep_scenario.h"
 
 namespace glidelab::validate {
 namespace {
-
-namespace fs = std::filesystem;
 
 QuantityRow row_of(const char* quantity, const std::optional<double>& truth, const core::Quantity& found,
                    const std::optional<double>& least_sd) {
@@ -76,22 +68,6 @@ bool same_for_all_seeds(const render::ClockSetup& clock) {
 }
 
 }  // namespace
-
-MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs) {
-  const base::TemporaryFolder folder("run");
-  const fs::path pictures = folder / "e", truth = folder / "t";
-  fs::create_directory(pictures);
-  fs::create_directory(truth);
-  const bool lossy = render::lossy(scenario.codec);
-  render::render_experiment(scenario, pictures, truth, {.seed = seed, .jobs = jobs, .ideal = false, .clips = lossy});
-  core::FrameOpener open = core::open_frames;
-  if (!lossy) open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, jobs), seed);
-  MadeTracks made = make_tracks(scenario, seed);
-  const core::Experiment experiment = core::read_experiment(pictures, core::OutsideFiles::refused);
-  made.setups = experiment.clips;
-  made.tracks = core::tracks_of(experiment, jobs, base::no_progress, open).tracks;
-  return made;
-}
 
 core::AnalysisResults phase_diagram_of(const MadeTracks& made, const core::MotionOptions& options) {
   core::AnalysisResults results;

@@ -63,12 +63,6 @@ class RunWorker {
   MadeTracks made_;
 };
 
-/// The clips of a scenario drawn in memory and tracked, with the truth of the scenario: stills and experiment.toml go
-/// to a folder of its own under the system's folder for temporary files, which is removed. A lossy codec's clips are
-/// written there and read back. The truth's positions count from the track's reference point, the tracks' from the
-/// pattern.
-MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs);
-
 /// The phase diagram of tracks, by any of its methods.
 core::AnalysisResults phase_diagram_of(const MadeTracks& made, const core::MotionOptions& options);
 

@@ -8,6 +8,7 @@
 #include "one_glider.h"
 #include "temp_dir.h"
 #include "validate/camera_noise.h"
+#include "validate/film_studio.h"
 #include "validate/made_tracks.h"
 #include "validate/small_sweep.h"
 #include "validate/sweep_run.h"

@@ -1,0 +1,43 @@
+/// Clips drawn in memory and tracked, before a camera that is calibrated from drawn stills.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "base/temporary_folder.h"
+#include "core/camera_and_planes.h"
+#include "render/clip_set.h"
+#include "render/scenario.h"
+#include "validate/made_tracks.h"
+
+namespace glidelab::validate {
+
+/// A camera with its calibration, for as many recordings as one likes: of scenarios whose stills are those of the first
+/// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills and
+/// experiment.toml lie in a folder of its own under the system's folder for temporary files, which goes with it. One
+/// thread at a time.
+class FilmStudio {
+ public:
+  /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio before the same scene
+  /// may be given.
+  FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
+             std::shared_ptr<const render::Stage> stage = nullptr);
+
+  /// The scenario's clips with the noise of this seed, tracked, with the truth of the scenario. A lossy codec's clips
+  /// are written and read back. The truth's positions count from the track's reference point, the tracks' from the
+  /// pattern.
+  MadeTracks film(const render::Scenario& scenario, std::uint64_t seed, int jobs);
+
+  /// Nothing before the first recording without a lossy codec.
+  const std::shared_ptr<const render::Stage>& stage() const { return stage_; }
+
+ private:
+  base::TemporaryFolder folder_;
+  std::shared_ptr<const render::Stage> stage_;
+  core::SeenPattern pattern_;
+};
+
+/// One recording with a calibration of its own.
+MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs);
+
+}  // namespace glidelab::validate
