@@ -63,8 +63,9 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
   const validate::BaselineComparison comparison = validate::compare_baselines(*then, now);
   say(common,
       fmt::format("{} tests at {} together; errors 1.5 times as large are found with probability {:.2f}, a bias "
-                  "of half a standard deviation with {:.2f}",
-                  comparison.tests, comparison.significance, comparison.power_spread, comparison.power_bias));
+                  "of half a standard deviation with {:.2f}, a doubled bandwidth with {:.2f}",
+                  comparison.tests, comparison.significance, comparison.power_spread, comparison.power_bias,
+                  comparison.power_doubled));
   if (comparison.worse.empty()) {
     say(common, "nothing is worse than the baseline");
     return;

@@ -16,6 +16,7 @@
 #include "diagnose/trajectory_results.h"
 #include "validate/comparison.h"
 #include "validate/cramer_rao.h"
+#include "validate/oracle_bandwidth.h"
 
 namespace glidelab::validate {
 namespace {
@@ -97,6 +98,42 @@ std::vector<ErrorRecord> records_of(const std::vector<std::vector<QuantityCompar
   return records;
 }
 
+/// Logarithms of what one run's smoothing did to a clip.
+struct Smoothed {
+  double log_bandwidth, log_a_error;
+};
+
+std::vector<SmoothingRecord> smoothing_of(const Truth& truth,
+                                          const std::vector<std::vector<std::optional<Smoothed>>>& runs) {
+  std::vector<SmoothingRecord> records;
+  for (std::size_t clip = 0; clip < truth.clips.size(); ++clip) {
+    std::vector<double> bandwidths, errors;
+    for (const auto& run : runs) {
+      if (!run.at(clip)) continue;
+      bandwidths.push_back(run[clip]->log_bandwidth);
+      errors.push_back(run[clip]->log_a_error);
+    }
+    SmoothingRecord record;
+    record.clip = truth.clips[clip].name;
+    record.runs = bandwidths.size();
+    std::tie(record.log_bandwidth, record.log_bandwidth_sd) = mean_and_sd(bandwidths);
+    std::tie(record.log_a_error, record.log_a_error_sd) = mean_and_sd(errors);
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+std::vector<std::optional<Smoothed>> smoothed_clips(const core::AnalysisResults& results, const Truth& truth) {
+  std::vector<std::optional<Smoothed>> clips;
+  for (std::size_t clip = 0; clip < truth.clips.size(); ++clip) {
+    const core::ClipResult& of = results.clips.at(clip);
+    const std::optional<double> error = acceleration_error_m_s2(of, truth.clips[clip]);
+    const bool counts = error && *error > 0.0 && of.bandwidth_s > 0.0;
+    clips.push_back(counts ? std::optional(Smoothed{std::log(of.bandwidth_s), std::log(*error)}) : std::nullopt);
+  }
+  return clips;
+}
+
 }  // namespace
 
 std::vector<core::AnalysisResults> analyze_both(const MadeTracks& made) {
@@ -108,15 +145,18 @@ std::vector<core::AnalysisResults> analyze_both(const MadeTracks& made) {
 Baseline measure_baseline(const render::Scenario& scenario, const std::string& scenario_text,
                           const BaselineOptions& options, const AnalyzeTracks& analyze,
                           const base::Progress& progress) {
-  Baseline baseline{scenario_text, options.noise_m, options.runs, {}};
+  Baseline baseline{scenario_text, options.noise_m, options.runs, {}, {}};
   const MadeTracks clean = make_tracks(scenario, options.seed);
   const std::vector<LeastSd> bounds =
       least_sds(clean.truth, std::vector<double>(clean.tracks.size(), options.noise_m), clean.gravity_m_s2);
   std::vector<std::vector<QuantityComparison>> runs(options.runs);
+  std::vector<std::vector<std::optional<Smoothed>>> smoothed(options.runs);
   std::atomic<std::uint64_t> done = 0;
   base::for_each_parallel(options.runs, options.jobs, [&](std::size_t run) {
     const MadeTracks made = with_noise(clean, options.noise_m, options.seed * 1000003u + run);
-    for (const core::AnalysisResults& results : analyze(made)) {
+    const std::vector<core::AnalysisResults> all = analyze(made);
+    smoothed[run] = smoothed_clips(all.front(), made.truth);
+    for (const core::AnalysisResults& results : all) {
       for (QuantityComparison& q : with_bounds(compare_quantities(results, made.truth), bounds)) {
         runs[run].push_back(std::move(q));
       }
@@ -124,6 +164,7 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
     progress("runs", static_cast<double>(++done) / static_cast<double>(options.runs));
   });
   baseline.records = records_of(runs);
+  baseline.smoothing = smoothing_of(clean.truth, smoothed);
   return baseline;
 }
 
@@ -136,8 +177,8 @@ BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) 
     reject("noise_m", fmt::format("{}", now.noise_m), fmt::format("{} as in the baseline", then.noise_m));
   }
   BaselineComparison comparison;
-  constexpr std::size_t kTestsEach = 4;
-  comparison.tests = kTestsEach * then.records.size();
+  constexpr std::size_t kTestsEach = 4, kTestsOfClip = 2;
+  comparison.tests = kTestsEach * then.records.size() + kTestsOfClip * then.smoothing.size();
   const double level = comparison.significance / static_cast<double>(comparison.tests);
   for (const ErrorRecord& before : then.records) {
     const auto found = std::find_if(now.records.begin(), now.records.end(), [&](const ErrorRecord& record) {
@@ -163,6 +204,35 @@ BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) 
     judge("coverage", p_of_proportion(before.covered, before.answers, found->covered, found->answers),
           part(before.covered, before.answers), part(found->covered, found->answers));
   }
+  comparison.power_doubled = then.smoothing.empty() ? 0.0 : 1.0;
+  for (const SmoothingRecord& before : then.smoothing) {
+    const auto found = std::find_if(now.smoothing.begin(), now.smoothing.end(),
+                                    [&](const SmoothingRecord& record) { return record.clip == before.clip; });
+    if (found == now.smoothing.end()) reject(before.clip.c_str(), "nothing now", "a clip of both");
+    if (before.runs < 2 || found->runs < 2) continue;
+    const auto side = [](double mean, double sd, std::uint64_t count) {
+      return Side{mean, sd, static_cast<double>(count)};
+    };
+    const auto judge = [&](const char* quantity, const char* what, double p, double log_then, double log_now) {
+      if (p >= level) return;
+      comparison.worse.push_back(
+          {before.clip, "phase-diagram", quantity, what, std::exp(log_then), std::exp(log_now), p});
+    };
+    judge("a", "rms error",
+          p_of_mean(side(before.log_a_error, before.log_a_error_sd, before.runs),
+                    side(found->log_a_error, found->log_a_error_sd, found->runs)),
+          before.log_a_error, found->log_a_error);
+    const Side h_then = side(before.log_bandwidth, before.log_bandwidth_sd, before.runs);
+    const Side h_now = side(found->log_bandwidth, found->log_bandwidth_sd, found->runs);
+    judge("bandwidth", "mean", std::min(1.0, 2.0 * std::min(p_of_mean(h_then, h_now), p_of_mean(h_now, h_then))),
+          before.log_bandwidth, found->log_bandwidth);
+    const double sd = before.log_bandwidth_sd * std::sqrt(1.0 / h_then.count + 1.0 / h_now.count);
+    if (sd > 0.0) {
+      const boost::math::normal normal;
+      const double power = cdf(normal, std::log(2.0) / sd - quantile(complement(normal, 0.5 * level)));
+      comparison.power_doubled = std::min(comparison.power_doubled, power);
+    }
+  }
   const double n = static_cast<double>(now.runs), m = static_cast<double>(then.runs);
   if (now.runs > 2 && then.runs > 2) {
     constexpr double kLarger = 1.5, kBias = 0.5;
@@ -179,7 +249,7 @@ BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) 
 
 std::string baseline_json(const Baseline& baseline) {
   nlohmann::ordered_json document;
-  document["format"] = 1;
+  document["format"] = 2;
   document["scenario"] = baseline.scenario;
   document["noise_m"] = baseline.noise_m;
   document["runs"] = baseline.runs;
@@ -195,6 +265,14 @@ std::string baseline_json(const Baseline& baseline) {
                                    {"mean_deviation", record.deviation},
                                    {"sd_deviation", record.deviation_sd},
                                    {"efficiency", record.efficiency}});
+  }
+  for (const SmoothingRecord& record : baseline.smoothing) {
+    document["smoothing"].push_back({{"clip", record.clip},
+                                     {"runs", record.runs},
+                                     {"log_bandwidth", record.log_bandwidth},
+                                     {"log_bandwidth_sd", record.log_bandwidth_sd},
+                                     {"log_a_error", record.log_a_error},
+                                     {"log_a_error_sd", record.log_a_error_sd}});
   }
   return document.dump(2) + "\n";
 }
@@ -217,7 +295,10 @@ Baseline read_baseline(const std::filesystem::path& file) {
   Baseline baseline;
   try {
     const nlohmann::json document = nlohmann::json::parse(base::read_file(file));
-    if (document.at("format") != 1) throw base::InputError(base::Issue{file.string(), 0, "format", "another one", "1"});
+    if (document.at("format") != 2) {
+      throw base::InputError(base::Issue{file.string(), 0, "format", document["format"].dump(),
+                                         "2, as --write-baseline of this version writes it"});
+    }
     baseline.scenario = document.at("scenario");
     baseline.noise_m = document.at("noise_m");
     baseline.runs = count_at(document, "runs", file);
@@ -231,6 +312,10 @@ Baseline read_baseline(const std::filesystem::path& file) {
         throw base::InputError(
             base::Issue{file.string(), 0, "records", "counts that do not fit", "runs >= answers >= covered"});
       }
+    }
+    for (const nlohmann::json& of : document.at("smoothing")) {
+      baseline.smoothing.push_back({of.at("clip"), count_at(of, "runs", file), of.at("log_bandwidth"),
+                                    of.at("log_bandwidth_sd"), of.at("log_a_error"), of.at("log_a_error_sd")});
     }
   } catch (const nlohmann::json::exception& error) {
     throw base::InputError(

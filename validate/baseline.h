@@ -7,8 +7,13 @@
 ///     coverage    test of two proportions (normal)                fewer values within 1.96 stated sd of the truth
 ///     answers     the same, of the runs that gave a value
 ///
-/// each one-sided at significance / number of tests (Bonferroni), so that an unchanged analysis fails with at most the
-/// significance. The seeds now are others than then unless they are given to be the same.
+/// and for the phase diagram of each clip, whose lines a correction makes insensitive to how they were smoothed:
+///
+///     a(t)        Welch's t of ln(root mean square error of the smoothed acceleration)
+///     bandwidth   Welch's t of ln(bandwidth), in either direction: it has no better and worse
+///
+/// each one-sided (but for the bandwidth) at significance / number of tests (Bonferroni), so that an unchanged analysis
+/// fails with at most the significance. The seeds now are others than then unless they are given to be the same.
 #pragma once
 
 #include <cstdint>
@@ -37,11 +42,20 @@ struct ErrorRecord {
   double efficiency = 0.0;    ///< (Cramér-Rao bound / rms error)²; 0 where there is no bound
 };
 
+/// How the clips of the first estimator were smoothed, over the runs that have points which count.
+struct SmoothingRecord {
+  std::string clip;
+  std::uint64_t runs = 0;
+  double log_bandwidth = 0.0, log_bandwidth_sd = 0.0;  ///< of ln(h/s): mean, standard deviation
+  double log_a_error = 0.0, log_a_error_sd = 0.0;      ///< of ln(rms error of a / (m/s²))
+};
+
 struct Baseline {
   std::string scenario;  ///< its text
   double noise_m = 0.0;
   std::uint64_t runs = 0;
   std::vector<ErrorRecord> records;
+  std::vector<SmoothingRecord> smoothing;
 };
 
 struct BaselineOptions {
@@ -63,8 +77,8 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
 
 /// What became worse, in words with its numbers.
 struct Worse {
-  std::string configuration, estimator, quantity;
-  std::string what;  ///< "spread", "bias", "coverage", "answers"
+  std::string configuration, estimator, quantity;  ///< of smoothing: the clip, "phase-diagram", "a" or "bandwidth"
+  std::string what;                                ///< "spread", "bias", "coverage", "answers"; "rms error", "mean"
   double then = 0.0, now = 0.0;
   double p = 0.0;  ///< of one test, before the number of tests is counted
 };
@@ -74,6 +88,7 @@ struct BaselineComparison {
   double significance = 0.01;  ///< of all tests together
   double power_spread = 0.0;   ///< probability that errors 1.5 times as large are found, were they normal
   double power_bias = 0.0;     ///< that a bias of half a standard deviation is
+  double power_doubled = 0.0;  ///< that a doubled bandwidth is, by the bandwidth, in the clip where it varies most
   std::vector<Worse> worse;
 };
 
