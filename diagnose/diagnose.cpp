@@ -12,6 +12,7 @@
 #include "diagnose/line_table.h"
 #include "diagnose/missing_frames.h"
 #include "diagnose/picture_evidence.h"
+#include "diagnose/speed_noise.h"
 #include "diagnose/track_set.h"
 #include "diagnose/verdict.h"
 
@@ -98,9 +99,15 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   }
 }
 
-/// Frames that are missing are taken out first: a jump is no outlier.
-void without_tails(TrackSet& set) {
-  set_tails_aside(set, find_missing_frames(set, fit_nominal(set)).fit);
+/// The noise of every position, by what single frames tell of it. Frames that are missing are taken out first: a jump
+/// is no noise and no outlier.
+void settle_noise(TrackSet& set) {
+  MissingFrames missing = find_missing_frames(set, fit_nominal(set));
+  if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
+  if (give_fast_positions_their_noise(set, missing.fit.late)) {
+    missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late);
+  }
+  set_tails_aside(set, missing.fit);
 }
 
 /// How far the best explanation that names something (or nothing) is from the noise: chi² a point.
@@ -124,7 +131,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   progress("weighing explanations", 0.1);
   PictureEvidence pictures;
   if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
-  without_tails(set);
+  settle_noise(set);
   Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures);
   if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > 1.5)) {
     // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
@@ -138,7 +145,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
           fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
                       set.disputed));
       progress("weighing explanations", 0.5);
-      without_tails(set);
+      settle_noise(set);
       comparison = compare_hypotheses(set, without, options.jobs, &pictures);
     }
   }

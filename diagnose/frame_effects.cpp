@@ -6,19 +6,19 @@
 #include <numeric>
 
 #include "base/dense.h"
+#include "diagnose/speed_noise.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastFilmedJitter = 1e-5;  // s; a hundredth of a short exposure
-
+constexpr double kMostScatter = 6.0;        // standard deviations
 constexpr std::size_t kFewestScatter = 50;  // points from which a scatter's shape tells anything
 constexpr double kMostAside = 0.2;
-constexpr double kTailsBeyondDoubt = 5.0;  // log evidence
-constexpr double kKnotPoints = 14.0;       // points a bump of the smooth curve
+constexpr double kBeyondDoubt = 5.0;  // log evidence
+constexpr double kKnotPoints = 14.0;  // points a bump of the smooth curve
 
 struct Leftover {
-  std::vector<double> over_sd;  // all points of a motion, outliers too
+  std::vector<double> over_sd;  // all points of a motion, outliers too, each over its own noise
   std::vector<double> v;
 };
 
@@ -54,70 +54,33 @@ Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
     Eigen::MatrixXd normal = base::transposed_product(kept, kept);
     normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();
     rest = r - base::product(basis, base::solve_positive(normal, base::transposed_product(kept, of)));
-    for (Eigen::Index p = 0; p < n; ++p) out[static_cast<std::size_t>(p)] = std::abs(rest[p]) > 5.0 ? 1 : 0;
+    for (Eigen::Index p = 0; p < n; ++p) {
+      const auto q = static_cast<std::size_t>(p);
+      out[q] = std::abs(rest[p]) * data.sd_m > 5.0 * data.sd_of(q) ? 1 : 0;
+    }
   }
   const double taken = std::sqrt(1.0 - std::min(0.5, static_cast<double>(bumps) / static_cast<double>(n)));
   Leftover left;
   left.v = moved.v_m_s;
-  for (Eigen::Index p = 0; p < n; ++p) left.over_sd.push_back(rest[p] / taken);
+  for (Eigen::Index p = 0; p < n; ++p) {
+    left.over_sd.push_back(rest[p] * data.sd_m / data.sd_of(static_cast<std::size_t>(p)) / taken);
+  }
   return left;
 }
 
 }  // namespace
 
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
-  FrameEffect found;
-  found.effect = effect_index("timestamp_jitter");
-  std::vector<double> squares, fast;
-  double step = 0.0, sd = 0.0, top = 0.0;
+  SpeedScatter scatter;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
     const Leftover left = leftover_of(set, fit, i);
-    step = std::max(step, 1.0 / set.clips[set.motions[i].clip].frame_rate_hz);
-    sd += set.motions[i].sd_m / static_cast<double>(set.motions.size());
     for (std::size_t p = 0; p < left.v.size(); ++p) {
-      if (std::abs(left.over_sd[p]) > 6.0) continue;
-      squares.push_back(left.over_sd[p] * left.over_sd[p]);
-      fast.push_back(std::pow(left.v[p] / set.motions[i].sd_m, 2));
-      top = std::max(top, std::abs(left.v[p]));
+      if (std::abs(left.over_sd[p]) < kMostScatter) scatter.add(motion, p, left.over_sd[p], left.v[p]);
     }
   }
-  const auto n = static_cast<double>(squares.size());
-  if (squares.size() < kFewestScatter || !(top > 0.0)) return found;
-  const auto log_likelihood = [&](double tau) {
-    // The scale s² of both parts together is fitted: n log(mean(e²/w)) + sum log w.
-    double weighted = 0.0, logs = 0.0;
-    for (std::size_t p = 0; p < squares.size(); ++p) {
-      const double w = 1.0 + tau * tau * fast[p];
-      weighted += squares[p] / w;
-      logs += std::log(w);
-    }
-    return -0.5 * (n * std::log(weighted / n) + logs);
-  };
-  const double none = log_likelihood(0.0);
-  std::vector<double> logs;
-  double best = 0.0, best_tau = 0.0;
-  // From what begins to show among n points, in units of what one standard deviation of position makes at top speed; in
-  // pictures from what cannot be the marker's blur, which makes its noise grow with the speed as well.
-  const double least = std::max(2.0 * std::pow(2.0 / n, 0.25) * sd / top, set.pictures ? kLeastFilmedJitter : 0.0);
-  for (double tau = least; tau < 40.0 * sd / top && tau < 0.5 * step; tau *= 1.3) {
-    logs.push_back(log_likelihood(tau) - none);
-    if (logs.back() > best) {
-      best = logs.back();
-      best_tau = tau;
-    }
-  }
-  if (logs.empty()) return found;
-  found.gain = best;
-  found.log_evidence = log_mean(logs);
-  // sd_m holds the jitter of the mean speed already: back to the part that is none of it.
-  double weighted = 0.0;
-  for (std::size_t p = 0; p < squares.size(); ++p) {
-    const double w = 1.0 + best_tau * best_tau * fast[p];
-    weighted += squares[p] / w / n;
-  }
-  found.value = best_tau * std::sqrt(weighted);
-  found.sd = found.value / std::sqrt(std::max(1.0, 2.0 * best));
-  return found;
+  const SpeedNoise noise = find_speed_noise(set, scatter, 1.0);
+  return {effect_index("timestamp_jitter"), noise.gain, noise.log_evidence, noise.jitter_s, noise.sd_s};
 }
 
 namespace {
@@ -222,7 +185,7 @@ std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit) {
   const std::vector<double> e = tail_residuals(set, fit);
   if (e.size() < kFewestScatter) return 0;
   const Tails tails = find_tails(e);
-  if (tails.log_evidence < kTailsBeyondDoubt) return 0;
+  if (tails.log_evidence < kBeyondDoubt) return 0;
   std::size_t count = 0, at = 0;
   TrackSet marked = set;
   for (TrackedMotion& motion : marked.motions) {

@@ -70,7 +70,7 @@ double acceleration_square(const TrackSet& set, std::size_t i, const Eigen::Vect
   for (std::size_t p = 0; p < data.t_s.size(); ++p) {
     if (data.outlier[p]) continue;
     t.push_back(data.t_s[p]);
-    r.push_back(residual[static_cast<Eigen::Index>(p)] * data.sd_m);
+    r.push_back(residual[static_cast<Eigen::Index>(p)] * data.sd_of(p));
   }
   if (t.size() < 8) return sum;
   const core::LocalCubic cubic(t, bandwidth);

@@ -2,18 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
+#include "base/dense.h"
 #include "core/median.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kPlain = 8.0;         // noises that a usual step must be long: a jump scatters by less than two
-constexpr double kMostTogether = 5.0;  // frames lost at one place
-constexpr double kClear = 12.0;        // log likelihood that a missing frame must gain
+constexpr std::size_t kAround = 5;  // points on each side that show a loss by themselves
+constexpr Eigen::Index kFewestAround = 7;
+constexpr double kPlain = 14.0;             // log likelihood that such a loss gains
+constexpr double kFits = 4.0, kMuch = 0.3;  // what it may leave: of the noise's squares, or of what was left before
+constexpr int kMostTogether = 5;            // frames lost at one place
+constexpr double kClear = 12.0;             // log likelihood that a missing frame must gain
 constexpr int kMostMissing = 60;
-constexpr double kEven = 0.15;  // of a step: near a reversal steps differ by as much as they are long
+constexpr double kNearOne = 0.5;  // frames
+constexpr int kRounds = 8;
+constexpr std::size_t kMoreInOneMotion = 4;
+constexpr double kMostOff = 50.0;     // log likelihood that one position may cost
+constexpr double kNothingLeft = 2.0;  // chi² a point
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Way from one point to the next around the step to point f: the median of three steps on each side, so that other
 /// jumps near by do not count.
@@ -31,68 +42,213 @@ UsualStep usual_step(const std::vector<double>& x_m, std::size_t f) {
   return usual;
 }
 
-/// Best place for one more missing frame in a motion: the gain, and the point from which on all are late.
+/// Best place for one more missing frame in a motion: the gain (at the likeliest number of frames, where that need not
+/// be one), and the point from which on all are late.
 struct Place {
   double gain = 0.0;
-  std::size_t point = 0;
+  std::size_t motion = 0, point = 0;
   double step_s = 0.0;
+  ScoreColumn column;
 };
 
 /// `known`: frames are missing elsewhere for certain, so that one more needs no jump that shows by itself.
-Place best_place(const ScoreSpace& space, std::size_t i, bool known) {
+Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
   const TrackedMotion& data = space.set().motions[i];
   const auto n = static_cast<Eigen::Index>(data.t_s.size());
   const auto& v = space.fit().motions[i].v_m_s;
   const double step = 1.0 / space.set().clips[data.clip].frame_rate_hz;
-  const auto r = space.residual().rest.segment(space.offset(i), n);
   Place best;
   const Eigen::Index margin = known ? 1 : 3;
   for (Eigen::Index from = margin; from + margin <= n - (known ? 0 : 1); ++from) {
     const auto f = static_cast<std::size_t>(from);
-    if (std::abs(v[f]) * step < (known ? 1.0 : 5.0) * data.sd_m) continue;  // too slow to tell
+    if (std::abs(v[f]) * step < (known ? 1.0 : 5.0) * data.sd_of(f)) continue;  // too slow to tell
     // The neighbours must show the jump themselves.
     // Against the six steps around, or, where they differ much as near a reversal, the two beside it.
-    const double way = data.x_m[f] - data.x_m[f - 1];
+    const auto& late = space.fit().late[i];
+    const double way = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // what is known taken out
     const double after = f + 1 < data.x_m.size() ? data.x_m[f + 1] - data.x_m[f] : data.x_m[f - 1] - data.x_m[f - 2];
     const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
     double jump = way - usual_step(data.x_m, f).size;
     const double beside = way - 0.5 * (before + after);
     if (std::abs(beside - v[f] * step) < std::abs(jump - v[f] * step)) jump = beside;
-    if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_m) continue;
-    if (!known && std::abs(jump) < 3.0 * data.sd_m) continue;
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index p = from; p < n; ++p) change[p] = v[static_cast<std::size_t>(p)] * step;
-    const Eigen::VectorXd c = space.own_rest(i, change);
-    const double gain = c.dot(r) - 0.5 * c.squaredNorm();
-    if (gain > best.gain) best = {gain, f, step};
+    if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_of(f)) continue;
+    if (!known && std::abs(jump) < 3.0 * data.sd_of(f)) continue;
+    std::vector<Eigen::VectorXd> change(space.set().motions.size());
+    change[i] = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index p = from; p < n; ++p) change[i][p] = v[static_cast<std::size_t>(p)] * step;
+    // What K, mu and the inclination take up of it is most of what a loss makes near a reversal.
+    ScoreColumn c = space.project(change);
+    const double score = space.dot(c, space.residual()), square = space.dot(c, c);
+    const double gain = one ? score - 0.5 * square : score > 0.0 && square > 0.0 ? 0.5 * score * score / square : 0.0;
+    if (gain > best.gain) best = {gain, i, f, step, std::move(c)};
   }
   return best;
 }
 
-/// Frames that are missing for all to see: a step that is longer by a whole number of those around it, and stays so.
+/// Sum of squares that a parabola leaves of the positions around point f, all from f on later by `shift_s`; the number
+/// of points in `points`.
+double parabola_rest(const TrackedMotion& data, const std::vector<double>& late_s, std::size_t f, double shift_s,
+                     std::size_t& points) {
+  const std::size_t from = f - std::min(f, kAround), to = std::min(data.x_m.size(), f + kAround);
+  const double unit = data.t_s[to - 1] - data.t_s[from];
+  Eigen::MatrixXd basis(static_cast<Eigen::Index>(to - from), 3);
+  Eigen::VectorXd x(basis.rows());
+  Eigen::Index row = 0;
+  for (std::size_t p = from; p < to; ++p) {
+    if (data.outlier[p]) continue;
+    const double t = (data.t_s[p] + late_s[p] - late_s[f] + (p >= f ? shift_s : 0.0) - data.t_s[f]) / unit;
+    basis.row(row) << 1.0, t, t * t;
+    x[row++] = data.x_m[p] - data.x_m[f];
+  }
+  points = static_cast<std::size_t>(row);
+  if (row < kFewestAround) return 0.0;
+  const Eigen::MatrixXd used = basis.topRows(row);
+  const Eigen::VectorXd y = x.head(row);
+  const Eigen::VectorXd by =
+      base::solve_positive(base::transposed_product(used, used), base::transposed_product(used, y));
+  return (y - base::product(used, by)).squaredNorm();
+}
+
+/// Frames that are missing for all to see: around such a place the positions make a parabola only if all from there on
+/// are later by whole frames. The clearest first, as one may hide another near by.
 Lateness plain_losses(const TrackSet& set, std::size_t& count) {
   Lateness late;
   for (const TrackedMotion& motion : set.motions) {
-    const std::vector<double>& x = motion.x_m;
     const double step_s = 1.0 / set.clips[motion.clip].frame_rate_hz;
-    double sum_s = 0.0;
-    late.emplace_back(x.size(), 0.0);
-    for (std::size_t f = 1; f < x.size(); ++f) {
-      const auto [usual, spread] = usual_step(x, f);
-      const double jump = x[f] - x[f - 1] - usual, times = std::round(jump / usual);
-      const bool in_time = motion.t_s[f] - motion.t_s[f - 1] < 1.5 * step_s;
-      const bool even = std::abs(usual) > kPlain * motion.sd_m && spread < kEven * std::abs(usual);
-      const bool clear =
-          even && times >= 1.0 && times <= kMostTogether && std::abs(jump - times * usual) < 0.2 * std::abs(usual);
-      const bool stays = f + 1 == x.size() || (x[f + 1] - x[f]) / usual > 0.5;
-      if (in_time && clear && stays) {
-        sum_s += times * step_s;
-        count += static_cast<std::size_t>(times);
+    std::vector<double> late_s(motion.x_m.size(), 0.0);
+    for (int found = 0; found < kMostMissing; ++found) {
+      double clearest = kPlain;
+      std::size_t place = 0;
+      int lost = 0;
+      for (std::size_t f = 2; f + 2 <= motion.x_m.size(); ++f) {
+        if (motion.t_s[f] - motion.t_s[f - 1] > 1.5 * step_s) continue;  // the stamps tell of it
+        const double square = motion.sd_of(f) * motion.sd_of(f);
+        std::size_t points = 0;
+        const double without = parabola_rest(motion, late_s, f, 0.0, points) / square;
+        for (int k = 1; k <= kMostTogether; ++k) {
+          const double with = parabola_rest(motion, late_s, f, k * step_s, points) / square;
+          const bool fits = with < std::max(kFits * static_cast<double>(points), kMuch * without);
+          const double gain = 0.5 * (without - with);
+          if (!fits || gain <= clearest) continue;
+          clearest = gain;
+          place = f;
+          lost = k;
+        }
       }
-      late.back()[f] = sum_s;
+      if (lost == 0) break;
+      for (std::size_t p = place; p < late_s.size(); ++p) late_s[p] += lost * step_s;
+      count += static_cast<std::size_t>(lost);
     }
+    late.push_back(std::move(late_s));
   }
   return late;
+}
+
+/// How many frames are lost before each point of a motion, as the fit has its path: of all such sequences that never
+/// fall the likeliest (Viterbi), each loss paid for.
+std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit, std::size_t i, double loss) {
+  const TrackedMotion& data = set.motions[i];
+  const TrackModel model = model_of(set, *fit.layout, fit.at, i);
+  const double step_s = 1.0 / set.clips[data.clip].frame_rate_hz;
+  const std::size_t n = data.t_s.size();
+  const auto states = static_cast<std::size_t>(std::lround(fit.late[i].back() / step_s)) + kMoreInOneMotion + 1;
+  std::vector<double> best(states, kNever);
+  best[0] = 0.0;
+  std::vector<std::vector<std::size_t>> came(n, std::vector<std::size_t>(states, 0));
+  std::vector<std::vector<double>> seen;  // where the model is, by lateness
+  for (std::size_t k = 0; k < states; ++k) {
+    const std::vector<double> late(n, static_cast<double>(k) * step_s);
+    seen.push_back(move(model, data.t_s, late).x_m);
+    const std::vector<double> shared = shared_errors(set, *fit.layout, fit.at, i, seen.back());
+    for (std::size_t p = 0; p < n; ++p) seen.back()[p] += shared[p];
+  }
+  for (std::size_t p = 0; p < n; ++p) {
+    std::vector<double> next(states, kNever);
+    for (std::size_t k = 0; k < states; ++k) {
+      for (std::size_t from = 0; from <= k; ++from) {
+        if (p == 0 && from < k) continue;  // a loss before the first frame is none
+        const double cost = best[from] + loss * static_cast<double>(k - from);
+        if (cost >= next[k]) continue;
+        next[k] = cost;
+        came[p][k] = from;
+      }
+      const double off = (data.x_m[p] - seen[k][p]) / data.sd_of(p);
+      next[k] += data.outlier[p] ? 0.0 : std::min(0.5 * off * off, kMostOff);
+    }
+    best = std::move(next);
+  }
+  auto k = static_cast<std::size_t>(std::min_element(best.begin(), best.end()) - best.begin());
+  std::vector<double> late(n);
+  for (std::size_t p = n; p-- > 0;) {
+    late[p] = static_cast<double>(k) * step_s;
+    k = came[p][k];
+  }
+  return late;
+}
+
+bool lowers(const MotionFit& next, std::size_t more, const MissingFrames& found) {
+  return next.cost + 2.0 * kClear * static_cast<double>(more) < found.fit.cost;
+}
+
+/// How many frames are lost at each place, all fitted together: what two losses do to K, mu and the inclination may
+/// hide both.
+Eigen::VectorXd sizes_together(const ScoreSpace& space, const std::vector<Place>& places) {
+  const auto n = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd products(n, n);
+  Eigen::VectorXd scores(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const ScoreColumn& column = places[static_cast<std::size_t>(a)].column;
+    scores[a] = space.dot(column, space.residual());
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      products(a, b) = products(b, a) = space.dot(column, places[static_cast<std::size_t>(b)].column);
+    }
+  }
+  return base::solve_positive(products, scores);
+}
+
+/// One more loss in each motion where that raises the likelihood: each by itself, or all `together`. False where none
+/// does.
+bool add_hidden(const TrackSet& set, bool together, MissingFrames& found) {
+  const ScoreSpace space(set, found.fit);
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    Place place = best_place(space, i, found.count > 0, !together);
+    if (place.gain > kClear) places.push_back(std::move(place));
+  }
+  if (together && !places.empty()) {
+    const Eigen::VectorXd sizes = sizes_together(space, places);
+    std::size_t k = 0;
+    std::erase_if(places,
+                  [&](const Place&) { return std::abs(sizes[static_cast<Eigen::Index>(k++)] - 1.0) > kNearOne; });
+  }
+  if (places.empty()) return false;
+  Lateness tried = found.fit.late;
+  for (const Place& place : places) {
+    for (std::size_t p = place.point; p < tried[place.motion].size(); ++p) tried[place.motion][p] += place.step_s;
+  }
+  MotionFit next = fit_motions(set, found.fit.effects, found.fit.at, tried);
+  if (!lowers(next, places.size(), found)) return false;
+  found.fit = std::move(next);
+  found.count += places.size();
+  return true;
+}
+
+/// All losses placed anew along the fitted path, as long as that raises the likelihood.
+void place_anew(const TrackSet& set, MissingFrames& found) {
+  for (int round = 0; round < kRounds; ++round) {
+    Lateness tried;
+    double count = 0.0;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      tried.push_back(likeliest_lateness(set, found.fit, i, kClear));
+      count += tried.back().back() * set.clips[set.motions[i].clip].frame_rate_hz;
+    }
+    if (tried == found.fit.late) return;
+    MotionFit next = fit_motions(set, found.fit.effects, found.fit.at, tried);
+    const double more = std::round(count) - static_cast<double>(found.count);
+    if (!(next.cost + 2.0 * kClear * more < found.fit.cost)) return;
+    found.fit = std::move(next);
+    found.count = static_cast<std::size_t>(std::lround(count));
+  }
 }
 
 }  // namespace
@@ -101,42 +257,36 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
   MissingFrames found;
   found.effect.effect = effect_index("dropped_frames");
   found.fit = fit;
+  found.fit.late.clear();
+  double points = 0.0;
+  for (const TrackedMotion& motion : set.motions) {
+    found.fit.late.emplace_back(motion.t_s.size(), 0.0);
+    points += static_cast<double>(motion.t_s.size());
+  }
   std::size_t plain = 0;
-  Lateness late = plain_losses(set, plain);
+  const Lateness late = plain_losses(set, plain);
   if (plain > 0) {
     MotionFit next = fit_motions(set, fit.effects, fit.at, late);
-    if (next.cost < fit.cost - 2.0 * kClear * static_cast<double>(plain)) {
+    if (lowers(next, plain, found)) {
       found.fit = std::move(next);
       found.count = plain;
     }
   }
-  if (found.count == 0) {
-    late.clear();
-    for (const TrackedMotion& motion : set.motions) late.emplace_back(motion.t_s.size(), 0.0);
-  }
-  double points = 0.0, penalty = 0.0;
-  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
-  for (int round = 0; round < kMostMissing; ++round) {
-    const ScoreSpace space(set, found.fit);
-    Lateness tried = late;
-    std::size_t added = 0;
-    for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      const Place place = best_place(space, i, found.count > 0);
-      if (place.gain < kClear) continue;
-      for (std::size_t p = place.point; p < tried[i].size(); ++p) tried[i][p] += place.step_s;
-      ++added;
+  MissingFrames all = found;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::size_t before = all.count;
+    for (int more = 0; more < kMostMissing && add_hidden(set, false, all); ++more) {
     }
-    if (added == 0) break;
-    MotionFit next = fit_motions(set, fit.effects, found.fit.at, tried);
-    if (!(next.cost < found.fit.cost - 2.0 * kClear)) break;
-    late = std::move(tried);
-    found.fit = std::move(next);
-    found.count += added;
+    if (all.count > 0) add_hidden(set, true, all);
+    if (all.count > 0) place_anew(set, all);
+    if (all.count == before) break;
   }
+  // What no single jump shows counts only where it leaves nothing: many a curve looks like a row of losses.
+  if (all.fit.cost < kNothingLeft * points) found = std::move(all);
   if (found.count == 0) return found;
   // Where each one is costs the logarithm of the places; the fraction, evenly over its logarithm from 1e-4 to 0.1.
   const double share = static_cast<double>(found.count) / points;
-  penalty = -static_cast<double>(found.count) * std::log(share) + points * share + std::log(7.0);
+  const double penalty = -static_cast<double>(found.count) * std::log(share) + points * share + std::log(7.0);
   found.effect.gain = 0.5 * (fit.cost - found.fit.cost);
   found.effect.log_evidence = found.effect.gain - penalty;
   found.effect.value = share;

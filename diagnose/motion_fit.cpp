@@ -61,7 +61,7 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
   const auto& globals = layout.globals();
   const std::vector<double> shared = shared_errors(set, layout, at, i, base.x_m);
   std::vector<double> weight(data.t_s.size());
-  for (std::size_t p = 0; p < weight.size(); ++p) weight[p] = data.outlier[p] ? 0.0 : 1.0 / data.sd_m;
+  for (std::size_t p = 0; p < weight.size(); ++p) weight[p] = data.outlier[p] ? 0.0 : 1.0 / data.sd_of(p);
   of.residual.resize(n);
   for (Eigen::Index p = 0; p < n; ++p) {
     const auto q = static_cast<std::size_t>(p);

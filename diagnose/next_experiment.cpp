@@ -163,6 +163,14 @@ std::string next_experiment(const TrackSet& set, const Comparison& comparison, c
     }
   }
   if (first == nullptr || rival == nullptr) return "Repeat one launch of each kind: the more clips, the surer.";
+  const auto motion_of = [&](const Hypothesis& one) {
+    return comparison.fits[static_cast<std::size_t>(one.fit)].effects;
+  };
+  if (!first->effects.empty() && motion_of(*first).empty() && motion_of(*rival).empty()) {
+    return "It shows in single frames: no other launch tells more of it. Record the same launch once more with less "
+           "for "
+           "the camera to do (fewer pixels, more light, its own time stamps written), and see whether it goes.";
+  }
   const MotionFit& a = comparison.fits[static_cast<std::size_t>(first->effects.empty() ? rival->fit : first->fit)];
   const MotionFit& b = comparison.fits[static_cast<std::size_t>(first->effects.empty() ? first->fit : rival->fit)];
   const Eigen::MatrixXd covariance = common_covariance(b);

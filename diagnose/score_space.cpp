@@ -40,7 +40,7 @@ double log_sum(const std::vector<double>& logs) {
 
 std::vector<double> weights_of(const TrackedMotion& motion) {
   std::vector<double> weights(motion.t_s.size());
-  for (std::size_t p = 0; p < weights.size(); ++p) weights[p] = motion.outlier[p] ? 0.0 : 1.0 / motion.sd_m;
+  for (std::size_t p = 0; p < weights.size(); ++p) weights[p] = motion.outlier[p] ? 0.0 : 1.0 / motion.sd_of(p);
   return weights;
 }
 

@@ -17,20 +17,7 @@ constexpr std::size_t kFewestPoints = 12;
 constexpr double kOutlier = 5.0;         // standard deviations off the neighbours
 constexpr double kLongestBridge = 0.08;  // s of disputed frames within a motion that are bridged
 constexpr double kSameAngle = 1e-9;
-
-/// Each point off the cubic (line, for few) through its neighbours, over the standard deviation that unit noise gives.
-double off_neighbours(const std::vector<double>& t, const std::vector<double>& x, std::size_t i) {
-  double off = x[i], gain = 1.0;
-  for (const std::size_t a : {i - 2, i - 1, i + 1, i + 2}) {
-    double weight = 1.0;
-    for (const std::size_t b : {i - 2, i - 1, i + 1, i + 2}) {
-      if (b != a) weight *= (t[i] - t[b]) / (t[a] - t[b]);
-    }
-    off -= weight * x[a];
-    gain += weight * weight;
-  }
-  return off / std::sqrt(gain);
-}
+constexpr double kLeastNoise_m = 1e-9;
 
 enum class Kind { no, free, disputed };
 
@@ -185,13 +172,37 @@ void share_noise(std::vector<TrackedMotion>& motions) {
 
 }  // namespace
 
+double neighbour_residual(const std::vector<double>& t, const std::vector<double>& x, std::size_t i) {
+  double off = x[i], gain = 1.0;
+  for (const std::size_t a : {i - 2, i - 1, i + 1, i + 2}) {
+    double weight = 1.0;
+    for (const std::size_t b : {i - 2, i - 1, i + 1, i + 2}) {
+      if (b != a) weight *= (t[i] - t[b]) / (t[a] - t[b]);
+    }
+    off -= weight * x[a];
+    gain += weight * weight;
+  }
+  return off / std::sqrt(gain);
+}
+
+void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s) {
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    TrackedMotion& motion = motions[i];
+    std::vector<double> t_s = motion.t_s;
+    for (std::size_t p = 0; p < t_s.size() && !late_s.empty(); ++p) t_s[p] += late_s[i][p];
+    motion.sd_m = std::max(neighbour_noise(t_s, motion.x_m, motion.outlier), kLeastNoise_m);
+    motion.wider.clear();
+  }
+  share_noise(motions);
+}
+
 double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>& x_m,
                        const std::vector<char>& outlier) {
   const double pilot = core::pilot_noise(t_s, x_m);
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
     if (outlier[i - 2] || outlier[i - 1] || outlier[i] || outlier[i + 1] || outlier[i + 2]) continue;
-    const double off = off_neighbours(t_s, x_m, i);
+    const double off = neighbour_residual(t_s, x_m, i);
     if (std::abs(off) > kOutlier * pilot) continue;
     sum += off * off;
     count += 1.0;
@@ -228,7 +239,6 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
       motion.clip = c;
       motion.group = group_of(setups[c], set);
       motion.mass = mass_of(setups[c], set);
-      motion.sd_m = std::max(neighbour_noise(motion.t_s, motion.x_m, motion.outlier), 1e-9);
       set.modes = std::max(set.modes, motion.shared_m.size());
       set.motions.push_back(std::move(motion));
       any = true;
@@ -236,7 +246,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     if (!any) set.notes.push_back(fmt::format("clip {}: no motion of {} points or more", clip.name, kFewestPoints));
   }
   if (set.motions.empty()) return set;
-  share_noise(set.motions);
+  measure_noise(set.motions);
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (std::size_t g = 0; g < set.groups.size(); ++g) {
     double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -21,10 +21,13 @@ struct TrackedMotion {
   std::vector<double> x_m;
   std::vector<char> outlier;                  ///< 1: lies off the neighbours; not fitted
   double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
+  std::vector<double> wider;                  ///< of each position, its noise over sd_m; empty: 1
   std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
   double scale_sd = 0.0;                      ///< relative
   double m_per_px = 0.0;                      ///< along the motion; 0: not filmed
   std::vector<double> row_px;                 ///< of the picture, where the marker is; empty: not filmed
+
+  double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
 };
 
 struct TrackedMass {
@@ -71,6 +74,14 @@ struct TrackSet {
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
 /// start or for a stop stays in the motion; else it is left out. Motions with fewer than 12 points are left out.
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
+
+/// Point i off the cubic through its four nearest neighbours, over the standard deviation that unit noise gives it: its
+/// own noise, independent of the motion. 2 <= i < n - 2.
+double neighbour_residual(const std::vector<double>& t_s, const std::vector<double>& x_m, std::size_t i);
+
+/// The noise of each motion from its neighbouring positions (`late_s`, where not empty, is what each is later than its
+/// time says), and one level for all where theirs differ by no more than their own errors; else half way between.
+void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s = {});
 
 /// Noise of one position, from how far each lies off the cubic through its four nearest neighbours, outliers spared;
 /// never below what rounding to a step makes.

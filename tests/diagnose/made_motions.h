@@ -29,10 +29,12 @@ struct MadeLaunch {
   double v0_m_s = -1.1;
 };
 
-/// What is added: a force in N (mass, x, v, t), and what the camera makes of (x, t); either may be empty.
+/// What is added: a force in N (mass, x, v, t), what the camera makes of (x, t), and which frames it loses; each may be
+/// empty.
 struct MadeEffect {
-  std::function<double(double mass_kg, double x_m, double v_m_s, double t_s)> force;
-  std::function<double(double x_m, double t_s)> seen;
+  std::function<double(double mass_kg, double x_m, double v_m_s, double t_s)> force = {};
+  std::function<double(double x_m, double t_s)> seen = {};
+  std::function<bool(std::size_t clip, std::size_t frame)> lost = {};
 };
 
 inline std::vector<MadeLaunch> made_launches(const std::vector<double>& masses_kg = {0.335, 0.535}) {
@@ -115,7 +117,9 @@ inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, c
     setup.group = launches[c].incline_deg == 0.0 ? "level" : "inclined";
     core::TrackData track;
     track.frame_rate_hz = rate_hz;
+    std::size_t frame = 0;
     for (const double x : made_motion({}, launches[c], effect, frames, rate_hz)) {
+      if (effect.lost && effect.lost(c, frame++)) continue;
       track.frame.push_back(track.t_s.size());
       track.t_s.push_back(static_cast<double>(track.t_s.size()) / rate_hz);
       track.x_m.push_back(x + noise_m * normal(random));
