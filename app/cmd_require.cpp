@@ -42,6 +42,13 @@ void require_command(const RequireOptions& options) {
   check_writable(out);
   base::StagedOutput staged(out);
   ProgressDisplay display(options.common.quiet, options.common.verbose);
+  how.before_rendering = [&](const validate::ConfirmationSize& size) {
+    display.clear();
+    say(options.common,
+        fmt::format("{} of {} are close to the target: {} recordings to render, about {:.2g} min on {} "
+                    "threads, and more for what keeps those that miss it",
+                    size.close, size.points, size.recordings, size.seconds / 60.0, options.common.jobs));
+  };
   const validate::Requirement requirement = validate::find_requirement(sweep, how, display.callback());
   const std::string json = report::requirement_json(requirement);
   base::write_file(staged.dir() / "require.json", json);
@@ -73,9 +80,10 @@ void add_require(CLI::App& app, Command& chosen) {
       ->type_name("TARGET")
       ->required();
   command
-      ->add_option(
-          "--confirm", options->confirm,
-          "How what is close is confirmed: \"tracks\" with the predicted noise, rendered \"clips\", or \"none\"")
+      ->add_option("--confirm", options->confirm,
+                   "How what the bound allows is confirmed: \"tracks\" with the predicted noise, rendered \"clips\" "
+                   "besides where these "
+                   "come within a factor of 4 of the target, or \"none\"")
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}))
       ->capture_default_str();

@@ -124,7 +124,7 @@ Page requirement_report(const Requirement& requirement) {
   HtmlTable others(header, 4);
   for (const Candidate& candidate : requirement.candidates) {
     std::vector<std::string> row = {escape(candidate.name), escape(cost_text(requirement, candidate)),
-                                    escape(describe(candidate.verdict)), number_text(candidate.frame_rate_hz, 4),
+                                    escape(describe(candidate)), number_text(candidate.frame_rate_hz, 4),
                                     std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"};
     for (const validate::TargetResult& result : candidate.results) {
       row.push_back(bound_text(result.bound));
@@ -164,7 +164,7 @@ std::string requirement_text(const Requirement& requirement) {
   }
   std::string below;
   for (const Candidate& candidate : requirement.candidates) {
-    rows.push_back({candidate.name, cost_text(requirement, candidate), describe(candidate.verdict),
+    rows.push_back({candidate.name, cost_text(requirement, candidate), describe(candidate),
                     number_text(candidate.frame_rate_hz, 4),
                     std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"});
     for (const validate::TargetResult& result : candidate.results) {
@@ -191,7 +191,7 @@ std::string requirement_json(const Requirement& requirement) {
     Json object;
     object["name"] = candidate.name;
     object["reached"] = reached(candidate);
-    object["verdict"] = describe(candidate.verdict);
+    object["verdict"] = describe(candidate);
     if (!candidate.why.empty()) object["why_refused"] = candidate.why;
     if (!candidate.price_class.empty()) object["price_class"] = candidate.price_class;
     put(object, "price_eur", candidate.price, "no price");

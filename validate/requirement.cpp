@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "render/camera_file.h"
+#include "render/clip_set.h"
+#include "validate/film_studio.h"
 #include "validate/made_tracks.h"
 #include "validate/requirement_bound.h"
 #include "validate/requirement_runs.h"
@@ -46,19 +51,68 @@ void set_price(const Sweep& sweep, const std::vector<base::TomlScalar>& values, 
   }
 }
 
-Candidate candidate_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions& options) {
-  const std::vector<base::TomlScalar> values = values_of(sweep, point * sweep.replicates);
+/// Errors over targets, of the hardest.
+double hardest_found(const std::vector<TargetResult>& results, const std::vector<Target>& targets) {
+  double most = 0.0;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    most = std::max(most, results[t].found.value_or(std::numeric_limits<double>::infinity()) / targets[t].value);
+  }
+  return most;
+}
+
+/// A point of the sweep on its way to a verdict.
+struct Trial {
   Candidate candidate;
+  std::optional<Setting> setting;  ///< nothing where it was refused
+  bool close = false;              ///< to be rendered
+};
+
+void judge_by_runs(const Sweep& sweep, std::uint64_t point, RequirementOptions options, Confirm confirm, Trial& trial) {
+  options.confirm = confirm;
+  Candidate& candidate = trial.candidate;
+  candidate.limits.clear();
+  RecordedRuns runs(sweep, *trial.setting, point, options);
+  const bool reached = runs.judge(candidate.results);
+  candidate.judged_by = confirm;
+  candidate.verdict = reached ? Verdict::reached : Verdict::missed;
+  const double found = hardest_found(candidate.results, options.targets);
+  if (confirm == Confirm::tracks) trial.close = found < kClear && found > 1.0 / kClear;
+  if (reached || !std::isfinite(candidate.need)) return;
+  candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
+  for (Limit& limit : runs.limits(candidate.results)) candidate.limits.push_back(std::move(limit));
+  std::stable_sort(candidate.limits.begin(), candidate.limits.end(),
+                   [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
+}
+
+/// `work`, whose errors are the candidate's.
+template <typename Work>
+void as_candidate(Candidate& candidate, const Work& work) {
+  try {
+    work();
+  } catch (const base::InputError& error) {
+    candidate.verdict = Verdict::refused;
+    candidate.why = error.what();
+  } catch (const base::NumericalError& error) {
+    candidate.verdict = Verdict::refused;
+    candidate.why = error.what();
+  }
+}
+
+/// By the bound and, where that allows the target, by tracks.
+Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions& options) {
+  const std::vector<base::TomlScalar> values = values_of(sweep, point * sweep.replicates);
+  Trial trial;
+  Candidate& candidate = trial.candidate;
   candidate.results.resize(options.targets.size());
   set_price(sweep, values, candidate);
-  try {
+  as_candidate(candidate, [&] {
     const RunScenario run = scenario_with(sweep, values);
-    const Setting setting{run.scenario, sweep.level == Level::tracks ? std::optional(run.noise_m) : std::nullopt};
+    trial.setting = {run.scenario, sweep.level == Level::tracks ? std::optional(run.noise_m) : std::nullopt};
     candidate.name = name_of(sweep, values, run.scenario);
     candidate.frame_rate_hz = run.scenario.recording.frame_rate_hz;
     candidate.pixels_s = candidate.frame_rate_hz * run.scenario.camera.width_px * run.scenario.camera.height_px;
-    const MadeTracks made = make_tracks(setting.scenario, 1);
-    const std::vector<double> noise_m = noise_of(setting, made.truth);
+    const MadeTracks made = make_tracks(trial.setting->scenario, 1);
+    const std::vector<double> noise_m = noise_of(*trial.setting, made.truth);
     for (const double noise : noise_m) candidate.noise_m += noise * noise / static_cast<double>(noise_m.size());
     candidate.noise_m = std::sqrt(candidate.noise_m);
     candidate.results = bounds(made, noise_m, options.targets);
@@ -67,32 +121,43 @@ Candidate candidate_of(const Sweep& sweep, std::uint64_t point, const Requiremen
                                       [](const Target& target) { return target.measure == Target::Measure::bias; });
     if (candidate.need > 1.0) {
       candidate.verdict = Verdict::impossible;
-    } else if (candidate.need < 1.0 / kClear && !any_bias && options.confirm == Confirm::none) {
-      candidate.verdict = Verdict::by_bound;
+      if (std::isfinite(candidate.need)) candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
     } else if (options.confirm != Confirm::none) {
-      candidate.verdict =
-          reached_by_runs(sweep, setting, point, options, candidate.results) ? Verdict::reached : Verdict::missed;
+      judge_by_runs(sweep, point, options, Confirm::tracks, trial);
+    } else if (candidate.need < 1.0 / kClear && !any_bias) {
+      candidate.verdict = Verdict::by_bound;
     }
-    const bool short_of_it = candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::missed;
-    if (short_of_it && std::isfinite(candidate.need)) {
-      candidate.limits = limits_of(setting, candidate.need, options.targets);
-      if (candidate.verdict == Verdict::missed) {
-        for (Limit& limit : limits_by_runs(sweep, setting, point, options, candidate.results)) {
-          candidate.limits.push_back(std::move(limit));
-        }
-        std::stable_sort(candidate.limits.begin(), candidate.limits.end(),
-                         [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
-      }
-    }
-  } catch (const base::InputError& error) {
-    candidate.verdict = Verdict::refused;
-    candidate.why = error.what();
-  } catch (const base::NumericalError& error) {
-    candidate.verdict = Verdict::refused;
-    candidate.why = error.what();
-  }
+  });
   if (candidate.name.empty()) candidate.name = fmt::format("point {}", point);
-  return candidate;
+  return trial;
+}
+
+/// What it takes to render a scenario's clips, in units of their pixels.
+double pixels_of(const render::Scenario& scenario) {
+  return static_cast<double>(render::count_clips(scenario, 1).frames) * scenario.camera.width_px *
+         scenario.camera.height_px;
+}
+
+/// From the smallest recording of all, which is made for that and thrown away.
+ConfirmationSize size_of(const std::vector<Trial>& trials, const RequirementOptions& options) {
+  ConfirmationSize size;
+  size.points = trials.size();
+  double all = 0.0;
+  const Trial* least = nullptr;
+  for (const Trial& trial : trials) {
+    if (!trial.close) continue;
+    ++size.close;
+    all += pixels_of(trial.setting->scenario);
+    if (least == nullptr || pixels_of(trial.setting->scenario) < pixels_of(least->setting->scenario)) least = &trial;
+  }
+  size.recordings = size.close * options.runs;
+  if (least == nullptr) return size;
+  const auto start = std::chrono::steady_clock::now();
+  film_tracks(least->setting->scenario, 1, 1);
+  const double one_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  size.seconds = one_s * all / pixels_of(least->setting->scenario) * static_cast<double>(options.runs) /
+                 std::min<double>(std::max(1, options.jobs), static_cast<double>(size.close));
+  return size;
 }
 
 }  // namespace
@@ -124,16 +189,17 @@ Target parse_target(const std::string& text) {
   return target;
 }
 
-std::string describe(Verdict verdict) {
-  switch (verdict) {
+std::string describe(const Candidate& candidate) {
+  const char* by = candidate.judged_by == Confirm::clips ? "clips" : "tracks";
+  switch (candidate.verdict) {
     case Verdict::reached:
-      return "reached, by runs";
+      return fmt::format("reached, by {}", by);
     case Verdict::by_bound:
       return "reached, the bound has room";
     case Verdict::unconfirmed:
       return "possible, not run";
     case Verdict::missed:
-      return "missed, by runs";
+      return fmt::format("missed, by {}", by);
     case Verdict::impossible:
       return "impossible";
     case Verdict::refused:
@@ -160,12 +226,27 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
     throw base::InputError(base::Issue{sweep.file.string(), 0, "vary", fmt::format("{} combinations", points),
                                        fmt::format("at most {}", kMost)});
   }
-  requirement.candidates.resize(points);
+  std::vector<Trial> trials(points);
   std::atomic<std::uint64_t> done = 0;
   base::for_each_parallel(points, options.jobs, [&](std::size_t point) {
-    requirement.candidates[point] = candidate_of(sweep, point, options);
+    trials[point] = trial_of(sweep, point, options);
     progress("cameras", static_cast<double>(++done) / static_cast<double>(points));
   });
+  if (options.confirm == Confirm::clips) {
+    std::vector<std::size_t> close;
+    for (std::size_t point = 0; point < points; ++point) {
+      if (trials[point].close) close.push_back(point);
+    }
+    if (options.before_rendering) options.before_rendering(size_of(trials, options));
+    done = 0;
+    progress("rendered clips", 0.0);
+    base::for_each_parallel(close.size(), options.jobs, [&](std::size_t i) {
+      Trial& trial = trials[close[i]];
+      as_candidate(trial.candidate, [&] { judge_by_runs(sweep, close[i], options, Confirm::clips, trial); });
+      progress("rendered clips", static_cast<double>(++done) / static_cast<double>(close.size()));
+    });
+  }
+  for (Trial& trial : trials) requirement.candidates.push_back(std::move(trial.candidate));
   requirement.by_price = std::all_of(requirement.candidates.begin(), requirement.candidates.end(),
                                      [](const Candidate& candidate) { return candidate.price.has_value(); });
   std::stable_sort(requirement.candidates.begin(), requirement.candidates.end(),

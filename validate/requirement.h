@@ -3,12 +3,14 @@
 /// A target is on the worst configuration of the scenario: its standard deviation ("sd"), the half-width that holds 95
 /// % of the errors ("error95" = 1.96 rms error) or the mean error ("bias"). The bound takes the noise of the sweep's
 /// tracks, or predicts it from the camera (validate/camera_noise.h). A point whose bound is above the target cannot
-/// reach it. Any other is run, as tracks with that noise or rendered, and judged by its errors (of the better
-/// estimator), for a bound knows nothing of dropped frames, and of lens, shutter, codec and calibration, which rendered
-/// runs have besides. Where nothing is run, a bound below the target by kClear is said to have room.
+/// reach it. Any other is run as tracks with that noise and judged by its errors (of the better estimator), for a bound
+/// knows nothing of dropped frames. Where rendered clips are to confirm, those within a factor of kClear of the target
+/// are rendered as well, with lens, shutter, codec and calibration, and these judge. Where nothing is run, a bound
+/// below the target by kClear is said to have room.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,11 +35,19 @@ Target parse_target(const std::string& text);
 
 enum class Confirm { none, tracks, clips };
 
+/// What is about to be rendered.
+struct ConfirmationSize {
+  std::uint64_t close = 0, points = 0;  ///< to be rendered, of all
+  std::uint64_t recordings = 0;
+  double seconds = 0.0;  ///< on the threads asked for, from one recording; what keeps a miss from it takes more
+};
+
 struct RequirementOptions {
   std::vector<Target> targets;
   Confirm confirm = Confirm::tracks;
   std::uint64_t runs = 12;  ///< to confirm a point
   int jobs = 1;
+  std::function<void(const ConfirmationSize&)> before_rendering = {};
 };
 
 /// One target at one point; in the target's unit and measure.
@@ -62,8 +72,6 @@ enum class Verdict {
   impossible,   ///< the bound is above the target
   refused,      ///< the scenario or the analysis refuses it: `why`
 };
-std::string describe(Verdict verdict);
-
 struct Candidate {
   std::string name;  ///< of the camera and the values
   std::string price_class;
@@ -72,11 +80,15 @@ struct Candidate {
   double frame_rate_hz = 0.0;
   double noise_m = 0.0;  ///< of a position: root mean square over the clips
   Verdict verdict = Verdict::unconfirmed;
+  Confirm judged_by = Confirm::none;  ///< whose errors `results` has
   std::string why;
   double need = 0.0;                  ///< bound over target, of the hardest target
   std::vector<TargetResult> results;  ///< one for each target
   std::vector<Limit> limits;          ///< the largest gain first
 };
+
+/// "reached, by clips", "impossible", …
+std::string describe(const Candidate& candidate);
 
 struct Requirement {
   std::string name;

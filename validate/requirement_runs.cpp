@@ -53,7 +53,7 @@ double measure_of(const Errors& errors, Target::Measure measure) {
 }
 
 /// The better estimator's measure, each judged by its worst configuration.
-void judge(const std::vector<Errors>& all, const Target& target, TargetResult& result) {
+void judge_errors(const std::vector<Errors>& all, const Target& target, TargetResult& result) {
   for (const char* estimator : {"phase-diagram", "trajectory"}) {
     double worst = 0.0;
     std::size_t runs = 0;
@@ -69,43 +69,48 @@ void judge(const std::vector<Errors>& all, const Target& target, TargetResult& r
   }
 }
 
-core::AnalysisResults one_run(const Setting& setting, const MadeTracks& made, std::uint64_t seed, Confirm confirm) {
-  if (confirm == Confirm::clips) return phase_diagram_of(film_tracks(setting.scenario, seed, 1), {});
-  const std::vector<double> noise_m = noise_of(setting, made.truth);
-  // Clips of one scenario have about one noise: their root mean square.
-  double square = 0.0;
-  for (const double noise : noise_m) square += noise * noise / static_cast<double>(noise_m.size());
-  return analyze_tracks(with_noise(made, std::sqrt(square), seed), std::nullopt);
-}
-
 }  // namespace
 
-bool reached_by_runs(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options,
-                     std::vector<TargetResult>& results) {
+MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run,
+                                   Confirm confirm) {
+  const std::uint64_t seed = seed_of(sweep_, point_ * options_.runs + run);
+  if (confirm == Confirm::clips) {
+    std::unique_ptr<FilmStudio>& studio = studios_[run];
+    if (!studio) studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_);
+    MadeTracks made = studio->film(setting.scenario, seed, 1);
+    stage_ = studio->stage();
+    return made;
+  }
+  // Clips of one scenario have about one noise: their root mean square.
+  const std::vector<double> noise_m = noise_of(setting, clean.truth);
+  double square = 0.0;
+  for (const double noise : noise_m) square += noise * noise / static_cast<double>(noise_m.size());
+  return with_noise(clean, std::sqrt(square), seed);
+}
+
+bool RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results) {
+  for (TargetResult& result : results) result.found.reset();
   std::vector<Errors> all;
-  for (std::uint64_t run = 0; run < options.runs; ++run) {
-    const std::uint64_t seed = seed_of(sweep, point * options.runs + run);
-    const MadeTracks made = make_tracks(setting.scenario, seed);
-    const core::AnalysisResults of_run = one_run(setting, made, seed, options.confirm);
-    add_errors(compare_quantities(of_run, made.truth), all);
-    add_errors(compare_quantities(diagnose::with_trajectory_fits(of_run), made.truth), all);
+  for (std::uint64_t run = 0; run < options_.runs; ++run) {
+    const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
+    const core::AnalysisResults of_run = phase_diagram_of(tracks_of(setting, clean, run, confirm), {});
+    add_errors(compare_quantities(of_run, clean.truth), all);
+    add_errors(compare_quantities(diagnose::with_trajectory_fits(of_run), clean.truth), all);
   }
   bool reached = true;
-  for (std::size_t t = 0; t < options.targets.size(); ++t) {
-    judge(all, options.targets[t], results[t]);
-    reached = reached && results[t].found && *results[t].found <= options.targets[t].value;
+  for (std::size_t t = 0; t < options_.targets.size(); ++t) {
+    judge_errors(all, options_.targets[t], results[t]);
+    reached = reached && results[t].found && *results[t].found <= options_.targets[t].value;
   }
   return reached;
 }
 
-std::vector<Limit> limits_by_runs(const Sweep& sweep, const Setting& setting, std::uint64_t point,
-                                  const RequirementOptions& options, const std::vector<TargetResult>& results) {
+std::vector<Limit> RecordedRuns::limits(const std::vector<TargetResult>& results) {
   std::vector<Limit> limits;
+  const Setting& setting = setting_;
   const auto try_without = [&](const char* name, const Setting& changed, Confirm confirm) {
-    std::vector<TargetResult> then(options.targets.size());
-    RequirementOptions how = options;
-    how.confirm = confirm;
-    reached_by_runs(sweep, changed, point, how, then);
+    std::vector<TargetResult> then(options_.targets.size());
+    judge(changed, confirm, then);
     double gain = 0.0;
     for (std::size_t t = 0; t < then.size(); ++t) {
       if (results[t].found && then[t].found) gain = std::max(gain, *results[t].found / *then[t].found);
@@ -114,17 +119,17 @@ std::vector<Limit> limits_by_runs(const Sweep& sweep, const Setting& setting, st
   };
   Setting changed = setting;
   changed.scenario.recording.clock = {};
-  try_without("the camera's clock (even instead, by runs)", changed, options.confirm);
-  if (options.confirm != Confirm::clips) return limits;
+  try_without("the camera's clock (even instead, by runs)", changed, options_.confirm);
+  if (options_.confirm != Confirm::clips) return limits;
   if (setting.scenario.recording.shutter.rolling) {
     changed = setting;
     changed.scenario.recording.shutter.rolling = false;
-    try_without("rolling shutter (global instead, by runs)", changed, options.confirm);
+    try_without("rolling shutter (global instead, by runs)", changed, options_.confirm);
   }
   if (render::lossy(setting.scenario.codec)) {
     changed = setting;
     changed.scenario.codec = render::Codec::ffv1;
-    try_without("codec (lossless instead, by runs)", changed, options.confirm);
+    try_without("codec (lossless instead, by runs)", changed, options_.confirm);
   }
   try_without("lens, calibration and tracking (true positions with the expected noise, by runs)", setting,
               Confirm::tracks);

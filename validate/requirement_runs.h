@@ -3,23 +3,42 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "validate/film_studio.h"
 #include "validate/requirement.h"
 #include "validate/requirement_bound.h"
 #include "validate/sweep.h"
 
 namespace glidelab::validate {
 
-/// Fills `results` (one for each target) with the better estimator's errors over the runs; true where all targets are
-/// reached.
-bool reached_by_runs(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options,
-                     std::vector<TargetResult>& results);
+/// The runs of one point. Rendered ones share what stands still, and each run's calibration with what is thought away.
+class RecordedRuns {
+ public:
+  /// As RequirementOptions::confirm says, tracks or clips. All outlive this.
+  RecordedRuns(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options)
+      : sweep_(sweep), setting_(setting), point_(point), options_(options), studios_(options.runs) {}
 
-/// What is in no bound, thought away one by one, by the same runs: how many times smaller the errors in `results` are
-/// with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec, and with the true
-/// positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
-std::vector<Limit> limits_by_runs(const Sweep& sweep, const Setting& setting, std::uint64_t point,
-                                  const RequirementOptions& options, const std::vector<TargetResult>& results);
+  /// Fills `results` (one for each target) with the better estimator's errors over the runs; true where all targets are
+  /// reached.
+  bool judge(std::vector<TargetResult>& results) { return judge(setting_, options_.confirm, results); }
+
+  /// What is in no bound, thought away one by one, by the same runs: how many times smaller the errors in `results` are
+  /// with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec, and with the true
+  /// positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
+  std::vector<Limit> limits(const std::vector<TargetResult>& results);
+
+ private:
+  bool judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results);
+  MadeTracks tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run, Confirm confirm);
+
+  const Sweep& sweep_;
+  const Setting& setting_;
+  std::uint64_t point_;
+  const RequirementOptions& options_;
+  std::vector<std::unique_ptr<FilmStudio>> studios_;  ///< of each run, once it was filmed
+  std::shared_ptr<const render::Stage> stage_;
+};
 
 }  // namespace glidelab::validate

@@ -151,9 +151,22 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   options.targets = {validate::parse_target("k_over_m_1_s=1")};
   const double bound = *validate::find_requirement(sweep, options).candidates.front().results[0].bound;
   options.targets[0].value = 1.01 * bound;
+  validate::ConfirmationSize size;
+  options.before_rendering = [&](const validate::ConfirmationSize& told) { size = told; };
   const validate::Requirement requirement = validate::find_requirement(sweep, options);
   const validate::Candidate& only = requirement.candidates.front();
   REQUIRE(only.verdict == validate::Verdict::missed);
+  CHECK(validate::describe(only) == "missed, by clips");
+  CHECK(size.close == 1);
+  CHECK(size.points == 1);
+  CHECK(size.recordings == 3);
+  CHECK(size.seconds > 0.0);
+  // A target that tracks reach with a factor of 4 to spare is not worth a picture.
+  options.targets[0].value = 100.0 * bound;
+  const validate::Requirement easy = validate::find_requirement(sweep, options);
+  CHECK(validate::describe(easy.candidates.front()) == "reached, by tracks");
+  CHECK(size.close == 0);
+  CHECK(size.recordings == 0);
   const auto gain = [&](const std::string& start) {
     const auto found = std::find_if(only.limits.begin(), only.limits.end(),
                                     [&](const validate::Limit& limit) { return limit.name.starts_with(start); });
