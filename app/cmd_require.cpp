@@ -83,7 +83,7 @@ void add_require(CLI::App& app, Command& chosen) {
       ->add_option("--confirm", options->confirm,
                    "How what the bound allows is confirmed: \"tracks\" with the predicted noise, rendered \"clips\" "
                    "besides where these "
-                   "come within a factor of 4 of the target, or \"none\"")
+                   "come close to the target, or \"none\"")
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}))
       ->capture_default_str();

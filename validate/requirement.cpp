@@ -76,7 +76,7 @@ void judge_by_runs(const Sweep& sweep, std::uint64_t point, RequirementOptions o
   candidate.judged_by = confirm;
   candidate.verdict = reached ? Verdict::reached : Verdict::missed;
   const double found = hardest_found(candidate.results, options.targets);
-  if (confirm == Confirm::tracks) trial.close = found < kClear && found > 1.0 / kClear;
+  if (confirm == Confirm::tracks) trial.close = found < kClear && found > 1.0 / kClearOfClips;
   if (reached || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
   for (Limit& limit : runs.limits(candidate.results)) candidate.limits.push_back(std::move(limit));
