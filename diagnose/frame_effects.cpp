@@ -130,6 +130,9 @@ std::vector<double> tail_residuals(const TrackSet& set, const MotionFit& fit) {
   return e;
 }
 
+constexpr double kFewestRuns = 4.0;  // a frame or two beside another error is no pattern yet
+constexpr double kPartInRuns = 0.25;
+
 struct Tails {
   double gain = 0.0, log_evidence = 0.0;
   double share = 0.0, wide = 1.0, variance = 1.0;  // at the best: of the narrow part
@@ -166,6 +169,31 @@ Tails find_tails(const std::vector<double>& e) {
   return tails;
 }
 
+/// How much likelier this position is one of the many than one of the tails.
+double of_the_many(const Tails& tails, double e) {
+  const double square = e * e / tails.variance, wide = tails.wide * tails.wide;
+  return std::log((1.0 - tails.share) * tails.wide / tails.share) - 0.5 * square * (1.0 - 1.0 / wide);
+}
+
+/// As FrameEffect::in_runs.
+double runs_of_tails(const TrackSet& set, const std::vector<double>& e, const Tails& tails) {
+  double all = 0.0, followers = 0.0, followed = 0.0;
+  std::size_t at = 0;
+  for (const TrackedMotion& motion : set.motions) {
+    for (std::size_t p = 0; p < motion.t_s.size(); ++p, ++at) {
+      if (of_the_many(tails, e[at]) > 0.0) continue;
+      all += 1.0;
+      if (p + 1 == motion.t_s.size()) continue;
+      followers += 1.0;
+      followed += of_the_many(tails, e[at + 1]) <= 0.0 && e[at] * e[at + 1] > 0.0 ? 1.0 : 0.0;
+    }
+  }
+  if (followed < std::max(kFewestRuns, kPartInRuns * all)) return 0.0;
+  const double chance = 0.5 * all / static_cast<double>(e.size());
+  return std::lgamma(followed + 1.0) + std::lgamma(followers - followed + 1.0) - std::lgamma(followers + 2.0) -
+         followed * std::log(chance) - (followers - followed) * std::log1p(-chance);
+}
+
 }  // namespace
 
 FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
@@ -178,6 +206,7 @@ FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
   found.log_evidence = tails.log_evidence;
   found.value = tails.share;
   found.sd = std::sqrt(tails.share / static_cast<double>(e.size()));
+  found.in_runs = runs_of_tails(set, e, tails);
   return found;
 }
 
@@ -191,11 +220,9 @@ std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit) {
   for (TrackedMotion& motion : marked.motions) {
     std::size_t of_motion = 0;
     for (char& outlier : motion.outlier) {
-      const double square = e[at] * e[at] / tails.variance;
+      const bool in = of_the_many(tails, e[at]) > 0.0;
       ++at;
-      const double in = (1.0 - tails.share) * std::exp(-0.5 * square);
-      const double out = tails.share / tails.wide * std::exp(-0.5 * square / (tails.wide * tails.wide));
-      if (outlier || out <= in) continue;
+      if (outlier || in) continue;
       outlier = 1;
       ++count;
       ++of_motion;

@@ -1,0 +1,52 @@
+#include "diagnose/frame_effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "catch.h"
+#include "diagnose/diagnose.h"
+#include "made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Errors of 1 mm in about one frame of fifty, each lasting `frames`; the noise is 20 µm.
+tests::MadeExperiment spoilt(std::size_t frames, unsigned seed) {
+  std::mt19937_64 random(seed + 40);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  std::size_t left = 0;
+  double error = 0.0;
+  const tests::MadeEffect effect{.seen = [&](double x, double) {
+    if (left == 0 && any(random) < 0.02 / static_cast<double>(frames)) {
+      left = frames;
+      error = any(random) < 0.5 ? -1e-3 : 1e-3;
+    }
+    if (left == 0) return x;
+    --left;
+    return x + error;
+  }};
+  return tests::made_experiment(tests::made_launches(), effect, seed, 2e-5, 250, 150.0);
+}
+
+diagnose::FrameEffect tails_of(const tests::MadeExperiment& made) {
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  return diagnose::scan_tails(set, diagnose::fit_nominal(set));
+}
+
+}  // namespace
+
+TEST_CASE("errors of single frames are heavy tails; errors that last are none, and have no name") {
+  for (const unsigned seed : {1u, 2u}) {
+    const auto single = spoilt(1, seed), lasting = spoilt(3, seed);
+    CHECK(tails_of(single).log_evidence > 10.0);
+    CHECK(tails_of(single).in_runs <= 0.0);
+    CHECK(tails_of(lasting).in_runs > 20.0);
+    const auto named = diagnose::diagnose_results(single.results, single.setups, {.without = {}, .jobs = 2});
+    REQUIRE(named.verdict == "effect");
+    CHECK(named.effects.front().id == "heavy_tailed_noise");
+    const auto other = diagnose::diagnose_results(lasting.results, lasting.setups, {.without = {}, .jobs = 2});
+    CHECK(other.verdict == "unknown");
+  }
+}
