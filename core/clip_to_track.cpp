@@ -107,7 +107,7 @@ SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Came
   constexpr std::size_t kTellEvery = 10;
   std::optional<SceneWatch> scene;
   if (look_at_scene) {
-    scene.emplace();
+    scene.emplace(source->facts().lossy.value_or(false));
     seen.pictures = std::make_shared<PictureRecord>();
   }
   while (const auto frame = look_at_scene ? source->next() : source->next_in_parts()) {

@@ -23,6 +23,8 @@ constexpr double kOff = 5.0;           // of its standard deviations
 constexpr double kRestep = 0.2;        // px
 constexpr double kInterpolated = 0.1;  // px: residual over gradient of structure near the pixels' own size
 constexpr double kLeastNoise = 0.1;    // codes: rounding, blurred
+constexpr double kLossyNoise = 1.0;    // codes, of a pixel
+constexpr double kBlock = 64.0;        // pixels that a codec errs in together
 constexpr double kSofter = 0.2873;     // noise of a pixel after the blur below: sum of its weights' squares
 constexpr int kMargin = 12;            // px around a patch
 
@@ -206,7 +208,8 @@ SceneLook SceneWatch::compare(const Pixels& pixels) {
     rests.push_back(found.back().rest);
   }
   if (found.empty()) return look;
-  const double variance = median_of(rests) / (kSofter * kSofter);  // of a pixel as it is
+  double variance = std::max(median_of(rests), kLeastNoise * kLeastNoise) / (kSofter * kSofter);  // of a pixel
+  if (lossy_) variance = kBlock * std::max(variance, kLossyNoise * kLossyNoise);
   // What moves otherwise than half of the patches that can tell is not the scene.
   for (const int axis : {0, 1}) {
     std::vector<double> shifts;
@@ -249,8 +252,20 @@ SceneLook SceneWatch::compare(const Pixels& pixels) {
   if (found.empty()) return look;
   const cv::Matx22d inverse = information.inv();
   const cv::Vec2d shift = inverse * sum;
-  look.sd_u_px = std::sqrt(variance * inverse(0, 0));
-  look.sd_v_px = std::sqrt(variance * inverse(1, 1));
+  // What patches differ by beyond their pixels' noise errs in all pixels of a patch together, as a codec's blocks do.
+  std::array<std::vector<double>, 2> off;
+  for (const Found& one : found) {
+    for (const int axis : {0, 1}) {
+      const double own = variance * one.patch->inverse(1 + axis, 1 + axis);
+      off[static_cast<std::size_t>(axis)].push_back(std::pow(one.by[1 + axis] - shift[axis], 2) / own);
+    }
+  }
+  const auto excess = [](const std::vector<double>& squares) {
+    constexpr double kMedianOfSquare = 0.455;  // of a standard normal deviate
+    return std::max(1.0, median_of(squares) / kMedianOfSquare);
+  };
+  look.sd_u_px = std::sqrt(variance * inverse(0, 0) * excess(off[0]));
+  look.sd_v_px = std::sqrt(variance * inverse(1, 1) * excess(off[1]));
   look.u_px = shift_.x + shift[0];
   look.v_px = shift_.y + shift[1];
   if (!(look.sd_u_px < kWellKnown)) look.u_px = look.sd_u_px = 0.0;

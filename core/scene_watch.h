@@ -24,6 +24,10 @@ namespace glidelab::core {
 
 class SceneWatch {
  public:
+  /// `lossy`: the file says that it is compressed with loss. What a codec leaves is then no noise that is new in every
+  /// pixel and frame: it freezes it, so that even a plain wall has structure that rests and later jumps. Errors count
+  /// as one code at least, the same in all of a block of 8 x 8 pixels.
+  explicit SceneWatch(bool lossy = false) : lossy_(lossy) {}
   void add(const cv::Mat& grey, double t_s);
   /// Fills what it has seen into the record: scene, steps, noise.
   void finish(PictureRecord& record);
@@ -54,6 +58,7 @@ class SceneWatch {
   std::vector<Patch> patches_;
   std::vector<cv::Mat> early_;
   std::vector<double> early_t_s_;
+  bool lossy_ = false;
   bool ready_ = false;
   cv::Point2d shift_;  ///< at which the references stand
   std::vector<SceneLook> looks_;

@@ -16,6 +16,7 @@ constexpr double kLeastFlicker = 0.002;      // of the light: below, nothing tha
 constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames brighten and darken by as much
 constexpr double kOfDrift = 0.01;            // of the light, for each pixel that the scene has moved
 constexpr double kUsualGradient_1_m = 0.1;   // of the light, in a room where nothing is wrong
+constexpr double kFull = 0.96;               // of the largest code: a marker as bright may be cut off there
 
 /// sinc of an exposure's average over a wave.
 double averaged(double f_hz, double exposure_s) {
@@ -102,7 +103,8 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   for (std::size_t c = 0; c < clips.size(); ++c) {
     px_per_m += clips[c].px_per_m / static_cast<double>(clips.size());
     for (const core::MarkerLook& look : clips[c].record->marker) {
-      if (!(look.amplitude + look.background > 0.0)) continue;
+      const double code = look.amplitude + look.background;
+      if (!(code > 0.0) || code > kFull * clips[c].record->full_code) continue;
       Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
       const double s = (look.u_px - 0.5 * clips[c].record->width_px) / std::max(1.0, clips[c].px_per_m);
       row[static_cast<Eigen::Index>(c)] = 1.0;

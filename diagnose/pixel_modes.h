@@ -23,4 +23,9 @@ inline constexpr std::size_t kPixelModes = 4;
 void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t>& frames, std::size_t first_mode,
                      TrackedMotion& motion);
 
+/// Positions without such errors, as far as neighbouring positions show them, for the measure of their noise. They
+/// differ between neighbours as noise does: most where the marker moves by half a pixel a frame, not at all by a whole
+/// one. Least squares over those differences, sd_m being the weights, with what is known of the amplitudes beforehand.
+std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedMotion>& motions);
+
 }  // namespace glidelab::diagnose

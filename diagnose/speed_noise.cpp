@@ -107,11 +107,13 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
   // From what begins to show among n points, in units of what one standard deviation of position makes at top speed; in
   // pictures from what cannot be the marker's blur, which makes its noise grow with the speed as well.
   const double unit = sd / scatter.top_m_s;
-  const double least =
-      std::max(2.0 * std::pow(2.0 / (independent * n), 0.25) * unit, set.pictures ? kLeastFilmedJitter : 0.0);
+  const double least = 2.0 * std::pow(2.0 / (independent * n), 0.25) * unit;
+  const double least_s = set.pictures ? kLeastFilmedJitter : 0.0;
   for (double tau = least; tau < 40.0 * scatter.widest * unit && tau < 0.5 * step; tau *= 1.3) {
-    logs.push_back(log_likelihood(tau) - none);
-    if (logs.back() <= found.gain) continue;
+    const double gain = log_likelihood(tau) - none;
+    if (tau * std::sqrt(mean_square) < least_s) continue;
+    logs.push_back(gain);
+    if (gain <= found.gain) continue;
     found.gain = logs.back();
     found.jitter_s = tau * std::sqrt(mean_square);  // sd_m may hold the jitter of the mean speed already
   }

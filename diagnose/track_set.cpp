@@ -87,7 +87,18 @@ double mode_at(const core::ClipResult& clip, std::size_t mode, double t) {
   return 0.0;
 }
 
-TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, std::size_t camera_modes) {
+/// How many times as large the errors of camera and plane are as the calibration's own noise explains: where the
+/// pattern fits its plane view less well than that, corners err in a way that the modes do not hold. Never below 1.
+double calibration_excess(const core::AnalysisResults& results, const std::string& experiment) {
+  for (const core::CalibrationResult& calibration : results.calibrations) {
+    if (calibration.experiment != experiment || !(calibration.plane_expected_px > 0.0)) continue;
+    return std::max(1.0, calibration.plane_rms_px / calibration.plane_expected_px);
+  }
+  return 1.0;
+}
+
+TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, std::size_t camera_modes,
+                        double excess) {
   TrackedMotion motion;
   std::vector<std::size_t> frames;
   const double first = clip.motion.front().t_s;
@@ -110,12 +121,12 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   for (const core::FreeBlock& block : clip.blocks) modes = std::max(modes, block.shared_m.size());
   motion.shared_m.resize(modes);
   for (std::size_t m = 0; m < modes; ++m) {
-    for (const double t : motion.t_s) motion.shared_m[m].push_back(mode_at(clip, m, t + first));
+    for (const double t : motion.t_s) motion.shared_m[m].push_back(excess * mode_at(clip, m, t + first));
     const bool any =
         std::any_of(motion.shared_m[m].begin(), motion.shared_m[m].end(), [](double s) { return s != 0.0; });
     if (!any) motion.shared_m[m].clear();
   }
-  motion.scale_sd = clip.scale_sd_relative;
+  motion.scale_sd = excess * clip.scale_sd_relative;
   add_pixel_modes(clip, frames, camera_modes, motion);
   return motion;
 }
@@ -186,13 +197,21 @@ double neighbour_residual(const std::vector<double>& t, const std::vector<double
 }
 
 void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s) {
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    TrackedMotion& motion = motions[i];
-    std::vector<double> t_s = motion.t_s;
-    for (std::size_t p = 0; p < t_s.size() && !late_s.empty(); ++p) t_s[p] += late_s[i][p];
-    motion.sd_m = std::max(neighbour_noise(t_s, motion.x_m, motion.outlier), kLeastNoise_m);
-    motion.wider.clear();
-  }
+  const auto measure = [&](const std::vector<std::vector<double>>& x_m) {
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      TrackedMotion& motion = motions[i];
+      std::vector<double> t_s = motion.t_s;
+      for (std::size_t p = 0; p < t_s.size() && !late_s.empty(); ++p) t_s[p] += late_s[i][p];
+      motion.sd_m = std::max(neighbour_noise(t_s, x_m.empty() ? motion.x_m : x_m[i], motion.outlier), kLeastNoise_m);
+      motion.wider.clear();
+    }
+  };
+  measure({});
+  constexpr int kRounds = 3;  // the weights are the noise without the errors between pixels
+  const bool filmed = std::any_of(motions.begin(), motions.end(), [](const TrackedMotion& motion) {
+    return motion.shared_m.size() > motion.first_pixel_mode;
+  });
+  for (int round = 0; filmed && round < kRounds; ++round) measure(without_pixel_errors(motions));
   share_noise(motions);
 }
 
@@ -233,8 +252,9 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
       set.disputed += point.left_out == core::LeftOut::hand || point.left_out == core::LeftOut::stop;
     }
     bool any = false;
+    const double excess = calibration_excess(results, clip.experiment);
     for (const Run& run : runs_of(clip, all)) {
-      TrackedMotion motion = motion_of(clip, run, all, camera_modes);
+      TrackedMotion motion = motion_of(clip, run, all, camera_modes, excess);
       if (motion.t_s.size() < kFewestPoints) continue;
       motion.clip = c;
       motion.group = group_of(setups[c], set);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,11 @@ struct TrackedMotion {
   double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
   std::vector<double> wider;                  ///< of each position, its noise over sd_m; empty: 1
   std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
-  double scale_sd = 0.0;                      ///< relative
-  double m_per_px = 0.0;                      ///< along the motion; 0: not filmed
-  std::vector<double> row_px;                 ///< of the picture, where the marker is; empty: not filmed
+  /// Where among them errors by the place between pixels begin (pixel_modes.h).
+  std::size_t first_pixel_mode = std::numeric_limits<std::size_t>::max();
+  double scale_sd = 0.0;       ///< relative
+  double m_per_px = 0.0;       ///< along the motion; 0: not filmed
+  std::vector<double> row_px;  ///< of the picture, where the marker is; empty: not filmed
 
   double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
 };
