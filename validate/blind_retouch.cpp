@@ -22,12 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where each column's pixels are taken from, so that a point of the marker's line at x stands where shown_at(x) would:
-/// columns, and how much farther down. Exact on that line (lens, camera and slope as rendered), and the same above it.
-struct ColumnSources {
-  cv::Mat_<double> column, down;
-};
-
+/// So that a point of the marker's line at x stands where shown_at(x) would. Exact on that line (lens, camera and slope
+/// as rendered), and the same above it.
 ColumnSources sources_of(const render::Scenario& scenario, double incline_rad,
                          const std::function<double(double)>& shown_at) {
   constexpr double kFarthest_m = 0.8, kStep_m = 2e-4;  // an eighth of a pixel; linear between
@@ -75,6 +71,8 @@ std::array<double, kTaps> weights_at(double place) {
   return weights;
 }
 
+}  // namespace
+
 /// cv::remap knows places to 1/32 pixel only, which would be a staircase of tens of micrometres.
 cv::Mat pulled(const cv::Mat& grey, const ColumnSources& sources) {
   cv::Mat out(grey.size(), CV_8U);
@@ -100,6 +98,8 @@ cv::Mat pulled(const cv::Mat& grey, const ColumnSources& sources) {
   }
   return out;
 }
+
+namespace {
 
 void file_anew(const BlindScene& scene, const render::Scenario& scenario, std::size_t c, const fs::path& from,
                const fs::path& to) {

@@ -111,6 +111,27 @@ TEST_CASE("Noise that is new in every frame has no memory, and blocks of eight s
   CHECK(of_blocks.steps.mean[0] != 1.0);
 }
 
+TEST_CASE("Noise that a codec freezes and then replaces is no scene that moves", "[scene]") {
+  // A plain wall with frozen noise of one code, another one every 30 frames, as skipped blocks and key frames make it.
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  core::SceneWatch watch(true);
+  cv::Mat picture(kHeight, kWidth, CV_8U);
+  for (int k = 0; k < 120; ++k) {
+    for (int i = 0; k % 30 == 0 && i < kHeight * kWidth; ++i) {
+      picture.at<unsigned char>(i / kWidth, i % kWidth) = cv::saturate_cast<unsigned char>(90.0 + noise(random));
+    }
+    watch.add(picture, k / kRate_hz);
+  }
+  core::PictureRecord record;
+  watch.finish(record);
+  REQUIRE(record.scene.size() == 120);
+  for (const core::SceneLook& look : record.scene) {
+    CHECK(look.sd_u_px == 0.0);  // nothing there that a motion would show in
+    CHECK(look.sd_v_px == 0.0);
+  }
+}
+
 TEST_CASE("A picture that is smaller than a patch has nothing to watch", "[scene]") {
   core::SceneWatch watch;
   for (int k = 0; k < 10; ++k) watch.add(cv::Mat(20, 20, CV_8U, cv::Scalar(80)), k / kRate_hz);

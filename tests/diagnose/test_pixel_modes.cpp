@@ -6,8 +6,10 @@
 
 #include "catch.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/frame_effects.h"
 #include "diagnose/held_out.h"
 #include "diagnose/motion_fit.h"
+#include "diagnose/track_noise.h"
 #include "made_motions.h"
 
 using namespace glidelab;
@@ -20,6 +22,7 @@ constexpr double kPxPerM = 600.0;
 struct Filmed {
   double line_s = 0.0;
   double pixel_error_px = 0.0;
+  double jitter_s = 0.0;
 };
 
 /// Tracks of a camera whose columns lie along the track but for a tilt: 60 rows a metre. Noise of 3 µm.
@@ -37,8 +40,9 @@ tests::MadeExperiment filmed(const Filmed& by, unsigned seed) {
     track.frame_rate_hz = kRate;
     for (std::size_t k = 5; k < kFrames; ++k) {
       double row = 60.0 * fine[k * kFine], x = 0.0;
+      const double late_s = by.jitter_s * normal(random);
       for (int again = 0; again < 3; ++again) {  // the row at which it is seen is where it then is
-        const double at = (static_cast<double>(k) / kRate + by.line_s * row) * kRate * kFine;
+        const double at = (static_cast<double>(k) / kRate + by.line_s * row + late_s) * kRate * kFine;
         const auto below = static_cast<std::size_t>(at);
         x = fine[below] + (at - static_cast<double>(below)) * (fine[below + 1] - fine[below]);
         row = 60.0 * x;
@@ -132,4 +136,70 @@ TEST_CASE("errors between pixels are four for each place, none for tracks or a m
   resting.x_m = motion.x_m;
   diagnose::add_pixel_modes(clip, frames, 2, resting);
   CHECK(resting.shared_m.empty());
+}
+
+TEST_CASE("the noise of filmed positions does not go with how many pixels the marker moves a frame") {
+  // 0.01 px are 17 µm beside a noise of 3 µm: at half a pixel a frame neighbours differ by it fully, at a whole one
+  // not.
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<diagnose::TrackedMotion> motions;
+  for (const double px : {0.5, 1.0, 0.3, 1.5}) {
+    diagnose::TrackedMotion motion;
+    core::ClipResult clip;
+    std::vector<std::size_t> frames;
+    for (std::size_t k = 0; k < 200; ++k) {
+      core::MarkerSighting sighting;
+      sighting.frame = k;
+      sighting.u_px = 20.1 + px * static_cast<double>(k) + 1e-4 * static_cast<double>(k * k);
+      clip.sightings.push_back(sighting);
+      frames.push_back(k);
+      motion.t_s.push_back(0.01 * static_cast<double>(k));
+      motion.x_m.push_back((sighting.u_px + 0.01 * std::sin(2.0 * std::numbers::pi * sighting.u_px)) / kPxPerM +
+                           3e-6 * normal(random));
+      motion.outlier.push_back(0);
+    }
+    diagnose::add_pixel_modes(clip, frames, 0, motion);
+    motions.push_back(motion);
+  }
+  CHECK(diagnose::neighbour_noise(motions[0].t_s, motions[0].x_m, motions[0].outlier) > 9e-6);
+  diagnose::set_noise(motions, 0);
+  // 196 residuals that share points know a standard deviation to about 7 %: four of them.
+  for (const auto& motion : motions) CHECK(std::abs(motion.sd_m / 3e-6 - 1.0) < 0.28);
+}
+
+TEST_CASE("in pictures a scatter that goes with the speed counts as jitter from ten microseconds on") {
+  for (const double jitter_s : {6e-6, 3e-5}) {
+    const tests::MadeExperiment made = filmed({0.0, 0.0, jitter_s}, 9);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    REQUIRE(set.pictures);
+    const diagnose::FrameEffect found = diagnose::scan_jitter(set, diagnose::fit_nominal(set));
+    INFO("jitter " << jitter_s);
+    CHECK((found.log_evidence > 3.0) == (jitter_s > 1e-5));
+    if (jitter_s > 1e-5) CHECK(std::abs(found.value - jitter_s) < 5.0 * found.sd);
+  }
+}
+
+TEST_CASE(
+    "where the pattern fits its plane worse than its corners' noise, the errors of camera and plane are as much "
+    "larger") {
+  tests::MadeExperiment made = filmed({}, 2);
+  for (auto& clip : made.results.clips) {
+    clip.experiment = "folder";
+    clip.scale_sd_relative = 1e-4;
+    for (auto& block : clip.blocks) block.shared_m = {std::vector<double>(block.t_s.size(), 2e-6)};
+  }
+  core::CalibrationResult calibration;
+  calibration.experiment = "folder";
+  calibration.plane_expected_px = 0.01;
+  for (const double rms_px : {0.005, 0.03}) {
+    calibration.plane_rms_px = rms_px;
+    made.results.calibrations = {calibration};
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const double times = std::max(1.0, rms_px / 0.01);
+    for (const auto& motion : set.motions) {
+      CHECK(std::abs(motion.scale_sd / (1e-4 * times) - 1.0) < 1e-12);
+      CHECK(std::abs(motion.shared_m.front().front() / (2e-6 * times) - 1.0) < 1e-12);
+    }
+  }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "base/errors.h"
@@ -13,6 +14,7 @@
 #include "render/render_experiment.h"
 #include "sim/simulate.h"
 #include "temp_dir.h"
+#include "validate/blind_retouch.h"
 #include "validate/blind_scene_effects.h"
 #include "validate/run_blind.h"
 
@@ -177,6 +179,31 @@ TEST_CASE("frames that a filmed case loses are gone from its clips, and the file
   }
   CHECK(lost > 0);
   CHECK(base::read_file(temp / "case" / "experiment.toml").find("container") == std::string::npos);
+}
+
+TEST_CASE("a picture is pulled by hundredths of a pixel to a thousandth") {
+  // Waves of 20 px; rounding to codes is noise of 0.29, over 200 x 40 pixels with a mean square slope of (60 pi/20)²/2.
+  const auto wave = [](double u) { return 128.0 + 60.0 * std::sin(0.1 * std::numbers::pi * u); };
+  cv::Mat grey(40, 200, CV_8U);
+  for (int v = 0; v < grey.rows; ++v) {
+    for (int u = 0; u < grey.cols; ++u) grey.at<std::uint8_t>(v, u) = cv::saturate_cast<std::uint8_t>(wave(u));
+  }
+  for (const double by : {0.013, -0.24, 0.5, 3.37}) {
+    validate::ColumnSources sources{cv::Mat_<double>(1, grey.cols), cv::Mat_<double>(1, grey.cols, 0.2)};
+    for (int u = 0; u < grey.cols; ++u) sources.column(0, u) = u + by;
+    const cv::Mat out = validate::pulled(grey, sources);
+    double slope2 = 0.0, sum = 0.0;
+    for (int u = 8; u < grey.cols - 8; ++u) {
+      const double slope = 6.0 * std::numbers::pi * std::cos(0.1 * std::numbers::pi * u);
+      // Of the pattern at rest: what is left of the shift is by, to first order about the asked one.
+      const double rest = out.at<std::uint8_t>(20, u) - wave(u + by);
+      slope2 += slope * slope;
+      sum += 6.0 * std::numbers::pi * std::cos(0.1 * std::numbers::pi * (u + by)) * rest;
+    }
+    INFO("by " << by);
+    // Rounding that repeats every 20 px: 0.4 / (13 sqrt(20)) = 0.007 px at worst; 1/32 px would be four times as much.
+    CHECK(std::abs(sum / slope2) < 0.007);
+  }
 }
 
 TEST_CASE("a renderer that fails is an error that names the case") {
