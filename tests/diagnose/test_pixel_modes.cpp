@@ -9,7 +9,6 @@
 #include "diagnose/frame_effects.h"
 #include "diagnose/held_out.h"
 #include "diagnose/motion_fit.h"
-#include "diagnose/track_noise.h"
 #include "made_motions.h"
 
 using namespace glidelab;
@@ -163,7 +162,7 @@ TEST_CASE("the noise of filmed positions does not go with how many pixels the ma
     motions.push_back(motion);
   }
   CHECK(diagnose::neighbour_noise(motions[0].t_s, motions[0].x_m, motions[0].outlier) > 9e-6);
-  diagnose::set_noise(motions, 0);
+  diagnose::measure_noise(motions);
   // 196 residuals that share points know a standard deviation to about 7 %: four of them.
   for (const auto& motion : motions) CHECK(std::abs(motion.sd_m / 3e-6 - 1.0) < 0.28);
 }
