@@ -74,7 +74,12 @@ void show_run(const validate::Sweep& sweep, std::uint64_t run) {
 void check_size(const SweepOptions& options, const validate::Sweep& sweep) {
   const std::uint64_t runs = validate::run_count(sweep);
   if (runs > kManyRuns && !options.many) {
-    throw base::InputError(base::Issue{options.sweep, 0, "", fmt::format("{} runs", runs),
+    const validate::RunCost cost = validate::cost_of_run(sweep, 0);
+    const auto all = static_cast<double>(runs);
+    throw base::InputError(base::Issue{options.sweep, 0, "",
+                                       fmt::format("{} runs (about {} on {} threads, {} of disk)", runs,
+                                                   duration_text(cost.seconds * all / options.common.jobs),
+                                                   options.common.jobs, bytes_text(cost.bytes * all)),
                                        fmt::format("at most {}, or the option --many-runs", kManyRuns)});
   }
 }

@@ -14,18 +14,20 @@ struct FrameEffect {
   double log_evidence = 0.0;
   double value = 0.0;  ///< fraction of frames, or seconds
   double sd = 0.0;
-  double in_runs = 0.0;  ///< log evidence that such frames follow each other on one side, against chance
+  double in_runs = 0.0;  ///< log evidence that such frames come together, against chance
 };
 
 /// Scatter that goes with the speed: variance sd² + (v tau)².
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit);
 
-/// A fraction of positions with a scatter many times the others'. Where they follow each other on one side it is no
-/// scatter but something that lasts: with k of m followed by another and a share p of all,
+/// A fraction of positions with a scatter many times the others'. Where they follow each other on one side, or come in
+/// the first three frames of the clips, it is no scatter but something that lasts or a tracker that has to find its
+/// marker: with k of m so and a chance p of that,
 ///
-///     in_runs = log B(k + 1, m - k + 1) - k log(p/2) - (m - k) log(1 - p/2),
+///     in_runs = log B(k + 1, m - k + 1) - k log(p) - (m - k) log(1 - p),
 ///
-/// any chance of being followed as likely beforehand as another; 0 where fewer than four, or a quarter of them, are.
+/// any other chance as likely beforehand as another (the larger of both); 0 where fewer than four, or a quarter of
+/// them, are so.
 FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit);
 
 /// Where the scatter has such tails beyond doubt, the positions that more likely belong to them than not become

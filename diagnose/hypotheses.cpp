@@ -142,7 +142,7 @@ void add_frame_effects(Comparison& comparison) {
       with.log_evidence += frame.log_evidence;
       comparison.all.push_back(with);
       if (with.unnamed || frame.in_runs <= 0.0) continue;
-      // Errors that last over frames are in no list.
+      // Errors that last over frames, or come with a clip's start, are in no list.
       with.effects = other.effects;
       with.unnamed = true;
       with.unnamed_log_evidence = frame.log_evidence + frame.in_runs;

@@ -57,6 +57,12 @@ std::uint64_t runs_of(const Sweep& sweep, const Shard& shard) {
 
 }  // namespace
 
+RunCost cost_of_run(const Sweep& sweep, std::uint64_t run) {
+  const Clock::time_point start = Clock::now();
+  const RunRecord record = RunWorker(sweep).evaluate(run);
+  return {seconds_since(start), bytes_of(record)};
+}
+
 SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs) {
   SweepEstimate estimate;
   estimate.runs = runs_of(sweep, shard);
@@ -65,10 +71,9 @@ SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const 
   estimate.free_bytes = static_cast<double>(std::filesystem::space(folder).available);
   const std::optional<std::uint64_t> first = MissingRuns(database, shard, run_count(sweep)).next();
   if (!first) return estimate;
-  const Clock::time_point start = Clock::now();
-  const RunRecord record = RunWorker(sweep).evaluate(*first);
-  estimate.seconds = seconds_since(start) * static_cast<double>(estimate.missing) / std::max(1, jobs);
-  estimate.bytes = bytes_of(record) * static_cast<double>(estimate.runs);
+  const RunCost cost = cost_of_run(sweep, *first);
+  estimate.seconds = cost.seconds * static_cast<double>(estimate.missing) / std::max(1, jobs);
+  estimate.bytes = cost.bytes * static_cast<double>(estimate.runs);
   return estimate;
 }
 

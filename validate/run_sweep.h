@@ -20,6 +20,12 @@ struct SweepEstimate {
   double free_bytes = 0.0;    ///< on its disk
 };
 
+/// What one run takes, by running it: processor time of one thread, and its share of the database.
+struct RunCost {
+  double seconds = 0.0, bytes = 0.0;
+};
+RunCost cost_of_run(const Sweep& sweep, std::uint64_t run);
+
 /// Evaluates the first missing run.
 SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs);
 
