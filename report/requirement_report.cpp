@@ -149,7 +149,8 @@ Page requirement_report(const Requirement& requirement) {
       "clips).</p>\n",
       requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
       : requirement.confirm == validate::Confirm::clips
-          ? fmt::format("Where it allows the target, {} runs judge, by the better estimator: rendered where a verdict says so, else tracks with that noise.",
+          ? fmt::format("Where it allows the target, {} runs judge, by the better estimator: rendered where a verdict "
+                        "says so, else tracks with that noise.",
                         requirement.runs)
           : fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
                         requirement.runs));
