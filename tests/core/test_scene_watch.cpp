@@ -112,7 +112,8 @@ TEST_CASE("Noise that is new in every frame has no memory, and blocks of eight s
 }
 
 TEST_CASE("Noise that a codec freezes and then replaces is no scene that moves", "[scene]") {
-  // A plain wall with frozen noise of half a code, another one every 30 frames, as skipped blocks and key frames make it.
+  // A plain wall with frozen noise of half a code, another one every 30 frames, as skipped blocks and key frames make
+  // it.
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.5);
   core::SceneWatch watch(true);
