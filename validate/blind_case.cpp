@@ -149,7 +149,7 @@ void write_blind_folder(const BlindCase& one, const std::filesystem::path& folde
   base::write_file(folder / "experiment.toml", toml);
 }
 
-std::string blind_truth_json(const BlindCase& one) {
+nlohmann::ordered_json truth_of(const DrawnCase& one) {
   nlohmann::ordered_json truth;
   truth["format"] = 1;
   truth["seed"] = one.seed;
@@ -162,6 +162,11 @@ std::string blind_truth_json(const BlindCase& one) {
     if (!cause.variable.empty()) object["variable"] = cause.variable;
     truth["causes"].push_back(std::move(object));
   }
+  return truth;
+}
+
+std::string blind_truth_json(const BlindCase& one) {
+  nlohmann::ordered_json truth = truth_of(one);
   truth["k_n_s_m"] = one.design.k_n_s_m;
   truth["mu"] = one.design.mu;
   truth["noise_sd_m"] = one.design.noise_sd_m;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,18 @@ struct BlindCause {
   double gain = 0.0;                         ///< log likelihood, beside the other one where there are two
 };
 
-struct BlindCase {
+/// What is drawn for every case, of tracks and of clips.
+struct DrawnCase {
   std::uint64_t seed = 0;
   std::size_t index = 0;
   BlindKind kind = BlindKind::none;
   std::vector<BlindCause> causes;
+};
+
+/// The beginning of its truth: format, seed, case, kind, causes.
+nlohmann::ordered_json truth_of(const DrawnCase& one);
+
+struct BlindCase : DrawnCase {
   BlindDesign design;
   std::vector<std::vector<double>> x_m;  ///< of each clip's frames, noise included
 };

@@ -81,18 +81,7 @@ void film_blind_folder(const FilmedCase& one, const fs::path& folder, const fs::
 }
 
 std::string filmed_truth_json(const FilmedCase& one) {
-  nlohmann::ordered_json truth;
-  truth["format"] = 1;
-  truth["seed"] = one.seed;
-  truth["case"] = one.index;
-  truth["kind"] = word(one.kind);
-  truth["causes"] = nlohmann::ordered_json::array();
-  for (const BlindCause& cause : one.causes) {
-    nlohmann::ordered_json object{{"id", cause.id}, {"size", cause.size}, {"log_likelihood_gain", cause.gain}};
-    object["parameters"] = cause.parameters;
-    if (!cause.variable.empty()) object["variable"] = cause.variable;
-    truth["causes"].push_back(std::move(object));
-  }
+  nlohmann::ordered_json truth = truth_of(one);
   truth["told"] = one.told;
   truth["least_noise_m"] = one.scene.motion.noise_sd_m;
   truth["stated"] = nlohmann::ordered_json::object();

@@ -17,11 +17,7 @@
 
 namespace glidelab::validate {
 
-struct FilmedCase {
-  std::uint64_t seed = 0;
-  std::size_t index = 0;
-  BlindKind kind = BlindKind::none;
-  std::vector<BlindCause> causes;
+struct FilmedCase : DrawnCase {
   BlindScene scene;
   /// Effects that act and are no secret: a file with loss says so itself. To name them is neither asked for nor wrong.
   std::vector<std::string> told;
