@@ -10,6 +10,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kUnseen = 1e-10;
+constexpr double kUndrawn = 1e-8;  // derivatives by finite differences err by so much: no size is read off below
 
 /// Orthonormal columns that span those of `a`; columns that depend on others fall away.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
@@ -217,7 +218,7 @@ SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen:
   result.tau = std::sqrt(best_tau2);
   Eigen::VectorXd shrink(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    const bool seen = eigen.values[j] >= kUnseen * largest;
+    const bool seen = eigen.values[j] >= kUndrawn * largest;
     shrink[j] = seen ? best_tau2 / (1.0 + best_tau2 * eigen.values[j]) : 0.0;
   }
   result.mean = base::product(eigen.vectors, shrink.cwiseProduct(along));
