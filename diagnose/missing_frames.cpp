@@ -28,18 +28,12 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Way from one point to the next around the step to point f: the median of three steps on each side, so that other
 /// jumps near by do not count.
-struct UsualStep {
-  double size = 0.0, spread = 0.0;  ///< the spread holds what an acceleration makes of it
-};
-UsualStep usual_step(const std::vector<double>& x_m, std::size_t f) {
+double usual_step(const std::vector<double>& x_m, std::size_t f) {
   std::vector<double> steps;
   for (std::size_t to = f > 3 ? f - 3 : 1; to < std::min(x_m.size(), f + 4); ++to) {
     if (to != f) steps.push_back(x_m[to] - x_m[to - 1]);
   }
-  UsualStep usual{core::median_of(steps), 0.0};
-  for (double& step : steps) step = std::abs(step - usual.size);
-  usual.spread = core::median_of(steps);
-  return usual;
+  return core::median_of(steps);
 }
 
 /// Best place for one more missing frame in a motion: the gain (at the likeliest number of frames, where that need not
@@ -68,7 +62,7 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
     const double way = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // what is known taken out
     const double after = f + 1 < data.x_m.size() ? data.x_m[f + 1] - data.x_m[f] : data.x_m[f - 1] - data.x_m[f - 2];
     const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
-    double jump = way - usual_step(data.x_m, f).size;
+    double jump = way - usual_step(data.x_m, f);
     const double beside = way - 0.5 * (before + after);
     if (std::abs(beside - v[f] * step) < std::abs(jump - v[f] * step)) jump = beside;
     if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_of(f)) continue;

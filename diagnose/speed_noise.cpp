@@ -81,6 +81,13 @@ void SpeedScatter::add(const TrackedMotion& motion, std::size_t point, double ov
   widest = std::max(widest, wider);
 }
 
+void SpeedScatter::add(const SpeedScatter& of_a_motion) {
+  squares.insert(squares.end(), of_a_motion.squares.begin(), of_a_motion.squares.end());
+  fast.insert(fast.end(), of_a_motion.fast.begin(), of_a_motion.fast.end());
+  top_m_s = std::max(top_m_s, of_a_motion.top_m_s);
+  widest = std::max(widest, of_a_motion.widest);
+}
+
 SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, double independent) {
   SpeedNoise found;
   double step = 0.0, sd = 0.0;
@@ -137,8 +144,8 @@ bool give_fast_positions_their_noise(TrackSet& set, const Lateness& late) {
     SpeedScatter all;
     std::vector<SpeedScatter> own(set.motions.size());
     for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      add_neighbours(set.motions[i], times[i], all);
       add_neighbours(set.motions[i], times[i], own[i]);
+      all.add(own[i]);
     }
     const SpeedNoise found = find_speed_noise(set, all, kIndependent);
     if (found.log_evidence < kBeyondDoubt) return any;

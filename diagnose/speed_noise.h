@@ -16,6 +16,7 @@ struct SpeedScatter {
 
   /// `over_sd` is over the point's own noise.
   void add(const TrackedMotion& motion, std::size_t point, double over_sd, double v_m_s);
+  void add(const SpeedScatter& of_a_motion);
 };
 
 struct SpeedNoise {

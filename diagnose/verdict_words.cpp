@@ -54,6 +54,15 @@ std::string gap_words(const Diagnosis& diagnosis) {
 }  // namespace
 
 std::string summary_of(const Diagnosis& diagnosis) {
+  if (diagnosis.verdict == "none" && !diagnosis.ranking.empty() &&
+      diagnosis.ranking.front().probability > diagnosis.none) {
+    return fmt::format(
+               "These data leave it open whether anything is missing. Likeliest is {} ({}); that nothing is ({}) is "
+               "not "
+               "ruled out at three to one, so that no effect is claimed.",
+               diagnosis.ranking.front().id, percent(diagnosis.ranking.front().probability), percent(diagnosis.none)) +
+           gap_words(diagnosis);
+  }
   if (diagnosis.verdict == "none") {
     return fmt::format(
                "Nothing is missing that these data could show ({}): the usual model explains them to their noise.",

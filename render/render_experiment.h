@@ -24,8 +24,7 @@ struct RenderSummary {
 
 /// Writes `experiment_dir` (experiment.toml, clips/, calibration/, plumb.png) and `truth_dir` (truth.json,
 /// `trajectory-<clip>.csv`, `marker-<clip>.csv`), two folders that exist and are empty (but for stills, where these
-/// are not asked for). EnvironmentError where a file
-/// cannot be written.
+/// are not asked for). EnvironmentError where a file cannot be written.
 RenderSummary render_experiment(const Scenario& scenario, const std::filesystem::path& experiment_dir,
                                 const std::filesystem::path& truth_dir, const RenderOptions& options,
                                 const base::Progress& progress = base::no_progress);

@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "diagnose/effect_list.h"
 #include "diagnose/hypotheses.h"
+#include "diagnose/verdict_words.h"
 #include "made_motions.h"
 
 using namespace glidelab;
@@ -208,4 +209,18 @@ TEST_CASE("noise that a moving marker's blur adds is no uneven clock in pictures
   CHECK(of_tracks.effects.front().id == "timestamp_jitter");
   for (core::ClipResult& clip : made.results.clips) clip.sightings.resize(1);
   CHECK(diagnosed(made).verdict == "none");
+}
+
+TEST_CASE("what is not ruled out is neither claimed nor called explained") {
+  diagnose::Diagnosis open;
+  open.verdict = "none";
+  open.none = 0.30;
+  open.ranking.push_back({"late_release", 0.46, 2.9, 4.0, 1, {}});
+  const std::string words = diagnose::summary_of(open);
+  CHECK(words.find("leave it open") != std::string::npos);
+  CHECK(words.find("late_release (46 %)") != std::string::npos);
+  CHECK(words.find("Nothing is missing") == std::string::npos);
+  open.none = 0.9;
+  open.ranking.front().probability = 0.05;
+  CHECK(diagnose::summary_of(open).find("Nothing is missing") != std::string::npos);
 }
