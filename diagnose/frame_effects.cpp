@@ -132,7 +132,8 @@ std::vector<double> tail_residuals(const TrackSet& set, const MotionFit& fit) {
 
 constexpr double kLeastFilmedWide = 10.0;
 constexpr double kLeastLost_px = 0.05, kUsual = 3.0;
-constexpr double kFewestRuns = 4.0;  // a frame or two beside another error is no pattern yet
+constexpr double kFewestRuns = 4.0;   // a frame or two beside another error is no pattern yet
+constexpr double kFewestFirst = 2.0;  // two errors in all, and both in first frames: that is one
 constexpr double kPartInRuns = 0.25;
 constexpr double kFirstFrames = 3.0;  // of a clip
 
@@ -180,9 +181,9 @@ double of_the_many(const Tails& tails, double e) {
   return std::log((1.0 - tails.share) * tails.wide / tails.share) - 0.5 * square * (1.0 - 1.0 / wide);
 }
 
-/// Log evidence that `together` of `all` is more than the chance makes.
-double more_than_chance(double together, double all, double chance) {
-  if (together < std::max(kFewestRuns, kPartInRuns * all)) return 0.0;
+/// Log evidence that `together` of `all`, `fewest` or more, is more than the chance makes.
+double more_than_chance(double together, double all, double chance, double fewest) {
+  if (together < std::max(fewest, kPartInRuns * all)) return 0.0;
   return std::lgamma(together + 1.0) + std::lgamma(all - together + 1.0) - std::lgamma(all + 2.0) -
          together * std::log(chance) - (all - together) * std::log1p(-chance);
 }
@@ -204,8 +205,8 @@ double tails_together(const TrackSet& set, const std::vector<double>& e, const T
     }
   }
   const auto points = static_cast<double>(e.size());
-  return std::max(more_than_chance(followed, before_another, 0.5 * all / points),
-                  more_than_chance(first, all, firsts / points));
+  return std::max(more_than_chance(followed, before_another, 0.5 * all / points, kFewestRuns),
+                  more_than_chance(first, all, firsts / points, kFewestFirst));
 }
 
 /// In pictures, what lies off by less than any lost marker does is as good as none: an edge that the marker passes does

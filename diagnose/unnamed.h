@@ -3,7 +3,8 @@
 ///
 /// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), tau unknown over four decades;
 /// or one bump of them at an unknown place; or one step there; its evidence is exact in the linear neighbourhood of a
-/// fit. Forces lie over v, x and t, displacements over x and t (also such as swing with x), lateness over t.
+/// fit. Forces lie over v, x and t, displacements over x and t (also such as swing with x), lateness over t;
+/// displacements of each clip, and a lateness, may settle from the clip's start on.
 #pragma once
 
 #include <string>
@@ -32,14 +33,14 @@ struct UnnamedFamily {
   double tau = 0.0;         ///< standard deviation of their sizes
 };
 
-/// All families around a fit. `rate_per_s` bounds how fast the displacement of one clip by itself may change.
+/// All families around a fit.
 std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
 
 /// The fit with the family's bumps as further parameters, each N(0, tau²): in its linear neighbourhood, for
 /// held_out_gap(). The family must have its columns.
 MotionFit with_unnamed(const MotionFit& fit, const UnnamedFamily& family);
 
-/// Their joint evidence, each family as likely beforehand as another.
+/// Their joint evidence: each variable as likely beforehand as another, and of one variable each family.
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families);
 
 }  // namespace glidelab::diagnose

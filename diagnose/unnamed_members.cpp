@@ -1,0 +1,132 @@
+#include "diagnose/unnamed_members.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "diagnose/unnamed_shape.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+/// Any smooth displacement of each clip by itself. The motions share no bump, so that the evidence adds up but for the
+/// common size tau; what the common parameters take up is left aside.
+UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, int most) {
+  const TrackSet& set = space.set();
+  const UnnamedFamily family = family_of("clip", "displacement", "m");
+  std::vector<ScoreColumn> columns;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const auto& t = set.motions[i].t_s;
+    const double span = t.back() - t.front();
+    const int bumps = std::clamp(static_cast<int>(span / apart_s), fewest, most);
+    const double width = span / (bumps - 1);
+    for (int b = 0; b < bumps; ++b) {
+      std::vector<Eigen::VectorXd> changes(set.motions.size());
+      changes[i].resize(static_cast<Eigen::Index>(t.size()));
+      for (std::size_t p = 0; p < t.size(); ++p) {
+        changes[i][static_cast<Eigen::Index>(p)] = bump(t[p], t.front() + width * b, width);
+      }
+      columns.push_back(space.project(changes));
+    }
+  }
+  SpreadEvidence evidence;
+  return solve(space, columns, family, evidence);
+}
+
+/// How far something has settled at t: 1 at the start, a half or so at `time_s`, slowly (as creep does) or quickly.
+double unsettled(double t_s, double time_s, bool quickly) {
+  return quickly ? std::pow(1.0 + t_s / (3.0 * time_s), -3.0) : 1.0 / (1.0 + t_s / time_s);
+}
+
+/// What settles from the start of each clip on, at one pace in all: a displacement, each clip its own size, or a
+/// lateness common to all.
+UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = late ? family_of("t_s", "lateness", "s") : family_of("clip", "displacement", "m");
+  double longest = 0.0, frame = 0.0;
+  for (const TrackedMotion& motion : set.motions) {
+    longest = std::max(longest, motion.t_s.back());
+    frame = std::max(frame, 1.0 / set.clips[motion.clip].frame_rate_hz);
+  }
+  std::vector<double> logs;
+  for (const bool quickly : {false, true}) {
+    for (double time_s = 0.5 * frame; time_s < longest; time_s *= 1.7) {
+      std::vector<std::vector<Eigen::VectorXd>> changes(late ? 1 : set.clips.size(),
+                                                        std::vector<Eigen::VectorXd>(set.motions.size()));
+      for (std::size_t i = 0; i < set.motions.size(); ++i) {
+        const TrackedMotion& motion = set.motions[i];
+        const auto& v = space.fit().motions[i].v_m_s;
+        Eigen::VectorXd& change = changes[late ? 0 : motion.clip][i];
+        change.resize(static_cast<Eigen::Index>(motion.t_s.size()));
+        for (std::size_t p = 0; p < motion.t_s.size(); ++p) {
+          change[static_cast<Eigen::Index>(p)] = (late ? v[p] : 1.0) * unsettled(motion.t_s[p], time_s, quickly);
+        }
+      }
+      std::vector<ScoreColumn> columns;
+      for (const auto& of_one : changes) columns.push_back(space.project(of_one));
+      SpreadEvidence evidence;
+      const UnnamedFamily one = solve(space, columns, family, evidence);
+      logs.push_back(one.log_evidence);
+      if (one.gain <= family.gain) continue;
+      family.gain = one.gain;
+      family.columns = one.columns;
+      family.tau = one.tau;
+    }
+  }
+  if (!logs.empty()) family.log_evidence = log_mean(logs);
+  return family;
+}
+
+/// A force of one kind whose size differs between members (masses, set-ups, motions).
+UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable, const std::string& what,
+                            std::size_t TrackedMotion::*member, std::size_t members, int kind) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = family_of(variable, what, kind == 1 ? "N s/m" : "N");
+  std::vector<ScoreColumn> columns;
+  for (std::size_t m = 0; m < members; ++m) {
+    std::vector<UnnamedForce> forces(set.motions.size());
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      if (set.motions[i].*member != m) continue;
+      if (kind == 0) forces[i] = [](double, double, double) { return 1.0; };
+      if (kind == 1) forces[i] = [](double, double v, double) { return -v; };
+      if (kind == 2) forces[i] = [](double, double v, double) { return v < 0.0 ? 1.0 : -1.0; };
+    }
+    columns.push_back(space.of_force(forces, 1e-4));
+  }
+  SpreadEvidence evidence;
+  family = solve(space, columns, family, evidence);
+  for (std::size_t m = 0; m < members && evidence.mean.size() > 0; ++m) {
+    const auto e = static_cast<Eigen::Index>(m);
+    family.at.push_back(variable == "mass_kg" ? set.masses[m].mass_kg : static_cast<double>(m));
+    family.size.push_back(evidence.mean[e]);
+    family.sd.push_back(std::sqrt(std::max(0.0, evidence.covariance(e, e))));
+    if (variable == "group") family.names.push_back(set.groups[m].name);
+    if (variable == "clip") family.names.push_back(set.clips[m].name);
+  }
+  name_regions(family);
+  return family;
+}
+
+}  // namespace
+
+void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families) {
+  const TrackSet& set = space.set();
+  families.push_back(own_family(space, 0.5, 3, 5));
+  families.push_back(own_family(space, 0.2, 5, 12));
+  families.push_back(settling_family(space, false));
+  families.push_back(settling_family(space, true));
+  if (set.masses.size() > 1) {
+    families.push_back(member_family(space, "mass_kg", "friction", &TrackedMotion::mass, set.masses.size(), 2));
+    families.push_back(member_family(space, "mass_kg", "viscous drag", &TrackedMotion::mass, set.masses.size(), 1));
+  }
+  if (set.groups.size() > 1) {
+    families.push_back(member_family(space, "group", "force", &TrackedMotion::group, set.groups.size(), 0));
+    families.push_back(member_family(space, "group", "friction", &TrackedMotion::group, set.groups.size(), 2));
+  }
+  if (set.clips.size() > 1) {
+    families.push_back(member_family(space, "clip", "force", &TrackedMotion::clip, set.clips.size(), 0));
+    families.push_back(member_family(space, "clip", "viscous drag", &TrackedMotion::clip, set.clips.size(), 1));
+  }
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,150 @@
+#include "diagnose/unnamed_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "diagnose/unnamed_shape.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;
+constexpr double kMostSwings = 600;  // periods that are tried
+
+struct Ranges {
+  Grid x, v, t;
+};
+
+Ranges ranges_of(const ScoreSpace& space) {
+  Ranges ranges;
+  for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+    for (const double x : space.set().motions[i].x_m) ranges.x.add(x);
+    for (const double t : space.set().motions[i].t_s) ranges.t.add(t);
+    for (const double v : space.fit().motions[i].v_m_s) ranges.v.add(v);
+  }
+  return ranges;
+}
+
+/// A force f(place) of any smooth shape.
+void add_force(const ScoreSpace& space, const Grid& grid, int variable, const std::string& name,
+               const std::string& what, bool with_mass, bool friction, std::vector<UnnamedFamily>& families) {
+  const TrackSet& set = space.set();
+  std::vector<ScoreColumn> columns;
+  for (int b = 0; b < grid.bumps; ++b) {
+    std::vector<UnnamedForce> forces;
+    for (const TrackedMotion& motion : set.motions) {
+      const double factor = with_mass ? set.masses[motion.mass].mass_kg : 1.0;
+      const double middle = grid.at(b), width = grid.width();
+      forces.push_back([=](double x, double v, double t) {
+        const double place = variable == 0 ? x : variable == 1 ? v : t;
+        return factor * (friction && v < 0.0 ? -1.0 : 1.0) * bump(place, middle, width);
+      });
+    }
+    columns.push_back(space.of_force(forces, 1e-4));
+  }
+  add_shapes(space, columns, grid, family_of(name, what, with_mass ? "m/s²" : "N"), families);
+}
+
+enum class Seen { over_x, over_t, late };
+
+/// A displacement d(place) of any smooth shape, what a camera does; or a lateness d(t), what its clock does.
+void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std::vector<UnnamedFamily>& families) {
+  const TrackSet& set = space.set();
+  std::vector<ScoreColumn> columns;
+  for (int b = 0; b < grid.bumps; ++b) {
+    std::vector<Eigen::VectorXd> changes;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      const auto& place = seen == Seen::over_x ? space.modelled(i) : set.motions[i].t_s;
+      const auto& v = space.fit().motions[i].v_m_s;
+      Eigen::VectorXd change(static_cast<Eigen::Index>(place.size()));
+      for (std::size_t p = 0; p < place.size(); ++p) {
+        change[static_cast<Eigen::Index>(p)] =
+            (seen == Seen::late ? v[p] : 1.0) * bump(place[p], grid.at(b), grid.width());
+      }
+      changes.push_back(std::move(change));
+    }
+    columns.push_back(space.project(changes));
+  }
+  add_shapes(space, columns, grid,
+             family_of(seen == Seen::over_x ? "x_m" : "t_s", seen == Seen::late ? "lateness" : "displacement",
+                       seen == Seen::late ? "s" : "m"),
+             families);
+}
+
+/// A displacement that swings with the place: sin and cos of 2 pi f x, one f for all motions, averaged over.
+UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = family_of("x_m", "displacement", "m");
+  std::vector<double> ways;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const auto& at = space.modelled(i);
+    for (std::size_t p = 1; p < at.size(); ++p) ways.push_back(std::abs(at[p] - at[p - 1]));
+  }
+  const double range = x.high - x.low;
+  if (ways.empty() || !(range > 0.0)) return family;
+  std::nth_element(ways.begin(), ways.begin() + std::ssize(ways) / 2, ways.end());
+  // Half of all frames lie closer than this: two of them a turn at least; and no more looks than kMostSwings.
+  const double highest = std::min(0.5 / std::max(ways[ways.size() / 2], 1e-9), kMostSwings * 0.3 / range);
+  std::vector<double> logs;
+  for (double f = 2.0 / range; f < highest; f += 0.3 / range) {
+    std::vector<ScoreColumn> columns;
+    for (const double phase : {0.0, 0.25}) {
+      std::vector<Eigen::VectorXd> changes;
+      for (std::size_t i = 0; i < set.motions.size(); ++i) {
+        const auto& at = space.modelled(i);
+        Eigen::VectorXd change(static_cast<Eigen::Index>(at.size()));
+        for (std::size_t p = 0; p < at.size(); ++p) {
+          change[static_cast<Eigen::Index>(p)] = std::sin(2.0 * std::numbers::pi * (f * at[p] + phase));
+        }
+        changes.push_back(std::move(change));
+      }
+      columns.push_back(space.project(changes));
+    }
+    SpreadEvidence evidence;
+    const UnnamedFamily one = solve(space, columns, family, evidence);
+    logs.push_back(one.log_evidence);
+    if (one.gain <= family.gain) continue;
+    family.gain = one.gain;
+    family.columns = one.columns;
+    family.tau = one.tau;
+    family.at.clear();
+    family.size.clear();
+    family.sd.clear();
+    constexpr int kDrawn = 240;
+    for (int j = 0; j <= kDrawn; ++j) {
+      const double place = x.low + range * j / kDrawn, turn = 2.0 * std::numbers::pi * f * place;
+      const Eigen::Vector2d basis(std::sin(turn), std::cos(turn));
+      family.at.push_back(place);
+      family.size.push_back(basis.dot(evidence.mean));
+      family.sd.push_back(std::sqrt(std::max(0.0, basis.dot(evidence.covariance * basis))));
+    }
+  }
+  if (!logs.empty()) family.log_evidence = log_mean(logs);
+  name_regions(family);
+  return family;
+}
+
+}  // namespace
+
+void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families) {
+  const Ranges ranges = ranges_of(space);
+  for (const int bumps : {kSmooth, kCoarse, kFine}) {
+    Grid v = ranges.v, x = ranges.x, t = ranges.t;
+    v.bumps = x.bumps = t.bumps = bumps;
+    add_force(space, v, 1, "v_m_s", "force", false, false, families);
+    add_force(space, x, 0, "x_m", "acceleration", true, false, families);
+    add_force(space, x, 0, "x_m", "friction", true, true, families);
+    add_displacement(space, x, Seen::over_x, families);
+    add_displacement(space, t, Seen::over_t, families);
+    add_displacement(space, t, Seen::late, families);
+    if (bumps == kFine) continue;
+    add_force(space, t, 2, "t_s", "acceleration", true, false, families);
+    add_force(space, t, 2, "t_s", "friction", true, true, families);
+  }
+  families.push_back(swing_family(space, ranges.x));
+}
+
+}  // namespace glidelab::diagnose
