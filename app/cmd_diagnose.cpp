@@ -135,7 +135,14 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->add_option(
           "--twin", options->twin,
           "Write the fitted motions, with the effect that is named, as a scenario for simulate, render, validate")
-      ->type_name("SCENARIO.toml");
+      ->type_name("SCENARIO.toml")
+      ->check([](const std::string& text) {
+        return text.ends_with(".toml") ? std::string()
+                                       : fmt::format(
+                                             "found \"{}\", expected the name of a scenario to write, "
+                                             "NAME.toml",
+                                             text);
+      });
   command->add_flag("--plan", options->plan,
                     "Record nothing and judge nothing: say which effects these motions could show and tell apart; "
                     "EXPERIMENT may be a scenario file");

@@ -52,7 +52,10 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
   command.set_help_flag("-h,--help", "Show this help");
   command.add_option("-o,--out", options.out, "Folder for the results; default: " + default_out)
       ->type_name("DIR")
-      ->check([](const std::string& text) { return text.empty() ? "the name is empty" : std::string(); });
+      ->check([](const std::string& text) {
+        if (text.empty()) return std::string("the name is empty");
+        return text.front() == '-' ? fmt::format("found \"{}\", expected the name of a folder", text) : std::string();
+      });
   command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_seed);
   command
       .add_option("--jobs", options.jobs,

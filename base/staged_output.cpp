@@ -158,7 +158,11 @@ std::string read_file(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (!stream || fs::is_directory(path)) {
-    throw InputError(Issue{path.string(), 0, "", fs::exists(path) ? "no readable file" : "nothing", "a readable file"});
+    throw InputError(Issue{path.string(), 0, "",
+                           fs::is_directory(path) ? "a folder"
+                           : fs::exists(path)     ? "no readable file"
+                                                  : "nothing",
+                           fs::is_directory(path) ? "a file" : "a readable file"});
   }
   text << stream.rdbuf();
   if (stream.bad()) throw InputError(Issue{path.string(), 0, "", "a read error", "a readable file"});

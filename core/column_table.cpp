@@ -119,7 +119,9 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   if (rest.find('\0') != std::string_view::npos) {
-    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (UTF-16, or no text)", "text in UTF-8"});
+    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (UTF-16, or no text)",
+                                       "text in UTF-8 with a track; a video goes into a folder, which glidelab new "
+                                       "FOLDER makes"});
   }
   const std::vector<Line> lines = lines_of(rest);
   const auto format = format_of(lines);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "base/errors.h"
 #include "base/strict_toml.h"
 #include "core/folder_files.h"
 
@@ -247,6 +248,21 @@ void check_sections(const Experiment& experiment, const TomlTable& root) {
   }
 }
 
+/// The first thing that goes wrong in a first hour: no folder, another one, or a file of it.
+void check_folder(const fs::path& path) {
+  const std::string wanted = "a folder with an experiment.toml (glidelab new FOLDER makes one that explains every key)";
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
+    throw base::InputError(base::Issue{path.string(), 0, "", found, expected});
+  };
+  if (!fs::exists(path)) refuse("nothing", wanted);
+  if (path.filename() == "experiment.toml") {
+    refuse("a file",
+           fmt::format("the folder that it is in, {}", path.has_parent_path() ? path.parent_path().string() : "."));
+  }
+  if (!fs::is_directory(path)) refuse("a file", wanted);
+  if (!fs::exists(path / "experiment.toml")) refuse("a folder without experiment.toml", wanted);
+}
+
 }  // namespace
 
 Experiment read_experiment(const fs::path& path) {
@@ -254,6 +270,7 @@ Experiment read_experiment(const fs::path& path) {
 }
 
 Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
+  check_folder(path);
   const FolderFiles folder{path, outside};
   Experiment experiment;
   experiment.folder = path;

@@ -207,7 +207,7 @@ void judge_marker(const ClipCheck& clip, Notebook& book) {
 void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook book) {
   if (!clip.failure.empty()) {
     book.add(Severity::unusable, clip.failure,
-             "see that the marker is in the picture, moves, and is what [marker] says");
+             "see that the file plays, and that the marker is in the picture, moves, and is what [marker] says");
     return;
   }
   if (clip.pictures) {

@@ -131,8 +131,9 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   const double usual = std::hypot(sd, kUsualGradient_1_m);
   finding.log_evidence = log_evidence_of(std::abs(gradient) / usual, 10.0 / usual);
   finding.parameters = {{"gradient", gradient, sd}};
-  finding.words = fmt::format("The light on the marker changes by {:.2g} ± {:.1g} % a metre to the right.",
-                              100.0 * gradient, 100.0 * sd);
+  finding.words =
+      fmt::format("The light on the marker changes by {} % a metre to the right; {:.0f} % is usual in a room.",
+                  with_sd(100.0 * gradient, 100.0 * sd), 100.0 * kUsualGradient_1_m);
   evidence.findings.push_back(std::move(finding));
 }
 

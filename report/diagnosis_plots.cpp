@@ -15,14 +15,8 @@ namespace {
 constexpr std::size_t kBars = 8;
 constexpr std::size_t kPoints = 800;  // of a clip
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-std::string axis_of(const std::string& variable) {
-  if (variable == "x_m") return "place x  (m)";
-  if (variable == "v_m_s") return "speed v  (m/s)";
-  if (variable == "t_s") return "time t  (s)";
-  if (variable == "mass_kg") return "mass  (kg)";
-  return variable;
-}
+/// Room around the points but at the left: time begins at 0, and room there would make an axis that begins before it.
+constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
 
 /// Labels of a horizontal bar chart, the first one at the top.
 std::string labels(const std::vector<std::string>& names) {
@@ -38,20 +32,22 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   for (const auto& ranked : diagnosis.ranking) bars.emplace_back(ranked.probability, ranked.id);
   std::stable_sort(bars.begin(), bars.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   if (bars.size() > kBars) bars.resize(kBars);
-  std::vector<std::string> names;
   PlotData data{"bars", {}};
+  std::string script(kFrame);
+  script += "unset key\nunset ytics\nset border 1\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
-    names.push_back(bars[i].second);
+    // The name stands above its bar: beside it, three effects in one name would leave the bars no room.
+    script +=
+        fmt::format("set label {} at 0, {} left\n", gnuplot_quoted(bars[i].second), 0.26 - static_cast<double>(i));
     data.rows.push_back({-static_cast<double>(i), bars[i].first});
   }
-  std::string script(kFrame);
-  script += "unset key\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
-  script += labels(names) + fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(bars.size()) + 0.4);
+  script += fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(bars.size()) + 0.5);
   script += fmt::format(
-      "set style fill solid 0.85 noborder\nplot $bars using (0.5*$2):1:(0.5*$2):(0.36) with boxxyerror lc rgb '{}'\n",
+      "set style fill solid 0.85 noborder\nplot $bars using (0.5*$2):($1-0.15):(0.5*$2):(0.15) with boxxyerror lc rgb "
+      "'{}'\n",
       kColors[0]);
-  return {Drawing{script, std::vector{data}, {620, 340}}, "How probable each explanation is, given these data",
-          "Bar chart of the probabilities of the explanations"};
+  return {Drawing{script, std::vector{data}, {620, 90 + 38 * static_cast<int>(bars.size())}},
+          "How probable each explanation is, given these data", "Bar chart of the probabilities of the explanations"};
 }
 
 Plot clip_gaps(const diagnose::GapSizes& gap) {
@@ -105,7 +101,8 @@ Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int varia
   }
   if (before.rows.empty()) before.rows = after.rows = {{kNan, kNan}};
   std::string script(kFrame);
-  script += fmt::format("set xlabel '{}'\nset ylabel 'measured - model  (mm)'\n", axis_of(variable == 0   ? "x_m"
+  if (variable == 2) script += kFromStart;
+  script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis_of(variable == 0   ? "x_m"
                                                                                           : variable == 1 ? "v_m_s"
                                                                                                           : "t_s"));
   script += fmt::format(
@@ -128,7 +125,7 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
   std::string script(kFrame);
   script +=
       "set key top left\nset xlabel 'speed of the marker in the picture  (px/s)'\nset ylabel 'lengthening of its image "
-      " (px^2)'\n";
+      " (px²)'\n";
   script += fmt::format(
       "plot $seen using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{}' title 'seen', $seen using 1:4 with "
       "lines lw 2 lc rgb '{}' title 'as by the exposure found'",
@@ -142,6 +139,14 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
 }
 
 }  // namespace
+
+std::string axis_of(const std::string& variable) {
+  if (variable == "x_m") return "place x (m)";
+  if (variable == "v_m_s") return "speed v (m/s)";
+  if (variable == "t_s") return "time t (s)";
+  if (variable == "mass_kg") return "mass (kg)";
+  return variable;
+}
 
 std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots = {probabilities(diagnosis)};
@@ -176,9 +181,9 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
   }
   const std::string lines = fmt::format(" using 1:2 with lines lw 1 lc rgb '{}'", kColors[0]);
   if (!light.rows.empty()) {
-    const std::string script =
-        std::string(kFrame) + "unset key\nset xlabel 'time t  (s)'\nset ylabel 'brightness, change  (%)'\nplot $light" +
-        lines + "\n";
+    const std::string script = std::string(kFrame) + kFromStart +
+                               "unset key\nset xlabel 'time t (s)'\nset ylabel 'brightness, change  (%)'\nplot $light" +
+                               lines + "\n";
     plots.push_back(
         {Drawing{script, std::vector{light}},
          "How bright what rests in the scene is, against each clip's first frames; light that flickers makes "
@@ -190,8 +195,9 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
     if (data->rows.empty()) data->rows = {{kNan, kNan}};
   }
   const std::string script =
-      std::string(kFrame) + "set xlabel 'time t  (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot $across" +
-      lines + " title 'to the right'" +
+      std::string(kFrame) + kFromStart +
+      "set xlabel 'time t (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot $across" + lines +
+      " title 'to the right'" +
       fmt::format(", $down using 1:2 with lines lw 1 lc rgb '{}' title 'downwards'\n", kColors[1]);
   plots.push_back({Drawing{script, std::vector{across, down}},
                    "Where what rests in the scene stands in the picture: a camera at rest keeps it at 0, up to noise",
@@ -211,17 +217,17 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
   }
   std::string script(kFrame);
   script += "unset key\nunset grid\nset offsets 0,0,0,0\n" + labels(isolability.ids);
-  script += "set xtics rotate by -40 scale 0 noenhanced (";
+  script += "set xtics rotate by 90 right scale 0 noenhanced (";  // upright: slanting names of sixteen effects overlap
   for (std::size_t i = 0; i < n; ++i)
     script += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(isolability.ids[i]), i);
   script += fmt::format(
       ")\nset xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
       "'#9ecae1', "
-      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.34\n"
+      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.37\n"
       "plot $cells using 1:2:3 with image pixels\n",
       static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {
-      {Drawing{script, std::vector{data}, {680, 560}},
+      {Drawing{script, std::vector{data}, {680, 620}},
        "How alike what two effects do to these clips is, after everything else is fitted: 1 cannot be told apart, 0 "
        "can",
        "Matrix of likeness between effects"}};

@@ -1,6 +1,7 @@
 /// The pictures of a diagnosis.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "diagnose/diagnosis.h"
@@ -8,16 +9,19 @@
 
 namespace glidelab::report {
 
+/// What a gap lies over, for a reader: "x_m" is "place x (m)".
+std::string axis_of(const std::string& variable);
+
 /// Gap of each held-out clip before and after; probability of each explanation.
 std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis);
 
 /// What is missing as a function of place, speed or time; residuals before and after.
 std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis);
 
-/// Which effects look alike in these data. Nothing where fewer than two can be seen.
 /// The marker's lengthening over its speed, the light and the scene's place over time; none for tracks.
 std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis);
 
+/// Which effects look alike in these data. Nothing where fewer than two can be seen.
 std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability);
 
 }  // namespace glidelab::report

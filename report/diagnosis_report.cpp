@@ -100,9 +100,9 @@ std::string picture_table(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string region_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"variable", "kind", "from", "to", "largest", "over its sd"}, 2);
+  HtmlTable table({"over", "what", "from", "to", "largest", "largest / sd"}, 2);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
-    table.row({escape(region.clip.empty() ? region.variable : region.variable + " of " + region.clip),
+    table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
                escape(region.what), number_text(region.from, 3), number_text(region.to, 3),
                number_text(region.size, 2) + " " + escape(region.unit), number_text(region.excess, 2)});
   }

@@ -56,6 +56,8 @@ nav ul { columns: 16rem; padding-left: 1.2rem; }
   :root { color-scheme: light; --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --tint: #f4f4f4;
           --accent: #000000; --good: #000000; --bad: #000000; }
   body { font-size: 10.5pt; }
+  table { font-size: 8pt; }
+  th, td { padding: 0.2rem 0.4rem; }
   figure, tr, .tile { break-inside: avoid; }
   h2, h3 { break-after: avoid; }
   video, nav { display: none; }

@@ -15,17 +15,21 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
+constexpr double kBelowZero = 2.0;  // standard deviations: what chance does in one of forty
+constexpr double kOffLine = 2.0;    // times the noise: more than a wrong idea of the noise makes
 
 std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
   if (c.k_over_m_1_s.estimate) {
     const double rate = c.k_over_m_1_s.estimate->value;
     const double sd = c.k_over_m_1_s.estimate->sd;
-    if (std::abs(rate) > 2.0 * sd) {
-      text += fmt::format("the drag that grows with speed slows it at {} 1/s times v", value_and_sd_text(rate, sd));
-      if (rate > 0.0) {
-        text += fmt::format(", so that it comes 63 % closer to its final speed in {} s", number_text(1.0 / rate, 3));
-      }
+    if (rate > kBelowZero * sd) {
+      text += fmt::format(
+          "the drag that grows with speed slows it at {} 1/s times v, so that it comes 63 % closer to its final speed "
+          "in {} s",
+          value_and_sd_text(rate, sd), number_text(1.0 / rate, 3));
+    } else if (rate < -kBelowZero * sd) {
+      text += fmt::format("K/m comes out as {} 1/s, below zero", value_and_sd_text(rate, sd));
     } else {
       text += fmt::format("no drag that grows with speed can be told from zero ({} 1/s)", value_and_sd_text(rate, sd));
     }
@@ -84,11 +88,50 @@ std::string damping_sentence(const core::AnalysisResults& results) {
 
 }  // namespace
 
+std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
+  std::vector<std::string> doubts;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    const auto below_zero = [](const core::Quantity& quantity) {
+      return quantity.estimate && quantity.estimate->value < -kBelowZero * quantity.estimate->sd;
+    };
+    const auto doubt = [&](const core::Quantity& quantity, const char* name, const char* reason) {
+      if (!below_zero(quantity)) return;
+      doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c), name,
+                                   value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), reason));
+    };
+    doubt(c.k_over_m_1_s, "K/m", "no drag makes");
+    doubt(c.mu, "µ", "no friction makes");
+  }
+  const core::ClipResult* farthest = nullptr;
+  const core::LineFit* line = nullptr;
+  for (const core::ClipResult& clip : results.clips) {
+    for (const core::LineFit& of : clip.segments) {
+      if (std::isinf(of.parts.degrees) || of.parts.scatter < kOffLine) continue;
+      if (line != nullptr && of.parts.scatter <= line->parts.scatter) continue;
+      farthest = &clip;
+      line = &of;
+    }
+  }
+  if (line != nullptr) {
+    doubts.push_back(fmt::format("{}, v {} 0: the points lie {} times as far off their line as the noise explains.",
+                                 farthest->name, line->direction > 0 ? ">" : "<", number_text(line->parts.scatter, 2)));
+  }
+  if (!doubts.empty()) {
+    doubts.push_back(
+        "The law (drag in proportion to the speed, dry friction, gravity) does not fit these clips as they "
+        "are. Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
+        "from the law?).");
+  }
+  return doubts;
+}
+
 std::string meaning_of(const core::AnalysisResults& results) {
   std::string text = "<h2 id=\"meaning\">What this means</h2>\n<ul>\n";
   for (const core::ConfigurationResult& configuration : results.configurations)
     text += sentence_of(results, configuration);
   text += "</ul>\n" + damping_sentence(results);
+  for (const std::string& doubt : doubts_about(results))
+    text += fmt::format("<p class=\"note\">{}</p>\n", escape(doubt));
   double worst = 1.0;
   for (const core::ConfigurationResult& configuration : results.configurations) {
     for (const core::LineFit& line : configuration.lines) worst = std::min(worst, line.r2);

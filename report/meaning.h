@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/results.h"
 #include "validate/comparison.h"
@@ -10,6 +11,10 @@ namespace glidelab::report {
 
 /// On the friction that was found: how large, how well a straight line describes it, what is not determined. HTML.
 std::string meaning_of(const core::AnalysisResults& results);
+
+/// What of the numbers the assumed law cannot mean, and what to do next: drag or friction below zero, points that lie
+/// far off their line. One sentence each, plain text; none where the law serves.
+std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 
 /// On how well the truth was recovered. HTML.
 std::string meaning_of(const validate::Comparison& comparison);

@@ -9,6 +9,7 @@ namespace glidelab::report {
 namespace {
 
 constexpr int kMostDecimals = 9;  // beyond that a power of ten reads better
+constexpr int kLeastPlainPower = -7, kMostPlainPower = 5;
 
 /// Decimals that show two significant digits of `sd` (after rounding: 0.0996 becomes 0.10).
 int decimals_of(double sd) {
@@ -25,7 +26,15 @@ bool usable(double sd) {
 std::string number_text(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";
-  return fmt::format("{:.{}g}", value, digits);
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  const std::size_t power = text.find('e');
+  if (power == std::string::npos) return text;
+  const int exponent = std::stoi(text.substr(power + 1));
+  if (exponent < kLeastPlainPower || exponent > kMostPlainPower) return text;
+  // What stands before the power of ten, moved to its place: 4.1e+02 becomes 410, 1.8e-05 becomes 0.000018.
+  const std::size_t point = text.find('.');
+  const int behind_point = point < power ? static_cast<int>(power - point) - 1 : 0;
+  return fmt::format("{:.{}f}", std::stod(text), std::max(0, behind_point - exponent));
 }
 
 std::string value_text(double value, double sd) {

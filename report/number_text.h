@@ -5,7 +5,8 @@
 
 namespace glidelab::report {
 
-/// A value with `digits` significant digits, "0.00712", "2.763", "1.2e-07"; "–" for what is not finite.
+/// A value with `digits` significant digits, "0.00712", "2.763", "410", "0.0000181"; a power of ten ("7.3e+08") only
+/// below 1e-7 and from 1e6 on; "–" for what is not finite.
 std::string number_text(double value, int digits = 4);
 
 /// The value with as many decimals as two significant digits of its standard deviation have: (2.77913, 0.0062) gives

@@ -32,7 +32,8 @@ std::string lead(const diagnose::Plan& plan) {
     alone += effect.seen && effect.alike.empty() ? 1 : 0;
   }
   return fmt::format(
-      "{} clips, {} positions, {} µm of noise. Of {} effects that push or displace in one way, {} can be seen in these "
+      "{} clips, {} positions with {} µm of noise as found in them. Of {} effects that push or displace in one way, {} "
+      "can be seen in these "
       "motions at all, and {} of those can be told from every other one.",
       plan.clips, plan.points, number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
 }

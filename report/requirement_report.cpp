@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -25,21 +26,69 @@ bool reached(const Candidate& candidate) {
   return candidate.verdict == Verdict::reached || candidate.verdict == Verdict::by_bound;
 }
 
-std::string target_name(const Target& target) {
-  const std::string unit = unit_of(target.quantity);
+std::string target_name(const Target& target, const std::string& factor = {}) {
+  std::string unit = unit_of(target.quantity);
+  if (!factor.empty()) unit = factor + (unit.empty() ? "" : " " + unit);
   const char* measure = target.measure == Target::Measure::sd        ? "sd"
                         : target.measure == Target::Measure::error95 ? "95 % error"
                                                                      : "bias";
   return fmt::format("{} of {}{}", measure, symbol_of(target.quantity), unit.empty() ? "" : fmt::format(" ({})", unit));
 }
 
-std::string bound_text(const std::optional<double>& bound) {
-  return bound && std::isfinite(*bound) ? number_text(*bound, 3) : "–";
+/// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
+struct Scale {
+  double size = 1.0;
+  std::string factor;  ///< "10⁻⁶"; empty for 1
+};
+
+Scale scale_of(const Target& target) {
+  constexpr std::array<const char*, 4> kFactors = {"", "10⁻³", "10⁻⁶", "10⁻⁹"};
+  std::size_t thousands = 0;
+  double size = 1.0;
+  while (target.value < size && thousands + 1 < kFactors.size()) {
+    size /= 1000.0;
+    ++thousands;
+  }
+  return {size, kFactors[thousands]};
 }
 
-std::string found_text(const validate::TargetResult& result) {
+/// " (10⁻³ 1/s)", for the column beside.
+std::string same_unit(const Target& target) {
+  const std::string name = target_name(target, scale_of(target).factor);
+  const std::size_t unit = name.find(" (");
+  return unit == std::string::npos ? "" : name.substr(unit);
+}
+
+std::string bound_text(const std::optional<double>& bound, double scale) {
+  return bound && std::isfinite(*bound) ? number_text(*bound / scale, 2) : "–";
+}
+
+/// "sd of µ at most 0.0005, 95 % error of α (°) at most 0.01".
+std::string targets_text(const Requirement& requirement) {
+  std::string text;
+  for (const Target& target : requirement.targets) {
+    text += fmt::format("{}{} at most {}", text.empty() ? "" : ", ", target_name(target), number_text(target.value, 4));
+  }
+  return text;
+}
+
+std::string order_text(const Requirement& requirement) {
+  return requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)";
+}
+
+/// What no track knows is said where tracks judged.
+std::string next_step(const Requirement& requirement) {
+  if (requirement.confirm == validate::Confirm::clips) return {};
+  return fmt::format(
+      "{}: a lens, a codec, a rolling shutter and the calibration are not in it. With --confirm clips those that are "
+      "near the target are rendered as well.",
+      requirement.confirm == validate::Confirm::none ? "Nothing was run, the bound alone judged"
+                                                     : "Tracks judged, no pictures");
+}
+
+std::string found_text(const validate::TargetResult& result, double scale) {
   if (!result.found || !std::isfinite(*result.found)) return result.found ? "no answer" : "–";
-  return fmt::format("{} ± {}", number_text(*result.found, 3), number_text(result.found_sd, 1));
+  return value_and_sd_text(*result.found / scale, result.found_sd / scale);
 }
 
 std::string cost_text(const Requirement& requirement, const Candidate& candidate) {
@@ -58,6 +107,14 @@ std::string limit_text(const Candidate& candidate) {
 
 double cost_of(const Requirement& requirement, const Candidate& candidate) {
   return requirement.by_price ? *candidate.price : candidate.pixels_s * 1e-6;
+}
+
+void add_results(std::vector<std::string>& cells, const Requirement& requirement, const Candidate& candidate) {
+  for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+    const double scale = scale_of(requirement.targets[t]).size;
+    cells.push_back(bound_text(candidate.results[t].bound, scale));
+    cells.push_back(found_text(candidate.results[t], scale));
+  }
 }
 
 /// What the plot and the front are about: the first target, by runs where there are some, else by its bound.
@@ -84,7 +141,7 @@ Plot front_plot(const Requirement& requirement) {
     }
   }
   std::vector<PlotData> data;
-  std::string script = std::string(kFrame) + "set logscale xy\nset format x '%g'\nset format y '%.0e'\n";
+  std::string script = std::string(kFrame) + "set logscale xy\nset format x '%g'\nset format y '%g'\n";
   script +=
       fmt::format("set xlabel {}\nset ylabel {}\n",
                   gnuplot_quoted(requirement.by_price ? "price, middle of its class (EUR)" : "million pixels a second"),
@@ -107,17 +164,14 @@ Plot front_plot(const Requirement& requirement) {
 }  // namespace
 
 Page requirement_report(const Requirement& requirement) {
-  Html body = fmt::format("<h1>{}</h1>\n<p>What reaches ", escape(requirement.name));
-  for (std::size_t t = 0; t < requirement.targets.size(); ++t) {
-    body += fmt::format("{}{} at most {}", t == 0 ? "" : ", ", escape(target_name(requirement.targets[t])),
-                        number_text(requirement.targets[t].value, 4));
-  }
-  body += fmt::format(" on the worst configuration; {} first.</p>\n",
-                      requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)");
-  std::vector<std::string> header = {"camera", "cost", "verdict", "Hz", "position noise (µm)"};
+  Html body = fmt::format("<h1>{}</h1>\n<p>What reaches {} on the worst configuration; {} first.</p>\n",
+                          escape(requirement.name), escape(targets_text(requirement)), order_text(requirement));
+  const std::string next = next_step(requirement);
+  if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
+  std::vector<std::string> header = {"camera", "cost", "verdict", "frames/s", "position noise (µm)"};
   for (const Target& target : requirement.targets) {
-    header.push_back("bound: " + escape(target_name(target)));
-    header.push_back("by runs");
+    header.push_back("bound: " + escape(target_name(target, scale_of(target).factor)));
+    header.push_back("by runs" + escape(same_unit(target)));
   }
   HtmlTable good(header, 3);
   header.insert(header.begin() + 3, "what limits it");
@@ -126,10 +180,7 @@ Page requirement_report(const Requirement& requirement) {
     std::vector<std::string> row = {escape(candidate.name), escape(cost_text(requirement, candidate)),
                                     escape(describe(candidate)), number_text(candidate.frame_rate_hz, 4),
                                     std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"};
-    for (const validate::TargetResult& result : candidate.results) {
-      row.push_back(bound_text(result.bound));
-      row.push_back(found_text(result));
-    }
+    add_results(row, requirement, candidate);
     if (reached(candidate)) {
       good.row(row);
     } else {
@@ -158,26 +209,27 @@ Page requirement_report(const Requirement& requirement) {
 }
 
 std::string requirement_text(const Requirement& requirement) {
-  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "Hz", "noise (µm)"}};
+  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "frames/s", "noise (µm)"}};
   for (const Target& target : requirement.targets) {
-    rows.front().push_back("bound " + target_name(target));
-    rows.front().push_back("by runs");
+    rows.front().push_back("bound: " + target_name(target, scale_of(target).factor));
+    rows.front().push_back("by runs" + same_unit(target));
   }
   std::string below;
   for (const Candidate& candidate : requirement.candidates) {
     rows.push_back({candidate.name, cost_text(requirement, candidate), describe(candidate),
                     number_text(candidate.frame_rate_hz, 4),
                     std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"});
-    for (const validate::TargetResult& result : candidate.results) {
-      rows.back().push_back(bound_text(result.bound));
-      rows.back().push_back(found_text(result));
-    }
+    add_results(rows.back(), requirement, candidate);
     if (reached(candidate)) continue;
     const std::string limits = candidate.why.empty() ? limit_text(candidate) : candidate.why;
     if (!limits.empty()) below += fmt::format("{}: {}\n", candidate.name, limits);
   }
-  std::string text = text_table(rows, 3);
+  std::string text = fmt::format("What reaches {} on the worst configuration; {} first.\n\n", targets_text(requirement),
+                                 order_text(requirement)) +
+                     text_table(rows, 3);
   if (!below.empty()) text += "\nWhat limits the others (how many times smaller the bound is without it)\n" + below;
+  const std::string next = next_step(requirement);
+  if (!next.empty()) text += "\n" + next + "\n";
   return text;
 }
 

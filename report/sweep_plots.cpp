@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -45,7 +46,44 @@ std::string tics_of_values(const std::vector<PlotData>& data) {
   for (const PlotData& block : data) {
     for (const std::vector<double>& row : block.rows) values.insert(row.front());
   }
-  return values.size() > kMost ? std::string() : fmt::format("set xtics ({:.4g})\n", fmt::join(values, ", "));
+  if (values.size() > kMost) return {};
+  std::string tics;  // placed to the digits that the data are written with: one outside of the axis is not drawn
+  for (const double value : values) {
+    tics += fmt::format("{}'{:.4g}' {:.7g}", tics.empty() ? "" : ", ", value, value);
+  }
+  return fmt::format("set xtics ({})\n", tics);
+}
+
+/// The same for errors: a range that begins and ends at 1, 2 or 5 times a power of ten, with these labelled, or with
+/// powers of ten alone where those are many.
+std::string error_axis(const std::vector<PlotData>& data) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const PlotData& block : data) {
+    for (const std::vector<double>& row : block.rows) {
+      for (const double value : {row[1], row[2], row[3]}) {
+        if (!(value > 0.0)) continue;
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+    }
+  }
+  if (!(most > 0.0)) return "set yrange [*:*]\n";
+  constexpr std::size_t kMost = 9;
+  constexpr double kRoom = 1.02;  // a point on the edge would be cut in half
+  std::vector<double> ladder;
+  for (int power = static_cast<int>(std::floor(std::log10(least))) - 1; std::pow(10.0, power) < 10.0 * most; ++power) {
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      const double next = digit * std::pow(10.0, power);
+      if (!ladder.empty() && ladder.back() >= kRoom * most) break;
+      if (next * kRoom <= least) ladder.clear();
+      ladder.push_back(next);
+    }
+  }
+  const double from = ladder.front(), to = ladder.back();
+  if (ladder.size() > kMost) {
+    std::erase_if(ladder, [](double value) { return std::abs(std::remainder(std::log10(value), 1.0)) > 1e-6; });
+  }
+  return fmt::format("set yrange [{:.6g}:{:.6g}]\nset ytics ({:.6g})\n", from, to, fmt::join(ladder, ", "));
 }
 
 /// Columns: position, rms, sd, least sd, bias, two standard errors of it, coverage, two standard errors of it.
@@ -80,9 +118,9 @@ std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity
   std::string frame = std::string(kFrame) + "set key font ',11' maxcols 2 samplen 1\n" + x_axis(axis);
   if (!axis.words && axis.logarithmic) frame += tics_of_values(data);
   std::string errors = frame + fmt::format(
-                                   "set ylabel {}\nset logscale y\nset format y '%.0e'\nset offsets 0,0,0,0\n"
-                                   "set yrange [*:*] noextend\nplot ",
-                                   gnuplot_quoted(with_unit("error of " + symbol, unit)));
+                                   "set ylabel {}\nset logscale y\nset format y '%g'\nset offsets 0,0,0,0\n"
+                                   "{}plot ",
+                                   gnuplot_quoted(with_unit("error of " + symbol, unit)), error_axis(data));
   std::string bias = frame + fmt::format("set ylabel {}\nset xzeroaxis lt 1 lc rgb '#555555'\nplot ",
                                          gnuplot_quoted(with_unit("mean error of " + symbol, unit)));
   std::string coverage = frame +

@@ -20,7 +20,7 @@ using validate::SweepSummary;
 
 std::vector<std::string> cells_of(const ErrorStatistics& of) {
   return {fmt::format("{} / {}", of.answered, of.runs),
-          of.answered == 0 ? "–" : number_text(of.bias, 3),
+          of.answered == 0 ? "–" : value_and_sd_text(of.bias, of.bias_sd),
           of.answered == 0 ? "–" : number_text(of.rms, 3),
           of.answered == 0 ? "–" : number_text(of.sd, 3),
           of.least_sd ? number_text(*of.least_sd, 3) : "–",
@@ -45,17 +45,24 @@ std::string overall_table(const SweepSummary& summary) {
 
 std::string acceleration_table(const SweepSummary& summary) {
   if (summary.accelerations.empty()) return {};
-  HtmlTable table(
-      {"estimator", "clips", "rms error of a(t), median (m/s²)", "over the best possible, median", "in 90 %, at most"},
-      1);
+  bool compared = false;  // with the best possible bandwidth, where the sweep names it
+  for (const validate::AccelerationError& of : summary.accelerations) compared = compared || of.regret;
+  std::vector<std::string> header = {"estimator", "clips", "rms error of a(t), median (m/s²)"};
+  if (compared) {
+    header.insert(header.end(), {"times that of the best possible bandwidth, median", "times that, in 90 % at most"});
+  }
+  HtmlTable table(header, 1);
   const auto ratio = [](const std::optional<double>& value) { return value ? number_text(*value, 3) : "–"; };
   for (const validate::AccelerationError& of : summary.accelerations) {
-    table.row({escape(of.estimator), fmt::format("{}", of.clips), number_text(of.median_m_s2, 3), ratio(of.regret),
-               ratio(of.regret90)});
+    std::vector<std::string> row = {escape(of.estimator), fmt::format("{}", of.clips), number_text(of.median_m_s2, 3)};
+    if (compared) row.insert(row.end(), {ratio(of.regret), ratio(of.regret90)});
+    table.row(row);
   }
   return "<h2>Accelerations</h2>\n" + table.str() +
-         "<p class=\"soft\">Of each clip's a(t) against the truth, over the points that count. The best possible "
-         "bandwidth knows the truth; it is there where the sweep names the rule best-possible.</p>\n";
+         "<p class=\"soft\">Of each clip's a(t) against the truth, over the points that count. " +
+         (compared
+              ? "The best possible bandwidth knows the truth.</p>\n"
+              : "A sweep that names the rule best-possible also lays the best possible bandwidth beside it.</p>\n");
 }
 
 Json statistics_json(const ErrorStatistics& of) {
@@ -81,14 +88,16 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       escape(summary.name));
   body += fmt::format(
       "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>runs</span></div><div class=\"tile\"><b{}>{}</b>"
-      "<span>failed</span></div><div class=\"tile\"><b>{}</b><span>processor seconds</span></div></div>\n",
+      "<span>failed</span></div><div class=\"tile\"><b>{} s</b><span>taken by the runs, added over the "
+      "threads</span></div></div>\n",
       summary.runs, summary.planned, summary.failed > 0 ? " class=\"bad\"" : "", summary.failed,
       number_text(summary.cpu_s, 3));
   for (const std::string& failure : summary.failures)
     body += fmt::format("<p class=\"note\">{}</p>\n", escape(failure));
   body += "<h2>All runs</h2>\n" + overall_table(summary);
   body +=
-      "<p class=\"soft\">sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares over "
+      "<p class=\"soft\">Stated sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares "
+      "over "
       "the "
       "runs; coverage is the part of the stated 95 % intervals that hold the truth.</p>\n";
   body += sweep_advice(summary);

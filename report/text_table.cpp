@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "report/configuration_name.h"
+#include "report/meaning.h"
 #include "report/number_text.h"
 #include "report/quantity_names.h"
 
@@ -97,6 +98,9 @@ std::string analysis_text(const core::AnalysisResults& results) {
   }
   if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));
   if (!notes.empty()) text.append("\n").append(notes);
+  const std::vector<std::string> doubts = doubts_about(results);
+  for (const std::string& doubt : doubts)
+    text += fmt::format("{}{}\n", &doubt == &doubts.front() ? "\n" : "", printable(doubt));
   return text;
 }
 

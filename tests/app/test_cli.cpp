@@ -78,6 +78,8 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
       {"analyze", "folder", "--bandwidth", "silverman"},
       {"analyze", "folder", "--estimator", "magic"},
       {"analyze", "folder", "--out", ""},
+      {"analyze", "folder", "--out", "--json"},
+      {"diagnose", "folder", "--twin", "-o", "there"},
       {"simulate", "a.toml", "--rate", "-200"},
       {"render", "a.toml", "--no-such-option"},
   };

@@ -268,9 +268,27 @@ TEST_CASE("a clip's name that is used twice is an error") {
   CHECK(contains(folder.message(kWhole + kClip), "experiment.toml:23: clip[2].name: found text \"a\" a second time"));
 }
 
-TEST_CASE("a folder without experiment.toml, and one that is no TOML, are errors that name the file") {
+TEST_CASE("no folder, another folder, a file in place of it: each is told with what is wanted") {
   const Folder folder;
-  CHECK_THROWS_WITH(core::read_experiment(folder.dir / "nowhere"), Catch::Contains("nowhere/experiment.toml"));
+  const auto message = [](const fs::path& path) {
+    try {
+      core::read_experiment(path);
+    } catch (const base::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string wanted = "expected a folder with an experiment.toml (glidelab new";
+  CHECK(contains(message(folder.dir / "nowhere"), "nowhere: found nothing, " + wanted));
+  CHECK(contains(message(folder.dir / "clips"), "clips: found a folder without experiment.toml, " + wanted));
+  CHECK(contains(message(folder.dir / "clips/a.mkv"), "a.mkv: found a file, " + wanted));
+  base::write_file(folder.dir / "experiment.toml", "");
+  CHECK(contains(message(folder.dir / "experiment.toml"),
+                 "experiment.toml: found a file, expected the folder that it is in, " + folder.dir.path().string()));
+}
+
+TEST_CASE("an experiment.toml that is no TOML is an error that names the line") {
+  const Folder folder;
   CHECK(contains(folder.message("format = 1\nname = \n"), "experiment.toml:2: column"));
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("characterize.json holds values with their sd, and null with reason an
 
 TEST_CASE("the camera's table shows digits that the sd supports, limits as such, and reasons below") {
   const std::string text = report::camera_text(made_camera());
-  for (const char* part : {"0.4012  0.0017", "< 3.2", "> 5.4e+03", "1.010   0.020", "full well: no level reaches",
+  for (const char* part : {"0.4012  0.0017", "< 3.2", "> 5400", "1.010   0.020", "full well: no level reaches",
                            "note: The lamp flickers & more.", "640 x 480"}) {
     INFO(part << "\n" << text);
     CHECK(contains(text, part));

@@ -17,6 +17,17 @@ TEST_CASE("without a usable sd a value keeps six significant digits") {
   CHECK(value_text(std::nan(""), 0.1) == "–");
 }
 
+TEST_CASE("a number has plain digits where they are few, and a power of ten beyond") {
+  CHECK(number_text(412.3, 2) == "410");
+  CHECK(number_text(0.0000181, 3) == "0.0000181");
+  CHECK(number_text(-0.000018, 3) == "-0.000018");
+  CHECK(number_text(0.00009996, 3) == "0.0001");  // rounds up to another power of ten
+  CHECK(number_text(123456.0, 1) == "100000");
+  CHECK(number_text(7.26e8, 3) == "7.26e+08");
+  CHECK(number_text(3.4e-8, 2) == "3.4e-08");
+  CHECK(number_text(2.5, 1) == "2");
+}
+
 TEST_CASE("an error shows its sign") {
   CHECK(error_text(0.00312, 0.0041) == "+0.0031");
   CHECK(error_text(-0.00312, 0.0041) == "-0.0031");
