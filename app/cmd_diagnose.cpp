@@ -41,7 +41,7 @@ struct DiagnoseCommand {
 };
 
 /// What is planned: a scenario's motions with noise, or folders that were recorded.
-diagnose::Plan planned(const DiagnoseCommand& options) {
+diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& progress) {
   const fs::path first = options.experiments.front();
   if (fs::is_directory(first)) {
     const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
@@ -51,16 +51,18 @@ diagnose::Plan planned(const DiagnoseCommand& options) {
       setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     }
     return diagnose::plan_of(
-        core::analyze(folders, {.bandwidth_s = {},
-                                .jobs = options.common.jobs,
-                                .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .outside = options.outside}}),
+        core::analyze(folders,
+                      {.bandwidth_s = {},
+                       .jobs = options.common.jobs,
+                       .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .outside = options.outside}},
+                      progress),
         setups);
   }
+  const render::Scenario scenario = render::read_scenario(first);
   if (!(options.noise_m > 0.0)) {
     throw base::InputError(base::Issue{first.string(), 0, "--noise-m", "nothing",
                                        "the noise of a position in metres, above 0: a scenario alone has none"});
   }
-  const render::Scenario scenario = render::read_scenario(first);
   const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
   const validate::MadeTracks made = validate::with_noise(validate::make_tracks(scenario, seed), options.noise_m, seed);
   return diagnose::plan_of(validate::analyze_tracks(made, std::optional<double>(), options.common.jobs), made.setups);
@@ -71,12 +73,14 @@ void plan(const DiagnoseCommand& options) {
   const fs::path out = output_folder(options.common, "diagnose", options.experiments.front());
   check_writable(out);
   base::StagedOutput staged(out);
-  const diagnose::Plan plan = planned(options);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
+  const diagnose::Plan plan = planned(options, display.callback());
   base::write_file(staged.dir() / "plan.json", report::plan_json(plan));
   const std::string title = "Plan: " + fs::path(options.experiments.front()).stem().string();
   if (!options.no_page) report::write_page(staged.dir(), "plan.html", report::plan_page(title, plan));
   throw_if_interrupted();
   staged.publish_files();
+  display.clear();
   print_result(options.common.json ? report::plan_json(plan) : report::plan_text(plan));
   say(options.common, fmt::format("plan: {}", (out / (options.no_page ? "plan.json" : "plan.html")).string()));
 }

@@ -130,8 +130,9 @@ std::string meaning(const validate::Coverage& coverage) {
   std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
   if (narrow.empty()) {
     text +=
-        "<p>No estimator but the naive one claims more than it can: its intervals hold the truth as often as they "
-        "say, as far as this many replicates can tell.</p>\n";
+        "<p>The intervals of every estimator but the naive one hold the truth as often as they say, as far as this "
+        "many "
+        "replicates can tell.</p>\n";
   } else {
     text += fmt::format("<p>These intervals hold the truth less often than they say: {}.</p>\n", list_of(narrow));
   }

@@ -106,8 +106,9 @@ Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int varia
                                                                                           : variable == 1 ? "v_m_s"
                                                                                                           : "t_s"));
   script += fmt::format(
-      "plot $before using 1:2 with points pt 7 ps 0.2 lc rgb '{}' title 'before', "
-      "$after using 1:2 with points pt 7 ps 0.2 lc rgb '{}' title 'after'\n",
+      "plot $before using 1:2 with points pt 7 ps 0.2 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
+      "'{0}' title 'before', $after using 1:2 with points pt 7 ps 0.2 lc rgb '{1}' notitle, keyentry with points pt 7 "
+      "ps 0.8 lc rgb '{1}' title 'after'\n",
       kColors[1], kColors[0]);
   return {Drawing{script, std::vector{before, after}},
           fmt::format("What the fit leaves of all clips, over {}", variable == 0   ? "the place"

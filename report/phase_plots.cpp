@@ -156,9 +156,11 @@ Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group
   std::size_t n = 0;
   for (const Cloud& cloud : all) {
     data.push_back(thinned(cloud, kPointsOfAll / all.size(), -HUGE_VAL, HUGE_VAL));
-    script += fmt::format("{}${} using 1:3 with points pt 7 ps 0.3 lc rgb '{}' title {}", n == 0 ? "" : ", ",
-                          data_name("points", cloud.configuration), color(n),
-                          gnuplot_quoted(configuration_label(results, group, cloud.configuration)));
+    script += fmt::format(
+        "{0}${1} using 1:3 with points pt 7 ps 0.3 lc rgb '{2}' notitle, keyentry with points pt 7 ps 0.8 lc rgb '{2}' "
+        "title {3}",
+        n == 0 ? "" : ", ", data_name("points", cloud.configuration), color(n),
+        gnuplot_quoted(configuration_label(results, group, cloud.configuration)));
     ++n;
   }
   return {Drawing{script, data}, "Residuals of the lines: what a(v) leaves unexplained",

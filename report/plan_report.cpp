@@ -38,6 +38,17 @@ std::string lead(const diagnose::Plan& plan) {
       plan.clips, plan.points, number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
 }
 
+/// What to do about effects that look alike; empty where none do.
+std::string advice(const diagnose::Plan& plan) {
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    if (!effect.alike.empty()) {
+      return "What these motions cannot tell apart, others may: another mass, launches both ways and from rest, higher "
+             "speeds, another inclination. Change the motions and plan again.";
+    }
+  }
+  return {};
+}
+
 constexpr const char* kMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
     "adjust "
@@ -72,6 +83,7 @@ std::string plan_text(const diagnose::Plan& plan) {
     rows.push_back({effect.id, seen_text(effect), joined(effect.alike)});
   }
   std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
+  if (!advice(plan).empty()) text += fmt::format("\n{}\n", advice(plan));
   for (const std::string& note : plan.notes) text += "\n" + note + "\n";
   return text;
 }
@@ -82,6 +94,7 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
       "<p>{}</p>\n",
       escape(title), escape(lead(plan)));
   for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
   HtmlTable table({"effect", "seen from", "not to be told from"}, 3);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     table.row({escape(effect.id), escape(seen_text(effect)), escape(joined(effect.alike))});

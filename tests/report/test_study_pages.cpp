@@ -1,0 +1,85 @@
+/// The pages of require, coverage and laws: units, digits and names as a reader meets them.
+#include "catch.h"
+#include "report/coverage_report.h"
+#include "report/html.h"
+#include "report/laws_report.h"
+#include "report/requirement_report.h"
+
+using namespace glidelab;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+validate::Requirement one_camera(const std::string& quantity, double target, double bound) {
+  validate::Requirement requirement;
+  requirement.name = "cameras";
+  requirement.confirm = validate::Confirm::tracks;
+  requirement.runs = 4;
+  requirement.targets = {{quantity, validate::Target::Measure::sd, target}};
+  validate::Candidate candidate;
+  candidate.name = "webcam";
+  candidate.verdict = validate::Verdict::reached;
+  candidate.judged_by = validate::Confirm::tracks;
+  candidate.pixels_s = 1e7;
+  candidate.frame_rate_hz = 30.0;
+  candidate.noise_m = 2.46e-5;
+  candidate.results = {{bound, 1.1 * bound, 0.3 * bound, "trajectory"}};
+  requirement.candidates = {candidate};
+  return requirement;
+}
+
+validate::CoverageRow row(const std::string& estimator, const std::string& quantity, double sd, double stated_sd) {
+  validate::CoverageRow of;
+  of.configuration = "m1";
+  of.estimator = estimator;
+  of.quantity = quantity;
+  of.determined = of.covered = 200;
+  of.sd = sd;
+  of.stated_sd = stated_sd;
+  of.coverage = 0.95;
+  of.low95 = 0.91;
+  of.high95 = 0.97;
+  return of;
+}
+
+}  // namespace
+
+TEST_CASE("require says its target, and its columns in the thousandths, millionths … in which the target has digits") {
+  const std::string mu = report::requirement_text(one_camera("mu", 0.0005, 1.8e-5));
+  CHECK(has(mu, "sd of µ at most 0.0005 on the worst configuration"));
+  CHECK(has(mu, "bound: sd of µ (10⁻⁶)  by runs (10⁻⁶)"));
+  CHECK(has(mu, "18      19.8 ± 5.4"));
+  CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
+  const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
+  CHECK(has(k, "bound: sd of K/m (10⁻³ 1/s)  by runs (10⁻³ 1/s)"));
+  const std::string alpha = report::requirement_text(one_camera("alpha_deg", 1.0, 0.5));
+  CHECK(has(alpha, "bound: sd of α (°)  by runs (°)"));
+  validate::Requirement rendered = one_camera("mu", 0.0005, 1.8e-5);
+  rendered.confirm = validate::Confirm::clips;
+  CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));
+}
+
+TEST_CASE("coverage names what scatters farther than it states, and the naive lines are not asked") {
+  validate::Coverage coverage;
+  coverage.replicates = 200;
+  coverage.noise_sd_m = {2e-5};
+  coverage.rows = {row("phase-diagram", "mu", 0.0083, 0.0028), row("phase-diagram", "alpha_deg", 0.47, 0.15),
+                   row("trajectory", "k_over_m_1_s", 0.0019, 0.001), row("naive-lines", "mu", 0.0083, 0.0026)};
+  const std::string page = report::coverage_page("webcam", coverage).html;
+  CHECK(has(page, "for µ (3.0 times), α (3.1 times) of m1 by the lines of the phase diagram. A few"));
+  coverage.rows.erase(coverage.rows.begin(), coverage.rows.begin() + 2);
+  CHECK_FALSE(has(report::coverage_page("webcam", coverage).html, "scatter more than"));
+}
+
+TEST_CASE("the animation of laws has every motion's name as text, which steers nothing") {
+  validate::LawStudy study;
+  study.name = "viscous";
+  study.curves = {{"level", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, 0.0, {0}}};
+  study.motions = {{"</script><b>up", "level", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
+  const std::string page = report::laws_report({study}).html;
+  CHECK(has(page, "<li>&lt;/script&gt;&lt;b&gt;up</li>"));
+  CHECK_FALSE(has(page, "</script><b>up"));
+}
