@@ -7,12 +7,11 @@
 #include <cmath>
 #include <numbers>
 #include <queue>
-#include <type_traits>
 #include <vector>
 
 #include "core/least_squares.h"
+#include "core/marker_model.h"
 #include "core/median.h"
-#include "core/pixel_edge.h"
 
 namespace glidelab::core {
 namespace {
@@ -24,39 +23,29 @@ constexpr double kSharpEdge_px = 0.29;  // the pixel's own extent, 1/sqrt(12): n
 constexpr int kMaxIterations = 14;      // what is a marker takes 3 to 8
 constexpr int kMoreIterations = 16;     // a disc so far, its edge sharper than a pixel: the sensor clips it
 
-struct Window {
-  std::vector<double> u, v, value, weight;
-  std::size_t size() const { return u.size(); }
-};
-
 /// All pixels within `radius`, tapered towards the rim so that a pixel more or less there does not move the centre.
-std::optional<Window> cut_window(const Signal& signal, cv::Point2d centre, double radius) {
+std::optional<MarkerPixels> cut_window(const Signal& signal, cv::Point2d centre, double radius) {
   const int left = static_cast<int>(std::ceil(centre.x - radius));
   const int right = static_cast<int>(std::floor(centre.x + radius));
   const int top = static_cast<int>(std::ceil(centre.y - radius));
   const int bottom = static_cast<int>(std::floor(centre.y + radius));
   if (left < 0 || top < 0 || right >= signal.values.cols || bottom >= signal.values.rows) return std::nullopt;
   signal.see({left, top, right - left + 1, bottom - top + 1});
-  Window window;
+  MarkerPixels window;
   const double taper_from = radius - std::min(2.0, 0.25 * radius);
   for (int v = top; v <= bottom; ++v) {
     for (int u = left; u <= right; ++u) {
       const double du = u - centre.x, dv = v - centre.y;
       const double distance = std::sqrt(du * du + dv * dv);
       if (distance >= radius) continue;
-      window.u.push_back(u);
-      window.v.push_back(v);
-      window.value.push_back(signal.at(u, v));
       const double into_taper = (distance - taper_from) / (radius - taper_from);
-      window.weight.push_back(into_taper <= 0.0 ? 1.0 : 0.5 * (1.0 + std::cos(std::numbers::pi * into_taper)));
+      window.add(u, v, signal.at(u, v),
+                 into_taper <= 0.0 ? 1.0 : 0.5 * (1.0 + std::cos(std::numbers::pi * into_taper)));
     }
   }
+  window.complete();
   return window;
 }
-
-enum Parameter { kU, kV, kMuu, kMuv, kMvv, kLogBlur, kBright, kLevel, kSlopeU, kSlopeV, kShadeU, kShadeV, kShadeR };
-constexpr int kUniformParameters = kShadeU;
-constexpr int kShadedParameters = kShadeR + 1;
 
 /// Weak knowledge that keeps small markers' size and blur apart, and the blur of a sharp picture from sliding to
 /// nothing (it has no effect to be seen there); each worth so much of the amplitude in one pixel.
@@ -69,119 +58,42 @@ constexpr double kSizeStrength = 0.1;  // a unit of ln(radius)
 constexpr double kBlurStrength = 0.3;  // a unit of ln(blur)
 constexpr double kShadeStrength = 0.05;
 
-constexpr double kFarSigmas = 5.0;      // from the edge: Phi(-5) = 3e-7
-constexpr double kHalfDiagonal = 0.71;  // of a pixel
-
-/// One pixel of background: its Jacobian is (-g, 0 …, 1, d), in the order centre, level, slopes.
+/// The sums over the pixels with what is known beforehand.
 template <int N>
-void add_background(NormalEquations<N>& equations, double residual, double du, double dv, double slope_u,
-                    double slope_v, double w) {
-  constexpr std::array<int, 5> kTerms{kU, kV, kLevel, kSlopeU, kSlopeV};
-  const std::array<double, 5> jacobian{-slope_u, -slope_v, 1.0, du, dv};
-  for (std::size_t column = 0; column < 5; ++column) {
-    const double weighted = w * jacobian[column];
-    for (std::size_t row = column; row < 5; ++row)
-      equations.jtj(kTerms[row], kTerms[column]) += weighted * jacobian[row];
-    equations.jtr[kTerms[column]] += weighted * residual;
-  }
-  equations.cost += w * residual * residual;
-  equations.weight += w;
-}
-
-/// A pixel's weight in the fit.
-struct TaperWeight {
-  double operator()(double taper, double) const { return taper; }
-};
-/// Its share in the variance of the gradient, (w r)^2: the middle of the sandwich covariance.
-struct NoiseWeight {
-  double operator()(double taper, double residual) const { return taper * taper * residual * residual; }
-};
-
-template <int N, class Weigh>
-std::optional<NormalEquations<N>> evaluate(const Window& window, const Prior& prior,
-                                           const Eigen::Matrix<double, N, 1>& p, const Weigh& weigh) {
+std::optional<NormalEquations<N>> evaluate(const MarkerPixels& window, const Prior& prior,
+                                           const Eigen::Matrix<double, N, 1>& p) {
+  std::optional<NormalEquations<N>> equations = marker_equations<N>(window, p, PixelWeight::taper);
+  if (!equations) return std::nullopt;
   const double a = p[kMuu], b = p[kMuv], c = p[kMvv];
   const double determinant = a * c - b * b;
-  const double blur = std::exp(p[kLogBlur]);
-  if (!(blur > 0.01) || blur > 20.0 || !(determinant > 1e-6) || !(a > 0.0)) return std::nullopt;
-  const double radius = 1.0 / std::sqrt(determinant);
-  const double far = kFarSigmas * blur + kHalfDiagonal;
-  const double variance = blur * blur + 1.0 / 12.0;  // of blur and pixel together
-  NormalEquations<N> equations;
   Eigen::Matrix<double, N, 1> jacobian;
-  for (std::size_t i = 0; i < window.size(); ++i) {
-    const double du = window.u[i] - p[kU], dv = window.v[i] - p[kV];
-    const double mu = a * du + b * dv, mv = b * du + c * dv;  // M d
-    const double nu = a * mu + b * mv, nv = b * mu + c * mv;  // M^2 d
-    const double rho = std::sqrt(mu * mu + mv * mv);
-    const double steep = std::max(std::sqrt(nu * nu + nv * nv), 1e-12);
-    const double s = rho > 1e-9 ? rho * (1.0 - rho) / steep : far + 1.0;  // a pixel on the very centre has no normal
-    if (s < -far) {  // background alone: most of the other terms are zero
-      const double residual = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv - window.value[i];
-      add_background(equations, residual, du, dv, p[kSlopeU], p[kSlopeV], weigh(window.weight[i], residual));
-      continue;
-    }
-    const PixelEdge pixel = s > far ? PixelEdge{1.0, 0.0, 0.0} : pixel_edge(s, nu / steep, nv / steep, blur);
-    const double edge = pixel.value;
-    double surface = p[kBright];
-    if constexpr (N == kShadedParameters) {
-      surface += (p[kShadeU] * du + p[kShadeV] * dv) / radius + p[kShadeR] * (1.0 - rho * rho);
-    }
-    const double behind = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv;
-    // A slope that ends at an edge keeps, once blurred, a remainder beyond it.
-    const double remainder = variance * pixel.slope / steep;
-    const double model = behind * (1.0 - edge) + surface * edge + (p[kSlopeU] * nu + p[kSlopeV] * nv) * remainder;
-    const double to_s = (surface - behind) * pixel.slope;
-    // ds = -d rho rho / |M^2 d| at fixed steepness; d rho = ((M d) . dM d) / rho, and the centre moves by -d.
-    const double to_m = -to_s / steep;
-    jacobian[kU] = to_s * nu / steep - (1.0 - edge) * p[kSlopeU];
-    jacobian[kV] = to_s * nv / steep - (1.0 - edge) * p[kSlopeV];
-    jacobian[kMuu] = to_m * mu * du;
-    jacobian[kMuv] = to_m * (mu * dv + mv * du);
-    jacobian[kMvv] = to_m * mv * dv;
-    jacobian[kLogBlur] = (surface - behind) * blur * blur * pixel.bend;
-    jacobian[kBright] = edge;
-    jacobian[kLevel] = 1.0 - edge;
-    jacobian[kSlopeU] = (1.0 - edge) * du + nu * remainder;
-    jacobian[kSlopeV] = (1.0 - edge) * dv + nv * remainder;
-    if constexpr (N == kShadedParameters) {
-      jacobian[kU] -= edge * (p[kShadeU] / radius - 2.0 * p[kShadeR] * nu);
-      jacobian[kV] -= edge * (p[kShadeV] / radius - 2.0 * p[kShadeR] * nv);
-      jacobian[kShadeU] = edge * du / radius;
-      jacobian[kShadeV] = edge * dv / radius;
-      jacobian[kShadeR] = edge * (1.0 - rho * rho);
-    }
-    const double residual = model - window.value[i];
-    equations.add(jacobian, residual, weigh(window.weight[i], residual));
-  }
-  if constexpr (std::is_same_v<Weigh, NoiseWeight>) return equations;  // what is known beforehand has no noise
   const double sharp = kBlurStrength * prior.amplitude;
   jacobian.setZero();
   jacobian[kLogBlur] = sharp;
-  equations.add(jacobian, sharp * (p[kLogBlur] - std::log(prior.blur_px)), 1.0);
+  equations->add(jacobian, sharp * (p[kLogBlur] - std::log(prior.blur_px)), 1.0);
   // ln(radius / expected) = -ln(determinant) / 2 - ln(expected).
   const double along = kSizeStrength * prior.amplitude;
   jacobian.setZero();
   jacobian[kMuu] = -0.5 * along * c / determinant;
   jacobian[kMvv] = -0.5 * along * a / determinant;
   jacobian[kMuv] = along * b / determinant;
-  equations.add(jacobian, along * (-0.5 * std::log(determinant) - std::log(prior.radius_px)), 1.0);
+  equations->add(jacobian, along * (-0.5 * std::log(determinant) - std::log(prior.radius_px)), 1.0);
   if constexpr (N == kShadedParameters) {
     jacobian.setZero();
     jacobian[kShadeR] = kShadeStrength;
-    equations.add(jacobian, kShadeStrength * p[kShadeR], 1.0);
+    equations->add(jacobian, kShadeStrength * p[kShadeR], 1.0);
   }
   return equations;
 }
 
 template <int N>
-std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
+std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& guess) {
   std::vector<double> inside, around;
   for (std::size_t i = 0; i < window.size(); ++i) {
-    const double du = window.u[i] - guess.centre.x, dv = window.v[i] - guess.centre.y;
+    const double du = window.u()[i] - guess.centre.x, dv = window.v()[i] - guess.centre.y;
     const double share = std::sqrt(du * du + dv * dv) / guess.radius_px;
-    if (share < 0.7) inside.push_back(window.value[i]);
-    if (share > 1.0) around.push_back(window.value[i]);
+    if (share < 0.7) inside.push_back(window.value()[i]);
+    if (share > 1.0) around.push_back(window.value()[i]);
   }
   if (inside.empty() || around.empty() || window.size() < 2 * static_cast<std::size_t>(N)) return std::nullopt;
   const double level = median_of(around);
@@ -202,7 +114,7 @@ std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
   step[kMuu] = step[kMuv] = step[kMvv] = 3e-3 / guess.radius_px;
   step[kLogBlur] = 2e-2;
   const Prior prior{guess.radius_px, guess.blur_px, amplitude};
-  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(window, prior, p, TaperWeight{}); };
+  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(window, prior, p); };
   LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations);
   if (found.stop == FitStop::iterations && found.parameters[kLogBlur] < std::log(kSharpEdge_px) &&
       found.rms < kLargestResidual * amplitude) {
@@ -212,13 +124,13 @@ std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
 
   const auto& p = found.parameters;
   double total_weight = 0.0;
-  for (const double w : window.weight) total_weight += w;
+  for (const double w : window.weight()) total_weight += w;
   if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;
   MarkerFit marker;
   marker.centre = {p[kU], p[kV]};
   // The bright marker's pixels are noisier than the background's, and the taper counts: covariance by the sandwich
   // A^-1 B A^-1 with A = J^T W J, B = sum (w r)^2 J J^T, and N parameters taken from the residuals' freedom.
-  auto noise = evaluate<N>(window, prior, p, NoiseWeight{});
+  auto noise = marker_equations<N>(window, p, PixelWeight::gradient);
   noise->complete();
   const auto inverse = (found.covariance / (found.rms * found.rms)).eval();
   const auto covariance = (inverse * noise->jtj * inverse).eval();
@@ -235,9 +147,9 @@ std::optional<MarkerFit> fit(const Window& window, const MarkerGuess& guess) {
   double above = 0.0;
   const double reach = kMomentReach * guess.radius_px + kMomentMargin_px;  // short of what else moves with the marker
   for (std::size_t i = 0; i < window.size(); ++i) {
-    const double du = window.u[i] - p[kU], dv = window.v[i] - p[kV];
+    const double du = window.u()[i] - p[kU], dv = window.v()[i] - p[kV];
     if (du * du + dv * dv > reach * reach) continue;
-    const double value = window.value[i] - p[kLevel] - p[kSlopeU] * du - p[kSlopeV] * dv;
+    const double value = window.value()[i] - p[kLevel] - p[kSlopeU] * du - p[kSlopeV] * dv;
     above += value;
     marker.moments += value * cv::Vec3d(du * du, du * dv, dv * dv);
   }
