@@ -65,7 +65,8 @@ class Scan {
   std::optional<Errors> at(double bandwidth_s) {
     const auto stride =
         static_cast<std::size_t>(std::max(1.0, std::floor(bandwidth_s / (kPointsPerBandwidth * motion_.step_s))));
-    const std::vector<StretchPoint> points = smooth_stretches(motion_, stretches_, bandwidth_s, stride);
+    const std::vector<StretchPoint> points =
+        smooth_stretches(motion_, stretches_, bandwidth_s, stride, WantedPoints::inner);
     const std::vector<double> bias = smoothing_bias(motion_, stretches_, law_, points);
     Errors errors;
     errors.bandwidth_s = bandwidth_s;

@@ -17,7 +17,7 @@ double complete_variance(double step_s, double bandwidth_s) {
 }  // namespace
 
 std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vector<FreeStretch>& stretches,
-                                           double bandwidth_s, std::size_t stride) {
+                                           double bandwidth_s, std::size_t stride, WantedPoints wanted) {
   std::vector<StretchPoint> points;
   const double allowed = kGapVariance * complete_variance(motion.step_s, bandwidth_s);
   const double margin = kKernelMargin * bandwidth_s * (1.0 - 1e-9);
@@ -29,12 +29,14 @@ std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vect
     const LocalCubic cubic(t, bandwidth_s);
     RowVariance variance({1.0});
     for (std::size_t j = 0; j < t.size(); j += stride) {
+      const double since = t[j] - t.front(), until = t.back() - t[j];
+      const bool in_margin = since < margin || until < margin;
+      if (wanted == WantedPoints::inner && (in_margin || stretch.whole != LeftOut::used)) continue;
       StretchPoint point;
       point.point = stretch.first + j;
       point.stretch = s;
       point.direction = stretch.direction;
       point.row = cubic.row_of_point(j);
-      const double since = t[j] - t.front(), until = t.back() - t[j];
       if (point.row) {
         point.smoothed = true;
         point.x = weighted_sums(*point.row, x);
@@ -43,7 +45,7 @@ std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vect
       }
       if (stretch.whole != LeftOut::used) {
         point.left_out = stretch.whole;
-      } else if (since < margin || until < margin) {
+      } else if (in_margin) {
         point.left_out = since < until ? stretch.start : stretch.end;
       } else if (!point.row || variance.of_a(*point.row) > allowed) {
         point.left_out = LeftOut::kernel_gap;

@@ -32,9 +32,15 @@ struct StretchPoint {
   std::optional<KernelRow> row;  ///< over the points of the motion
 };
 
-/// Every `stride`-th point of every stretch.
+/// Which points a caller has a use for: where only those that may count are wanted, those at a stretch's ends are not
+/// smoothed at all (each has a kernel of its own, which is most of the work).
+enum class WantedPoints { all, inner };
+
+/// Every `stride`-th point of every stretch; with `inner` without those in the margins and without whole stretches that
+/// are left out.
 std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vector<FreeStretch>& stretches,
-                                           double bandwidth_s, std::size_t stride = 1);
+                                           double bandwidth_s, std::size_t stride = 1,
+                                           WantedPoints wanted = WantedPoints::all);
 
 /// What an error of a by the law's own curvature over time would be: g(t) = f(v(t)) is what a without the force should
 /// be at each point (0 where unknown), and the result is the smoothed minus the true g, by smoothing its double
