@@ -18,6 +18,7 @@ constexpr std::size_t kSamples = 24;         // windows that decide how a path i
 constexpr std::size_t kAwake = 10;           // resting paths that are followed nonetheless
 constexpr std::size_t kLostAfter = 25;       // frames without a sighting
 constexpr std::size_t kRestFrames = 12;      // after which a path that has not moved may sleep
+constexpr std::size_t kMovingFrames = 10;    // in which five radii are a motion
 constexpr std::size_t kFewestSightings = 5;  // fewer in a row are noise
 constexpr double kSmallestRadiusPx = 1.2;
 constexpr double kLargestElongation = 4.0;  // a streak of motion may be long
@@ -210,7 +211,7 @@ void MarkerTracker::follow_back(Path& path) const {
 const MarkerTracker::Path* MarkerTracker::mover(std::size_t frame) const {
   const Path* best = nullptr;
   for (const Path& path : paths_) {
-    if (path.ended || path.asleep || path.seen.back().frame != frame || path.seen.size() < kRestFrames) continue;
+    if (path.ended || path.asleep || path.seen.back().frame != frame || path.seen.size() < kMovingFrames) continue;
     if (path.travel_px < 5.0 * path.radius_px || std::abs(std::log(size_ratio(path))) > 0.3) continue;
     if (best == nullptr || path.amplitude > best->amplitude) best = &path;
   }
