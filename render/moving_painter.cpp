@@ -5,83 +5,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "render/coverage.h"
 #include "render/moving_shapes.h"
+#include "render/tile_row.h"
 
 namespace glidelab::render {
 namespace {
-
-/// The rays of a row of a tile.
-struct RowRays {
-  const float* x_y_dxdu_dxdv;
-  const float* dydu_dydv;
-};
-
-using TileRow = std::array<double, kRayTile>;
-
-/// Coverage of a row of pixels by a polygon of which only some edges may cross them.
-void polygon_row(const Polygon& polygon, std::uint8_t crossing, double shift, const RowRays& rays, int count,
-                 TileRow& coverage) {
-  std::array<Eigen::Vector3d, 4> lines;
-  std::size_t line_count = 0;
-  for (std::size_t e = 0; e < polygon.edges.size(); ++e) {
-    if ((crossing >> e & 1u) == 0) continue;
-    lines[line_count++] = polygon.edges[e].fixed + shift * polygon.edges[e].moving;
-  }
-  std::array<PixelLine, 4> through;  // one for all pixels: to clear it is a quarter of the work
-  for (int i = 0; i < count; ++i) {
-    const auto ray = [&](int k) { return static_cast<double>(rays.x_y_dxdu_dxdv[4 * i + k]); };
-    const auto slope = [&](int k) { return static_cast<double>(rays.dydu_dydv[2 * i + k]); };
-    std::size_t through_count = 0;
-    bool outside = false;
-    for (std::size_t e = 0; e < line_count && !outside; ++e) {
-      const Eigen::Vector3d& line = lines[e];
-      const PixelLine here{line.x() * ray(0) + line.y() * ray(1) + line.z(), line.x() * ray(2) + line.y() * slope(0),
-                           line.x() * ray(3) + line.y() * slope(1)};
-      const double reach = 0.5 * (std::abs(here.gx) + std::abs(here.gy));
-      outside = here.s <= -reach;
-      if (here.s < reach) through[through_count++] = here;
-    }
-    coverage[i] = outside              ? 0.0
-                  : through_count == 0 ? 1.0
-                  : through_count == 1 ? half_plane_coverage(through[0])
-                                       : convex_coverage(std::span(through).first(through_count));
-  }
-}
-
-double sphere_coverage(const Sphere& sphere, const Eigen::Vector3d& c, const float* ray, const float* slope) {
-  const Eigen::Vector2d du(ray[2], slope[0]);
-  const Eigen::Vector2d dv(ray[3], slope[1]);
-  const Eigen::Vector2d center = c.head<2>() / c.z();
-  // Most pixels are not cut by the outline. The distance of a ray from the centre (below) changes by at most |c| times
-  // what the ray does; half a pixel is in reach, and as much again for what the ray's own length changes.
-  const Eigen::Vector2d off = Eigen::Vector2d(ray[0], ray[1]) - center;
-  const double turned = off.x() * c.y() - off.y() * c.x();
-  const double off2 = (c.z() * c.z() * off.squaredNorm() + turned * turned) / (1.0 + ray[0] * ray[0] + ray[1] * ray[1]);
-  const double reach = c.norm() * (du.norm() + dv.norm());
-  if (off2 > (sphere.radius_m + reach) * (sphere.radius_m + reach)) return 0.0;
-  if (sphere.radius_m > reach && off2 < (sphere.radius_m - reach) * (sphere.radius_m - reach)) return 1.0;
-  double coverage = 0.0;
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    const Eigen::Vector2d p = Eigen::Vector2d(ray[0], ray[1]) + ((quarter & 1) == 0 ? -0.25 : 0.25) * du +
-                              ((quarter & 2) == 0 ? -0.25 : 0.25) * dv;
-    // Distance of the ray (x, y, 1) from the centre c = Z (x_c, y_c, 1): |(e, 0) x c| / |(x, y, 1)|, with
-    // e = (x, y) - (x_c, y_c); its gradient in the picture makes it a distance in pixels.
-    const Eigen::Vector2d e = p - center;
-    const double ray2 = 1.0 + p.squaredNorm();
-    const double turn = e.x() * c.y() - e.y() * c.x();
-    const double distance2 = (c.z() * c.z() * e.squaredNorm() + turn * turn) / ray2;
-    const double distance = std::max(std::sqrt(distance2), 1e-3 * sphere.radius_m);
-    const Eigen::Vector2d rise =
-        (c.z() * c.z() * e + turn * Eigen::Vector2d(c.y(), -c.x()) - distance2 * p) / (ray2 * distance);
-    const double gu = 0.5 * rise.dot(du);
-    const double gv = 0.5 * rise.dot(dv);
-    // The arc lies inside its tangent: on average over a square's side by 1/(24 R) of it.
-    const double bulge = (gu * gu + gv * gv) / (24.0 * sphere.radius_m);
-    coverage += 0.25 * half_plane_coverage({sphere.radius_m - distance - bulge, gu, gv});
-  }
-  return coverage;
-}
 
 /// What may be seen of a shape in a tile; `crossing` is that of InTile.
 struct Step {
@@ -127,28 +55,32 @@ void make_plan(const Shapes& shapes, const RayBounds& tile, const ShiftRange& sh
               std::all_of(plan.steps.begin(), plan.steps.end(), [](const Step& step) { return step.crossing == 0; });
 }
 
-/// Some pixels of a row of one tile.
-struct TileSpan {
-  int y = 0;
-  int x = 0;
-  int count = 0;
+struct RowPicture {
+  TileRow radiance;
+  TileRow coverage;
 };
 
-struct RowPicture {
-  TileRow radiance{};
-  TileRow coverage{};
-};
+constexpr RowPicture kDark{};
+
+/// Coverage by a polygon of which only some edges may cross the tile.
+TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
+  std::array<Eigen::Vector3d, 4> lines;
+  std::size_t count = 0;
+  for (std::size_t e = 0; e < step.polygon->edges.size(); ++e) {
+    const Edge& edge = step.polygon->edges[e];
+    if ((step.crossing >> e & 1u) != 0) lines[count++] = edge.fixed + shift * edge.moving;
+  }
+  return polygon_row(std::span(lines).first(count), rays);
+}
 
 /// Adds what a row of a tile shows at one instant.
-void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight, const RayTable& rays,
-             const TileSpan& span, RowPicture& out) {
-  const std::size_t at = static_cast<std::size_t>(span.y) * rays.width + span.x;
-  const RowRays row{rays.x_y_dxdu_dxdv.data() + 4 * at, rays.dydu_dydv.data() + 2 * at};
-  RowPicture seen;
+void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight, const RowRays& rays,
+             RowPicture& out) {
+  RowPicture seen = kDark;
   // One box after the other: its seen faces, which share its picture, then patches in their places, then the whole
   // over what was there.
   for (std::size_t k = 0; k < plan.steps.size();) {
-    RowPicture box;
+    RowPicture box = kDark;
     const std::size_t number = plan.steps[k].polygon->box;
     for (; k < plan.steps.size() && plan.steps[k].polygon->box == number; ++k) {
       const Step& step = plan.steps[k];
@@ -156,9 +88,9 @@ void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight
       if (step.crossing == 0) {
         coverage.fill(1.0);
       } else {
-        polygon_row(*step.polygon, step.crossing, shift, row, span.count, coverage);
+        coverage = coverage_by(step, shift, rays);
       }
-      for (int i = 0; i < span.count; ++i) {
+      for (int i = 0; i < kRayTile; ++i) {
         double& box_part = box.coverage[i];
         double& light = box.radiance[i];
         if (!step.polygon->is_patch) {
@@ -170,21 +102,20 @@ void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight
         }
       }
     }
-    for (int i = 0; i < span.count; ++i) {
+    for (int i = 0; i < kRayTile; ++i) {
       seen.radiance[i] += box.radiance[i] - box.coverage[i] * seen.radiance[i];
       seen.coverage[i] += box.coverage[i] * (1.0 - seen.coverage[i]);
     }
   }
   if (plan.with_sphere) {
     const Sphere& sphere = *shapes.sphere();
-    const Eigen::Vector3d c = sphere.center_C + shift * shapes.direction_C();
-    for (int i = 0; i < span.count; ++i) {
-      const double covered = sphere_coverage(sphere, c, row.x_y_dxdu_dxdv + 4 * i, row.dydu_dydv + 2 * i);
-      seen.radiance[i] += covered * (sphere.radiance - seen.radiance[i]);
-      seen.coverage[i] += covered * (1.0 - seen.coverage[i]);
+    const TileRow covered = sphere_row(sphere.center_C + shift * shapes.direction_C(), sphere.radius_m, rays);
+    for (int i = 0; i < kRayTile; ++i) {
+      seen.radiance[i] += covered[i] * (sphere.radiance - seen.radiance[i]);
+      seen.coverage[i] += covered[i] * (1.0 - seen.coverage[i]);
     }
   }
-  for (int i = 0; i < span.count; ++i) {
+  for (int i = 0; i < kRayTile; ++i) {
     out.radiance[i] += weight * seen.radiance[i];
     out.coverage[i] += weight * seen.coverage[i];
   }
@@ -260,14 +191,13 @@ class TilePainter {
     if (first == nullptr || (even && first->steps.empty())) return;
     const PixelRect rect = intersection(layer_.rect, {column * kRayTile, row * kRayTile, kRayTile, kRayTile});
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
-      const TileSpan span{y, rect.x, rect.width};
-      RowPicture picture;
+      const RowRays rays = rays_of_row(rays_, rect.x, y, rect.width);
+      RowPicture picture = kDark;
       if (even) {
-        add_row(shapes_[first - plans_.data()], *first, 0.0, 1.0, rays_, span, picture);
+        add_row(shapes_[first - plans_.data()], *first, 0.0, 1.0, rays, picture);
       } else {
         for (const Instant& instant : instants_[y - row * kRayTile]) {
-          add_row(shapes_[instant.view], plans_[instant.view], instant.x_m - middle_m_, instant.weight, rays_, span,
-                  picture);
+          add_row(shapes_[instant.view], plans_[instant.view], instant.x_m - middle_m_, instant.weight, rays, picture);
         }
       }
       const std::size_t at = static_cast<std::size_t>(y - layer_.rect.y) * layer_.rect.width + (rect.x - layer_.rect.x);

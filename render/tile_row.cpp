@@ -1,0 +1,209 @@
+#include "render/tile_row.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+
+#include "render/coverage.h"
+
+namespace glidelab::render {
+namespace {
+
+constexpr std::size_t kMostLines = 4;
+
+/// A polygon's lines in the coordinates of each pixel, one after the other.
+struct RowLines {
+  std::array<TileRow, kMostLines> s, gx, gy, reach;
+};
+
+[[gnu::always_inline]] inline void lines_in_pixels(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
+                                                   RowLines& out) {
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const double a = lines[k].x(), b = lines[k].y(), c = lines[k].z();
+    for (int i = 0; i < kRayTile; ++i) {
+      const double gx = a * rays.dxdu[i] + b * rays.dydu[i], gy = a * rays.dxdv[i] + b * rays.dydv[i];
+      out.s[k][i] = a * rays.x[i] + b * rays.y[i] + c;
+      out.gx[k][i] = gx;
+      out.gy[k][i] = gy;
+      out.reach[k][i] = 0.5 * (std::abs(gx) + std::abs(gy));
+    }
+  }
+}
+
+/// A sphere as one view sees it.
+struct Ball {
+  double x, y, z;  // c
+  double center_x, center_y;
+  double distance;  // |c|
+  double radius;
+};
+
+/// Where a ball's outline is to a pixel, from distances of rays: well within, well outside, or near.
+///
+/// The distance of the ray (x, y, 1) from the centre is |(e, 0) x c| / |(x, y, 1)|, e = (x, y) - (x_c, y_c). Its
+/// gradient is at most |c| and half of the distance, so that within half a pixel it changes by no more than that times
+/// what the ray does; a tenth more is for the outline's curvature.
+[[gnu::always_inline]] inline void near_outline(const Ball& ball, const RowRays& rays, TileRow& coverage,
+                                                std::array<double, kRayTile>& cut) {
+  const double z2 = ball.z * ball.z;
+  for (int i = 0; i < kRayTile; ++i) {
+    const double x = rays.x[i], y = rays.y[i], off_x = x - ball.center_x, off_y = y - ball.center_y;
+    const double turned = off_x * ball.y - off_y * ball.x;
+    const double ray2 = 1.0 + (x * x + y * y);
+    const double square = z2 * (off_x * off_x + off_y * off_y) + turned * turned;  // of the distance, times ray2
+    const double step = std::sqrt(rays.dxdu[i] * rays.dxdu[i] + rays.dydu[i] * rays.dydu[i]) +
+                        std::sqrt(rays.dxdv[i] * rays.dxdv[i] + rays.dydv[i] * rays.dydv[i]);
+    const double reach = 0.55 * (ball.distance + ball.radius) * step;
+    const double far = ball.radius + reach, near = ball.radius - reach;
+    const double outside = square > far * far * ray2 ? 1.0 : 0.0;
+    const double inside = near > 0.0 ? near : 0.0;
+    const double within = square < inside * inside * ray2 ? 1.0 : 0.0;
+    coverage[i] = within;
+    cut[i] = 1.0 - outside - within;
+  }
+}
+
+constexpr int kQuarters = 4 * kRayTile;
+
+/// Quarters of pixels: their middles' rays, the slopes of these, and how much of each is covered.
+struct Quarters {
+  std::array<double, kQuarters> x, y, dxdu, dxdv, dydu, dydv, coverage;
+};
+
+[[gnu::always_inline]] inline void cover_quarters(const Ball& ball, int count, Quarters& q) {
+  const double z2 = ball.z * ball.z, least = 1e-3 * ball.radius, per_bend = 24.0 * ball.radius;
+  for (int i = 0; i < count; ++i) {
+    // The distance's gradient in the picture makes it a distance in pixels.
+    const double x = q.x[i], y = q.y[i], ex = x - ball.center_x, ey = y - ball.center_y;
+    const double ray2 = 1.0 + (x * x + y * y);
+    const double turn = ex * ball.y - ey * ball.x;
+    const double distance2 = (z2 * (ex * ex + ey * ey) + turn * turn) / ray2;
+    const double root = std::sqrt(distance2), distance = root > least ? root : least;
+    const double scale = ray2 * distance;
+    const double rise_x = (z2 * ex + turn * ball.y - distance2 * x) / scale;
+    const double rise_y = (z2 * ey - turn * ball.x - distance2 * y) / scale;
+    const double gu = 0.5 * (rise_x * q.dxdu[i] + rise_y * q.dydu[i]);
+    const double gv = 0.5 * (rise_x * q.dxdv[i] + rise_y * q.dydv[i]);
+    // The arc lies inside its tangent: on average over a square's side by 1/(24 R) of it.
+    const double bulge = (gu * gu + gv * gv) / per_bend;
+    // half_plane_coverage, without branches.
+    const double s = ball.radius - distance - bulge, t = std::abs(s), au = std::abs(gu), av = std::abs(gv);
+    const double a = au > av ? au : av, b = au > av ? av : au;
+    const double over = 0.5 * (a + b) - t, corner = over > 0.0 ? over : 0.0;
+    const double both = 2.0 * a * b, area = both > 1e-300 ? both : 1e-300;
+    const bool across = t <= 0.5 * (a - b);
+    const double part = (across ? t : corner * corner) / (across ? a : area);
+    const double beyond = across ? 0.5 - part : part;
+    q.coverage[i] = s > 0.0 ? 1.0 - beyond : beyond;
+  }
+}
+
+[[gnu::always_inline]] inline void cover_by_ball(const Ball& ball, const RowRays& rays, TileRow& coverage) {
+  TileRow cut;
+  near_outline(ball, rays, coverage, cut);
+  std::array<int, kRayTile> pixel;
+  int pixels = 0;
+  for (int i = 0; i < kRayTile; ++i) {
+    if (cut[i] > 0.0) pixel[pixels++] = i;
+  }
+  if (pixels == 0) return;
+  Quarters quarters;
+  for (int k = 0; k < pixels; ++k) {
+    const int i = pixel[k];
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const double u = (quarter & 1) == 0 ? -0.25 : 0.25, v = (quarter & 2) == 0 ? -0.25 : 0.25;
+      const int at = 4 * k + quarter;
+      quarters.x[at] = rays.x[i] + u * rays.dxdu[i] + v * rays.dxdv[i];
+      quarters.y[at] = rays.y[i] + u * rays.dydu[i] + v * rays.dydv[i];
+      quarters.dxdu[at] = rays.dxdu[i];
+      quarters.dxdv[at] = rays.dxdv[i];
+      quarters.dydu[at] = rays.dydu[i];
+      quarters.dydv[at] = rays.dydv[i];
+    }
+  }
+  cover_quarters(ball, 4 * pixels, quarters);
+  for (int k = 0; k < pixels; ++k) {
+    const double* const of = quarters.coverage.data() + 4 * k;
+    coverage[pixel[k]] = 0.25 * of[0] + 0.25 * of[1] + 0.25 * of[2] + 0.25 * of[3];
+  }
+}
+
+void lines_in_pixels_baseline(std::span<const Eigen::Vector3d> lines, const RowRays& rays, RowLines& out) {
+  lines_in_pixels(lines, rays, out);
+}
+void cover_by_ball_baseline(const Ball& ball, const RowRays& rays, TileRow& coverage) {
+  cover_by_ball(ball, rays, coverage);
+}
+
+#if defined(__x86_64__)
+// AVX2 without FMA: the same operations on more lanes.
+[[gnu::target("avx2")]] void lines_in_pixels_avx2(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
+                                                  RowLines& out) {
+  lines_in_pixels(lines, rays, out);
+}
+[[gnu::target("avx2")]] void cover_by_ball_avx2(const Ball& ball, const RowRays& rays, TileRow& coverage) {
+  cover_by_ball(ball, rays, coverage);
+}
+#endif
+
+}  // namespace
+
+RowRays rays_of_row(const RayTable& rays, int x, int y, int count) {
+  RowRays row;
+  const std::size_t at = static_cast<std::size_t>(y) * rays.width + x;
+  for (int i = 0; i < kRayTile; ++i) {
+    const std::size_t pixel = at + static_cast<std::size_t>(std::min(i, count - 1));
+    const float* const ray = rays.x_y_dxdu_dxdv.data() + 4 * pixel;
+    const float* const slope = rays.dydu_dydv.data() + 2 * pixel;
+    row.x[i] = static_cast<double>(ray[0]);
+    row.y[i] = static_cast<double>(ray[1]);
+    row.dxdu[i] = static_cast<double>(ray[2]);
+    row.dxdv[i] = static_cast<double>(ray[3]);
+    row.dydu[i] = static_cast<double>(slope[0]);
+    row.dydv[i] = static_cast<double>(slope[1]);
+  }
+  return row;
+}
+
+TileRow polygon_row(std::span<const Eigen::Vector3d> lines, const RowRays& rays, [[maybe_unused]] Simd simd) {
+  if (lines.size() > kMostLines) throw std::logic_error("too many lines around a polygon");
+  RowLines at;
+#if defined(__x86_64__)
+  uses_avx2(simd) ? lines_in_pixels_avx2(lines, rays, at) : lines_in_pixels_baseline(lines, rays, at);
+#else
+  lines_in_pixels_baseline(lines, rays, at);
+#endif
+  TileRow coverage;
+  std::array<PixelLine, kMostLines> through;  // one for all pixels: to clear it is a quarter of the work
+  for (int i = 0; i < kRayTile; ++i) {
+    std::size_t through_count = 0;
+    bool outside = false;
+    for (std::size_t k = 0; k < lines.size() && !outside; ++k) {
+      outside = at.s[k][i] <= -at.reach[k][i];
+      if (at.s[k][i] < at.reach[k][i]) through[through_count++] = {at.s[k][i], at.gx[k][i], at.gy[k][i]};
+    }
+    coverage[i] = outside              ? 0.0
+                  : through_count == 0 ? 1.0
+                  : through_count == 1 ? half_plane_coverage(through[0])
+                                       : convex_coverage(std::span(through).first(through_count));
+  }
+  return coverage;
+}
+
+TileRow sphere_row(const Eigen::Vector3d& center_C, double radius_m, const RowRays& rays, [[maybe_unused]] Simd simd) {
+  const Ball ball{center_C.x(),    center_C.y(), center_C.z(), center_C.x() / center_C.z(), center_C.y() / center_C.z(),
+                  center_C.norm(), radius_m};
+  TileRow coverage;
+#if defined(__x86_64__)
+  if (uses_avx2(simd)) {
+    cover_by_ball_avx2(ball, rays, coverage);
+    return coverage;
+  }
+#endif
+  cover_by_ball_baseline(ball, rays, coverage);
+  return coverage;
+}
+
+}  // namespace glidelab::render
