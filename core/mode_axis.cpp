@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kEnough = 1500;  // places say how a smooth displacement turns the line
+
+}  // namespace
 
 std::vector<double> ModeAxis::displacement(const Restitution& restitution, const MotionAxis& without,
                                            const std::vector<cv::Point2d>& places) const {
@@ -17,15 +22,20 @@ std::vector<double> ModeAxis::displacement(const Restitution& restitution, const
 
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
                                 const std::vector<cv::Point2d>& places, int downhill) {
+  const std::size_t stride = places.size() / kEnough + 1;
+  std::vector<cv::Point2d> some;
+  for (std::size_t i = 0; i < places.size(); i += stride) some.push_back(places[i]);
+  const bool moves = std::isfinite(without.line().sd_angle_rad);  // else the marker rests, and x runs along X
+  const MotionAxis before = moves && stride > 1 ? without.moved_through(some, downhill) : without;
   std::vector<ModeAxis> axes;
   for (const RestitutionMode& mode : restitution.modes()) {
     ModeAxis moved{mode, without};
-    if (std::isfinite(without.line().sd_angle_rad)) {  // else the marker rests, and x runs along X
+    if (moves) {
       std::vector<cv::Point2d> displaced;
-      for (const cv::Point2d& place : places) {
+      for (const cv::Point2d& place : some) {
         displaced.push_back(mode.to_plane(restitution.centre_pixel(place)).value_or(place));
       }
-      moved.axis = MotionAxis::through(displaced, downhill);
+      moved.axis = without.turned(before.moved_through(displaced, downhill), before);
     }
     axes.push_back(moved);
   }

@@ -20,7 +20,8 @@ struct ModeAxis {
                                    const std::vector<cv::Point2d>& places) const;
 };
 
-/// One for each of the restitution's modes, in its order; `places` are those of all clips of the group.
+/// One for each of the restitution's modes, in its order; `places` are those of all clips of the group. Of many places
+/// some, evenly, say how a mode turns the line.
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
                                 const std::vector<cv::Point2d>& places, int downhill);
 

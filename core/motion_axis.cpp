@@ -14,7 +14,9 @@ namespace glidelab::core {
 namespace {
 
 constexpr int kMaxIterations = 30;
-constexpr double kTukey = 6.0;                // scaled median deviations; 99 % efficient for Gaussian residuals
+constexpr double kTukey = 6.0;  // scaled median deviations; 99 % efficient for Gaussian residuals
+// Anything above zero keeps exact data's weights defined; a tenth of a micrometre is below any camera.
+constexpr double kLeastScale = 1e-7;
 constexpr double kMedianToSd = 1.0 / 0.6745;  // of a Gaussian
 
 /// One point of every small cell, so that a marker that rests does not outvote its motion; at most about 80.
@@ -86,12 +88,11 @@ double excess_of_blocks(const PlaneLine& line, const std::vector<cv::Point2d>& p
   return ratio > 1.0 + 2.0 * std::sqrt(2.0 / kBlocks) ? ratio : 1.0;
 }
 
-}  // namespace
-
-PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_scale) {
+/// Through the points that lie near the start; through all where there is none.
+PlaneLine fit_from(const std::optional<PlaneLine>& start, const std::vector<cv::Point2d>& points, double least_scale) {
   if (points.empty()) throw base::NumericalError("no points to fit a line to");
   std::vector<double> weights(points.size(), 1.0);
-  if (const auto start = least_median_line(points)) {
+  if (start) {
     std::vector<double> distances;
     for (const cv::Point2d& point : points) distances.push_back(std::abs(start->across(point)));
     // A generous scale: the line through two noisy points is itself off by some noise.
@@ -146,18 +147,40 @@ PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_sc
   return line;
 }
 
-MotionAxis MotionAxis::through(const std::vector<cv::Point2d>& points, int downhill) {
+}  // namespace
+
+PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_scale) {
+  return fit_from(points.empty() ? std::nullopt : least_median_line(points), points, least_scale);
+}
+
+MotionAxis MotionAxis::directed(const PlaneLine& line, int downhill) {
   MotionAxis axis;
-  // Anything above zero keeps exact data's weights defined; a tenth of a micrometre is below any camera.
-  axis.line_ = fit_plane_line(points, 1e-7);
+  axis.line_ = line;
   if (axis.line_.direction.x * downhill < 0.0) axis.line_.direction = -axis.line_.direction;
   return axis;
+}
+
+MotionAxis MotionAxis::through(const std::vector<cv::Point2d>& points, int downhill) {
+  return directed(fit_plane_line(points, kLeastScale), downhill);
+}
+
+MotionAxis MotionAxis::moved_through(const std::vector<cv::Point2d>& points, int downhill) const {
+  return directed(fit_from(line_, points, kLeastScale), downhill);
 }
 
 MotionAxis MotionAxis::along_x(int downhill) {
   MotionAxis axis;
   axis.line_.direction = {static_cast<double>(downhill), 0.0};
   axis.line_.sd_angle_rad = std::numeric_limits<double>::infinity();
+  return axis;
+}
+
+MotionAxis MotionAxis::turned(const MotionAxis& to, const MotionAxis& from) const {
+  const double cosine = from.line_.direction.dot(to.line_.direction);
+  const double sine = from.line_.direction.cross(to.line_.direction);
+  MotionAxis axis = *this;
+  const cv::Point2d d = line_.direction;
+  axis.line_.direction = {cosine * d.x - sine * d.y, sine * d.x + cosine * d.y};
   return axis;
 }
 

@@ -29,8 +29,13 @@ class MotionAxis {
  public:
   /// `downhill`: +1 or -1, which way along X is down. NumericalError where the marker does not move.
   static MotionAxis through(const std::vector<cv::Point2d>& points, int downhill);
+  /// The same through points that have moved a little, all alike: this axis is the start, which need not be searched.
+  MotionAxis moved_through(const std::vector<cv::Point2d>& points, int downhill) const;
   /// Along X itself, for a marker that does not move.
   static MotionAxis along_x(int downhill);
+
+  /// This axis turned by as much as leads from one direction to the other.
+  MotionAxis turned(const MotionAxis& to, const MotionAxis& from) const;
 
   /// Distance along the line from the projection of the plane's origin, positive downhill.
   double x_of(cv::Point2d point) const { return point.dot(line_.direction); }
@@ -39,6 +44,8 @@ class MotionAxis {
   double angle_to_x_rad() const;
 
  private:
+  static MotionAxis directed(const PlaneLine& line, int downhill);
+
   PlaneLine line_;
 };
 
