@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <functional>
+#include <cstddef>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
@@ -113,6 +112,15 @@ struct Scale {
   int sight_px() const { return static_cast<int>(std::ceil((away() + outer() + 1.0) * shrink)) + 1; }
 };
 
+/// The brighter one of each two to the first row, the other to the second.
+void put_in_order(float* __restrict first, float* __restrict second, std::size_t count) {
+  for (std::size_t u = 0; u < count; ++u) {
+    const float a = first[u], b = second[u];
+    first[u] = a > b ? a : b;
+    second[u] = a < b ? a : b;
+  }
+}
+
 /// By how much a disc stands out of its surroundings at each pixel of the region: its inner mean above
 /// the brightest but `bright_neighbours` of the means at eight places around it; 0 where more of these are as bright.
 cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, const Scale& scale, int bright_neighbours) {
@@ -130,29 +138,25 @@ cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, const Scale& 
     step[k] = static_cast<std::ptrdiff_t>(around[k].y) * out.cols + around[k].x;
   }
   cv::Mat response(values.size(), CV_32F, cv::Scalar(0.0F));
-  std::vector<std::int32_t> brighter(static_cast<std::size_t>(values.cols));
+  // The brightest of the eight in falling order, of a whole row at once. A NaN is never brighter.
+  constexpr float kNone = -std::numeric_limits<float>::infinity();
+  const auto width = static_cast<std::size_t>(region.width);
+  std::vector<float> brightest(width * static_cast<std::size_t>(bright_neighbours + 1)), next(width);
   for (int v = region.y; v < region.br().y; ++v) {
-    const auto* inside = in.ptr<float>(v);
-    const float* beside = out.ptr<float>(v + away) + away;
-    auto* result = response.ptr<float>(v);
-    std::ranges::fill(brighter, 0);
+    const float* const inside = in.ptr<float>(v) + region.x;
+    const float* const beside = out.ptr<float>(v + away) + away + region.x;
+    float* const result = response.ptr<float>(v) + region.x;
+    std::ranges::fill(brightest, kNone);
     for (const std::ptrdiff_t k : step) {
       const float* const there = beside + k;
-      std::int32_t* const count = brighter.data();
-      for (int u = region.x; u < region.br().x; ++u) count[u] += there[u] >= inside[u] ? 1 : 0;
-    }
-    for (int u = region.x; u < region.br().x; ++u) {
-      if (brighter[static_cast<std::size_t>(u)] > bright_neighbours) continue;
-      std::array<float, 8> means{};
-      std::size_t count = 0;
-      for (const std::ptrdiff_t k : step) {
-        const float mean = beside[u + k];
-        if (!std::isnan(mean)) means[count++] = mean;
+      for (std::size_t u = 0; u < width; ++u) next[u] = there[u] == there[u] ? there[u] : kNone;
+      for (int rank = 0; rank <= bright_neighbours; ++rank) {
+        put_in_order(brightest.data() + static_cast<std::size_t>(rank) * width, next.data(), width);
       }
-      if (static_cast<int>(count) <= bright_neighbours) continue;
-      const auto rank = means.begin() + bright_neighbours;
-      std::nth_element(means.begin(), rank, means.begin() + static_cast<std::ptrdiff_t>(count), std::greater<>());
-      result[u] = inside[u] - *rank;
+    }
+    const float* const rank = brightest.data() + static_cast<std::size_t>(bright_neighbours) * width;
+    for (std::size_t u = 0; u < width; ++u) {
+      result[u] = inside[u] > rank[u] && rank[u] > kNone ? inside[u] - rank[u] : 0.0F;
     }
   }
   return response;
