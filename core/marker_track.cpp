@@ -11,8 +11,8 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kSearchPeriod = 10;    // frames from one search of the whole picture to the next
-constexpr std::size_t kRarestPeriod = 40;    // the same while the marker is followed
-constexpr double kRarest_s = 0.2;            // in which nothing crosses the picture
+constexpr std::size_t kRarestPeriod = 80;    // the same while the marker is followed
+constexpr double kRarest_s = 0.4;            // ten frames of a slow camera, which finds what it is to find
 constexpr std::size_t kPastBytes = 1 << 27;  // of the frames between, which are kept
 constexpr std::size_t kSamples = 24;         // windows that decide how a path is measured
 constexpr std::size_t kAwake = 10;           // resting paths that are followed nonetheless

@@ -4,7 +4,7 @@
 /// marker's model around where it should be (constant velocity), or by searching a window where that fails. The whole
 /// picture is searched in the first frame and every tenth one after it, and a path that begins there is followed back
 /// through the frames between; while something like the marker is seen moving and nothing else is lost, less often (up
-/// to forty frames within 0.2 s). At the end the marker is the path that moves and has the right size and brightness,
+/// to eighty frames within 0.4 s). At the end the marker is the path that moves and has the right size and brightness,
 /// not the brightest one; what rests all the time is part of the scene. Frames in which it is not seen stay without.
 #pragma once
 
