@@ -6,6 +6,7 @@
 /// n data that is a step of sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels).
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <cmath>
@@ -68,7 +69,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     Eigen::Matrix<double, N, N> damped = here->jtj;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-12 * here->jtj.diagonal().maxCoeff();
-    const Vector delta = -base::solve_positive(damped, here->jtr);
+    const Vector delta = -damped.ldlt().solve(here->jtr);
     if (!delta.allFinite()) {
       fit.stop = FitStop::singular;
       return fit;

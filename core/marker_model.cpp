@@ -211,6 +211,10 @@ NormalEquations<N> equations_of(const Sums<N>& sums) {
 
 }  // namespace
 
+void MarkerPixels::reserve(std::size_t pixels) {
+  for (std::vector<double>* values : {&u_, &v_, &value_, &weight_}) values->reserve(pixels + kBatch);
+}
+
 void MarkerPixels::add(int u, int v, double value, double weight) {
   u_.push_back(u);
   v_.push_back(v);

@@ -35,6 +35,7 @@ inline constexpr int kShadedParameters = kShadeR + 1;
 /// Pixels, each with its weight in the fit.
 class MarkerPixels {
  public:
+  void reserve(std::size_t pixels);
   void add(int u, int v, double value, double weight);
   /// To be called after the last pixel.
   void complete();
