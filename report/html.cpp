@@ -33,7 +33,8 @@ code { overflow-wrap: anywhere; }
 table { border-collapse: collapse; font-size: 0.94rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.3rem 0.75rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 th { background: var(--tint); font-weight: 600; vertical-align: bottom; }
-td:first-child { min-width: 11ch; }  /* a name with a hyphen stays on one line */
+td:first-child { min-width: 13ch; }  /* a name with a hyphen stays on one line; its padding is in this width */
+table.names td:first-child { min-width: 24ch; }  /* long names: few lines, and the table scrolls */
 td.n, th.n { text-align: right; }
 td.n { white-space: nowrap; }
 tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }
@@ -119,6 +120,7 @@ HtmlTable::HtmlTable(std::vector<std::string> header, std::size_t first_number)
 
 void HtmlTable::row(const std::vector<std::string>& cells) {
   assert(cells.size() == header_.size());
+  longest_name_ = std::max(longest_name_, cells.front().size());
   rows_ += "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     rows_ += fmt::format("<td{}>{}</td>", i >= first_number_ ? " class=\"n\"" : "", cells[i]);
@@ -131,7 +133,9 @@ void HtmlTable::heading(const std::string& cell) {
 }
 
 std::string HtmlTable::str() const {
-  std::string text = "<div class=\"scroll\"><table><thead><tr>";
+  constexpr std::size_t kLong = 24;  // bytes
+  std::string text =
+      fmt::format("<div class=\"scroll\"><table{}><thead><tr>", longest_name_ > kLong ? " class=\"names\"" : "");
   for (std::size_t i = 0; i < header_.size(); ++i) {
     text += fmt::format("<th{}>{}</th>", i >= first_number_ ? " class=\"n\"" : "", header_[i]);
   }

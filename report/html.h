@@ -36,6 +36,7 @@ class HtmlTable {
 
  private:
   std::size_t first_number_;
+  std::size_t longest_name_ = 0;  ///< of the first column, in bytes
   std::vector<std::string> header_;
   std::string rows_;
 };

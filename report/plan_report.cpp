@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <string_view>
+#include <utility>
+
 #include "report/diagnosis_plots.h"
 #include "report/html.h"
 #include "report/json_numbers.h"
@@ -17,12 +21,30 @@ std::string joined(const std::vector<std::string>& ids) {
   return text.empty() ? "–" : text;
 }
 
+/// A key of a file as a person reads it: "c_kg_m" is c in kg/m.
+std::pair<std::string, std::string> name_and_unit(const std::string& key) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUnits = {{{"_kg_m", " kg/m"},
+                                                                                    {"_1_m2", " 1/m²"},
+                                                                                    {"_1_m", " 1/m"},
+                                                                                    {"_n_m", " N/m"},
+                                                                                    {"_m_s", " m/s"},
+                                                                                    {"_kg", " kg"},
+                                                                                    {"_n", " N"},
+                                                                                    {"_m", " m"},
+                                                                                    {"_s", " s"}}};
+  for (const auto& [ending, unit] : kUnits) {
+    if (key.ends_with(ending)) return {key.substr(0, key.size() - ending.size()), std::string(unit)};
+  }
+  return {key, ""};
+}
+
 std::string seen_text(const diagnose::PlannedEffect& effect) {
   if (!effect.seen) return "not seen";
-  const std::string size = number_text(effect.seen_from, 2);
-  if (effect.key == "v_c_m_s") return fmt::format("{} up to {}", effect.key, size);  // the larger, the less there is
-  if (effect.key == "n" || effect.key == "s") return fmt::format("{} off 1 by {}", effect.key, size);
-  return fmt::format("{} {}", effect.key, size);
+  const auto [name, unit] = name_and_unit(effect.key);
+  const std::string size = number_text(effect.seen_from, 2) + unit;
+  if (effect.key == "v_c_m_s") return fmt::format("{} up to {}", name, size);  // the larger, the less there is
+  if (effect.key == "n" || effect.key == "s") return fmt::format("{} off 1 by {}", name, size);
+  return fmt::format("{} = {}", name, size);
 }
 
 std::string lead(const diagnose::Plan& plan) {
@@ -95,9 +117,9 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
       escape(title), escape(lead(plan)));
   for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
-  HtmlTable table({"effect", "seen from", "not to be told from"}, 3);
+  HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    table.row({escape(effect.id), escape(seen_text(effect)), escape(joined(effect.alike))});
+    table.row({escape(effect.id), escape(effect.words), escape(seen_text(effect)), escape(joined(effect.alike))});
   }
   body +=
       table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);

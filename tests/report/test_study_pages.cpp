@@ -3,6 +3,7 @@
 #include "report/coverage_report.h"
 #include "report/html.h"
 #include "report/laws_report.h"
+#include "report/plan_report.h"
 #include "report/requirement_report.h"
 
 using namespace glidelab;
@@ -60,6 +61,26 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   validate::Requirement rendered = one_camera("mu", 0.0005, 1.8e-5);
   rendered.confirm = validate::Confirm::clips;
   CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));
+}
+
+TEST_CASE("a plan says sizes with their units, and what to do about effects that look alike") {
+  diagnose::Plan plan;
+  plan.clips = 2;
+  plan.points = 116;
+  plan.noise_m = 2.2e-5;
+  plan.effects = {{"quadratic_drag", "a drag that grows", "c_kg_m", 0.0028, true, {"eddy_rolloff"}},
+                  {"eddy_rolloff", "a drag that levels off", "v_c_m_s", 20.0, true, {"quadratic_drag"}},
+                  {"lens_distortion", "a lens", "k_1_m2", 0.00071, true, {}},
+                  {"scale_error", "a wrong scale", "e", 0.28, true, {}},
+                  {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
+  const std::string text = report::plan_text(plan);
+  CHECK(has(text, "c = 0.0028 kg/m   eddy_rolloff"));
+  CHECK(has(text, "v_c up to 20 m/s"));
+  CHECK(has(text, "k = 0.00071 1/m²"));
+  CHECK(has(text, "e = 0.28 "));
+  CHECK(has(text, "plan again"));
+  plan.effects.erase(plan.effects.begin(), plan.effects.begin() + 2);
+  CHECK_FALSE(has(report::plan_text(plan), "plan again"));
 }
 
 TEST_CASE("coverage names what scatters farther than it states, and the naive lines are not asked") {
