@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "core/analyze.h"
+#include "diagnose/film_noise.h"
 #include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/line_table.h"
@@ -15,6 +16,7 @@
 #include "diagnose/speed_noise.h"
 #include "diagnose/track_set.h"
 #include "diagnose/verdict.h"
+#include "diagnose/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -104,10 +106,30 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
 void settle_noise(TrackSet& set) {
   MissingFrames missing = find_missing_frames(set, fit_nominal(set));
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
+  const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
+  if (missing.count > 0 && set.pictures) refit();
+  if (find_film_noise(set, missing.fit)) {
+    refit();
+    set_tails_aside(set, missing.fit);
+    for (TrackedMotion& motion : set.motions) {
+      whiten(motion, set.film_noise->shape, set.clips[motion.clip].frame_rate_hz);
+    }
+    return;
+  }
   if (give_fast_positions_their_noise(set, missing.fit.late)) {
-    missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late);
+    refit();
   }
   set_tails_aside(set, missing.fit);
+}
+
+/// Whether the files say, or the pictures show, that they have been through a codec with loss.
+void note_loss(const PictureEvidence& pictures, TrackSet& set) {
+  set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
+    return finding.id == "compression" && (finding.stated || finding.seen);
+  });
+  set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
+                    return clip.record->codec == "MJPG";  // each picture by itself
+                  });
 }
 
 /// How far the best explanation that names something (or nothing) is from the noise: chi² a point.
@@ -131,6 +153,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   progress("weighing explanations", 0.1);
   PictureEvidence pictures;
   if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
+  note_loss(pictures, set);
   settle_noise(set);
   Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures);
   if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > 1.5)) {
@@ -145,6 +168,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
           fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
                       set.disputed));
       progress("weighing explanations", 0.5);
+      note_loss(pictures, set);
       settle_noise(set);
       comparison = compare_hypotheses(set, without, options.jobs, &pictures);
     }

@@ -16,6 +16,8 @@ namespace {
 constexpr double kSeen = 4.0;            // standard deviations that the largest size must make
 constexpr double kNumerical = 1e-15;     // of the raw square: below, the derivatives' errors are all that is left
 constexpr double kLeastWave_px = 0.002;  // in pictures: what finding a marker among pixels errs by itself
+// Of the frame rate: a codec takes frames by twos to fours, each with its own error.
+constexpr double kFastestLossy = 0.2;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 struct Range {
@@ -158,7 +160,7 @@ Wave find_wave(const ScoreSpace& space) {
     rate = std::min(rate, static_cast<double>(motion.t_s.size() - 1) / (motion.t_s.back() - motion.t_s.front()));
   }
   // At least two turns in the longest motion: slower is a drift, which other causes make as well.
-  const double lowest = 2.0 / longest, highest = 0.48 * rate;
+  const double lowest = 2.0 / longest, highest = (set.lossy ? kFastestLossy : 0.48) * rate;
   std::vector<double> logs;
   for (double f = lowest; f < highest; f += 0.3 / longest) {
     double size = 0.0, gain = 0.0;

@@ -71,6 +71,11 @@ Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
 }  // namespace
 
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
+  if (set.film_noise) {
+    const FilmNoise& noise = *set.film_noise;
+    return {effect_index("timestamp_jitter"), noise.jitter_gain, noise.jitter_log_evidence, noise.jitter_s,
+            noise.jitter_sd_s};
+  }
   SpeedScatter scatter;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const TrackedMotion& motion = set.motions[i];

@@ -7,6 +7,7 @@
 
 #include "base/dense.h"
 #include "core/local_cubic.h"
+#include "diagnose/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -67,10 +68,11 @@ double acceleration_square(const TrackSet& set, std::size_t i, const Eigen::Vect
   double sum = 0.0;
   if (!(bandwidth > 0.0)) return sum;
   std::vector<double> t, r;
+  const Eigen::VectorXd over_sd = coloured(data, residual);
   for (std::size_t p = 0; p < data.t_s.size(); ++p) {
     if (data.outlier[p]) continue;
     t.push_back(data.t_s[p]);
-    r.push_back(residual[static_cast<Eigen::Index>(p)] * data.sd_of(p));
+    r.push_back(over_sd[static_cast<Eigen::Index>(p)] * data.sd_of(p));
   }
   if (t.size() < 8) return sum;
   const core::LocalCubic cubic(t, bandwidth);
@@ -146,12 +148,16 @@ TrackSet split_clip(const TrackSet& set) {
       part.t_s.assign(motion.t_s.begin() + from, motion.t_s.begin() + to);
       part.x_m.assign(motion.x_m.begin() + from, motion.x_m.begin() + to);
       part.outlier.assign(motion.outlier.begin() + from, motion.outlier.begin() + to);
-      if (!motion.row_px.empty()) part.row_px.assign(motion.row_px.begin() + from, motion.row_px.begin() + to);
+      for (auto of : {&TrackedMotion::wider, &TrackedMotion::row_px, &TrackedMotion::along_px}) {
+        if (!(motion.*of).empty()) (part.*of).assign((motion.*of).begin() + from, (motion.*of).begin() + to);
+      }
       for (std::size_t m = 0; m < part.shared_m.size(); ++m) {
         if (part.shared_m[m].empty()) continue;
         part.shared_m[m].assign(motion.shared_m[m].begin() + from, motion.shared_m[m].begin() + to);
       }
       if (part.t_s.size() < 8) continue;
+      part.whitening.clear();
+      if (set.film_noise) whiten(part, set.film_noise->shape, set.clips[motion.clip].frame_rate_hz);
       part.clip = split.clips.size();
       TrackedClip clip = set.clips[motion.clip];
       clip.name = fmt::format("{}, {:.2f} to {:.2f} s", clip.name, part.t_s.front(), part.t_s.back());

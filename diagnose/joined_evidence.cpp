@@ -158,9 +158,15 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
         }
       }
       if (effect == codec && finding->stated && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
-        const CorrelatedNoise noise = scan_correlation(set, comparison.fits[static_cast<std::size_t>(other.fit)]);
-        of_tracks = std::max(0.0, noise.log_evidence);
-        with.gain += noise.gain;
+        // Of filmed noise that was measured by itself, no model goes in: what a fit leaves of a motion is no codec's.
+        if (set.film_noise) {
+          of_tracks = std::max(0.0, set.film_noise->lasting_log_evidence);
+          with.gain += set.film_noise->lasting_gain;
+        } else {
+          const CorrelatedNoise noise = scan_correlation(set, comparison.fits[static_cast<std::size_t>(other.fit)]);
+          of_tracks = std::max(0.0, noise.log_evidence);
+          with.gain += noise.gain;
+        }
         // Its errors grow with what changes in the picture, and single ones are large where its blocks are seen.
         if (of_tracks > kSeenInPictures) {
           of_tracks += std::max(std::min(kDoubt, scatter), finding->seen ? outliers : 0.0);

@@ -6,6 +6,7 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
+#include "diagnose/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -62,11 +63,12 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
   const std::vector<double> shared = shared_errors(set, layout, at, i, base.x_m);
   std::vector<double> weight(data.t_s.size());
   for (std::size_t p = 0; p < weight.size(); ++p) weight[p] = data.outlier[p] ? 0.0 : 1.0 / data.sd_of(p);
-  of.residual.resize(n);
+  of.plain.resize(n);
   for (Eigen::Index p = 0; p < n; ++p) {
     const auto q = static_cast<std::size_t>(p);
-    of.residual[p] = weight[q] * (data.x_m[q] - base.x_m[q] - shared[q]);
+    of.plain[p] = weight[q] * (data.x_m[q] - base.x_m[q] - shared[q]);
   }
+  of.residual = whitened(data, of.plain);
   if (!derivatives) return of;
   of.global = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(globals.size()));
   of.own = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(2 + layout.own().size()));
@@ -100,6 +102,8 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
   for (Eigen::Index o = 0; o < of.own.cols(); ++o) {
     fill(near.own[i][o], o < 2 ? 1e-6 : layout.own()[static_cast<std::size_t>(o - 2)]->step, of.own.col(o));
   }
+  of.global = whitened(data, std::move(of.global));
+  of.own = whitened(data, std::move(of.own));
   return of;
 }
 

@@ -53,7 +53,8 @@ struct FitPoint {
 
 /// Residuals over the noise, and their derivatives (of the model) by the parameters, over the noise.
 struct FitMotion {
-  Eigen::VectorXd residual;
+  Eigen::VectorXd residual;  ///< of unit white noise
+  Eigen::VectorXd plain;     ///< over each position's own noise, with what neighbours share of it
   Eigen::MatrixXd global;
   Eigen::MatrixXd own;
   std::vector<double> v_m_s;

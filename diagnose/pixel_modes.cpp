@@ -34,6 +34,7 @@ void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t
   };
   const std::vector<double>& along = way(columns) >= way(rows) ? columns : rows;
   if (way(along) < kLeastWay_px) return;
+  motion.along_px = along;
   motion.m_per_px = way(motion.x_m) / way(along);
   motion.shared_m.resize(std::max(motion.shared_m.size(), first_mode + kPixelModes));
   motion.first_pixel_mode = first_mode;

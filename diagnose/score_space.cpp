@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/dense.h"
+#include "diagnose/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -90,6 +91,7 @@ Moved ScoreSpace::moved_by(std::size_t i, const TrackModel& model) const {
 Eigen::VectorXd ScoreSpace::own_rest(std::size_t i, const Eigen::VectorXd& change_m) const {
   const std::vector<double> weights = weights_of(set_.motions[i]);
   Eigen::VectorXd c = change_m.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(weights.data(), change_m.size()));
+  c = whitened(set_.motions[i], std::move(c));
   for (Eigen::Index q = 0; q < own_[i].cols(); ++q) c -= own_[i].col(q).dot(c) * own_[i].col(q);
   return c;
 }

@@ -1,6 +1,8 @@
 /// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated.
 #pragma once
 
+#include <Eigen/Core>
+
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -11,6 +13,23 @@
 #include "core/results.h"
 
 namespace glidelab::diagnose {
+
+/// What neighbouring frames of a filmed clip share of their noise (whitening.h); amplitudes over the white noise.
+struct NoiseShape {
+  double pixels = 0.0, pixels_px = 0.4;
+  double phase = 0.0, phase_px = 10.0;
+  double lasting = 0.0, lasting_frames = 2.0;
+  double handed_on = 0.0;
+  double jitter_s = 0.0;
+};
+
+/// As positions show it by themselves (film_noise.h).
+struct FilmNoise {
+  NoiseShape shape;
+  double jitter_gain = 0.0, jitter_log_evidence = 0.0;  ///< of uneven times, against the likeliest noise without
+  double jitter_s = 0.0, jitter_sd_s = 0.0;
+  double lasting_gain = 0.0, lasting_log_evidence = 0.0;  ///< of what a codec hands on from frame to frame
+};
 
 /// One stretch of motion without a bump or a rest in it; it may turn.
 struct TrackedMotion {
@@ -26,9 +45,12 @@ struct TrackedMotion {
   std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
   /// Where among them errors by the place between pixels begin (pixel_modes.h).
   std::size_t first_pixel_mode = std::numeric_limits<std::size_t>::max();
-  double scale_sd = 0.0;       ///< relative
-  double m_per_px = 0.0;       ///< along the motion; 0: not filmed
-  std::vector<double> row_px;  ///< of the picture, where the marker is; empty: not filmed
+  double scale_sd = 0.0;         ///< relative
+  double m_per_px = 0.0;         ///< along the motion; 0: not filmed
+  std::vector<double> row_px;    ///< of the picture, where the marker is; empty: not filmed
+  std::vector<double> along_px;  ///< of the picture, along the motion; empty: not filmed, or hardly moving
+  /// Of consecutive points, all in all: makes white noise of theirs over sd_of() (whitening.h). Empty: it is white.
+  std::vector<Eigen::MatrixXd> whitening;
 
   double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
 };
@@ -65,9 +87,12 @@ struct TrackSet {
   std::vector<TrackGroup> groups;
   std::vector<TrackedMass> masses;
   std::vector<TrackedMotion> motions;
-  double x_mid_m = 0.0;   ///< middle of the range of x of all set-ups
-  std::size_t modes = 0;  ///< shared errors of camera and plane
-  bool pictures = false;  ///< at least one clip was filmed
+  double x_mid_m = 0.0;    ///< middle of the range of x of all set-ups
+  std::size_t modes = 0;   ///< shared errors of camera and plane
+  bool pictures = false;   ///< at least one clip was filmed
+  bool lossy = false;      ///< at least one has been through a codec with loss,
+  bool handed_on = false;  ///< and one that makes pictures out of those before
+  std::optional<FilmNoise> film_noise;
   std::vector<std::string> notes;
   /// Frames that the analysis took for hand or stop and that a motion could hold.
   std::size_t disputed = 0;

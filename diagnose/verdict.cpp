@@ -191,8 +191,8 @@ std::vector<ResidualCurve> residuals_of(const TrackSet& set, const MotionFit& no
       curve.t_s.push_back(motion.t_s[p]);
       curve.x_m.push_back(motion.x_m[p]);
       curve.v_m_s.push_back(nominal.motions[i].v_m_s[p]);
-      curve.before_m.push_back(nominal.motions[i].residual[static_cast<Eigen::Index>(p)] * motion.sd_of(p));
-      curve.after_m.push_back(best.motions[i].residual[static_cast<Eigen::Index>(p)] * motion.sd_of(p));
+      curve.before_m.push_back(nominal.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p));
+      curve.after_m.push_back(best.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p));
     }
     curves.push_back(std::move(curve));
   }

@@ -1,0 +1,296 @@
+#include "diagnose/film_noise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/dense.h"
+#include "diagnose/effect_scan.h"
+#include "diagnose/whitening.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr std::size_t kChunk = 80;         // points that are taken together
+constexpr std::size_t kMostChunks = 24;    // of all motions: more add nothing to a handful of numbers
+constexpr std::size_t kFewestPoints = 80;  // of all motions
+constexpr std::size_t kFewestInChunk = 24;
+constexpr double kKnot = 10.0;         // frames from bump to bump
+constexpr double kOwn = 0.3;           // motions differ by so much, in the logarithm of s
+constexpr double kMostOff = 8.0;       // standard deviations off the neighbours
+constexpr double kWaveShows = 5.0;     // log evidence
+constexpr double kBeyondDoubt = 5.0;   // log evidence
+constexpr double kLeastJitter = 1e-5;  // s; a hundredth of a short exposure
+constexpr double kWorth = 1.0;         // log likelihood that one more part of the noise must gain
+
+// Over s. Slower than what is looked at here, and therefore not measured but assumed: means of ten frames of H.264
+// clips in which nothing was wrong (crf 14 to 20) erred by a third to a half of what single frames did.
+constexpr double kHandedOn = 0.4;
+
+struct Chunk {
+  std::size_t motion = 0;
+  SeenFrames frames;
+  Eigen::MatrixXd slow;  // orthonormal or not: what is projected out
+  Eigen::VectorXd off_px;
+};
+
+/// Frames of a motion that are no outliers, in stretches.
+void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double wave_hz, std::vector<Chunk>& chunks) {
+  const TrackedMotion& motion = set.motions[i];
+  const SeenFrames all = seen_frames(motion, set.clips[motion.clip].frame_rate_hz);
+  const std::size_t points = motion.t_s.size(), parts = std::max<std::size_t>(1, points / kChunk);
+  for (std::size_t part = 0; part < parts; ++part) {
+    Chunk chunk;
+    chunk.motion = i;
+    std::vector<double> off, t;
+    for (std::size_t p = points * part / parts; p < points * (part + 1) / parts; ++p) {
+      const bool inside = p >= 2 && p + 2 < points;
+      const bool lost = inside && std::abs(neighbour_residual(motion.t_s, motion.x_m, p)) > kMostOff * motion.sd_of(p);
+      if (motion.outlier[p] != 0 || lost) continue;
+      chunk.frames.along_px.push_back(all.along_px[p]);
+      chunk.frames.frame.push_back(all.frame[p]);
+      chunk.frames.v_px_s.push_back(all.v_px_s[p]);
+      t.push_back(motion.t_s[p]);
+      off.push_back(fit.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p) / motion.m_per_px);
+    }
+    if (off.size() < kFewestInChunk) continue;
+    const auto n = std::ssize(off);
+    chunk.off_px = Eigen::Map<const Eigen::VectorXd>(off.data(), n);
+    const double first = chunk.frames.frame.front(), span = chunk.frames.frame.back() - first;
+    const auto bumps = static_cast<Eigen::Index>(std::ceil(span / kKnot)) + 1;
+    const double width = span / static_cast<double>(bumps - 1);
+    chunk.slow = Eigen::MatrixXd::Zero(n, bumps + (wave_hz > 0.0 ? 2 : 0));
+    for (Eigen::Index p = 0; p < n; ++p) {
+      const auto q = static_cast<std::size_t>(p);
+      for (Eigen::Index b = 0; b < bumps; ++b) {
+        const double z = (chunk.frames.frame[q] - first) / width - static_cast<double>(b);
+        chunk.slow(p, b) = std::exp(-0.5 * z * z);
+      }
+      if (wave_hz > 0.0) {
+        chunk.slow(p, bumps) = std::sin(kTurn * wave_hz * t[q]);
+        chunk.slow(p, bumps + 1) = std::cos(kTurn * wave_hz * t[q]);
+      }
+    }
+    chunks.push_back(std::move(chunk));
+  }
+}
+
+/// What is left of a motion under a shape: the residuals' square over unit s, their number, log |V| and the like.
+struct Left {
+  double square = 0.0, freedom = 0.0, logs = 0.0;
+};
+
+struct Likelihood {
+  double value = -std::numeric_limits<double>::infinity();
+  double white_px = 0.0;
+  std::vector<double> own_px;  // s of each motion
+};
+
+class NoiseLikelihood {
+ public:
+  NoiseLikelihood(std::vector<Chunk> chunks, std::size_t motions, double pilot_px)
+      : chunks_(std::move(chunks)), motions_(motions), pilot_px_(pilot_px) {}
+
+  Likelihood of(const NoiseShape& shape) const {
+    std::vector<Left> left(motions_);
+    for (const Chunk& chunk : chunks_) add(chunk, shape, left[chunk.motion]);
+    Likelihood found;
+    double log_s = std::log(pilot_px_);
+    std::vector<double> own(motions_, log_s);
+    for (int round = 0; round < 8; ++round) {
+      double mean = 0.0, many = 0.0;
+      for (std::size_t i = 0; i < motions_; ++i) {
+        own[i] = log_s;
+        if (left[i].freedom <= 0.0) continue;
+        // Newton's steps for the largest of -freedom log s_i - square/(2 s_i²) - (log(s_i/s)/kOwn)²/2.
+        for (int step = 0; step < 12; ++step) {
+          const double over = left[i].square * std::exp(-2.0 * own[i]);
+          const double slope = -left[i].freedom + over - (own[i] - log_s) / (kOwn * kOwn);
+          own[i] += std::clamp(slope / (2.0 * over + 1.0 / (kOwn * kOwn)), -0.5, 0.5);
+        }
+        mean += own[i];
+        many += 1.0;
+      }
+      if (many > 0.0) log_s = mean / many;
+    }
+    found.value = 0.0;
+    for (std::size_t i = 0; i < motions_; ++i) {
+      found.value -= left[i].freedom * own[i] + 0.5 * left[i].square * std::exp(-2.0 * own[i]) + 0.5 * left[i].logs +
+                     0.5 * std::pow((own[i] - log_s) / kOwn, 2);
+      found.own_px.push_back(std::exp(own[i]));
+    }
+    found.white_px = std::exp(log_s);
+    return found;
+  }
+
+ private:
+  void add(const Chunk& chunk, const NoiseShape& shape, Left& left) const {
+    const Eigen::Index n = chunk.off_px.size(), k = chunk.slow.cols();
+    const Eigen::MatrixXd lower = base::cholesky_lower(covariance_of(chunk.frames, shape, pilot_px_));
+    Eigen::MatrixXd both(n, k + 1);
+    both << chunk.slow, chunk.off_px;
+    for (Eigen::Index r = 0; r < n; ++r) {
+      both.row(r) -= lower.row(r).head(r) * both.topRows(r);
+      both.row(r) /= lower(r, r);
+      left.logs += 2.0 * std::log(lower(r, r));
+    }
+    Eigen::MatrixXd normal = base::transposed_product(both, both);
+    normal.diagonal().head(k).array() *= 1.0 + 1e-10;
+    // The last pivot's square is what the slow columns leave of the residuals; the others' make log |B'V^-1 B|.
+    const Eigen::MatrixXd factor = base::cholesky_lower(normal);
+    left.square += factor(k, k) * factor(k, k);
+    for (Eigen::Index c = 0; c < k; ++c) left.logs += 2.0 * std::log(factor(c, c));
+    left.freedom += static_cast<double>(n - k);
+  }
+
+  std::vector<Chunk> chunks_;
+  std::size_t motions_;
+  double pilot_px_;
+};
+
+struct Dial {
+  double NoiseShape::*member;
+  std::vector<double> values;
+  double NoiseShape::*beside = nullptr;  ///< the length that goes with it
+  std::vector<double> lengths;
+};
+
+/// One after the other, each part of the noise gets what makes the positions most likely, until nothing changes. A part
+/// that gains less than kWorth is left out.
+void climb(const NoiseLikelihood& likelihood, const std::vector<Dial>& dials, NoiseShape& shape, Likelihood& best) {
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = best.value;
+    for (const Dial& dial : dials) {
+      NoiseShape without = shape;
+      without.*dial.member = 0.0;
+      NoiseShape chosen = without;
+      Likelihood most = likelihood.of(without);
+      const double bar = most.value + kWorth;
+      for (const double length : dial.lengths) {
+        double last = -std::numeric_limits<double>::infinity();
+        for (const double value : dial.values) {
+          NoiseShape with = shape;
+          with.*dial.member = value;
+          if (dial.beside != nullptr) with.*dial.beside = length;
+          const Likelihood at = likelihood.of(with);
+          if (at.value > std::max(bar, most.value)) {
+            most = at;
+            chosen = with;
+          }
+          if (at.value < last - 3.0) break;  // past the top
+          last = at.value;
+        }
+      }
+      shape = chosen;
+      best = most;
+    }
+    if (best.value - before < 0.5) break;
+  }
+}
+
+/// What the likeliest noise gains by its part that lasts, and the evidence over all sizes and lengths.
+void weigh_lasting(const NoiseLikelihood& likelihood, const Dial& lasting, FilmNoise& noise) {
+  NoiseShape shape = noise.shape;
+  shape.lasting = 0.0;
+  const double without = likelihood.of(shape).value;
+  std::vector<double> logs;
+  for (const double length : lasting.lengths) {
+    for (const double size : lasting.values) {
+      shape.lasting = size;
+      shape.lasting_frames = length;
+      logs.push_back(likelihood.of(shape).value - without);
+    }
+  }
+  noise.lasting_gain = std::max(0.0, *std::max_element(logs.begin(), logs.end()));
+  noise.lasting_log_evidence = log_mean(logs);
+}
+
+double wave_frequency(const TrackSet& set, const MotionFit& fit) {
+  const ScoreSpace space(set, fit);
+  const EffectScan wave = scan_effect(space, effect_index("camera_motion"));
+  return wave.log_evidence > kWaveShows && wave.values.size() > 1 ? wave.values[1] : 0.0;
+}
+
+}  // namespace
+
+bool find_film_noise(TrackSet& set, const MotionFit& fit) {
+  std::size_t points = 0;
+  std::vector<double> sds;
+  double top_px_s = 0.0, step_s = 0.0;
+  for (const TrackedMotion& motion : set.motions) {
+    if (motion.along_px.empty()) return false;
+    points += motion.t_s.size();
+    sds.push_back(motion.sd_m / motion.m_per_px);
+    step_s = std::max(step_s, 1.0 / set.clips[motion.clip].frame_rate_hz);
+    for (const double v : seen_frames(motion, 1.0).v_px_s) top_px_s = std::max(top_px_s, std::abs(v));
+  }
+  if (points < kFewestPoints) return false;
+  std::vector<Chunk> chunks;
+  const double wave_hz = wave_frequency(set, fit);
+  for (std::size_t i = 0; i < set.motions.size(); ++i) add_chunks(set, fit, i, wave_hz, chunks);
+  if (chunks.empty()) return false;
+  if (chunks.size() > kMostChunks) {
+    std::vector<Chunk> some;
+    for (std::size_t k = 0; k < kMostChunks; ++k) some.push_back(chunks[k * chunks.size() / kMostChunks]);
+    chunks = std::move(some);
+  }
+  std::nth_element(sds.begin(), sds.begin() + std::ssize(sds) / 2, sds.end());
+  const double pilot_px = sds[sds.size() / 2];
+  const NoiseLikelihood likelihood(std::move(chunks), set.motions.size(), pilot_px);
+
+  const std::vector<double> sizes = {0.25, 0.5, 0.75, 1.1, 1.6, 2.4, 3.6, 5.4};
+  std::vector<Dial> dials = {{&NoiseShape::pixels, sizes, &NoiseShape::pixels_px, {0.25, 0.4, 0.7}},
+                             {&NoiseShape::phase, sizes, &NoiseShape::phase_px, {5.0, 20.0, 80.0}}};
+  if (set.lossy) dials.push_back({&NoiseShape::lasting, sizes, &NoiseShape::lasting_frames, {1.0, 2.0, 4.0}});
+  FilmNoise noise;
+  if (set.handed_on) noise.shape.handed_on = kHandedOn;
+  Likelihood best = likelihood.of(noise.shape);
+  climb(likelihood, dials, noise.shape, best);
+  if (set.lossy) weigh_lasting(likelihood, dials.back(), noise);
+
+  // From what begins to show among so many points, in units of what s makes at top speed.
+  const double unit = pilot_px / top_px_s;
+  Dial times{&NoiseShape::jitter_s, {}, nullptr, {0.0}};
+  for (double tau = 2.0 * std::pow(2.0 / static_cast<double>(points), 0.25) * unit; tau < 40.0 * unit; tau *= 1.3) {
+    times.values.push_back(tau);
+  }
+  NoiseShape uneven = noise.shape;
+  Likelihood with = best;
+  std::vector<Dial> all = {times};
+  all.insert(all.end(), dials.begin(), dials.end());
+  climb(likelihood, all, uneven, with);
+  std::vector<double> logs;
+  for (const double tau : times.values) {
+    NoiseShape at = uneven;
+    at.jitter_s = tau;
+    const Likelihood there = likelihood.of(at);
+    const double jitter_s = tau * there.white_px / pilot_px;  // the pilot may hold the jitter of the mean speed
+    if (jitter_s < kLeastJitter || jitter_s > 0.5 * step_s) continue;
+    logs.push_back(there.value - best.value);
+    if (logs.back() <= noise.jitter_gain) continue;
+    noise.jitter_gain = logs.back();
+    noise.jitter_s = jitter_s;
+    with = there;
+    uneven.jitter_s = tau;
+  }
+  if (!logs.empty()) noise.jitter_log_evidence = log_mean(logs);
+  noise.jitter_sd_s = noise.jitter_s / std::sqrt(std::max(1.0, 2.0 * noise.jitter_gain));
+  if (noise.jitter_log_evidence > kBeyondDoubt) {
+    noise.shape = uneven;
+    noise.shape.jitter_s = noise.jitter_s;
+    best = with;
+  }
+  set.film_noise = noise;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    TrackedMotion& motion = set.motions[i];
+    motion.sd_m = best.own_px[i] * motion.m_per_px;
+    whiten(motion, noise.shape, set.clips[motion.clip].frame_rate_hz);
+  }
+  return true;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,18 @@
+/// The noise of filmed positions, measured: how much is white, how much neighbouring frames share (whitening.h), and
+/// how much grows with the speed.
+///
+/// Restricted maximum likelihood: those amplitudes and lengths that make most likely what the positions hold besides
+/// everything slow (bumps ten frames apart are projected out, and, where one shows, a wave), so that neither the usual
+/// model nor what it lacks goes in. The white part may differ between motions by some 30 %.
+#pragma once
+
+#include "diagnose/motion_fit.h"
+#include "diagnose/score_space.h"
+
+namespace glidelab::diagnose {
+
+/// Sets the noise of a filmed set (film_noise) and of its motions (sd_m, wider, whitening). False, and nothing changed,
+/// where a motion was not filmed, where a marker hardly moves, or with fewer than 80 points.
+bool find_film_noise(TrackSet& set, const MotionFit& fit);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,44 @@
+/// What neighbouring frames of a filmed clip share of their noise, as a covariance.
+///
+/// Where the marker moves slowly, several frames see it on the same pixels, and err alike. Of two frames i, j of a
+/// motion, d their distance in the picture along it (px), n in frames, v the speed, over the white noise s:
+///
+///     cov / s² = [i = j]                       photons, read noise, rounding
+///              + a² exp(-(d/l)²/2)             pixels that differ from each other (PRNU), at the marker's edges
+///              + b² cos(2 pi d) exp(-d/L)      the place between two pixels, otherwise at places some L away
+///              + c² exp(-n/m)                  what a codec with loss makes of frames that follow each other
+///              + h² exp(-n/8)                  and what one hands on that makes pictures out of those before
+///              + (v tau/s)² [i = j]            uneven times
+///
+/// Motions are independent of each other in it, and so are stretches of 240 points: that clips pass over the same
+/// pixels is left out.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+#include "diagnose/track_set.h"
+
+namespace glidelab::diagnose {
+
+/// What the covariance of frames goes by.
+struct SeenFrames {
+  std::vector<double> along_px, frame, v_px_s;
+};
+
+/// Covariance over s² of all these frames; `white_px` is s, for the jitter.
+Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape, double white_px);
+
+/// Of a motion; `rate_hz` its clip's. Empty positions where it was not filmed.
+SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz);
+
+/// Sets `wider` and `whitening` for a motion whose sd_m (now s), outliers and along_px are set.
+void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz);
+
+/// Columns over each position's own noise (zero at outliers) become such of unit white noise; and back. A motion
+/// without whitening has white noise.
+Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd);
+Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white);
+
+}  // namespace glidelab::diagnose
