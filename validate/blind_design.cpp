@@ -86,6 +86,10 @@ BlindFilm nominal_film(const BlindDesign& design, const BlindClip& clip) {
               design.groups[clip.group].true_rad, design.gravity_m_s2, {}};
   for (std::size_t k = 0; k < clip.frames; ++k) film.true_t_s.push_back(static_cast<double>(k) / clip.rate_hz);
   film.off_m.assign(clip.frames, 0.0);
+  if (const BlindCalibration& of = design.calibration; of.scale != 0.0 || of.bend_1_m != 0.0 || of.cubic_1_m2 != 0.0) {
+    film.seen.push_back(
+        [of](double x, double) { return x * (1.0 + of.scale + x * (of.bend_1_m + x * of.cubic_1_m2)); });
+  }
   return film;
 }
 

@@ -40,6 +40,13 @@ struct BlindClip {
   std::size_t frames = 0;
 };
 
+/// What a calibration leaves open of the place that a position at x is given, x + a x + b x² + c x³: their standard
+/// deviations, and the values that it has (0: none, as in tracks).
+struct BlindCalibration {
+  double scale_sd = 0.0, bend_sd_1_m = 0.0, cubic_sd_1_m2 = 0.0;
+  double scale = 0.0, bend_1_m = 0.0, cubic_1_m2 = 0.0;
+};
+
 struct BlindDesign {
   std::vector<BlindGroup> groups;
   std::vector<BlindMass> masses;
@@ -47,6 +54,7 @@ struct BlindDesign {
   double k_n_s_m = 0.0;
   double mu = 0.0;
   double noise_sd_m = 0.0;
+  BlindCalibration calibration;
   double gravity_m_s2 = 9.80665;
 };
 

@@ -83,7 +83,7 @@ void film_blind_folder(const FilmedCase& one, const fs::path& folder, const fs::
 std::string filmed_truth_json(const FilmedCase& one) {
   nlohmann::ordered_json truth = truth_of(one);
   truth["told"] = one.told;
-  truth["least_noise_m"] = one.scene.motion.noise_sd_m;
+  truth["noise_m"] = one.scene.motion.noise_sd_m;
   truth["stated"] = nlohmann::ordered_json::object();
   for (const BlindStated& stated : one.scene.stated) truth["stated"][stated.key] = stated.value;
   truth["filed_anew"] = one.scene.retouch.rewritten;

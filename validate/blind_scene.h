@@ -57,7 +57,9 @@ struct BlindRetouch {
 };
 
 struct BlindScene {
-  BlindDesign motion;  ///< its noise_sd_m is the least that the camera's noise allows
+  /// Its noise is the least that the sensor allows together with what tracker and codec were seen to add; its
+  /// calibration as sure as those of such scenes are.
+  BlindDesign motion;
   BlindCamera camera;
   std::vector<BlindForces> forces;  ///< of each clip
   double gradient_1_m = 0.0, flicker_depth = 0.0, flicker_hz = 100.0;

@@ -61,6 +61,12 @@ std::vector<Nuisance> nuisances(const BlindDesign& design) {
     if (!(design.masses[m].sd_kg > 0.0)) continue;
     list.push_back({[m](BlindDesign& d, double by) { d.masses[m].true_kg += by; }, 1e-5, 0.01, design.masses[m].sd_kg});
   }
+  const BlindCalibration& open = design.calibration;
+  if (open.scale_sd > 0.0) {
+    list.push_back({[](BlindDesign& d, double by) { d.calibration.scale += by; }, 1e-5, 0.1, open.scale_sd});
+    list.push_back({[](BlindDesign& d, double by) { d.calibration.bend_1_m += by; }, 1e-5, 0.1, open.bend_sd_1_m});
+    list.push_back({[](BlindDesign& d, double by) { d.calibration.cubic_1_m2 += by; }, 1e-5, 0.1, open.cubic_sd_1_m2});
+  }
   for (std::size_t c = 0; c < design.clips.size(); ++c) {
     list.push_back({[c](BlindDesign& d, double by) { d.clips[c].x0_m += by; }, 1e-5, 0.1, kFree, c});
     list.push_back({[c](BlindDesign& d, double by) { d.clips[c].v0_m_s += by; }, 1e-5, 0.3, kFree, c});

@@ -3,7 +3,8 @@
 ///
 ///     gain = |d - J (J'J)^-1 J'd|² / 2,       d = (seen with - seen without)/noise,
 ///
-/// J the derivatives by K, mu, inclinations, masses and starts, with what is stated of them as rows of its own.
+/// J the derivatives by K, mu, inclinations, masses, starts and what a calibration leaves open, with what is stated of
+/// them as rows of its own.
 #pragma once
 
 #include <memory>
