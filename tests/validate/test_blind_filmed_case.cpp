@@ -16,6 +16,7 @@
 #include "temp_dir.h"
 #include "validate/blind_retouch.h"
 #include "validate/blind_scene_effects.h"
+#include "validate/blind_strength.h"
 #include "validate/run_blind.h"
 
 using namespace glidelab;
@@ -54,6 +55,36 @@ TEST_CASE("a filmed case is the same for the same seed and index, and another fo
     CHECK(one.scene.motion.clips.size() >= 2);
     CHECK(one.scene.motion.clips.size() <= 6);
   }
+}
+
+TEST_CASE("what a calibration leaves open is no strength of an effect, and a codec's errors make it weaker") {
+  validate::BlindRandom random(3);
+  validate::BlindScene scene = validate::draw_scene(random, true);
+  REQUIRE(scene.motion.calibration.bend_sd_1_m > 0.0);
+  const validate::BlindEffect perspective = validate::draw_effect("perspective_error", scene.motion, random);
+  const double size = 0.01;
+  validate::BlindDesign design = scene.motion;
+  const auto gain = [&] { return validate::BlindDetection(design).gain(perspective, size); };
+  const double open = gain();
+  design.calibration = {};
+  const double sure = gain();
+  design.calibration = {1.0, 1.0, 1.0};
+  // x/(1 + p x) is x - p x² + p² x³ to 1e-6 of its first part: what a calibration that knows none of these takes up.
+  CHECK(gain() < 1e-3 * sure);
+  CHECK(open < sure);
+  design.calibration = {};
+  design.noise_sd_m *= 3.0;
+  CHECK(std::abs(gain() / sure - 1.0 / 9.0) < 0.01);  // the square of the noise, but for what is stated of inclinations
+
+  bool any = false;
+  for (int k = 0; k < 40; ++k) {
+    scene = validate::draw_scene(random, false);
+    const double noise_px = scene.motion.noise_sd_m * scene.camera.px_per_m();
+    CHECK(noise_px > 0.001);  // of PRNU and the place between pixels
+    CHECK((scene.camera.codec == "h264") == (noise_px > 0.05));
+    any = any || scene.camera.codec == "h264";
+  }
+  CHECK(any);
 }
 
 TEST_CASE("every scenario of a filmed case is one that the renderer takes") {
