@@ -35,6 +35,11 @@ Put as_in_tracks(std::string id, std::function<void(const BlindEffect&, double s
     BlindEffect effect = draw_effect(id, scene.motion, random);
     // The renderer's clock is at most a tenth wrong.
     if (id == "frame_rate_error") effect.largest = std::min(effect.largest, 0.09);
+    // Exposures that follow each other must not overlap, each up to six standard deviations off its time.
+    if (id == "timestamp_jitter") {
+      const double exposed_s = scene.camera.exposure_s + scene.camera.line_s * scene.camera.height_px;
+      effect.largest = std::min(effect.largest, (1.0 / scene.camera.rate_hz - exposed_s) / 12.0);
+    }
     const auto strength = size_for(BlindDetection(scene.motion), effect, wanted);
     if (!strength) return std::nullopt;
     film(effect, strength->size, scene);
