@@ -83,6 +83,7 @@ void mark_frames(const TrackData& track, const Motion& motion, const FreeMotion&
                  const std::vector<StretchPoint>& points, std::vector<MotionPoint>& frames) {
   for (MotionPoint& frame : frames) frame.left_out = LeftOut::no_marker;
   for (const std::size_t f : track.frame) frames[f].left_out = LeftOut::outlier;  // unless it is among the kept
+  for (std::size_t i = 0; i < track.force_n.size(); ++i) frames[track.frame[i]].applied_n = track.force_n[i];
   for (std::size_t i = 0; i < motion.t_s.size(); ++i) {
     frames[track.frame[motion.point[i]]].left_out = free.reason[i];
   }

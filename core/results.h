@@ -60,8 +60,9 @@ struct MotionPoint {
   double sd_x_m = 0.0;
   double sd_v_m_s = 0.0;
   double sd_a_m_s2 = 0.0;
-  double force_n = 0.0;   ///< the applied force smoothed like x; 0 where there is none
-  bool smoothed = false;  ///< x, v, a hold values
+  double force_n = 0.0;    ///< the applied force smoothed like x; 0 where there is none
+  double applied_n = 0.0;  ///< the applied force as recorded
+  bool smoothed = false;   ///< x, v, a hold values
   LeftOut left_out = LeftOut::used;
 };
 

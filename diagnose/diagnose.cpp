@@ -22,6 +22,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kFewestPositions = 40;  // all clips together: fewer carry no verdict beside four parameters
+constexpr std::size_t kMostForced = 8000;     // positions beside a recorded force: reversals and rests by the hundred
 constexpr double kContradiction = 5.0;        // standard deviations between two statements
 
 std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
@@ -43,10 +44,12 @@ std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
 void check(const TrackSet& set) {
   std::size_t points = 0;
   for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
-  if (set.motions.empty() && set.forced == set.clips.size()) {
-    throw base::InputError(
-        base::Issue{"", 0, "clips", "a known force (force_n) in every clip",
-                    "clips in which only gravity and friction act: the diagnosis takes no force yet"});
+  std::size_t forced = 0;
+  for (const TrackedMotion& motion : set.motions) forced += motion.known.t_s.size();
+  if (forced > kMostForced) {
+    throw base::InputError(base::Issue{"", 0, "clips",
+                                       fmt::format("{} positions of clips with a known force (force_n)", forced),
+                                       fmt::format("{} at most: longer ones take the search too long", kMostForced)});
   }
   if (set.motions.empty()) {
     throw base::InputError(base::Issue{"", 0, "clips", "no clip in which anything moves freely",

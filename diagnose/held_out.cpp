@@ -7,6 +7,7 @@
 
 #include "base/dense.h"
 #include "core/local_cubic.h"
+#include "diagnose/thin_tracks.h"
 #include "diagnose/whitening.h"
 
 namespace glidelab::diagnose {
@@ -142,21 +143,9 @@ TrackSet split_clip(const TrackSet& set) {
   for (const TrackedMotion& motion : set.motions) {
     const std::size_t n = motion.t_s.size();
     for (int k = 0; k < kStretches; ++k) {
-      const auto from = static_cast<long>(n * static_cast<std::size_t>(k) / 4);
-      const auto to = static_cast<long>(n * static_cast<std::size_t>(k + 1) / 4);
-      TrackedMotion part = motion;
-      part.t_s.assign(motion.t_s.begin() + from, motion.t_s.begin() + to);
-      part.x_m.assign(motion.x_m.begin() + from, motion.x_m.begin() + to);
-      part.outlier.assign(motion.outlier.begin() + from, motion.outlier.begin() + to);
-      for (auto of : {&TrackedMotion::wider, &TrackedMotion::row_px, &TrackedMotion::along_px}) {
-        if (!(motion.*of).empty()) (part.*of).assign((motion.*of).begin() + from, (motion.*of).begin() + to);
-      }
-      for (std::size_t m = 0; m < part.shared_m.size(); ++m) {
-        if (part.shared_m[m].empty()) continue;
-        part.shared_m[m].assign(motion.shared_m[m].begin() + from, motion.shared_m[m].begin() + to);
-      }
+      const std::size_t from = n * static_cast<std::size_t>(k) / 4, to = n * static_cast<std::size_t>(k + 1) / 4;
+      TrackedMotion part = some_points(motion, from, to);
       if (part.t_s.size() < 8) continue;
-      part.whitening.clear();
       if (set.film_noise) whiten(part, set.film_noise->shape, set.clips[motion.clip].frame_rate_hz);
       part.clip = split.clips.size();
       TrackedClip clip = set.clips[motion.clip];

@@ -260,6 +260,7 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
   model.gravity_m_s2 = set.gravity_m_s2;
   model.x_mid_m = set.groups[data.group].x_mid_m;
   model.x_mid_all_m = set.x_mid_m;
+  model.known = data.known.t_s.empty() ? nullptr : &data.known;
   model.unnamed = unnamed;
   model.row_px = data.row_px;
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {

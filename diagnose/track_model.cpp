@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace glidelab::diagnose {
@@ -46,6 +47,7 @@ class Mover {
       force += m_.mass_kg * e.shake_m_s2 * std::sin(2.0 * std::numbers::pi * e.shake_hz * t + e.shake_phase);
     }
     if (pushed_) force += m_.mass_kg * e.push_m_s2;
+    if (m_.known != nullptr) force += known_n_ + known_n_s_ * (t - known_t_);
     if (m_.unnamed != nullptr) force += (*m_.unnamed)(x, v, t);
     return force;
   }
@@ -62,7 +64,32 @@ class Mover {
     return (driving(x, v, t) - direction * friction(v)) / inertia_;
   }
 
-  State advance(State s, double t, double t_end) {
+  /// To t_end, by way of the known force's samples: it has corners there. `stretch`: true over stated time.
+  State advance(State s, double t, double t_end, double stretch) {
+    while (m_.known != nullptr && t < t_end) {
+      const double until = std::min(t_end, hold_force_at(t, stretch));
+      s = advance_forced(s, t, until);
+      t = until;
+    }
+    return m_.known != nullptr ? s : advance_forced(s, t, t_end);
+  }
+
+  void start(double v) { direction_ = v > 0.0 ? 1 : v < 0.0 ? -1 : 0; }
+
+ private:
+  /// The known force from t on; returns how far it goes on like this. Beyond its samples it stays as at the last one.
+  double hold_force_at(double t, double stretch) {
+    const std::vector<double>& at = m_.known->t_s;
+    const std::vector<double>& force = m_.known->force_n;
+    while (sample_ < at.size() && stretch * at[sample_] <= t) ++sample_;
+    const std::size_t before = sample_ > 0 ? sample_ - 1 : 0, after = std::min(sample_, at.size() - 1);
+    known_t_ = stretch * at[before];
+    known_n_ = force[before];
+    known_n_s_ = after > before ? (force[after] - force[before]) / (stretch * (at[after] - at[before])) : 0.0;
+    return sample_ < at.size() ? stretch * at[sample_] : std::numeric_limits<double>::infinity();
+  }
+
+  State advance_forced(State s, double t, double t_end) {
     const double release = m_.effects.release_s;
     if (m_.effects.push_m_s2 != 0.0 && t < release && release < t_end) {
       s = advance_smooth(s, t, release, true);
@@ -71,9 +98,6 @@ class Mover {
     return advance_smooth(s, t, t_end, t < release);
   }
 
-  void start(double v) { direction_ = v > 0.0 ? 1 : v < 0.0 ? -1 : 0; }
-
- private:
   State advance_smooth(State s, double t, double t_end, bool pushed) {
     pushed_ = pushed && m_.effects.push_m_s2 != 0.0;
     const int parts = std::max(1, static_cast<int>(std::ceil((t_end - t) / step_ - 1e-9)));
@@ -129,6 +153,8 @@ class Mover {
   double step_ = kLongestStep;
   int direction_ = 0;
   bool pushed_ = false;
+  std::size_t sample_ = 0;  // of the known force: the first one later than now
+  double known_t_ = 0.0, known_n_ = 0.0, known_n_s_ = 0.0;
 };
 
 double seen(const TrackModel& model, double x, double t) {
@@ -159,16 +185,12 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const double rows = model.row_px.empty() ? 0.0 : model.row_px[i] - model.row_px.front();
     const double next = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + model.effects.line_s * rows;
-    if (next > t) s = mover.advance(s, t, next);
+    if (next > t) s = mover.advance(s, t, next, stretch);
     t = std::max(t, next);
     moved.x_m.push_back(seen(model, s.x, times_s[i]));
     moved.v_m_s.push_back(s.v);
   }
   return moved;
-}
-
-double acceleration(const TrackModel& model, double x_m, double v_m_s, double t_s, int direction) {
-  return Mover(model).slide(x_m, v_m_s, t_s, direction);
 }
 
 }  // namespace glidelab::diagnose

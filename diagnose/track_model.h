@@ -2,7 +2,7 @@
 ///
 ///     (m + m_w) dv/dt = m g (sin(alpha) + c (x - x_mid)) - K (1 + b (x - x_mid)) v |v|^(n-1) / (1 + v²/v_c²)
 ///                       - sign(v) [mu m g cos(alpha) (1 + (s-1) exp(-(v/v_s)²)) + F_0] - d mu m g cos(alpha) - C v |v|
-///                       - k (x - x_t)+ + m A sin(2 pi f t + phi) + m push [t < t_r] + an unnamed force
+///                       - k (x - x_t)+ + m A sin(2 pi f t + phi) + m push [t < t_r] + a known force + an unnamed one
 ///
 /// sliding; at v = 0 the glider stays while the friction can hold it. Runge and Kutta's fourth order in equal parts of
 /// every frame interval (k h and omega h at most 0.3), stopped exactly at v = 0 and at t_r: a smooth function of all
@@ -20,6 +20,12 @@ namespace glidelab::diagnose {
 /// Force in N at (x, v, t); t counts from the clip's first frame.
 using UnnamedForce = std::function<double(double x_m, double v_m_s, double t_s)>;
 
+/// A force that was recorded with the positions, along x, linear between its samples; their times rise. Empty: none.
+struct KnownForce {
+  std::vector<double> t_s;  ///< from the clip's first frame
+  std::vector<double> force_n;
+};
+
 /// All that determines one motion.
 struct TrackModel {
   double mass_kg = 0.0;
@@ -32,6 +38,7 @@ struct TrackModel {
   double x0_m = 0.0;         ///< at the first of the times
   double v0_m_s = 0.0;
   EffectValues effects;
+  const KnownForce* known = nullptr;
   const UnnamedForce* unnamed = nullptr;
   std::span<const double> row_px;  ///< of the marker at each of the times; empty: not filmed
 };
@@ -44,8 +51,5 @@ struct Moved {
 /// At the stated times (rising, from the clip's first frame). `late_s`, where not empty, is what the true time of each
 /// frame is later than stated. Not finite where the motion runs away.
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
-
-/// Acceleration of a sliding glider.
-double acceleration(const TrackModel& model, double x_m, double v_m_s, double t_s, int direction);
 
 }  // namespace glidelab::diagnose

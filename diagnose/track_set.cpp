@@ -9,6 +9,7 @@
 
 #include "core/noise.h"
 #include "diagnose/pixel_modes.h"
+#include "diagnose/thin_tracks.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -127,6 +128,11 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
     if (!any) motion.shared_m[m].clear();
   }
   motion.scale_sd = excess * clip.scale_sd_relative;
+  for (std::size_t i = run.from; clip.forced && i <= run.to; ++i) {
+    if (!clip.motion[i].measured_m) continue;
+    motion.known.t_s.push_back(clip.motion[i].t_s - first);
+    motion.known.force_n.push_back(clip.motion[i].applied_n);
+  }
   add_pixel_modes(clip, frames, camera_modes, motion);
   return motion;
 }
@@ -242,12 +248,6 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     const double duration = clip.motion.empty() ? 0.0 : clip.motion.back().t_s - clip.motion.front().t_s;
     set.clips.push_back({clip.name, clip.frame_rate_hz, duration, clip.frames, clip.bandwidth_s});
     set.pictures = set.pictures || !clip.sightings.empty();
-    if (clip.forced) {
-      ++set.forced;
-      set.notes.push_back(
-          fmt::format("clip {}: a known force acts; the diagnosis does not take such clips yet", clip.name));
-      continue;
-    }
     for (const core::MotionPoint& point : clip.motion) {
       set.disputed += point.left_out == core::LeftOut::hand || point.left_out == core::LeftOut::stop;
     }
@@ -267,6 +267,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
   }
   if (set.motions.empty()) return set;
   measure_noise(set.motions);
+  thin_out(set, kFewestPoints);
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (std::size_t g = 0; g < set.groups.size(); ++g) {
     double low = std::numeric_limits<double>::infinity(), high = -low;

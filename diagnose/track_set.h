@@ -11,6 +11,7 @@
 
 #include "core/experiment.h"
 #include "core/results.h"
+#include "diagnose/track_model.h"
 
 namespace glidelab::diagnose {
 
@@ -51,6 +52,7 @@ struct TrackedMotion {
   std::vector<double> along_px;  ///< of the picture, along the motion; empty: not filmed, or hardly moving
   /// Of consecutive points, all in all: makes white noise of theirs over sd_of() (whitening.h). Empty: it is white.
   std::vector<Eigen::MatrixXd> whitening;
+  KnownForce known;  ///< where one was recorded
 
   double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
 };
@@ -96,11 +98,12 @@ struct TrackSet {
   std::vector<std::string> notes;
   /// Frames that the analysis took for hand or stop and that a motion could hold.
   std::size_t disputed = 0;
-  std::size_t forced = 0;  ///< clips with a known force, which are left out
 };
 
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
-/// start or for a stop stays in the motion; else it is left out. Motions with fewer than 12 points are left out.
+/// start or for a stop stays in the motion; else it is left out. Motions with fewer than 12 points are left out. Of
+/// more than 8000 positions in all every second, third, ... is taken (with a note), which is enough for any law; what
+/// single frames show needs neighbours, and is weaker then.
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
 
 /// Point i off the cubic through its four nearest neighbours, over the standard deviation that unit noise gives it: its

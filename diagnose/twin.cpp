@@ -102,6 +102,9 @@ Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<std::s
     named.insert(effect_list()[e].id);
     if (!expressible(effect_list()[e].id)) twin.lacks.emplace_back(effect_list()[e].id);
   }
+  const bool forced = std::any_of(set.motions.begin(), set.motions.end(),
+                                  [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); });
+  if (forced) twin.lacks.emplace_back("the recorded force");
   if (named.contains("power_law_drag") && named.contains("eddy_rolloff")) twin.lacks.emplace_back("eddy_rolloff");
 
   const double middle = 0.5 * (low + high), range = high - low;

@@ -29,12 +29,13 @@ struct MadeLaunch {
   double v0_m_s = -1.1;
 };
 
-/// What is added: a force in N (mass, x, v, t), what the camera makes of (x, t), and which frames it loses; each may be
-/// empty.
+/// What is added: a force in N (mass, x, v, t), what the camera makes of (x, t), which frames it loses, and a force
+/// that is recorded with the positions; each may be empty.
 struct MadeEffect {
   std::function<double(double mass_kg, double x_m, double v_m_s, double t_s)> force = {};
   std::function<double(double x_m, double t_s)> seen = {};
   std::function<bool(std::size_t clip, std::size_t frame)> lost = {};
+  std::function<double(double t_s)> recorded = {};
 };
 
 inline std::vector<MadeLaunch> made_launches(const std::vector<double>& masses_kg = {0.335, 0.535}) {
@@ -54,7 +55,8 @@ inline std::vector<double> made_motion(const MadeGlider& glider, const MadeLaunc
   const double alpha = launch.incline_deg * std::acos(-1.0) / 180.0, m = launch.mass_kg, g = glider.gravity_m_s2;
   const double friction = glider.mu * m * g * std::cos(alpha);
   const auto other = [&](double x, double v, double t) {
-    return m * g * std::sin(alpha) - glider.k_n_s_m * v + (effect.force ? effect.force(m, x, v, t) : 0.0);
+    return m * g * std::sin(alpha) - glider.k_n_s_m * v + (effect.force ? effect.force(m, x, v, t) : 0.0) +
+           (effect.recorded ? effect.recorded(t) : 0.0);
   };
   double x = launch.x0_m, v = launch.v0_m_s, sign = v > 0.0 ? 1.0 : -1.0;
   const auto a = [&](double xx, double vv, double t) { return (other(xx, vv, t) - sign * friction) / m; };
@@ -123,6 +125,7 @@ inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, c
       track.frame.push_back(track.t_s.size());
       track.t_s.push_back(static_cast<double>(track.t_s.size()) / rate_hz);
       track.x_m.push_back(x + noise_m * normal(random));
+      if (effect.recorded) track.force_n.push_back(effect.recorded(track.t_s.back()));
     }
     track.frame_t_s = track.t_s;
     made.results.clips.push_back(
