@@ -65,12 +65,7 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
       std::vector<ScoreColumn> columns;
       for (const auto& of_one : changes) columns.push_back(space.project(of_one));
       SpreadEvidence evidence;
-      const UnnamedFamily one = solve(space, columns, family, evidence);
-      logs.push_back(one.log_evidence);
-      if (one.gain <= family.gain) continue;
-      family.gain = one.gain;
-      family.columns = one.columns;
-      family.tau = one.tau;
+      logs.push_back(try_one(space, columns, family, evidence).log_evidence);
     }
   }
   if (!logs.empty()) family.log_evidence = log_mean(logs);

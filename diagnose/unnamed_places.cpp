@@ -104,12 +104,9 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
       columns.push_back(space.project(changes));
     }
     SpreadEvidence evidence;
-    const UnnamedFamily one = solve(space, columns, family, evidence);
-    logs.push_back(one.log_evidence);
-    if (one.gain <= family.gain) continue;
-    family.gain = one.gain;
-    family.columns = one.columns;
-    family.tau = one.tau;
+    const Tried tried = try_one(space, columns, family, evidence);
+    logs.push_back(tried.log_evidence);
+    if (!tried.better) continue;
     family.at.clear();
     family.size.clear();
     family.sd.clear();

@@ -127,6 +127,16 @@ UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& col
   return family;
 }
 
+Tried try_one(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily& family,
+              SpreadEvidence& evidence) {
+  UnnamedFamily one = solve(space, columns, family, evidence);
+  if (one.gain <= family.gain) return {one.log_evidence, false};
+  family.gain = one.gain;
+  family.columns = std::move(one.columns);
+  family.tau = one.tau;
+  return {one.log_evidence, true};
+}
+
 void name_regions(UnnamedFamily& family) {
   for (std::size_t i = 0; i < family.at.size(); ++i) {
     const double z = family.sd[i] > 0.0 ? std::abs(family.size[i]) / family.sd[i] : 0.0;

@@ -27,6 +27,15 @@ UnnamedFamily family_of(std::string variable, std::string what, std::string unit
 UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
                     SpreadEvidence& evidence);
 
+/// One of many shapes that a family may have: where it gains more than those before, the family takes its gain, columns
+/// and tau.
+struct Tried {
+  double log_evidence = 0.0;
+  bool better = false;
+};
+Tried try_one(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily& family,
+              SpreadEvidence& evidence);
+
 /// The stretches of `at` in which the size is sure.
 void name_regions(UnnamedFamily& family);
 
