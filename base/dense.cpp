@@ -58,6 +58,12 @@ Eigen::MatrixXd cholesky_lower(const MatrixView& a) {
   return factor.matrixL();
 }
 
+Eigen::MatrixXd solve_lower(const MatrixView& lower, const MatrixView& b) {
+  require_square("solve_lower", lower);
+  require_fit(lower.rows() == b.rows(), "solve_lower", lower, b);
+  return lower.triangularView<Eigen::Lower>().solve(b);
+}
+
 Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b) {
   require_fit(a.rows() == b.rows(), "least_squares", a, b);
   return a.colPivHouseholderQr().solve(b);

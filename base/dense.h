@@ -31,6 +31,9 @@ std::optional<Eigen::MatrixXd> regular_inverse(const MatrixView& a);
 /// L of A = L L' for a symmetric positive definite A; NumericalError where a pivot is not positive.
 Eigen::MatrixXd cholesky_lower(const MatrixView& a);
 
+/// X in L X = B for a lower triangle L (what is above its diagonal is not read).
+Eigen::MatrixXd solve_lower(const MatrixView& lower, const MatrixView& b);
+
 /// X that minimises |A X - B|, by Householder's QR with column pivoting.
 Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b);
 

@@ -238,7 +238,7 @@ std::optional<NormalEquations<N>> marker_equations(const MarkerPixels& pixels, c
   const Marker<N> marker{p, blur, std::sqrt(determinant), blur * blur + 1.0 / 12.0};
   Sums<N> sums;
 #if defined(__x86_64__)
-  if (vectors == Vectors::best && __builtin_cpu_supports("avx2")) {
+  if (base::uses_avx2(vectors)) {
     sum_pixels_avx2(pixels, marker, weight, sums);
     return equations_of(sums);
   }

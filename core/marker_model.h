@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/simd.h"
 #include "core/least_squares.h"
 
 namespace glidelab::core {
@@ -56,7 +57,7 @@ enum class PixelWeight {
   gradient  ///< its share in the variance of the gradient, (w r)^2: the middle of the sandwich covariance
 };
 
-enum class Vectors { baseline, best };
+using Vectors = base::Simd;  ///< there is no portable one here: it is the baseline
 
 /// The sums over the window (not complete() yet); nothing where the parameters are no marker's.
 template <int N>

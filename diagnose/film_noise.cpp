@@ -132,11 +132,8 @@ class NoiseLikelihood {
     const Eigen::MatrixXd lower = base::cholesky_lower(covariance_of(chunk.frames, shape, pilot_px_));
     Eigen::MatrixXd both(n, k + 1);
     both << chunk.slow, chunk.off_px;
-    for (Eigen::Index r = 0; r < n; ++r) {
-      both.row(r) -= lower.row(r).head(r) * both.topRows(r);
-      both.row(r) /= lower(r, r);
-      left.logs += 2.0 * std::log(lower(r, r));
-    }
+    both = base::solve_lower(lower, both);
+    left.logs += 2.0 * lower.diagonal().array().log().sum();
     Eigen::MatrixXd normal = base::transposed_product(both, both);
     normal.diagonal().head(k).array() *= 1.0 + 1e-10;
     // The last pivot's square is what the slow columns leave of the residuals; the others' make log |B'V^-1 B|.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/number_text.h"
 #include "diagnose/effect_list.h"
 #include "diagnose/picture_file.h"
 #include "diagnose/picture_light.h"
@@ -34,10 +35,11 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
         std::sqrt(std::pow(fit.exposure_sd_s, 2) + std::pow(kToneOfShape * *camera.exposure_s, 2) + least_s * least_s);
     blur.log_evidence = log_evidence_of((fit.exposure_s - *camera.exposure_s) / sd, 1.0 / camera.frame_rate_hz / sd);
     blur.words = fmt::format("The marker is smeared as by an exposure of {} ms; {:.3g} ms is stated.",
-                             with_sd(1e3 * fit.exposure_s, 1e3 * sd), 1e3 * *camera.exposure_s);
+                             base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * sd), 1e3 * *camera.exposure_s);
   } else {
-    blur.words = fmt::format("The marker is smeared as by an exposure of {} ms; none is stated.",
-                             with_sd(1e3 * fit.exposure_s, 1e3 * std::hypot(fit.exposure_sd_s, least_s)));
+    blur.words =
+        fmt::format("The marker is smeared as by an exposure of {} ms; none is stated.",
+                    base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * std::hypot(fit.exposure_sd_s, least_s)));
   }
   evidence.findings.push_back(std::move(blur));
 
@@ -50,18 +52,12 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   shutter.parameters = {{"line_s", fit.line_s, sd}};
   shutter.log_evidence = log_evidence_of(std::abs(fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
   shutter.words = fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
-                              with_sd(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
+                              base::value_and_sd_text(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
                               stated == 0.0 ? "(a global shutter) is stated" : "is stated");
   evidence.findings.push_back(std::move(shutter));
 }
 
 }  // namespace
-
-std::string with_sd(double value, double sd) {
-  if (!(sd > 0.0) || !std::isfinite(sd)) return fmt::format("{:.3g} ± {:.3g}", value, sd);
-  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(sd))));
-  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, sd, decimals);
-}
 
 PictureFinding finding_of(std::string_view id) {
   PictureFinding finding;

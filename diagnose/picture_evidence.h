@@ -46,9 +46,6 @@ inline constexpr double kSeenInPictures = 3.0;  ///< log evidence from which a f
 /// An empty finding of an effect of the list.
 PictureFinding finding_of(std::string_view id);
 
-/// "0.90 ± 0.50": both with the decimals of two significant digits of the standard deviation.
-std::string with_sd(double value, double sd);
-
 /// Time from one row to the next below, as stated: 0 for a global shutter, below 0 where the bottom row is first.
 double stated_line_s(const core::CameraSettings& camera);
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/dense.h"
+#include "base/number_text.h"
 #include "diagnose/picture_scene.h"
 
 namespace glidelab::diagnose {
@@ -133,7 +134,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   finding.parameters = {{"gradient", gradient, sd}};
   finding.words =
       fmt::format("The light on the marker changes by {} % a metre to the right; {:.0f} % is usual in a room.",
-                  with_sd(100.0 * gradient, 100.0 * sd), 100.0 * kUsualGradient_1_m);
+                  base::value_and_sd_text(100.0 * gradient, 100.0 * sd), 100.0 * kUsualGradient_1_m);
   evidence.findings.push_back(std::move(finding));
 }
 

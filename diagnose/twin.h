@@ -3,8 +3,8 @@
 /// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
 /// Expressed exactly: K, mu, quadratic_drag, eddy_rolloff or power_law_drag, stribeck, load_independent_friction (more
 /// mu for a lighter glider), direction_asymmetry (a constant force), and of the clock frame_rate_error, dropped_frames,
-/// timestamp_jitter. A scenario has no forces that depend on the place or the time, and no wrong scale: effects that
-/// need one are listed, and the twin lacks them. x counts from the middle of the data.
+/// timestamp_jitter. A scenario has no forces that depend on the place or the time, and no wrong scale, and
+/// no force that was recorded: what needs one is listed, and the twin lacks it. x counts from the middle of the data.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace glidelab::diagnose {
 
 struct Twin {
   std::string toml;
-  std::vector<std::string> lacks;  ///< effects that a scenario cannot express
+  std::vector<std::string> lacks;  ///< what a scenario cannot express
 };
 
 /// Of a fit and what single frames show; `effects` are those that are named.

@@ -12,19 +12,6 @@ namespace {
 constexpr double kHandedOnFrames = 8.0;
 constexpr std::size_t kStretch = 240;  // points that are whitened together
 
-/// Inverse of a lower triangle.
-Eigen::MatrixXd inverse_lower(const Eigen::MatrixXd& lower) {
-  const Eigen::Index n = lower.rows();
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index c = 0; c < n; ++c) {
-    inverse(c, c) = 1.0 / lower(c, c);
-    for (Eigen::Index r = c + 1; r < n; ++r) {
-      inverse(r, c) = -lower.row(r).segment(c, r - c).dot(inverse.col(c).segment(c, r - c)) / lower(r, r);
-    }
-  }
-  return inverse;
-}
-
 }  // namespace
 
 Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape, double white_px) {
@@ -85,8 +72,9 @@ void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz) {
       covariance(i, i) = sd[i] * sd[i];
     }
     const Eigen::VectorXd over = sd.cwiseInverse();
-    motion.whitening.push_back(
-        inverse_lower(base::cholesky_lower(Eigen::MatrixXd(over.asDiagonal() * covariance * over.asDiagonal()))));
+    const Eigen::MatrixXd lower =
+        base::cholesky_lower(Eigen::MatrixXd(over.asDiagonal() * covariance * over.asDiagonal()));
+    motion.whitening.push_back(base::solve_lower(lower, Eigen::MatrixXd::Identity(sd.size(), sd.size())));
   }
 }
 
@@ -102,11 +90,7 @@ Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd) {
 Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white) {
   Eigen::Index from = 0;
   for (const Eigen::MatrixXd& by : motion.whitening) {
-    // Forward substitution: by x = white.
-    for (Eigen::Index r = 0; r < by.rows(); ++r) {
-      const double known = by.row(r).head(r).dot(white.segment(from, r));
-      white[from + r] = (white[from + r] - known) / by(r, r);
-    }
+    white.segment(from, by.rows()) = base::solve_lower(by, white.segment(from, by.rows()));
     from += by.rows();
   }
   return white;

@@ -96,20 +96,12 @@ void row_words_sse2(std::uint32_t first_block, int groups, const RowNoise& noise
 
 }  // namespace
 
-bool uses_avx2([[maybe_unused]] Simd simd) {
-#if defined(__x86_64__)
-  return simd != Simd::baseline && __builtin_cpu_supports("avx2");
-#else
-  return false;
-#endif
-}
-
 void row_words(std::uint32_t first_block, int groups, const RowNoise& noise, std::uint32_t* words,
                [[maybe_unused]] Simd simd) {
 #if defined(__x86_64__)
   if (simd != Simd::portable) {
-    uses_avx2(simd) ? row_words_avx2(first_block, groups, noise, words)
-                    : row_words_sse2(first_block, groups, noise, words);
+    base::uses_avx2(simd) ? row_words_avx2(first_block, groups, noise, words)
+                          : row_words_sse2(first_block, groups, noise, words);
     return;
   }
 #endif

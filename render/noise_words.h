@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/simd.h"
 #include "render/philox.h"
 
 namespace glidelab::render {
@@ -11,11 +12,7 @@ namespace glidelab::render {
 inline constexpr int kBlocks = 8;
 inline constexpr int kGroup = 4 * kBlocks;  // pixels
 
-/// Which instructions; all give the same words and codes (a test compares them).
-enum class Simd { best, baseline, portable };
-
-/// Whether `simd` means AVX2 on this machine.
-bool uses_avx2(Simd simd);
+using base::Simd;
 
 struct RowNoise {
   std::uint32_t frame;

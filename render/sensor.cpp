@@ -147,7 +147,8 @@ class RowReader {
                  static_cast<float>(sensor.largest_converter_code()), static_cast<float>(well - 6.0 * std::sqrt(well))};
     codes_of_ = pattern != nullptr ? group_codes_baseline<true, Code> : group_codes_baseline<false, Code>;
 #if defined(__x86_64__)
-    if (uses_avx2(simd)) codes_of_ = pattern != nullptr ? group_codes_avx2<true, Code> : group_codes_avx2<false, Code>;
+    if (base::uses_avx2(simd))
+      codes_of_ = pattern != nullptr ? group_codes_avx2<true, Code> : group_codes_avx2<false, Code>;
 #endif
   }
 

@@ -171,7 +171,7 @@ TileRow polygon_row(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
   if (lines.size() > kMostLines) throw std::logic_error("too many lines around a polygon");
   RowLines at;
 #if defined(__x86_64__)
-  uses_avx2(simd) ? lines_in_pixels_avx2(lines, rays, at) : lines_in_pixels_baseline(lines, rays, at);
+  base::uses_avx2(simd) ? lines_in_pixels_avx2(lines, rays, at) : lines_in_pixels_baseline(lines, rays, at);
 #else
   lines_in_pixels_baseline(lines, rays, at);
 #endif
@@ -197,7 +197,7 @@ TileRow sphere_row(const Eigen::Vector3d& center_C, double radius_m, const RowRa
                   center_C.norm(), radius_m};
   TileRow coverage;
 #if defined(__x86_64__)
-  if (uses_avx2(simd)) {
+  if (base::uses_avx2(simd)) {
     cover_by_ball_avx2(ball, rays, coverage);
     return coverage;
   }

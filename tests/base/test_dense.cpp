@@ -48,6 +48,15 @@ TEST_CASE("a positive definite system is solved, also when the upper triangle ho
   CHECK(largest(product(l, l.transpose()) - a) < kRounding);
 }
 
+TEST_CASE("a triangular system is solved from its lower triangle alone") {
+  Eigen::MatrixXd lower(3, 3), x(3, 2), b(3, 2);
+  lower << 2, 99, 99, -1, 4, 99, 3, 5, -2;
+  x << 1, -3, 2, 5, -4, 0.5;
+  b << 2, -6, 7, 23, 21, 15;  // by hand
+  CHECK(largest(solve_lower(lower, b) - x) < kRounding);
+  CHECK_THROWS_AS(solve_lower(lower, b.topRows(2)), std::invalid_argument);
+}
+
 TEST_CASE("a matrix that is not positive definite has no Cholesky factor") {
   Eigen::MatrixXd a = positive();
   a(1, 1) = -5;

@@ -79,14 +79,6 @@ const diagnose::PictureFinding& finding(const diagnose::PictureEvidence& evidenc
 
 }  // namespace
 
-TEST_CASE("a number in words has no more digits than its standard deviation") {
-  CHECK(diagnose::with_sd(0.00283, 2.04) == "0.0 ± 2.0");
-  CHECK(diagnose::with_sd(0.902, 0.5) == "0.90 ± 0.50");
-  CHECK(diagnose::with_sd(-5.0981, 0.031) == "-5.098 ± 0.031");
-  CHECK(diagnose::with_sd(1234.0, 56.0) == "1234 ± 56");
-  CHECK(diagnose::with_sd(1.5, 0.0) == "1.5 ± 0");
-}
-
 TEST_CASE("Exposure and line time come out of the marker's shape within their standard deviations", "[pictures]") {
   const diagnose::ShapeFit fit = diagnose::fit_marker_shape(filmed({0.006, 3e-5, 0.0, 0.0}, 0.001, 3));
   REQUIRE(fit.known);

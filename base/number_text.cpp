@@ -1,11 +1,11 @@
-#include "report/number_text.h"
+#include "base/number_text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace glidelab::report {
+namespace glidelab::base {
 namespace {
 
 constexpr int kMostDecimals = 9;  // beyond that a power of ten reads better
@@ -67,4 +67,4 @@ std::string r2_text(double r2) {
   return fmt::format("{:.{}f}", r2, kMostDecimals);
 }
 
-}  // namespace glidelab::report
+}  // namespace glidelab::base

@@ -1,14 +1,22 @@
-#include "report/number_text.h"
+#include "base/number_text.h"
 
 #include "catch.h"
 
-using namespace glidelab::report;
+using namespace glidelab::base;
 
 TEST_CASE("a value has the decimals of two significant digits of its sd") {
   CHECK(value_and_sd_text(2.77913, 0.0062) == "2.7791 ± 0.0062");
   CHECK(value_and_sd_text(4.3, 0.25) == "4.30 ± 0.25");
   CHECK(value_and_sd_text(1234.5, 12.3) == "1234 ± 12");
   CHECK(value_and_sd_text(0.0071234, 0.00009961) == "0.00712 ± 0.00010");  // the sd itself rounds up a digit
+}
+
+TEST_CASE("a value and its sd have no more digits than the sd supports") {
+  CHECK(value_and_sd_text(0.00283, 2.04) == "0.0 ± 2.0");
+  CHECK(value_and_sd_text(0.902, 0.5) == "0.90 ± 0.50");
+  CHECK(value_and_sd_text(-5.0981, 0.031) == "-5.098 ± 0.031");
+  CHECK(value_and_sd_text(1234.0, 56.0) == "1234 ± 56");
+  CHECK(value_and_sd_text(1.5, 0.0) == "1.5 ± 0");
 }
 
 TEST_CASE("without a usable sd a value keeps six significant digits") {

@@ -1,0 +1,28 @@
+/// Numbers as a person reads them: no more digits than their uncertainty supports.
+#pragma once
+
+#include <string>
+
+namespace glidelab::base {
+
+/// A value with `digits` significant digits, "0.00712", "2.763", "410", "0.0000181"; a power of ten ("7.3e+08") only
+/// below 1e-7 and from 1e6 on; "–" for what is not finite.
+std::string number_text(double value, int digits = 4);
+
+/// The value with as many decimals as two significant digits of its standard deviation have: (2.77913, 0.0062) gives
+/// "2.7791". Without a positive finite sd, six significant digits.
+std::string value_text(double value, double sd);
+
+/// The standard deviation with two significant digits and the same decimals.
+std::string sd_text(double sd);
+
+/// "2.7791 ± 0.0062".
+std::string value_and_sd_text(double value, double sd);
+
+/// An error with its sign and the decimals of the sd: "+0.0031".
+std::string error_text(double error, double sd);
+
+/// R² with enough decimals to tell it from 1: "0.99993".
+std::string r2_text(double r2);
+
+}  // namespace glidelab::base
