@@ -109,30 +109,34 @@ std::vector<double> scatter_by_speed(const std::vector<double>& over_sd, const s
   return scatter;
 }
 
+struct TailResiduals {
+  std::vector<double> over_scatter;  ///< of all points, one motion after the other
+  std::vector<double> scatter_m;
+};
+
 /// All points' residuals over their motion's own scatter, so that clips of different noise make no tails; filmed ones
 /// over that at their speed, as a marker that is smeared is found less well.
-std::vector<double> tail_residuals(const TrackSet& set, const MotionFit& fit) {
-  std::vector<double> e;
-  if (set.pictures) {
-    std::vector<double> all, v;
-    for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      const Leftover left = leftover_of(set, fit, i);
-      all.insert(all.end(), left.over_sd.begin(), left.over_sd.end());
-      v.insert(v.end(), left.v.begin(), left.v.end());
-    }
-    const std::vector<double> scatter = scatter_by_speed(all, v);
-    for (std::size_t p = 0; p < all.size(); ++p) e.push_back(all[p] / scatter[p]);
-    return e;
-  }
+TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
+  std::vector<double> over_sd, v, scatter;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const Leftover left = leftover_of(set, fit, i);
+    over_sd.insert(over_sd.end(), left.over_sd.begin(), left.over_sd.end());
+    v.insert(v.end(), left.v.begin(), left.v.end());
     std::vector<double> size;
     for (const double r : left.over_sd) size.push_back(std::abs(r));
     std::nth_element(size.begin(), size.begin() + std::ssize(size) / 2, size.end());
-    const double middle = std::max(size[size.size() / 2] / 0.6745, 0.05);
-    for (const double r : left.over_sd) e.push_back(r / middle);
+    scatter.resize(over_sd.size(), std::max(size[size.size() / 2] / 0.6745, 0.05));
   }
-  return e;
+  if (set.pictures) scatter = scatter_by_speed(over_sd, v);
+  TailResiduals residuals;
+  std::size_t at = 0;
+  for (const TrackedMotion& motion : set.motions) {
+    for (std::size_t p = 0; p < motion.t_s.size(); ++p, ++at) {
+      residuals.over_scatter.push_back(over_sd[at] / scatter[at]);
+      residuals.scatter_m.push_back(scatter[at] * motion.sd_of(p));
+    }
+  }
+  return residuals;
 }
 
 constexpr double kLeastFilmedWide = 10.0;
@@ -193,25 +197,46 @@ double more_than_chance(double together, double all, double chance, double fewes
          together * std::log(chance) - (all - together) * std::log1p(-chance);
 }
 
+struct TailsTogether {
+  double log_evidence = 0.0;
+  std::optional<ErrorRun> run;
+};
+
 /// As FrameEffect::in_runs.
-double tails_together(const TrackSet& set, const std::vector<double>& e, const Tails& tails) {
+TailsTogether tails_together(const TrackSet& set, const TailResiduals& residuals, const Tails& tails) {
+  const std::vector<double>& e = residuals.over_scatter;
   double all = 0.0, before_another = 0.0, followed = 0.0, first = 0.0, firsts = 0.0;
+  ErrorRun at_first, one_by_one, open;  // open: that the last frame belongs to
   std::size_t at = 0;
   for (const TrackedMotion& motion : set.motions) {
+    bool goes_on = false;
     for (std::size_t p = 0; p < motion.t_s.size(); ++p, ++at) {
       const bool begins = motion.t_s[p] < (kFirstFrames - 0.5) / set.clips[motion.clip].frame_rate_hz;
       firsts += begins ? 1.0 : 0.0;
       if (of_the_many(tails, e[at]) > 0.0) continue;
       all += 1.0;
-      first += begins ? 1.0 : 0.0;
-      if (p + 1 == motion.t_s.size()) continue;
-      before_another += 1.0;
-      followed += of_the_many(tails, e[at + 1]) <= 0.0 && e[at] * e[at + 1] > 0.0 ? 1.0 : 0.0;
+      const double excess = std::abs(e[at]), size_m = excess * residuals.scatter_m[at];
+      if (begins) {
+        first += 1.0;
+        at_first.to_s = std::max(at_first.to_s, motion.t_s[p]);
+        if (excess > at_first.excess) at_first.excess = excess, at_first.size_m = size_m;
+      }
+      const bool has_next = p + 1 < motion.t_s.size();
+      const bool next = has_next && of_the_many(tails, e[at + 1]) <= 0.0 && e[at] * e[at + 1] > 0.0;
+      before_another += has_next ? 1.0 : 0.0;
+      followed += next ? 1.0 : 0.0;
+      if (!goes_on) open = {motion.clip, motion.t_s[p], motion.t_s[p], size_m, excess};
+      open.to_s = motion.t_s[p];
+      if (excess > open.excess) open.excess = excess, open.size_m = size_m;
+      if (goes_on && !next && open.excess > one_by_one.excess) one_by_one = open;
+      goes_on = next;
     }
   }
   const auto points = static_cast<double>(e.size());
-  return std::max(more_than_chance(followed, before_another, 0.5 * all / points, kFewestRuns),
-                  more_than_chance(first, all, firsts / points, kFewestFirst));
+  const double in_row = more_than_chance(followed, before_another, 0.5 * all / points, kFewestRuns);
+  const double in_first = more_than_chance(first, all, firsts / points, kFewestFirst);
+  if (std::max(in_row, in_first) <= 0.0) return {};
+  return {std::max(in_row, in_first), in_first >= in_row ? at_first : one_by_one};
 }
 
 /// In pictures, what lies off by less than any lost marker does is as good as none: an edge that the marker passes does
@@ -232,7 +257,8 @@ void spare_small(const TrackSet& set, std::vector<double>& e) {
 FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
   FrameEffect found;
   found.effect = effect_index("heavy_tailed_noise");
-  std::vector<double> e = tail_residuals(set, fit);
+  TailResiduals residuals = tail_residuals(set, fit);
+  std::vector<double>& e = residuals.over_scatter;
   if (e.size() < kFewestScatter) return found;
   spare_small(set, e);
   const Tails tails = find_tails(e, set.pictures);
@@ -240,12 +266,14 @@ FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
   found.log_evidence = tails.log_evidence;
   found.value = tails.share;
   found.sd = std::sqrt(tails.share / static_cast<double>(e.size()));
-  found.in_runs = tails_together(set, e, tails);
+  const TailsTogether together = tails_together(set, residuals, tails);
+  found.in_runs = together.log_evidence;
+  found.run = together.run;
   return found;
 }
 
 std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit) {
-  const std::vector<double> e = tail_residuals(set, fit);
+  const std::vector<double> e = tail_residuals(set, fit).over_scatter;
   if (e.size() < kFewestScatter) return 0;
   const Tails tails = find_tails(e, set.pictures);
   if (tails.log_evidence < kBeyondDoubt) return 0;

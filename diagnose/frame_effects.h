@@ -4,9 +4,19 @@
 /// is not taken for them.
 #pragma once
 
+#include <optional>
+
 #include "diagnose/effect_scan.h"
 
 namespace glidelab::diagnose {
+
+/// Errors that come together: in the first frames of the clips, or one after the other in one clip (the largest such).
+struct ErrorRun {
+  std::optional<std::size_t> clip;  ///< none: the first frames of all
+  double from_s = 0.0, to_s = 0.0;
+  double size_m = 0.0;
+  double excess = 0.0;  ///< size over the noise of its position
+};
 
 struct FrameEffect {
   std::size_t effect = 0;
@@ -14,7 +24,8 @@ struct FrameEffect {
   double log_evidence = 0.0;
   double value = 0.0;  ///< fraction of frames, or seconds
   double sd = 0.0;
-  double in_runs = 0.0;  ///< log evidence that such frames come together, against chance
+  double in_runs = 0.0;              ///< log evidence that such frames come together, against chance
+  std::optional<ErrorRun> run = {};  ///< the largest, where in_runs is above 0
 };
 
 /// Scatter that goes with the speed: variance sd² + (v tau)².

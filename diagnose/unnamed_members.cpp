@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "diagnose/unnamed_shape.h"
@@ -13,8 +14,9 @@ namespace {
 /// common size tau; what the common parameters take up is left aside.
 UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, int most) {
   const TrackSet& set = space.set();
-  const UnnamedFamily family = family_of("clip", "displacement", "m");
+  UnnamedFamily family = family_of("clip", "displacement", "m");
   std::vector<ScoreColumn> columns;
+  std::vector<std::size_t> clip_of;  // of each bump
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const auto& t = set.motions[i].t_s;
     const double span = t.back() - t.front();
@@ -27,15 +29,66 @@ UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, in
         changes[i][static_cast<Eigen::Index>(p)] = bump(t[p], t.front() + width * b, width);
       }
       columns.push_back(space.project(changes));
+      clip_of.push_back(set.motions[i].clip);
     }
   }
   SpreadEvidence evidence;
-  return solve(space, columns, family, evidence);
+  family = solve(space, columns, family, evidence);
+  // Of each clip the bump that shows best.
+  std::vector<double> excess(set.clips.size(), 0.0);
+  for (std::size_t c = 0; c < set.clips.size(); ++c) {
+    family.at.push_back(static_cast<double>(c));
+    family.names.push_back(set.clips[c].name);
+  }
+  family.size.assign(set.clips.size(), 0.0);
+  family.sd.assign(set.clips.size(), 0.0);
+  for (Eigen::Index b = 0; b < evidence.mean.size(); ++b) {
+    const std::size_t c = clip_of[static_cast<std::size_t>(b)];
+    const double sd = std::sqrt(std::max(0.0, evidence.covariance(b, b)));
+    if (!(sd > 0.0) || std::abs(evidence.mean[b]) <= excess[c] * sd) continue;
+    excess[c] = std::abs(evidence.mean[b]) / sd;
+    family.size[c] = evidence.mean[b];
+    family.sd[c] = sd;
+  }
+  name_regions(family);
+  return family;
 }
 
 /// How far something has settled at t: 1 at the start, a half or so at `time_s`, slowly (as creep does) or quickly.
 double unsettled(double t_s, double time_s, bool quickly) {
   return quickly ? std::pow(1.0 + t_s / (3.0 * time_s), -3.0) : 1.0 / (1.0 + t_s / time_s);
+}
+
+/// The members' sizes, each at its number.
+void draw_members(const SpreadEvidence& evidence, UnnamedFamily& family) {
+  family.at.clear();
+  family.size.clear();
+  family.sd.clear();
+  for (Eigen::Index m = 0; m < evidence.mean.size(); ++m) {
+    family.at.push_back(static_cast<double>(m));
+    family.size.push_back(evidence.mean[m]);
+    family.sd.push_back(std::sqrt(std::max(0.0, evidence.covariance(m, m))));
+  }
+}
+
+/// One size times what is left of it over the time, until a tenth is.
+void draw_settling(const SpreadEvidence& evidence, double longest_s, const std::function<double(double)>& left,
+                   UnnamedFamily& family) {
+  draw_members(evidence, family);
+  if (family.at.empty()) return;
+  constexpr int kDrawn = 72;
+  constexpr double kSettled = 0.1;
+  const double size = family.size.front(), sd = family.sd.front();
+  double until_s = longest_s;
+  while (left(until_s) < kSettled) until_s *= 0.9;
+  family.at.clear();
+  family.size.clear();
+  family.sd.clear();
+  for (int j = 0; j <= kDrawn; ++j) {
+    family.at.push_back(until_s * j / kDrawn);
+    family.size.push_back(size * left(family.at.back()));
+    family.sd.push_back(sd * left(family.at.back()));
+  }
 }
 
 /// What settles from the start of each clip on, at one pace in all: a displacement, each clip its own size, or a
@@ -65,10 +118,22 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
       std::vector<ScoreColumn> columns;
       for (const auto& of_one : changes) columns.push_back(space.project(of_one));
       SpreadEvidence evidence;
-      logs.push_back(try_one(space, columns, family, evidence).log_evidence);
+      const Tried tried = try_one(space, columns, family, evidence);
+      logs.push_back(tried.log_evidence);
+      if (!tried.better) continue;
+      if (late) {
+        draw_settling(
+            evidence, longest, [&](double t_s) { return unsettled(t_s, time_s, quickly); }, family);
+      } else {
+        draw_members(evidence, family);
+      }
     }
   }
   if (!logs.empty()) family.log_evidence = log_mean(logs);
+  if (!late) {
+    for (const TrackedClip& clip : set.clips) family.names.push_back(clip.name);
+  }
+  name_regions(family);
   return family;
 }
 
@@ -90,11 +155,9 @@ UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable
   }
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
-  for (std::size_t m = 0; m < members && evidence.mean.size() > 0; ++m) {
-    const auto e = static_cast<Eigen::Index>(m);
-    family.at.push_back(variable == "mass_kg" ? set.masses[m].mass_kg : static_cast<double>(m));
-    family.size.push_back(evidence.mean[e]);
-    family.sd.push_back(std::sqrt(std::max(0.0, evidence.covariance(e, e))));
+  draw_members(evidence, family);
+  for (std::size_t m = 0; m < family.at.size(); ++m) {
+    if (variable == "mass_kg") family.at[m] = set.masses[m].mass_kg;
     if (variable == "group") family.names.push_back(set.groups[m].name);
     if (variable == "clip") family.names.push_back(set.clips[m].name);
   }

@@ -257,18 +257,18 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
   add_ranking(set, comparison, diagnosis);
   const bool beside_named = diagnosis.verdict == "unknown" && !comparison.all.front().effects.empty();
+  const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
   if (diagnosis.verdict != "none") {
-    add_regions(set, beside_named ? comparison.unnamed_left : comparison.unnamed, diagnosis);
     if (diagnosis.verdict == "unknown") {
-      diagnosis.stage = stage_of(beside_named ? comparison.unnamed_left : comparison.unnamed);
+      diagnosis.stage = add_error_runs(set, comparison.frames, families, diagnosis) ? "tracking" : stage_of(families);
     }
+    add_regions(set, families, diagnosis);
   }
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
   if (diagnosis.verdict == "unknown" && set.clips.size() > 1) {
     // The likeliest function without a name stands in for what is missing.
-    const auto& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
     const auto family = std::max_element(families.begin(), families.end(),
                                          [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.left_fit)] : nominal;

@@ -20,7 +20,9 @@ void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families
             [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
   const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
   for (const UnnamedFamily* family : sorted) {
-    if (family->log_evidence < notable) break;
+    // What a verdict rests on has its place named, however many looks there were.
+    const bool rests = diagnosis.verdict == "unknown" && diagnosis.regions.empty() && family == sorted.front();
+    if (family->log_evidence < (rests ? 0.0 : notable)) break;
     const bool drawn = std::any_of(diagnosis.curves.begin(), diagnosis.curves.end(), [&](const GapCurve& curve) {
       return curve.variable == family->variable && curve.what == family->what;
     });
@@ -44,6 +46,21 @@ void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families
       diagnosis.regions.push_back(region);
     }
   }
+}
+
+bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
+                    const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis) {
+  double most = kNotable;
+  for (const UnnamedFamily& family : families) most = std::max(most, family.log_evidence);
+  bool any = false;
+  for (const FrameEffect& frame : frames) {
+    if (!frame.run || frame.in_runs < kNotable || frame.log_evidence + frame.in_runs < most) continue;
+    const std::string clip = frame.run->clip ? set.clips[*frame.run->clip].name : "";
+    diagnosis.regions.push_back(
+        {"t_s", frame.run->from_s, frame.run->to_s, frame.run->excess, frame.run->size_m, "m", "displacement", clip});
+    any = true;
+  }
+  return any;
 }
 
 void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {

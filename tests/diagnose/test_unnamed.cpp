@@ -39,6 +39,9 @@ TEST_CASE("a picture that creeps in each clip by its own way is no hand that pus
     const diagnose::Diagnosis diagnosis = diagnosed(creep, seed);
     CHECK(diagnosis.verdict == "unknown");
     CHECK(surest(diagnosis) < 0.5);
+    REQUIRE(diagnosis.regions.size() > 0);
+    CHECK(diagnosis.regions.front().what == "displacement");
+    CHECK_FALSE(diagnosis.regions.front().clip.empty());
   }
 }
 
@@ -52,6 +55,10 @@ TEST_CASE("a tracker that lags behind by half a frame, from the first one on, ha
     const diagnose::Diagnosis diagnosis = diagnosed(lag, seed);
     CHECK(diagnosis.verdict == "unknown");
     CHECK(surest(diagnosis) < 0.5);
+    // What settles does so from each clip's start on, and the diagnosis says that it is there.
+    REQUIRE(diagnosis.regions.size() > 0);
+    CHECK(diagnosis.regions.front().variable == "t_s");
+    CHECK(diagnosis.regions.front().from < 0.02);
   }
 }
 
