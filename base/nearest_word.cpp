@@ -25,11 +25,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
-  const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
-  });
-  if (nearest == known.end()) return {};
-  return edit_distance(word, *nearest) <= std::max<std::size_t>(2, word.size() / 3) ? *nearest : std::string();
+  const std::string* nearest = nullptr;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;  // from here on it is no misspelling
+  for (const std::string& candidate : known) {
+    const auto [shorter, longer] = std::minmax({word.size(), candidate.size()});
+    if (longer - shorter >= least) continue;  // as many letters at least are too many or missing
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance >= least) continue;
+    nearest = &candidate;
+    least = distance;
+  }
+  return nearest == nullptr ? std::string() : *nearest;
 }
 
 }  // namespace glidelab::base

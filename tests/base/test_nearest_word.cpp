@@ -17,3 +17,14 @@ TEST_CASE("A word that is like none of the known ones finds nothing") {
   CHECK(nearest_word("bandwidth", {"simulate", "render"}).empty());
   CHECK(nearest_word("bandwidth", {}).empty());
 }
+
+TEST_CASE(
+    "Words of another length count as many changes as letters are too many or missing, and the first of equals is "
+    "taken") {
+  CHECK(nearest_word("ab", {"abcde", "abcd"}) == "abcd");
+  CHECK(nearest_word("abcd", {"a", "ab"}) == "ab");
+  CHECK(nearest_word("ab", {"abcde"}).empty());
+  CHECK(nearest_word("gain", {"gaim", "gait", "gainer"}) == "gaim");
+  CHECK(nearest_word("exposure_second", {"exposure", "exposure_s"}) ==
+        "exposure_s");  // 15 letters: five changes at most
+}
