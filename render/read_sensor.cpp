@@ -58,9 +58,13 @@ void read_tone(const TomlTable& table, ToneCurve& tone) {
   } else if (word == "bt709") {
     tone.kind = ToneCurve::Kind::bt709;
   } else if (word == "table") {
-    tone = {ToneCurve::Kind::table, tone.gamma, table.numbers("tone_from", 0), table.numbers("tone_to", 0)};
-    if (rises(tone.from) && rises(tone.to) && tone.from.size() == tone.to.size()) return;
-    table.reject("tone_to", fmt::format("{} numbers, beside {} in tone_from", tone.to.size(), tone.from.size()),
+    const std::vector<double> from = table.numbers("tone_from", 0), to = table.numbers("tone_to", 0);
+    if (rises(from) && rises(to) && from.size() == to.size()) {
+      tone = {ToneCurve::Kind::table, tone.gamma, from, to};
+      return;
+    }
+    // Refused, and linear: what is read next computes with the curve, and must not look into a table that is not there.
+    table.reject("tone_to", fmt::format("{} numbers, beside {} in tone_from", to.size(), from.size()),
                  "as many in both, rising from 0 to 1");
   }
 }

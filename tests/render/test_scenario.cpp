@@ -158,6 +158,7 @@ TEST_CASE("What makes no sense is refused by its key, with the line") {
       {"[sensor]\ntone = \"table\"\ntone_from = [0.0, 0.5, 1.0]\ntone_to = [0.0, 1.0]\n", "sensor.tone_to", "rising"},
       {"[sensor]\ntone = \"table\"\ntone_from = [0.0, 0.5, 1.0]\ntone_to = [0.0, 0.6, 0.5]\n", "sensor.tone_to",
        "rising"},
+      {"[sensor]\ntone = \"table\"\n", "sensor.tone_to", "found nothing"},
       {"[sensor]\ntone = \"bt709\"\nwhite_level = 1.5\n", "sensor.white_level", "to 1"},
       {"[sensor]\nwhite_photons_s = 1e6\nwhite_level = 0.5\n", "sensor.white_level", "one of the two"},
       {"[sensor]\nquantum_efficiency = 1.2\n", "sensor.quantum_efficiency", "1"},
