@@ -202,7 +202,8 @@ TEST_CASE("a local polynomial agrees with R's KernSmooth::locpoly") {
     for (int p = 0; p < 6; ++p) {
       const SmoothedPoint& point = *smoothed[points[p]];
       const double value = row.drv == 0 ? point.x_m : row.drv == 1 ? point.v_m_s : point.a_m_s2;
-      const KernelWeights& weights = *smoother.row_of_point(points[p])->weights;
+      const std::shared_ptr<const KernelWeights> held = smoother.row_of_point(points[p])->weights;
+      const KernelWeights& weights = *held;
       INFO("drv " << row.drv << " degree " << row.degree << " point " << points[p]);
       // locpoly solves normal equations: the square of QR's 1e5 times epsilon, and 15 printed digits.
       CHECK(std::abs(value - row.y[p]) < 1e-7 * sum_of_magnitudes(row.drv == 0   ? weights.x
