@@ -39,7 +39,8 @@ TEST_CASE("a plan says what will look the same, and what one mass cannot show") 
   // With one mass a friction that does not depend on the load is mu, but for the cosine of 4 degrees.
   const auto two = tests::made_experiment(tests::made_launches(), {}, 3);
   const auto& of_one = effect_of(plan, "load_independent_friction");
-  const auto& of_two = effect_of(diagnose::plan_of(two.results, two.setups), "load_independent_friction");
+  const diagnose::Plan plan_of_both = diagnose::plan_of(two.results, two.setups);
+  const auto& of_two = effect_of(plan_of_both, "load_independent_friction");
   CHECK(of_two.seen);
   CHECK((!of_one.seen || of_one.seen_from > 20.0 * of_two.seen_from));
 }
