@@ -12,9 +12,10 @@
 ///     the tau of least S, to first order about mT, is mT within a seventh of T, and known to that.
 ///
 /// An impact, a push or a single wrong position makes no jump of a whole frame's way with the same smooth motion on
-/// both sides, and a reversal has no way to jump. Losses follow each other by two frames or more, or are taken as one.
-/// Not found: what is lost before the second or behind the last but one frame, or where |v| T is below some 15 standard
-/// deviations of the noise (and there it matters little).
+/// both sides, and a reversal has no way to jump. Where the window holds a turn, the acceleration may step there, as
+/// dry friction makes it. A frame alone between two losses is placed by the cubic through those around it. Not found:
+/// what is lost before the second or behind the last but one frame, or where |v| T is below some 15 standard deviations
+/// of the noise (and there it matters little).
 #pragma once
 
 #include <vector>
@@ -28,11 +29,8 @@ namespace glidelab::core {
 inline constexpr int kMostLost = 8;
 
 /// In the order of time; none where the frames' times are not uniform to a tenth of a step (stamps that show gaps are
-/// taken at their word). `motion` is the track's, single outliers left out.
+/// taken at their word). `motion` is the track's; single outliers in it are passed over.
 std::vector<LostFrames> find_lost_frames(const TrackData& track, const Motion& motion);
-
-/// Outliers (outliers.h) that have no other beside them: behind a jump several positions look like some.
-std::vector<std::size_t> single_outliers(const Motion& motion);
 
 /// The file's time with the frames counted in that were lost before it.
 double put_right(double file_s, const std::vector<LostFrames>& lost, double step_s);

@@ -191,8 +191,7 @@ BandwidthChoice by_rule(const std::string& name, const Motion& motion, const Fre
 }
 
 std::vector<LostFrames> lost_frames(const TrackData& track, double mass_kg) {
-  const Motion motion = motion_of(track, mass_kg);
-  return find_lost_frames(track, without(motion, single_outliers(motion)));
+  return find_lost_frames(track, motion_of(track, mass_kg));
 }
 
 /// start_s and end_s are by the file's times.
