@@ -48,7 +48,7 @@ MadeTracks FilmStudio::film(const render::Scenario& scenario, std::uint64_t seed
   core::FrameOpener open = core::open_frames;
   if (!lossy) {
     if (!stage_) stage_ = render::set_stage(scenario, jobs);
-    open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, stage_), seed);
+    open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, stage_), seed, canvases_);
   }
   MadeTracks made = make_tracks(scenario, seed);
   made.setups = experiment.clips;

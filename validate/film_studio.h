@@ -8,6 +8,7 @@
 #include "core/camera_and_planes.h"
 #include "render/clip_set.h"
 #include "render/scenario.h"
+#include "validate/canvas_pool.h"
 #include "validate/made_tracks.h"
 
 namespace glidelab::validate {
@@ -34,6 +35,7 @@ class FilmStudio {
  private:
   base::TemporaryFolder folder_;
   std::shared_ptr<const render::Stage> stage_;
+  std::shared_ptr<CanvasPool> canvases_ = std::make_shared<CanvasPool>();
   core::SeenPattern pattern_;
 };
 

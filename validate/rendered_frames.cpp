@@ -10,29 +10,29 @@
 namespace glidelab::validate {
 namespace {
 
-/// A frame's pixels and what of them is drawn; the rest is 0.
-struct Canvas {
-  cv::Mat picture;
-  std::vector<cv::Rect> drawn;
-};
-
-/// Canvases that nobody looks at any more are drawn on again: a new one would have to be cleared as a whole.
+/// The canvases of one clip: those that nobody looks at any more are drawn on again.
 class Canvases {
  public:
-  Canvases(cv::Size size, int type) : size_(size), type_(type) {}
+  Canvases(std::shared_ptr<CanvasPool> pool, cv::Size size, int type)
+      : pool_(std::move(pool)), size_(size), type_(type) {}
+  Canvases(const Canvases&) = delete;
+  Canvases& operator=(const Canvases&) = delete;
+  ~Canvases() {
+    for (std::shared_ptr<Canvas>& canvas : all_) pool_->give(std::move(canvas));
+  }
 
   std::shared_ptr<Canvas> clear_one() {
     for (const std::shared_ptr<Canvas>& canvas : all_) {
-      if (canvas.use_count() > 1 || canvas->picture.u->refcount > 1) continue;
-      for (const cv::Rect& rect : canvas->drawn) canvas->picture(rect).setTo(0);
-      canvas->drawn.clear();
+      if (canvas.use_count() > 1 || !canvas->is_free()) continue;
+      clear(*canvas);
       return canvas;
     }
-    all_.push_back(std::make_shared<Canvas>(Canvas{cv::Mat::zeros(size_, type_), {}}));
+    all_.push_back(pool_->take(size_, type_));
     return all_.back();
   }
 
  private:
+  std::shared_ptr<CanvasPool> pool_;
   cv::Size size_;
   int type_;
   std::vector<std::shared_ptr<Canvas>> all_;
@@ -40,13 +40,15 @@ class Canvases {
 
 class RenderedFrames : public core::FrameSource {
  public:
-  RenderedFrames(std::shared_ptr<const render::ClipSet> set, std::size_t clip, std::uint64_t seed, bool with_color)
+  RenderedFrames(std::shared_ptr<const render::ClipSet> set, std::size_t clip, std::uint64_t seed, bool with_color,
+                 std::shared_ptr<CanvasPool> pool)
       : set_(std::move(set)),
         stream_(set_, clip, seed),
         frames_(set_->frames(clip, seed)),
         with_color_(with_color),
         deep_(set_->scenario().sensor.bit_depth > 8),
-        canvases_({set_->scenario().camera.width_px, set_->scenario().camera.height_px}, deep_ ? CV_16U : CV_8U) {}
+        canvases_(std::move(pool), {set_->scenario().camera.width_px, set_->scenario().camera.height_px},
+                  deep_ ? CV_16U : CV_8U) {}
 
   std::optional<core::Frame> next() override {
     std::optional<core::Frame> frame = next_in_parts();
@@ -108,22 +110,24 @@ class RenderedFrames : public core::FrameSource {
 }  // namespace
 
 std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render::ClipSet> set, std::size_t clip,
-                                                   std::uint64_t seed, bool with_color) {
+                                                   std::uint64_t seed, bool with_color,
+                                                   std::shared_ptr<CanvasPool> pool) {
   if (render::lossy(set->scenario().codec)) {
     throw base::InputError(base::Issue{set->motion(clip).name, 0, "codec.name",
                                        "a codec that loses some of the picture",
                                        "one without loss, or the clip's file: in memory frames are as the sensor gives "
                                        "them"});
   }
-  return std::make_unique<RenderedFrames>(std::move(set), clip, seed, with_color);
+  return std::make_unique<RenderedFrames>(std::move(set), clip, seed, with_color, std::move(pool));
 }
 
-core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, std::uint64_t seed) {
-  return [set, seed](const std::filesystem::path& file, const core::CameraSettings&, bool with_color,
-                     std::optional<cv::Size>) -> std::unique_ptr<core::FrameSource> {
+core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, std::uint64_t seed,
+                                  std::shared_ptr<CanvasPool> pool) {
+  return [set, seed, pool](const std::filesystem::path& file, const core::CameraSettings&, bool with_color,
+                           std::optional<cv::Size>) -> std::unique_ptr<core::FrameSource> {
     for (std::size_t clip = 0; clip < set->size(); ++clip) {
       if (file.stem() == set->motion(clip).name || file.filename() == set->motion(clip).name) {
-        return rendered_frames(set, clip, seed, with_color);
+        return rendered_frames(set, clip, seed, with_color, pool);
       }
     }
     throw base::InputError(base::Issue{file.string(), 0, "clip", "no such clip in the scenario", "one of its clips"});

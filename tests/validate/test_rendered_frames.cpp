@@ -117,3 +117,22 @@ TEST_CASE("frames in memory are refused where the codec would change them") {
   const auto set = std::make_shared<const render::ClipSet>(render::read_scenario(dir / "scenario.toml"), 2);
   CHECK_THROWS_AS(validate::rendered_frames(set, 0, 1), base::InputError);
 }
+
+TEST_CASE("the frames of a clip are the same on canvases that another clip was drawn on") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", kScenario);
+  const auto set = std::make_shared<const render::ClipSet>(render::read_scenario(dir / "s.toml"), 2);
+  const auto pool = std::make_shared<validate::CanvasPool>();
+  for (const std::uint64_t seed : {4u, 5u}) {
+    const auto fresh = validate::rendered_frames(set, 0, seed),
+               used = validate::rendered_frames(set, 0, seed, false, pool);
+    const cv::Rect part(100, 60, 41, 33);
+    for (int k = 0; k < 6; ++k) {
+      const core::Frame expected = *fresh->next_in_parts(), frame = *used->next_in_parts();
+      expected.draw(part);
+      frame.draw(k % 2 == 0 ? part : cv::Rect(0, 0, 320, 200));
+      CHECK(cv::countNonZero(frame.grey(part) != expected.grey(part)) == 0);
+      if (k % 2 == 0) CHECK(cv::countNonZero(frame.grey != expected.grey) == 0);
+    }
+  }
+}

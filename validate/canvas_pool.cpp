@@ -1,0 +1,34 @@
+#include "validate/canvas_pool.h"
+
+#include <utility>
+
+namespace glidelab::validate {
+
+void clear(Canvas& canvas) {
+  for (const cv::Rect& rect : canvas.drawn) canvas.picture(rect).setTo(0);
+  canvas.drawn.clear();
+}
+
+std::shared_ptr<Canvas> CanvasPool::take(cv::Size size, int type) {
+  std::shared_ptr<Canvas> canvas;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!all_.empty()) {
+      canvas = std::move(all_.back());
+      all_.pop_back();
+    }
+  }
+  if (!canvas || canvas->picture.size() != size || canvas->picture.type() != type) {
+    return std::make_shared<Canvas>(Canvas{cv::Mat::zeros(size, type), {}});
+  }
+  clear(*canvas);
+  return canvas;
+}
+
+void CanvasPool::give(std::shared_ptr<Canvas> canvas) {
+  if (canvas.use_count() > 1 || !canvas->is_free()) return;
+  const std::lock_guard lock(mutex_);
+  all_.push_back(std::move(canvas));
+}
+
+}  // namespace glidelab::validate
