@@ -75,7 +75,7 @@ void film_blind_folder(const FilmedCase& one, const fs::path& folder, const fs::
   if (!failure.empty()) {
     throw base::EnvironmentError(fmt::format("rendering blind case {} of seed {}: {}", one.index, one.seed, failure));
   }
-  retouch_folder(one.scene, scratch / "case");
+  retouch_folder(one.scene, render::read_scenario(scratch / "scenario.toml"), scratch / "case");
   fs::rename(scratch / "case", folder);
   fs::remove_all(scratch);
 }

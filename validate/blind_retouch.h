@@ -1,24 +1,22 @@
 /// What is done to a rendered experiment folder before it is a filmed blind case: lines of experiment.toml that say
-/// something else, frames that are lost, pictures that are pulled along the track, clips filed anew without loss.
+/// something else, frames that are lost, clips drawn anew with the glider where it is not, clips filed anew without
+/// loss.
+///
+/// A glider that is shown elsewhere is drawn there, by the same camera with the same noise. (Until seed 8000 the
+/// pictures were pulled instead. A picture whose edges are sharper than its pixels cannot be pulled by parts of a
+/// pixel: centres were off by up to 0.03 px, in beats of some centimetres that no lens makes.) Its marker keeps its
+/// shape; a lens that shifts it by x² or x³ would stretch it by some percent.
 #pragma once
-
-#include <opencv2/core.hpp>
 
 #include <filesystem>
 
+#include "render/scenario.h"
 #include "validate/blind_scene.h"
 
 namespace glidelab::validate {
 
-/// Where each column's pixels are taken from: columns, and how many rows farther down. One row each.
-struct ColumnSources {
-  cv::Mat_<double> column, down;
-};
-
-/// A grey picture of 8 bits with its pixels from there, by Lanczos' interpolation (8 x 8 pixels, places exact).
-cv::Mat pulled(const cv::Mat& grey, const ColumnSources& sources);
-
-/// Changes the folder in place. A line of experiment.toml that is to be changed and is not there: std::logic_error.
-void retouch_folder(const BlindScene& scene, const std::filesystem::path& folder);
+/// Changes the folder that was rendered from this scenario in place. A line of experiment.toml that is to be changed
+/// and is not there: std::logic_error.
+void retouch_folder(const BlindScene& scene, const render::Scenario& scenario, const std::filesystem::path& folder);
 
 }  // namespace glidelab::validate
