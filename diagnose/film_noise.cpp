@@ -14,11 +14,9 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr std::size_t kChunk = 80;         // points that are taken together
-constexpr std::size_t kMostChunks = 24;    // of all motions: more add nothing to a handful of numbers
+constexpr std::size_t kMostPoints = 1920;  // of all motions: more add nothing to a handful of numbers
 constexpr std::size_t kFewestPoints = 80;  // of all motions
 constexpr std::size_t kFewestInChunk = 24;
-constexpr double kKnot = 10.0;         // frames from bump to bump
 constexpr double kOwn = 0.3;           // motions differ by so much, in the logarithm of s
 constexpr double kMostOff = 8.0;       // standard deviations off the neighbours
 constexpr double kWaveShows = 5.0;     // log evidence
@@ -26,9 +24,19 @@ constexpr double kBeyondDoubt = 5.0;   // log evidence
 constexpr double kLeastJitter = 1e-5;  // s; a hundredth of a short exposure
 constexpr double kWorth = 1.0;         // log likelihood that one more part of the noise must gain
 
-// Over s. Slower than what is looked at here, and therefore not measured but assumed: means of ten frames of H.264
-// clips in which nothing was wrong (crf 14 to 20) erred by a third to a half of what single frames did.
-constexpr double kHandedOn = 0.4;
+/// Points that are taken together, and frames from bump to bump of what is set aside as slow. A codec that makes
+/// pictures out of those before hands its errors on: what lasts for up to a dozen frames must be left to be seen.
+struct Slow {
+  std::size_t chunk = 80;
+  double knot = 10.0;
+};
+constexpr Slow kNew, kHandedOn{160, 30.0};
+
+// Of such a codec, measured on clips with nothing wrong whose truth is known (H.264 of crf 14 to 18, seeds 3000 to
+// 8000, tracked positions less the true ones): neighbours correlate by 0.15 to 0.35, every other frame by 0.3 to 0.4,
+// the fourth by 0.1 to 0.3, the eighth by 0 to 0.15. That is a part that lasts, 0.8 of s, for some five frames; clips
+// differ by a factor of about 1.6. The positions themselves have the last word.
+constexpr double kLasts = 0.8, kLastsFactor = 0.5;  // over s; in its logarithm
 
 struct Chunk {
   std::size_t motion = 0;
@@ -38,10 +46,11 @@ struct Chunk {
 };
 
 /// Frames of a motion that are no outliers, in stretches.
-void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double wave_hz, std::vector<Chunk>& chunks) {
+void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double wave_hz, const Slow& slow,
+                std::vector<Chunk>& chunks) {
   const TrackedMotion& motion = set.motions[i];
   const SeenFrames all = seen_frames(motion, set.clips[motion.clip].frame_rate_hz);
-  const std::size_t points = motion.t_s.size(), parts = std::max<std::size_t>(1, points / kChunk);
+  const std::size_t points = motion.t_s.size(), parts = std::max<std::size_t>(1, points / slow.chunk);
   for (std::size_t part = 0; part < parts; ++part) {
     Chunk chunk;
     chunk.motion = i;
@@ -60,7 +69,7 @@ void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double
     const auto n = std::ssize(off);
     chunk.off_px = Eigen::Map<const Eigen::VectorXd>(off.data(), n);
     const double first = chunk.frames.frame.front(), span = chunk.frames.frame.back() - first;
-    const auto bumps = static_cast<Eigen::Index>(std::ceil(span / kKnot)) + 1;
+    const auto bumps = static_cast<Eigen::Index>(std::ceil(span / slow.knot)) + 1;
     const double width = span / static_cast<double>(bumps - 1);
     chunk.slow = Eigen::MatrixXd::Zero(n, bumps + (wave_hz > 0.0 ? 2 : 0));
     for (Eigen::Index p = 0; p < n; ++p) {
@@ -91,9 +100,17 @@ struct Likelihood {
 
 class NoiseLikelihood {
  public:
-  NoiseLikelihood(std::vector<Chunk> chunks, std::size_t motions, double pilot_px)
-      : chunks_(std::move(chunks)), motions_(motions), pilot_px_(pilot_px) {}
+  NoiseLikelihood(std::vector<Chunk> chunks, std::size_t motions, double pilot_px, bool handed_on)
+      : chunks_(std::move(chunks)), motions_(motions), pilot_px_(pilot_px), handed_on_(handed_on) {}
 
+  /// What is known beforehand of such a file's noise, as a log likelihood.
+  double known(const NoiseShape& shape) const {
+    if (!handed_on_) return 0.0;
+    constexpr double kAsGoodAsNone = 0.1;
+    return -0.5 * std::pow(std::log(std::max(shape.lasting, kAsGoodAsNone) / kLasts) / kLastsFactor, 2);
+  }
+
+  /// With what is known beforehand.
   Likelihood of(const NoiseShape& shape) const {
     std::vector<Left> left(motions_);
     for (const Chunk& chunk : chunks_) add(chunk, shape, left[chunk.motion]);
@@ -116,7 +133,7 @@ class NoiseLikelihood {
       }
       if (many > 0.0) log_s = mean / many;
     }
-    found.value = 0.0;
+    found.value = known(shape);
     for (std::size_t i = 0; i < motions_; ++i) {
       found.value -= left[i].freedom * own[i] + 0.5 * left[i].square * std::exp(-2.0 * own[i]) + 0.5 * left[i].logs +
                      0.5 * std::pow((own[i] - log_s) / kOwn, 2);
@@ -146,6 +163,7 @@ class NoiseLikelihood {
   std::vector<Chunk> chunks_;
   std::size_t motions_;
   double pilot_px_;
+  bool handed_on_;
 };
 
 struct Dial {
@@ -193,13 +211,13 @@ void climb(const NoiseLikelihood& likelihood, const std::vector<Dial>& dials, No
 void weigh_lasting(const NoiseLikelihood& likelihood, const Dial& lasting, FilmNoise& noise) {
   NoiseShape shape = noise.shape;
   shape.lasting = 0.0;
-  const double without = likelihood.of(shape).value;
+  const double without = likelihood.of(shape).value - likelihood.known(shape);
   std::vector<double> logs;
   for (const double length : lasting.lengths) {
     for (const double size : lasting.values) {
       shape.lasting = size;
       shape.lasting_frames = length;
-      logs.push_back(likelihood.of(shape).value - without);
+      logs.push_back(likelihood.of(shape).value - likelihood.known(shape) - without);
     }
   }
   noise.lasting_gain = std::max(0.0, *std::max_element(logs.begin(), logs.end()));
@@ -228,23 +246,25 @@ bool find_film_noise(TrackSet& set, const MotionFit& fit) {
   if (points < kFewestPoints) return false;
   std::vector<Chunk> chunks;
   const double wave_hz = wave_frequency(set, fit);
-  for (std::size_t i = 0; i < set.motions.size(); ++i) add_chunks(set, fit, i, wave_hz, chunks);
+  const Slow& slow = set.handed_on ? kHandedOn : kNew;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) add_chunks(set, fit, i, wave_hz, slow, chunks);
   if (chunks.empty()) return false;
-  if (chunks.size() > kMostChunks) {
+  if (const std::size_t most = kMostPoints / slow.chunk; chunks.size() > most) {
     std::vector<Chunk> some;
-    for (std::size_t k = 0; k < kMostChunks; ++k) some.push_back(chunks[k * chunks.size() / kMostChunks]);
+    for (std::size_t k = 0; k < most; ++k) some.push_back(chunks[k * chunks.size() / most]);
     chunks = std::move(some);
   }
   std::nth_element(sds.begin(), sds.begin() + std::ssize(sds) / 2, sds.end());
   const double pilot_px = sds[sds.size() / 2];
-  const NoiseLikelihood likelihood(std::move(chunks), set.motions.size(), pilot_px);
+  const NoiseLikelihood likelihood(std::move(chunks), set.motions.size(), pilot_px, set.handed_on);
 
   const std::vector<double> sizes = {0.25, 0.5, 0.75, 1.1, 1.6, 2.4, 3.6, 5.4};
   std::vector<Dial> dials = {{&NoiseShape::pixels, sizes, &NoiseShape::pixels_px, {0.25, 0.4, 0.7}},
                              {&NoiseShape::phase, sizes, &NoiseShape::phase_px, {5.0, 20.0, 80.0}}};
-  if (set.lossy) dials.push_back({&NoiseShape::lasting, sizes, &NoiseShape::lasting_frames, {1.0, 2.0, 4.0}});
+  std::vector<double> lengths = {1.0, 2.0, 4.0};
+  if (set.handed_on) lengths.push_back(8.0);
+  if (set.lossy) dials.push_back({&NoiseShape::lasting, sizes, &NoiseShape::lasting_frames, lengths});
   FilmNoise noise;
-  if (set.handed_on) noise.shape.handed_on = kHandedOn;
   Likelihood best = likelihood.of(noise.shape);
   climb(likelihood, dials, noise.shape, best);
   if (set.lossy) weigh_lasting(likelihood, dials.back(), noise);

@@ -23,6 +23,12 @@ double block_excess(const core::BlockSteps& steps, double& relative) {
 
 }  // namespace
 
+double memory_log_evidence(const std::vector<FilmedClip>& clips) {
+  double memory = 1.0;
+  for (const FilmedClip& clip : clips) memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
+  return log_evidence_of((memory - 1.1) / kMemory, 1.0 / kMemory);
+}
+
 void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   double excess = 0.0, relative = 0.0, memory = 0.0;
   std::size_t lossy = 0, lossless = 0;
@@ -45,8 +51,8 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // seven columns tell their scatter poorly
   // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
   finding.stated = lossy > 0;
-  finding.log_evidence = std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks,
-                                  changes ? blocks : log_evidence_of((memory - 1.1) / kMemory, 1.0 / kMemory));
+  finding.log_evidence =
+      std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks, changes ? blocks : memory_log_evidence(clips));
   finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
   const std::string steps =
       relative > 2.0 ? fmt::format("{:.2g} times as large", 1.0 + relative)

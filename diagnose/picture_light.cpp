@@ -8,6 +8,7 @@
 
 #include "base/dense.h"
 #include "base/number_text.h"
+#include "diagnose/picture_file.h"
 #include "diagnose/picture_scene.h"
 
 namespace glidelab::diagnose {
@@ -76,7 +77,8 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   const double f_hz = flicker_of_mains(wave.f_hz, wave.sd_hz, camera.frame_rate_hz);
   const double passed = std::max(0.1, std::abs(averaged(f_hz, camera.exposure_s.value_or(0.0))));
   PictureFinding finding = finding_of("light_flicker");
-  double least = kLeastFlicker;
+  // Where the file does not tell, pixels that remember do: light that changes by less than 1 % cannot make them.
+  double least = memory_log_evidence(clips) > kSeenInPictures ? kLeastFlickerLossy : kLeastFlicker;
   for (const FilmedClip& clip : clips) {
     if (clip.record->lossy.value_or(false)) least = kLeastFlickerLossy;
     for (const core::SceneLook& look : clip.record->scene) {

@@ -1,8 +1,8 @@
 /// Findings about light: does it flicker, is it brighter on one side?
 ///
 /// Flicker: a wave in the brightness of what rests in the scene (in four bands of rows where these are exposed one
-/// after the other), against 0.2 % (1 % in a lossy file). Gradient: ln(brightness) of the marker = a + g s + q s² over
-/// its place s in metres from the picture's middle, against the 10 % a metre that any lamp makes.
+/// after the other), against 0.2 % (1 % in a file with loss, said or seen). Gradient: ln(brightness) of the marker = a
+/// + g s + q s² over its place s in metres from the picture's middle, against the 10 % a metre that any lamp makes.
 #pragma once
 
 #include "diagnose/picture_evidence.h"

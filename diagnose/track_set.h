@@ -20,7 +20,6 @@ struct NoiseShape {
   double pixels = 0.0, pixels_px = 0.4;
   double phase = 0.0, phase_px = 10.0;
   double lasting = 0.0, lasting_frames = 2.0;
-  double handed_on = 0.0;
   double jitter_s = 0.0;
 };
 

@@ -9,7 +9,6 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kHandedOnFrames = 8.0;
 constexpr std::size_t kStretch = 240;  // points that are whitened together
 
 }  // namespace
@@ -17,8 +16,7 @@ constexpr std::size_t kStretch = 240;  // points that are whitened together
 Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape, double white_px) {
   const auto n = static_cast<Eigen::Index>(frames.along_px.size());
   Eigen::MatrixXd covariance(n, n);
-  const double a = shape.pixels * shape.pixels, b = shape.phase * shape.phase, c = shape.lasting * shape.lasting,
-               h = shape.handed_on * shape.handed_on;
+  const double a = shape.pixels * shape.pixels, b = shape.phase * shape.phase, c = shape.lasting * shape.lasting;
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto p = static_cast<std::size_t>(i);
     for (Eigen::Index j = 0; j <= i; ++j) {
@@ -29,7 +27,6 @@ Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape,
       if (a > 0.0) of += a * std::exp(-0.5 * std::pow(d / shape.pixels_px, 2));
       if (b > 0.0) of += b * std::cos(2.0 * std::numbers::pi * d) * std::exp(-d / shape.phase_px);
       if (c > 0.0) of += c * std::exp(-lag / shape.lasting_frames);
-      if (h > 0.0) of += h * std::exp(-lag / kHandedOnFrames);
       covariance(i, j) = covariance(j, i) = of;
     }
     covariance(i, i) += 1.0 + std::pow(shape.jitter_s * frames.v_px_s[p] / white_px, 2);

@@ -7,7 +7,6 @@
 ///              + a² exp(-(d/l)²/2)             pixels that differ from each other (PRNU), at the marker's edges
 ///              + b² cos(2 pi d) exp(-d/L)      the place between two pixels, otherwise at places some L away
 ///              + c² exp(-n/m)                  what a codec with loss makes of frames that follow each other
-///              + h² exp(-n/8)                  and what one hands on that makes pictures out of those before
 ///              + (v tau/s)² [i = j]            uneven times
 ///
 /// Motions are independent of each other in it, and so are stretches of 240 points: that clips pass over the same

@@ -86,7 +86,6 @@ TEST_CASE("whitening makes the unit matrix of the covariance, and colouring take
   shape.pixels = 0.8;
   shape.phase = 0.5;
   shape.lasting = 0.6;
-  shape.handed_on = 0.4;
   shape.jitter_s = 1e-5;
   diagnose::whiten(motion, shape, 100.0);
   const auto n = static_cast<Eigen::Index>(motion.whitening.front().rows());
