@@ -16,7 +16,8 @@ struct EffectParameter {
   bool own = false;  ///< each motion has its own
   double low = 0.0;  ///< what it may be, of `member`
   double high = 0.0;
-  double step = 0.0;  ///< for the finite difference
+  double step = 0.0;       ///< for the finite difference
+  bool with_mass = false;  ///< `high` is that of a glider of up to 1 kg, of a heavier one as many times more
 };
 
 /// How the first fit is found.

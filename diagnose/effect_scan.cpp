@@ -55,12 +55,13 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
   EffectScan scan;
   scan.effect = effect;
+  const double most = highest(space.set(), info.parameters[0]);
   std::vector<double> logs;
   double best = -1.0;
   for (const std::vector<double>& shape : effect_shapes(space.set(), effect)) {
     ScoreColumn column = space.of_effect(effect, shape);
     const double square = seen_square(space, column);
-    const double z_most = info.parameters[0].high * std::sqrt(square);
+    const double z_most = most * std::sqrt(square);
     if (z_most < kSeen) {
       logs.push_back(0.0);  // says nothing
       continue;
@@ -77,7 +78,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
     const double size = gain > 0.0 ? score / square : 0.0;
     const double step = info.parameters[0].step;
     scan.values = {std::clamp(std::abs(size) < step ? step : size,
-                              info.both_signs ? 0.9 * info.parameters[0].low : step, 0.9 * info.parameters[0].high)};
+                              info.both_signs ? 0.9 * info.parameters[0].low : step, 0.9 * most)};
     scan.values.insert(scan.values.end(), shape.begin(), shape.end());
     scan.direction = std::move(column);
   }

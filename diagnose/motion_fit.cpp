@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/dense.h"
 #include "base/errors.h"
@@ -114,7 +115,7 @@ bool inside(const ParameterLayout& layout, const FitPoint& at) {
     if (!std::isfinite(value)) return false;
     if (global.kind == Global::Kind::alpha && std::abs(value) > 1.5) return false;
     if (global.kind != Global::Kind::effect) continue;
-    if (value < global.parameter->low || value > global.parameter->high) return false;
+    if (value < global.parameter->low || value > global.high) return false;
   }
   return true;
 }
@@ -201,17 +202,24 @@ FitPoint step_from(const MotionFit& fit, double damping) {
   return next;
 }
 
-/// x0 and v0 by a cubic through the first points.
+/// x0 and v0 by a parabola through the first points, of those that were not set aside where there are enough.
 Eigen::VectorXd start_of(const TrackedMotion& motion) {
-  const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(motion.t_s.size(), 25));
-  Eigen::MatrixXd design(n, 3);
-  Eigen::VectorXd x(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto p = static_cast<std::size_t>(i);
+  constexpr std::size_t kStartPoints = 25, kFewestStartPoints = 6;
+  std::vector<std::size_t> points;
+  for (std::size_t p = 0; p < motion.t_s.size() && points.size() < kStartPoints; ++p) {
+    if (!motion.outlier[p]) points.push_back(p);
+  }
+  if (points.size() < kFewestStartPoints) {
+    points.resize(std::min(motion.t_s.size(), kStartPoints));
+    std::iota(points.begin(), points.end(), std::size_t{0});
+  }
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(points.size()), 3);
+  Eigen::VectorXd x(design.rows());
+  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+    const std::size_t p = points[static_cast<std::size_t>(i)];
     const double t = motion.t_s[p] - motion.t_s.front();
-    const double weight = motion.outlier[p] ? 0.0 : 1.0;
-    design.row(i) << weight, weight * t, weight * t * t;
-    x[i] = weight * motion.x_m[p];
+    design.row(i) << 1.0, t, t * t;
+    x[i] = motion.x_m[p];
   }
   const Eigen::VectorXd fit = base::least_squares(design, x);
   return fit.head(2);
@@ -239,10 +247,17 @@ ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> e
       if (parameter.own) {
         own_.push_back(&parameter);
       } else {
-        globals_.push_back({Kind::effect, 0, &parameter, effect, parameter.step});
+        globals_.push_back({Kind::effect, 0, &parameter, effect, parameter.step, highest(set, parameter)});
       }
     }
   }
+}
+
+double highest(const TrackSet& set, const EffectParameter& parameter) {
+  if (!parameter.with_mass) return parameter.high;
+  double heaviest_kg = 1.0;
+  for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
+  return heaviest_kg * parameter.high;
 }
 
 std::size_t ParameterLayout::first_of(std::size_t effect) const {

@@ -33,6 +33,7 @@ class ParameterLayout {
     const EffectParameter* parameter = nullptr;
     std::size_t effect = 0;
     double step = 0.0;
+    double high = 0.0;  ///< of an effect: what it may be
   };
   const std::vector<Global>& globals() const { return globals_; }
   const std::vector<const EffectParameter*>& own() const { return own_; }  ///< after x0, v0
@@ -45,6 +46,9 @@ class ParameterLayout {
   std::vector<const EffectParameter*> own_;
   std::vector<std::size_t> effects_;
 };
+
+/// What a parameter may be of these gliders.
+double highest(const TrackSet& set, const EffectParameter& parameter);
 
 struct FitPoint {
   Eigen::VectorXd global;

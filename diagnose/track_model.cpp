@@ -11,6 +11,9 @@ namespace {
 constexpr double kLongestStep = 0.012;  // s: 80 frames a second need one step a frame
 constexpr double kLongestTurn = 0.3;    // of omega h and k h
 constexpr int kMostTurns = 20;          // reversals within one step; more is chatter about rest
+constexpr double kBarely = 1e-300;      // m/s: which way, and no faster
+constexpr int kMostLeaving = 40;        // steps to the instant at which friction gives way,
+constexpr double kSameTime_s = 1e-13;   // to this
 
 struct State {
   double x = 0.0, v = 0.0;
@@ -120,7 +123,7 @@ class Mover {
 
   State advance_part(State s, double t, double h) {
     for (int turn = 0; turn < kMostTurns && h > 0.0; ++turn) {
-      if (direction_ == 0 && !leave(s, t)) return s;
+      if (direction_ == 0 && !leave(s, t, h)) return s;
       const State next = rk4(s, t, h);
       if (next.v * direction_ >= 0.0 || !std::isfinite(next.v)) return next;
       // v = 0 on the way: the time by regula falsi, then Newton's steps.
@@ -141,10 +144,36 @@ class Mover {
     return s;
   }
 
-  bool leave(const State& s, double t) {
-    const double net = driving(s.x, 0.0, t);
-    if (!(std::abs(net) > friction(0.0))) return false;
-    direction_ = net > 0.0 ? 1 : -1;
+  /// At rest friction takes up what acts, up to its limit either way. False: it holds for all of h. Else t and h go on
+  /// to where it gives way, and the direction is that in which the glider leaves.
+  bool leave(const State& s, double& t, double& h) {
+    const auto up = [&](double at) { return driving(s.x, kBarely, at) - friction(0.0); };
+    const auto down = [&](double at) { return -driving(s.x, -kBarely, at) - friction(0.0); };
+    const auto beyond = [&](double at) { return std::max(up(at), down(at)); };
+    double before = beyond(t);
+    if (!(before > 0.0)) {
+      double after = beyond(t + h);
+      if (!(after > 0.0)) return false;
+      double low = 0.0, high = h;  // regula falsi, the end that stays halved
+      for (int i = 0; i < kMostLeaving && high - low > kSameTime_s; ++i) {
+        const double middle = low + (high - low) * before / (before - after);
+        const double there = beyond(t + middle);
+        if (there > 0.0) {
+          high = middle;
+          after = there;
+          before *= 0.5;
+        } else {
+          low = middle;
+          before = there;
+          after *= 0.5;
+          if (!(there < 0.0)) break;
+        }
+      }
+      const double at = before < 0.0 ? high : low;
+      t += at;
+      h -= at;
+    }
+    direction_ = up(t) > down(t) ? 1 : -1;
     return true;
   }
 
