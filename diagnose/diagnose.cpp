@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "core/analyze.h"
+#include "diagnose/driven_motions.h"
 #include "diagnose/film_noise.h"
 #include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
@@ -22,7 +23,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kFewestPositions = 40;  // all clips together: fewer carry no verdict beside four parameters
-constexpr std::size_t kMostForced = 8000;     // positions beside a recorded force: reversals and rests by the hundred
+constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
 constexpr double kContradiction = 5.0;        // standard deviations between two statements
 
 std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
@@ -44,13 +45,6 @@ std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
 void check(const TrackSet& set) {
   std::size_t points = 0;
   for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
-  std::size_t forced = 0;
-  for (const TrackedMotion& motion : set.motions) forced += motion.known.t_s.size();
-  if (forced > kMostForced) {
-    throw base::InputError(base::Issue{"", 0, "clips",
-                                       fmt::format("{} positions of clips with a known force (force_n)", forced),
-                                       fmt::format("{} at most: longer ones take the search too long", kMostForced)});
-  }
   if (set.motions.empty()) {
     throw base::InputError(base::Issue{"", 0, "clips", "no clip in which anything moves freely",
                                        "one or more clips of a glider that moves"});
@@ -153,6 +147,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   TrackSet set = track_set(results, setups, true);
   check(set);
   note_limits(setups, set);
+  cut_driven_motions(set, kFewestPoints);
   progress("weighing explanations", 0.1);
   PictureEvidence pictures;
   if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
@@ -167,6 +162,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     if (points >= kFewestPositions) {
       set = std::move(trimmed);
       note_limits(setups, set);
+      cut_driven_motions(set, kFewestPoints);
       set.notes.push_back(
           fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
                       set.disputed));

@@ -29,11 +29,14 @@ TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::si
 }
 
 void thin_out(TrackSet& set, std::size_t fewest) {
+  const auto driven = [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); };
   std::size_t points = 0;
-  for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
+  for (const TrackedMotion& motion : set.motions) points += driven(motion) ? 0 : motion.t_s.size();
   if (points <= kMostPoints) return;
   const std::size_t every = (points + kMostPoints - 1) / kMostPoints;
-  for (TrackedMotion& motion : set.motions) motion = some_points(motion, 0, motion.t_s.size(), every);
+  for (TrackedMotion& motion : set.motions) {
+    if (!driven(motion)) motion = some_points(motion, 0, motion.t_s.size(), every);
+  }
   std::erase_if(set.motions, [fewest](const TrackedMotion& motion) { return motion.t_s.size() < fewest; });
   set.notes.push_back(fmt::format(
       "Of {} positions one in {} is weighed: the law needs no more, and the search grows with them.", points, every));

@@ -1,8 +1,6 @@
 #include <cmath>
-#include <string>
 #include <vector>
 
-#include "base/errors.h"
 #include "catch.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/thin_tracks.h"
@@ -88,15 +86,5 @@ TEST_CASE("of very many positions some are weighed, spread over every motion") {
       CHECK(motion.t_s[i] == Approx(3e-3 * static_cast<double>(i)));
       CHECK(motion.sd_of(i) == Approx(motion.sd_m * (1.0 + 3.0 * static_cast<double>(i))));
     }
-  }
-}
-
-TEST_CASE("a recorded force of very many positions is refused, with how many there may be") {
-  const auto made = tests::made_experiment({{0.4, 0.0, -0.5, 0.5}}, {.recorded = pull_n}, 5, 2e-5, 8200, 1000.0);
-  try {
-    diagnose::diagnose_results(made.results, made.setups, {});
-    FAIL("accepted");
-  } catch (const base::InputError& error) {
-    CHECK(std::string(error.what()).find("8000 at most") != std::string::npos);
   }
 }
