@@ -13,12 +13,20 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
   std::vector<UnnamedFamily> families;
   add_place_families(space, families);
   add_member_families(space, families);
-  const auto likeliest = std::max_element(families.begin(), families.end(),
-                                          [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
-  for (auto family = families.begin(); family != families.end(); ++family) {
-    if (family != likeliest) family->columns.resize(0, 0);
+  const UnnamedFamily* shared = likeliest_shared(families);
+  for (UnnamedFamily& family : families) {
+    if (&family != shared) family.columns.resize(0, 0);
   }
   return families;
+}
+
+const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families) {
+  const UnnamedFamily* likeliest = nullptr;
+  for (const UnnamedFamily& family : families) {
+    if (family.variable == "clip" || family.columns.cols() == 0) continue;
+    if (likeliest == nullptr || family.log_evidence > likeliest->log_evidence) likeliest = &family;
+  }
+  return likeliest;
 }
 
 MotionFit with_unnamed(const MotionFit& fit, const UnnamedFamily& family) {

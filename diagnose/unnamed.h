@@ -29,12 +29,16 @@ struct UnnamedFamily {
   std::vector<double> at, size, sd;  ///< the unnamed function over its variable
   std::vector<std::string> names;    ///< of members (clips, groups); empty for a variable
   std::vector<UnnamedRegion> regions;
-  Eigen::MatrixXd columns;  ///< of the likeliest family only: its bumps over the noise, own parameters projected out
+  Eigen::MatrixXd columns;  ///< of the likeliest family that clips share only: its bumps over the noise, own parameters
+                            ///< projected out
   double tau = 0.0;         ///< standard deviation of their sizes
 };
 
 /// All families around a fit.
 std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
+
+/// The likeliest of those that say of one clip something about another; null: none. Their columns must be there.
+const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families);
 
 /// The fit with the family's bumps as further parameters, each N(0, tau²): in its linear neighbourhood, for
 /// held_out_gap(). The family must have its columns.

@@ -36,6 +36,13 @@ Normal normal_of(const ScoreSpace& space, const std::vector<ScoreColumn>& column
   return normal;
 }
 
+/// Variance of what such a gain leaves of the residuals, over the noise's: sizes are no surer than that. Never below 1.
+double left_of(const ScoreSpace& space, double gain) {
+  const ScoreColumn& residual = space.residual();
+  const auto points = static_cast<double>(residual.rest.size());
+  return std::max(1.0, (space.dot(residual, residual) - 2.0 * gain) / points);
+}
+
 /// The function that the bumps' sizes make, and its band.
 void draw(const Grid& grid, const SpreadEvidence& evidence, UnnamedFamily& family) {
   if (evidence.mean.size() == 0) return;
@@ -57,8 +64,8 @@ void draw(const Grid& grid, const SpreadEvidence& evidence, UnnamedFamily& famil
 
 /// One bump alone, or one step (all bumps from some place on), wherever it explains most: the evidence is averaged over
 /// the places. What acts at one place only is paid for once, and not for all the places where nothing is.
-UnnamedFamily one_place(const Normal& normal, const std::vector<ScoreColumn>& columns, const Grid& grid, bool step,
-                        UnnamedFamily family) {
+UnnamedFamily one_place(const ScoreSpace& space, const Normal& normal, const std::vector<ScoreColumn>& columns,
+                        const Grid& grid, bool step, UnnamedFamily family) {
   const Eigen::Index n = normal.scores.size();
   if (!normal.products.allFinite()) return family;
   const double largest = normal.products.diagonal().maxCoeff();
@@ -92,6 +99,7 @@ UnnamedFamily one_place(const Normal& normal, const std::vector<ScoreColumn>& co
     family.columns.col(0) += columns[static_cast<std::size_t>(c)].rest;
   }
   family.tau = std::numeric_limits<double>::infinity();
+  best.covariance *= left_of(space, best.gain);
   draw(grid, best, family);
   return family;
 }
@@ -120,6 +128,11 @@ UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& col
                     SpreadEvidence& evidence) {
   const Normal normal = normal_of(space, columns);
   evidence = normal.products.allFinite() ? log_spread_evidence(normal.products, normal.scores) : SpreadEvidence{};
+  if (const double left = left_of(space, evidence.gain); left > 1.0 && evidence.mean.size() > 0) {
+    const SpreadEvidence sized = log_spread_evidence(normal.products / left, normal.scores / left);
+    evidence.mean = sized.mean;
+    evidence.covariance = sized.covariance;
+  }
   family.log_evidence = evidence.log_evidence;
   family.gain = evidence.gain;
   family.columns = rests_of(columns);
@@ -158,8 +171,8 @@ void add_shapes(const ScoreSpace& space, const std::vector<ScoreColumn>& columns
   SpreadEvidence evidence;
   families.push_back(solve(space, columns, family, evidence));
   draw(grid, evidence, families.back());
-  families.push_back(one_place(normal, columns, grid, false, family));
-  families.push_back(one_place(normal, columns, grid, true, family));
+  families.push_back(one_place(space, normal, columns, grid, false, family));
+  families.push_back(one_place(space, normal, columns, grid, true, family));
 }
 
 }  // namespace glidelab::diagnose

@@ -23,7 +23,8 @@ double bump(double x, double middle, double width);
 
 UnnamedFamily family_of(std::string variable, std::string what, std::string unit);
 
-/// The family with the evidence of the columns' sizes, each N(0, tau²).
+/// The family with the evidence of the columns' sizes, each N(0, tau²). Where the family leaves more than the noise,
+/// the sizes (their tau too) and how sure they are go by what is left.
 UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
                     SpreadEvidence& evidence);
 

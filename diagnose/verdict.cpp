@@ -19,6 +19,7 @@ namespace {
 constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
 constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
 constexpr double kDoubt = 0.25;        // of nothing: three to one is the least for a claim
+constexpr double kBelowZero = 5.0;     // standard deviations
 constexpr std::size_t kPlotted = 250;
 
 std::string joined(const std::vector<std::size_t>& effects) {
@@ -220,6 +221,20 @@ Isolability isolability_of(const TrackSet& set, const MotionFit& nominal, const 
   return result;
 }
 
+/// Drag and friction take energy from a glider. A fit that has them give some says that something stated is wrong.
+void note_what_drives(const MotionFit& fit, Diagnosis& diagnosis) {
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
+    const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
+    if (!(value < -kBelowZero * sd)) continue;
+    diagnosis.notes.push_back(
+        fmt::format("The fit has a {} below zero ({:.2g} ± {:.1g}{}), which would drive the glider: what is missing "
+                    "takes it there, or "
+                    "what is stated of the inclination, of downhill or of the masses is wrong.",
+                    g == 0 ? "drag" : "friction", value, sd, g == 0 ? " N s/m" : ""));
+  }
+}
+
 }  // namespace
 
 const Hypothesis* best_named(const Comparison& comparison) {
@@ -262,22 +277,22 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     if (diagnosis.verdict == "unknown") {
       diagnosis.stage = add_error_runs(set, comparison.frames, families, diagnosis) ? "tracking" : stage_of(families);
     }
-    add_regions(set, families, diagnosis);
+    add_regions(set, nominal, families, diagnosis);
   }
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
   if (diagnosis.verdict == "unknown" && set.clips.size() > 1) {
     // The likeliest function without a name stands in for what is missing.
-    const auto family = std::max_element(families.begin(), families.end(),
-                                         [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+    const UnnamedFamily* family = likeliest_shared(families);
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.left_fit)] : nominal;
-    if (family != families.end() && family->columns.size() > 0) {
+    if (family != nullptr) {
       with = with_unnamed(beside, *family);
       gap_fit = &with;
     }
   }
   diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis);
+  note_what_drives(*fit, diagnosis);
   diagnosis.residuals = residuals_of(set, nominal, *fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
   const bool named_fit = diagnosis.verdict == "effect" && best != nullptr;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <span>
 
 namespace glidelab::diagnose {
 namespace {
@@ -10,10 +12,60 @@ namespace {
 constexpr double kNotable = 3.0;  // log evidence of an unnamed family that is worth a region
 constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
+constexpr double kBelieved = 2.0;  // times what accelerations lack: drag and friction take up some of it
+
+/// Speed and acceleration of what a fit leaves of a motion, each at its largest: by the parabola through nine
+/// neighbours at even times, none of them set aside.
+struct LargestRest {
+  double v_m_s = 0.0, a_m_s2 = 0.0;
+};
+
+LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>& rest_m) {
+  constexpr std::size_t kBeside = 4;
+  constexpr double kMean = 20.0 / 3.0, kSquares = 60.0, kFourths = 308.0;  // sums of k², and of (k² - mean)², k to 4
+  constexpr double kUneven = 0.2;
+  LargestRest largest;
+  for (std::size_t p = kBeside; p + kBeside < motion.t_s.size(); ++p) {
+    const double before = motion.t_s[p] - motion.t_s[p - kBeside], behind = motion.t_s[p + kBeside] - motion.t_s[p];
+    if (std::abs(behind - before) > kUneven * before) continue;
+    const double step = (before + behind) / (2.0 * kBeside);
+    double first = 0.0, second = 0.0;
+    bool aside = false;
+    for (std::size_t j = 0; j <= 2 * kBeside; ++j) {
+      const double k = static_cast<double>(j) - static_cast<double>(kBeside);
+      first += k * rest_m[p - kBeside + j];
+      second += (k * k - kMean) * rest_m[p - kBeside + j];
+      aside = aside || motion.outlier[p - kBeside + j] != 0;
+    }
+    if (aside) continue;
+    largest.v_m_s = std::max(largest.v_m_s, std::abs(first / (kSquares * step)));
+    largest.a_m_s2 = std::max(largest.a_m_s2, std::abs(2.0 * second / (kFourths * step * step)));
+  }
+  return largest;
+}
 
 }  // namespace
 
-void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis) {
+double most_lacking_n(const TrackSet& set, const MotionFit& nominal) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    const TrackModel model = model_of(set, *nominal.layout, nominal.at, i);
+    const std::vector<double> modelled =
+        move(model, motion.t_s, nominal.late.empty() ? std::span<const double>() : std::span(nominal.late[i])).x_m;
+    std::vector<double> rest_m = shared_errors(set, *nominal.layout, nominal.at, i, modelled);
+    for (std::size_t p = 0; p < rest_m.size(); ++p) rest_m[p] = motion.x_m[p] - modelled[p] - rest_m[p];
+    const LargestRest rest = largest_rest(motion, rest_m);
+    most = std::max(most, model.mass_kg * rest.a_m_s2 + std::abs(model.k_n_s_m) * rest.v_m_s);
+  }
+  return most;
+}
+
+void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
+                 Diagnosis& diagnosis) {
+  const double lacking_n = most_lacking_n(set, nominal);
+  double lightest_kg = std::numeric_limits<double>::infinity();
+  for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
   std::vector<const UnnamedFamily*> sorted;
   for (const UnnamedFamily& family : families) sorted.push_back(&family);
   std::sort(sorted.begin(), sorted.end(),
@@ -36,6 +88,10 @@ void add_regions(const TrackSet& set, const std::vector<UnnamedFamily>& families
     for (std::size_t r = 0; r < regions.size() && r < 2 && diagnosis.regions.size() < kMostRegions; ++r) {
       GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
                        regions[r].size,  family->unit,    family->what,  ""};
+      const double lacking = region.unit == "N"      ? lacking_n
+                             : region.unit == "m/s²" ? lacking_n / lightest_kg
+                                                     : std::numeric_limits<double>::infinity();
+      if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
       if (family->variable == "clip") {  // a clip as a whole
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
         region.variable = std::string("t_s");

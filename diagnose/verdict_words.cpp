@@ -43,10 +43,10 @@ std::string gap_words(const Diagnosis& diagnosis) {
     text += fmt::format("; with {} in the model it is {} times (1 is the floor)",
                         diagnosis.effects.size() > 1 ? "these effects" : "this effect", times(gap.after));
   }
-  if (diagnosis.verdict == "unknown" && gap.shrink && !diagnosis.regions.empty() &&
-      diagnosis.regions.front().clip.empty()) {
-    text += fmt::format("; with a free curve for it, learnt from the other clips, it is {} times (1 is the floor)",
-                        times(gap.after));
+  if (diagnosis.verdict == "unknown" && gap.shrink && gap.after < gap.before) {
+    text += fmt::format(
+        "; with a free curve that all clips share, learnt from the other clips, it is {} times (1 is the floor)",
+        times(gap.after));
   }
   return text + ".";
 }
@@ -76,7 +76,14 @@ std::string summary_of(const Diagnosis& diagnosis) {
       const GapRegion& region = diagnosis.regions.front();
       text += fmt::format(" What is left depends most on {}", in_words(region.variable));
       if (!region.clip.empty()) text = text + " and is largest in clip " + region.clip;
-      text += fmt::format(": {} of up to {:.2g} {}.", region.what, region.size, region.unit);
+      if (region.lacking) {
+        text += fmt::format(
+            ": {}. How large it is these data do not tell: the estimate, {:.2g} {}, is far more than the accelerations "
+            "lack anywhere ({:.2g} {}).",
+            region.what, region.size, region.unit, *region.lacking, region.unit);
+      } else {
+        text += fmt::format(": {} of up to {:.2g} {}.", region.what, region.size, region.unit);
+      }
     }
     return text + gap_words(diagnosis);
   }

@@ -40,6 +40,7 @@ Json where_json(const diagnose::Diagnosis& diagnosis) {
     object["what"] = region.what;
     put(object, "size", region.size);
     object["unit"] = region.unit;
+    if (region.lacking) put(object, "lacking", *region.lacking);
     where["regions"].push_back(std::move(object));
   }
   return where;

@@ -104,7 +104,8 @@ std::string region_table(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::GapRegion& region : diagnosis.regions) {
     table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
                escape(region.what), number_text(region.from, 3), number_text(region.to, 3),
-               number_text(region.size, 2) + " " + escape(region.unit), number_text(region.excess, 2)});
+               (region.lacking ? "not known" : number_text(region.size, 2) + " " + escape(region.unit)),
+               number_text(region.excess, 2)});
   }
   return table.empty() ? "" : table.str();
 }
