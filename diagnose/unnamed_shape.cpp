@@ -154,7 +154,8 @@ void name_regions(UnnamedFamily& family) {
   for (std::size_t i = 0; i < family.at.size(); ++i) {
     const double z = family.sd[i] > 0.0 ? std::abs(family.size[i]) / family.sd[i] : 0.0;
     if (z < kSure) continue;
-    const bool goes_on = !family.regions.empty() && i > 0 && family.regions.back().to == family.at[i - 1];
+    const bool goes_on = family.names.empty() && !family.regions.empty() && i > 0 &&
+                         family.regions.back().to == family.at[i - 1];  // members with names have no neighbours
     if (!goes_on) family.regions.push_back({family.at[i], family.at[i], 0.0, 0.0});
     UnnamedRegion& region = family.regions.back();
     region.to = family.at[i];

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
+#include <string>
+#include <utility>
 
 namespace glidelab::diagnose {
 namespace {
@@ -71,18 +74,19 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
   std::sort(sorted.begin(), sorted.end(),
             [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
   const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
+  std::set<std::pair<std::string, std::string>> shown;                               // variables and what acts there
   for (const UnnamedFamily* family : sorted) {
     // What a verdict rests on has its place named, however many looks there were.
     const bool rests = diagnosis.verdict == "unknown" && diagnosis.regions.empty() && family == sorted.front();
     if (family->log_evidence < (rests ? 0.0 : notable)) break;
-    const bool drawn = std::any_of(diagnosis.curves.begin(), diagnosis.curves.end(), [&](const GapCurve& curve) {
-      return curve.variable == family->variable && curve.what == family->what;
-    });
-    if (drawn) continue;  // the same at another width
+    const auto what = std::pair(family->variable, family->what);
+    if (shown.contains(what)) continue;  // the same at another width
     if (family->names.empty() && !family->at.empty() && diagnosis.curves.size() < kMostCurves) {
       diagnosis.curves.push_back(
           {family->variable, family->what, family->unit, family->log_evidence, family->at, family->size, family->sd});
+      shown.insert(what);
     }
+    if (!family->regions.empty()) shown.insert(what);
     std::vector<UnnamedRegion> regions = family->regions;
     std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.excess > b.excess; });
     for (std::size_t r = 0; r < regions.size() && r < 2 && diagnosis.regions.size() < kMostRegions; ++r) {

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "catch.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/unnamed_shape.h"
 #include "made_motions.h"
 
 using namespace glidelab;
@@ -42,6 +45,10 @@ TEST_CASE("a picture that creeps in each clip by its own way is no hand that pus
     REQUIRE(diagnosis.regions.size() > 0);
     CHECK(diagnosis.regions.front().what == "displacement");
     CHECK_FALSE(diagnosis.regions.front().clip.empty());
+    std::set<std::string> clips;
+    for (const diagnose::GapRegion& region : diagnosis.regions) {
+      if (!region.clip.empty()) CHECK(clips.insert(region.clip).second);
+    }
   }
 }
 
@@ -70,6 +77,24 @@ TEST_CASE("a hand that pushes until a moment keeps its name") {
     REQUIRE(diagnosis.verdict == "effect");
     CHECK(diagnosis.effects.front().id == "late_release");
   }
+}
+
+TEST_CASE("places beside each other are one region, clips beside each other are not") {
+  diagnose::UnnamedFamily family;
+  family.at = {0.0, 1.0, 2.0, 3.0};
+  family.size = {5.0, -9.0, 1.0, 4.0};
+  family.sd = {1.0, 1.0, 1.0, 1.0};
+  diagnose::UnnamedFamily clips = family;
+  clips.names = {"a", "b", "c", "d"};
+  diagnose::name_regions(family);
+  REQUIRE(family.regions.size() == 2);
+  CHECK(family.regions[0].from == 0.0);
+  CHECK(family.regions[0].to == 1.0);
+  CHECK(family.regions[0].size == -9.0);
+  diagnose::name_regions(clips);
+  REQUIRE(clips.regions.size() == 3);
+  CHECK(clips.regions[1].from == 1.0);
+  CHECK(clips.regions[1].to == 1.0);
 }
 
 TEST_CASE("unnamed evidence: a variable is as likely beforehand as another, however many shapes it has") {
