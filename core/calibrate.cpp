@@ -108,7 +108,19 @@ struct Term {
   const char* name;
   std::vector<Eigen::Index> places;  // of fx fy cx cy k1 k2 p1 p2 k3
   int fixing;                        // OpenCV's flag
+  int power;                         // of r², of a radial term
+  double usual;                      // by which part lenses move a picture's corner with it: a standard deviation
 };
+
+/// The part of a radial term's size that is left where lenses' sizes are N(0, usual²) at the corner: usual² /
+/// (usual² + sd²).
+double believed(const Term& term, double variance, const OpenCvCalibration& found, cv::Size size) {
+  const double u = 0.5 * size.width / found.matrix.at<double>(0, 0);
+  const double v = 0.5 * size.height / found.matrix.at<double>(1, 1);
+  const double at_corner = std::pow(u * u + v * v, term.power);
+  const double usual = term.usual * term.usual;
+  return usual / (usual + variance * at_corner * at_corner);
+}
 
 struct SupportedFit {
   OpenCvCalibration found;
@@ -118,10 +130,10 @@ struct SupportedFit {
 
 /// The terms that the views determine, from all five backwards (see the header).
 SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv::Size size, double square_m) {
-  const std::vector<Term> terms = {{"k3", {8}, cv::CALIB_FIX_K3},
-                                   {"p1, p2", {6, 7}, cv::CALIB_ZERO_TANGENT_DIST},
-                                   {"k2", {5}, cv::CALIB_FIX_K2},
-                                   {"k1", {4}, cv::CALIB_FIX_K1}};
+  const std::vector<Term> terms = {{"k3", {8}, cv::CALIB_FIX_K3, 3, 0.1},
+                                   {"p1, p2", {6, 7}, cv::CALIB_ZERO_TANGENT_DIST, 0, 0.0},
+                                   {"k2", {5}, cv::CALIB_FIX_K2, 2, 0.2},
+                                   {"k1", {4}, cv::CALIB_FIX_K1, 1, 0.3}};
   int flags = 0;
   SupportedFit fit;
   fit.found = run_opencv(views, size, square_m, flags);
@@ -140,16 +152,17 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
     const Eigen::MatrixXd own = fit.uncertainty.covariance(term.places, term.places);
     const Eigen::MatrixXd with_others = fit.uncertainty.covariance(Eigen::all, term.places);
     const Eigen::VectorXd weighted = base::solve_positive(own, value);
-    const double statistic = value.dot(weighted);
+    const double part = is_radial ? believed(term, own(0, 0), fit.found, size) : 1.0;
+    const double statistic = part * value.dot(weighted);
     const double limit = count == 1 ? kSignificantOne : kSignificantPair;
     tests.push_back(fmt::format("{}: {:.3g} of {:.3g}", term.name, statistic, limit));
     if (statistic > limit) {
       if (is_radial) radial = false;
       continue;
     }
-    const Eigen::VectorXd moved = base::product(with_others, weighted);
+    const Eigen::VectorXd moved = part * base::product(with_others, weighted);
     const double real = std::max(0.0, 1.0 - static_cast<double>(count) / std::max(statistic, 1e-300));
-    left_out += base::product(with_others, base::solve_positive(own, with_others.transpose())) +
+    left_out += part * base::product(with_others, base::solve_positive(own, with_others.transpose())) +
                 real * base::product(moved, moved.transpose());
     flags |= term.fixing;
     fit.found = run_opencv(views, size, square_m, flags);
