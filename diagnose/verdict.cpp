@@ -229,8 +229,7 @@ void note_what_drives(const MotionFit& fit, Diagnosis& diagnosis) {
     if (!(value < -kBelowZero * sd)) continue;
     diagnosis.notes.push_back(
         fmt::format("The fit has a {} below zero ({:.2g} ± {:.1g}{}), which would drive the glider: what is missing "
-                    "takes it there, or "
-                    "what is stated of the inclination, of downhill or of the masses is wrong.",
+                    "takes it there, or what is stated of the inclination, of downhill or of the masses is wrong.",
                     g == 0 ? "drag" : "friction", value, sd, g == 0 ? " N s/m" : ""));
   }
 }

@@ -4,9 +4,13 @@
 
 namespace glidelab::validate {
 
-void clear(Canvas& canvas) {
-  for (const cv::Rect& rect : canvas.drawn) canvas.picture(rect).setTo(0);
-  canvas.drawn.clear();
+void Canvas::clear() {
+  for (const cv::Rect& rect : drawn) picture(rect).setTo(0);
+  drawn.clear();
+}
+
+bool is_free(const std::shared_ptr<Canvas>& canvas) {
+  return canvas.use_count() == 1 && canvas->picture.u->refcount == 1;
 }
 
 std::shared_ptr<Canvas> CanvasPool::take(cv::Size size, int type) {
@@ -21,12 +25,12 @@ std::shared_ptr<Canvas> CanvasPool::take(cv::Size size, int type) {
   if (!canvas || canvas->picture.size() != size || canvas->picture.type() != type) {
     return std::make_shared<Canvas>(Canvas{cv::Mat::zeros(size, type), {}});
   }
-  clear(*canvas);
+  canvas->clear();
   return canvas;
 }
 
 void CanvasPool::give(std::shared_ptr<Canvas> canvas) {
-  if (canvas.use_count() > 1 || !canvas->is_free()) return;
+  if (!is_free(canvas)) return;
   const std::lock_guard lock(mutex_);
   all_.push_back(std::move(canvas));
 }

@@ -15,9 +15,12 @@ struct Canvas {
   cv::Mat picture;
   std::vector<cv::Rect> drawn;
 
-  /// Nobody else looks at the pixels.
-  bool is_free() const { return picture.u->refcount == 1; }
+  /// All 0 again.
+  void clear();
 };
+
+/// Whether nobody but the caller, who holds this pointer, looks at the canvas or its pixels.
+bool is_free(const std::shared_ptr<Canvas>& canvas);
 
 /// Between clips, also of different threads. Canvases are of one size and depth; of another none is kept.
 class CanvasPool {
@@ -32,8 +35,5 @@ class CanvasPool {
   std::mutex mutex_;
   std::vector<std::shared_ptr<Canvas>> all_;
 };
-
-/// All 0 again.
-void clear(Canvas& canvas);
 
 }  // namespace glidelab::validate

@@ -23,8 +23,8 @@ class Canvases {
 
   std::shared_ptr<Canvas> clear_one() {
     for (const std::shared_ptr<Canvas>& canvas : all_) {
-      if (canvas.use_count() > 1 || !canvas->is_free()) continue;
-      clear(*canvas);
+      if (!is_free(canvas)) continue;
+      canvas->clear();
       return canvas;
     }
     all_.push_back(pool_->take(size_, type_));

@@ -224,3 +224,18 @@ TEST_CASE("what is not ruled out is neither claimed nor called explained") {
   open.ranking.front().probability = 0.05;
   CHECK(diagnose::summary_of(open).find("Nothing is missing") != std::string::npos);
 }
+
+TEST_CASE("a drag below zero, which would drive the glider, is a note") {
+  const auto note_of = [](const tests::MadeEffect& effect) {
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), effect, 9));
+    const auto note = std::find_if(diagnosis.notes.begin(), diagnosis.notes.end(), [](const std::string& words) {
+      return words.find("below zero") != std::string::npos;
+    });
+    return note == diagnosis.notes.end() ? std::string() : *note;
+  };
+  // Driven by 1.3 K v against its drag of K v: -0.3 K is left, -0.279 N s/m.
+  const double k = tests::MadeGlider{}.k_n_s_m;
+  const std::string driven = note_of({.force = [k](double, double, double v, double) { return 1.3 * k * v; }});
+  CHECK(driven.find("a drag below zero (-0.28") != std::string::npos);
+  CHECK(note_of({}).empty());
+}
