@@ -57,6 +57,12 @@ std::string error_text(double error, double sd) {
   return fmt::format("{:+.{}f}", error, decimals_of(sd));
 }
 
+std::string gain_text(double gain) {
+  constexpr double kWithoutDecimals = 1e6;
+  if (!std::isfinite(gain)) return number_text(gain);
+  return std::abs(gain) < kWithoutDecimals ? fmt::format("{:+.1f}", gain) : fmt::format("{:+.3e}", gain);
+}
+
 std::string r2_text(double r2) {
   if (!std::isfinite(r2)) return "–";
   // Never rounded up to 1: 0.99999996 keeps its digits.

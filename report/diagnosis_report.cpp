@@ -58,7 +58,7 @@ std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
     const auto& ranked = diagnosis.ranking[i];
     table.row(
-        {escape(ranked.id), probability_text(ranked.probability), fmt::format("{:+.1f}", ranked.log_evidence_gain)});
+        {escape(ranked.id), probability_text(ranked.probability), gain_text(ranked.log_evidence_gain)});
   }
   return table.str();
 }

@@ -37,7 +37,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
     const auto& ranked = diagnosis.ranking[i];
     rows.push_back(
-        {ranked.id, fmt::format("{:.3f}", ranked.probability), fmt::format("{:+.1f}", ranked.log_evidence_gain)});
+        {ranked.id, fmt::format("{:.3f}", ranked.probability), gain_text(ranked.log_evidence_gain)});
   }
   text += text_table(rows, 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {

@@ -6,6 +6,7 @@
 namespace glidelab::report {
 
 using base::error_text;
+using base::gain_text;
 using base::number_text;
 using base::r2_text;
 using base::sd_text;

@@ -130,10 +130,12 @@ Plot front_plot(const Requirement& requirement) {
   const Target& target = requirement.targets.front();
   PlotData met{"met", {}}, missed{"missed", {}}, front{"front", {}};
   double best = std::numeric_limits<double>::infinity();
+  double number = 0.0;
   for (const Candidate& candidate : requirement.candidates) {  // the cheapest first
+    ++number;
     const double value = reach_of(candidate), cost = cost_of(requirement, candidate);
     if (!std::isfinite(value)) continue;
-    (reached(candidate) ? met : missed).rows.push_back({cost, value});
+    (reached(candidate) ? met : missed).rows.push_back({cost, value, number});
     if (value < best) {
       if (!front.rows.empty()) front.rows.push_back({cost, best});
       front.rows.push_back({cost, value});
@@ -151,13 +153,17 @@ Plot front_plot(const Requirement& requirement) {
   const auto add = [&](const PlotData& block, const std::string& how) {
     if (block.rows.empty()) return;
     script += fmt::format(", ${} using 1:2 {}", block.name, how);
+    if (block.rows.front().size() > 2) {
+      script += fmt::format(", ${} using 1:2:(sprintf('%d', $3)) with labels offset 1.1,0.5 notitle", block.name);
+    }
     data.push_back(block);
   };
   add(front, fmt::format("with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
   add(met, fmt::format("with points pt 7 ps 0.8 lc rgb '{}' title 'reaches all targets'", kColors[2]));
   add(missed, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' title 'does not'", kColors[1]));
   return {Drawing{script, data, {620, 420}},
-          "What each camera reaches over what it costs; the line joins those that no cheaper one beats",
+          "What each camera, by its number in the tables, reaches over what it costs; the line joins those that no "
+          "cheaper one beats",
           "Reached accuracy over cost"};
 }
 
@@ -168,23 +174,27 @@ Page requirement_report(const Requirement& requirement) {
                           escape(requirement.name), escape(targets_text(requirement)), order_text(requirement));
   const std::string next = next_step(requirement);
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
-  std::vector<std::string> header = {"camera", "cost", "verdict", "frames/s", "position noise (µm)"};
+  std::vector<std::string> header = {"no.", "camera", "cost", "verdict", "frames/s", "position noise (µm)"};
   for (const Target& target : requirement.targets) {
     header.push_back("bound: " + escape(target_name(target, scale_of(target).factor)));
     header.push_back("by runs" + escape(same_unit(target)));
   }
-  HtmlTable good(header, 3);
-  header.insert(header.begin() + 3, "what limits it");
-  HtmlTable others(header, 4);
+  HtmlTable good(header, 4);
+  header.insert(header.begin() + 4, "what limits it");
+  HtmlTable others(header, 5);
   for (const Candidate& candidate : requirement.candidates) {
-    std::vector<std::string> row = {escape(candidate.name), escape(cost_text(requirement, candidate)),
-                                    escape(describe(candidate)), number_text(candidate.frame_rate_hz, 4),
+    const auto number = &candidate - requirement.candidates.data() + 1;
+    std::vector<std::string> row = {std::to_string(number),
+                                    escape(candidate.name),
+                                    escape(cost_text(requirement, candidate)),
+                                    escape(describe(candidate)),
+                                    number_text(candidate.frame_rate_hz, 4),
                                     std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"};
     add_results(row, requirement, candidate);
     if (reached(candidate)) {
       good.row(row);
     } else {
-      row.insert(row.begin() + 3, escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
+      row.insert(row.begin() + 4, escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
       others.row(row);
     }
   }
@@ -194,8 +204,8 @@ Page requirement_report(const Requirement& requirement) {
   body += fmt::format(
       "<p class=\"soft\">The bound is that of Cramér and Rao for the motion seen at this rate with this noise of a "
       "position, which is itself the bound of the marker's centre for the camera's light and noise. {} \"What limits "
-      "it\" "
-      "says how many times smaller the bound of the hardest target (\"by runs\": the error) is with one limitation "
+      "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) is with one "
+      "limitation "
       "thought away. A lens, a codec, a rolling shutter and the calibration are in rendered runs only (--confirm "
       "clips).</p>\n",
       requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")

@@ -63,6 +63,20 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));
 }
 
+TEST_CASE("the numbers in the plot of require are those of its tables, the cheapest camera first") {
+  validate::Requirement requirement = one_camera("mu", 0.0005, 1.8e-5);
+  requirement.candidates.push_back(requirement.candidates.front());
+  requirement.candidates.back().name = "phone";
+  requirement.candidates.back().verdict = validate::Verdict::missed;
+  requirement.candidates.back().results.front().found = 0.002;
+  const report::Page page = report::requirement_report(requirement);
+  CHECK(has(page.html, "<td>1</td><td>webcam</td>"));
+  CHECK(has(page.html, "<td>2</td><td>phone</td>"));
+  const std::string& plotted = page.files.at("plots/01-reached-accuracy-over-cost.csv");
+  CHECK(has(plotted, "# met\n10,1.98e-05,1\n"));
+  CHECK(has(plotted, "# missed\n10,0.002,2\n"));
+}
+
 TEST_CASE("a plan says sizes with their units, and what to do about effects that look alike") {
   diagnose::Plan plan;
   plan.clips = 2;
