@@ -43,7 +43,8 @@ struct DiagnoseCommand {
 /// What is planned: a scenario's motions with noise, or folders that were recorded.
 diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& progress) {
   const fs::path first = options.experiments.front();
-  if (fs::is_directory(first)) {
+  std::error_code ignored;
+  if (fs::is_directory(first, ignored)) {
     const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
     std::vector<core::ClipSetup> setups;
     for (const fs::path& folder : folders) {

@@ -29,7 +29,8 @@ struct LawsOptions {
 std::vector<fs::path> files_of(const std::vector<std::string>& names) {
   std::vector<fs::path> files;
   for (const std::string& name : names) {
-    if (!fs::is_directory(name)) {
+    std::error_code ignored;
+    if (!fs::is_directory(name, ignored)) {
       files.emplace_back(name);
       continue;
     }

@@ -23,7 +23,8 @@ struct NewOptions {
 };
 
 void check_free(const fs::path& folder) {
-  if (!fs::exists(fs::symlink_status(folder))) return;
+  std::error_code failure;  // what cannot be looked at says so when it is made
+  if (!fs::exists(fs::symlink_status(folder, failure))) return;
   if (fs::is_directory(folder) && fs::is_empty(folder)) return;
   throw base::InputError(base::Issue{folder.string(), 0, "",
                                      fs::is_directory(folder) ? "a folder that is not empty" : "something that exists",

@@ -157,12 +157,15 @@ void append_file(const fs::path& path, std::string_view bytes) {
 std::string read_file(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
-  if (!stream || fs::is_directory(path)) {
+  std::error_code failure;  // of a name that is too long, or in a folder that may not be looked into
+  const fs::file_status status = fs::status(path, failure);
+  if (!stream || fs::is_directory(status)) {
     throw InputError(Issue{path.string(), 0, "",
-                           fs::is_directory(path) ? "a folder"
-                           : fs::exists(path)     ? "no readable file"
-                                                  : "nothing",
-                           fs::is_directory(path) ? "a file" : "a readable file"});
+                           fs::is_directory(status)               ? "a folder"
+                           : fs::exists(status)                   ? "no readable file"
+                           : status.type() == fs::file_type::none ? failure.message()
+                                                                  : "nothing",
+                           fs::is_directory(status) ? "a file" : "a readable file"});
   }
   text << stream.rdbuf();
   if (stream.bad()) throw InputError(Issue{path.string(), 0, "", "a read error", "a readable file"});

@@ -5,7 +5,8 @@
 namespace glidelab::core {
 
 bool is_bare_track(const std::filesystem::path& path) {
-  return std::filesystem::is_regular_file(path) && path.filename() != "experiment.toml";
+  std::error_code ignored;  // what cannot be looked at is none
+  return std::filesystem::is_regular_file(path, ignored) && path.filename() != "experiment.toml";
 }
 
 Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options) {

@@ -254,13 +254,16 @@ void check_folder(const fs::path& path) {
   const auto refuse = [&](const std::string& found, const std::string& expected) {
     throw base::InputError(base::Issue{path.string(), 0, "", found, expected});
   };
-  if (!fs::exists(path)) refuse("nothing", wanted);
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (status.type() == fs::file_type::none) refuse(failure.message(), wanted);
+  if (!fs::exists(status)) refuse("nothing", wanted);
   if (path.filename() == "experiment.toml") {
     refuse("a file",
            fmt::format("the folder that it is in, {}", path.has_parent_path() ? path.parent_path().string() : "."));
   }
-  if (!fs::is_directory(path)) refuse("a file", wanted);
-  if (!fs::exists(path / "experiment.toml")) refuse("a folder without experiment.toml", wanted);
+  if (!fs::is_directory(status)) refuse("a file", wanted);
+  if (!fs::exists(path / "experiment.toml", failure)) refuse("a folder without experiment.toml", wanted);
 }
 
 }  // namespace

@@ -1,22 +1,73 @@
 #include "diagnose/track_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLongestStep = 0.012;  // s: 80 frames a second need one step a frame
-constexpr double kLongestTurn = 0.3;    // of omega h and k h
-constexpr int kMostTurns = 20;          // reversals within one step; more is chatter about rest
-constexpr double kBarely = 1e-300;      // m/s: which way, and no faster
-constexpr int kMostLeaving = 40;        // steps to the instant at which friction gives way,
-constexpr double kSameTime_s = 1e-13;   // to this
+constexpr double kLongestStep = 0.0126;  // s: 80 frames a second need one step a frame
+constexpr double kLongestTurn = 0.3;     // of omega h and k h
+constexpr int kMostTurns = 20;           // reversals within one step; more is chatter about rest
+constexpr double kBarely = 1e-300;       // m/s: which way, and no faster
+constexpr int kMostLeaving = 40;         // steps to the instant at which friction gives way,
+constexpr double kSameTime_s = 1e-13;    // to this
+constexpr double kRounding_s = 1e-15;    // of times of some seconds
 
 struct State {
   double x = 0.0, v = 0.0;
+};
+
+/// Between two instants that one step joins: the polynomial of fifth order through place, speed and acceleration.
+struct Stride {
+  State from, to;
+  double a_from = 0.0, a_to = 0.0, length_s = 0.0;
+
+  State at(double since_s) const {
+    const double h = length_s, u = since_s / h;
+    const double a0 = 0.5 * a_from * h * h, rest = to.x - from.x - from.v * h - a0;
+    const double slope = (to.v - from.v) * h - 2.0 * a0, bend = 0.5 * (a_to - a_from) * h * h;
+    const double c3 = 10.0 * rest - 4.0 * slope + bend, c4 = -15.0 * rest + 7.0 * slope - 2.0 * bend,
+                 c5 = 6.0 * rest - 3.0 * slope + bend;
+    return {from.x + u * (from.v * h + u * (a0 + u * (c3 + u * (c4 + u * c5)))),
+            from.v + u * (2.0 * a0 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5))) / h};
+  }
+};
+
+/// sin(omega t + phase) at instants that follow each other by equal steps, without a sine for each.
+class Wave {
+ public:
+  Wave(double hz, double phase) : omega_(2.0 * std::numbers::pi * hz), phase_(phase) {}
+
+  /// At t, t + h/2 and t + h.
+  std::array<double, 3> over(double t, double h) {
+    if (std::abs(t - t_) > kRounding_s) {
+      sin_ = std::sin(omega_ * t + phase_);
+      cos_ = std::cos(omega_ * t + phase_);
+    }
+    if (std::abs(h - h_) > kRounding_s) {
+      half_sin_ = std::sin(0.5 * omega_ * h);
+      half_cos_ = std::cos(0.5 * omega_ * h);
+      h_ = h;
+    }
+    std::array<double, 3> values{sin_, 0.0, 0.0};
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      values[i] = sin_ * half_cos_ + cos_ * half_sin_;
+      cos_ = cos_ * half_cos_ - sin_ * half_sin_;
+      sin_ = values[i];
+    }
+    t_ = t + h;
+    return values;
+  }
+
+ private:
+  double omega_, phase_;
+  double t_ = std::numeric_limits<double>::infinity(), sin_ = 0.0, cos_ = 0.0;  // where the last step ended
+  double h_ = std::numeric_limits<double>::infinity(), half_sin_ = 0.0, half_cos_ = 0.0;
 };
 
 class Mover {
@@ -26,7 +77,8 @@ class Mover {
         sin_(std::sin(model.alpha_rad)),
         weight_(model.mass_kg * model.gravity_m_s2),
         cos_(std::cos(model.alpha_rad)),
-        inertia_(model.mass_kg + model.effects.wheels_kg) {
+        by_inertia_(1.0 / (model.mass_kg + model.effects.wheels_kg)),
+        wave_(model.effects.shake_hz, model.effects.shake_phase) {
     const double rate = std::max(
         {2.0 * std::numbers::pi * model.effects.shake_hz * (model.effects.shake_m_s2 != 0.0 ? 1.0 : 0.0),
          std::abs(model.k_n_s_m) / model.mass_kg, std::sqrt(std::max(0.0, model.effects.tether_n_m) / model.mass_kg)});
@@ -35,6 +87,13 @@ class Mover {
 
   /// What acts whichever way it moves.
   double driving(double x, double v, double t) const {
+    const EffectValues& e = m_.effects;
+    return driving(x, v, t,
+                   e.shake_m_s2 == 0.0 ? 0.0 : std::sin(2.0 * std::numbers::pi * e.shake_hz * t + e.shake_phase));
+  }
+
+  /// `wave`: the shaking's sine at t.
+  double driving(double x, double v, double t, double wave) const {
     const EffectValues& e = m_.effects;
     double viscous = m_.k_n_s_m * v;
     if (e.power != 0.0) viscous *= v == 0.0 ? 0.0 : std::pow(std::abs(v), e.power);
@@ -46,9 +105,7 @@ class Mover {
     double force = weight_ * (sin_ + e.bow_1_m * off) - viscous;
     force -= e.c_kg_m * v * std::abs(v) + e.asymmetry * m_.mu * weight_ * cos_;
     if (x > e.tether_x_m) force -= e.tether_n_m * (x - e.tether_x_m);
-    if (e.shake_m_s2 != 0.0) {
-      force += m_.mass_kg * e.shake_m_s2 * std::sin(2.0 * std::numbers::pi * e.shake_hz * t + e.shake_phase);
-    }
+    force += m_.mass_kg * e.shake_m_s2 * wave;
     if (pushed_) force += m_.mass_kg * e.push_m_s2;
     if (m_.known != nullptr) force += known_n_ + known_n_s_ * (t - known_t_);
     if (m_.unnamed != nullptr) force += (*m_.unnamed)(x, v, t);
@@ -63,9 +120,22 @@ class Mover {
     return mu * weight_ * cos_ + e.force_n;
   }
 
-  double slide(double x, double v, double t, int direction) const {
-    return (driving(x, v, t) - direction * friction(v)) / inertia_;
+  double slide(double x, double v, double t, double wave) const {
+    return (driving(x, v, t, wave) - direction_ * friction(v)) * by_inertia_;
   }
+
+  /// To t_end by one step, where that is short enough and nothing happens on the way: no turn, no hand that lets go.
+  std::optional<Stride> stride(const State& s, double t, double t_end) {
+    const EffectValues& e = m_.effects;
+    const bool pushed = e.push_m_s2 != 0.0 && t < e.release_s;
+    if (m_.known != nullptr || direction_ == 0 || (pushed && e.release_s < t_end)) return {};
+    pushed_ = pushed;
+    const Step step = rk4(s, t, t_end - t);
+    if (!(step.end.v * direction_ > 0.0)) return {};
+    return Stride{s, step.end, step.a_start, slide(step.end.x, step.end.v, t_end, step.wave_end), t_end - t};
+  }
+
+  double longest_step() const { return step_; }
 
   /// To t_end, by way of the known force's samples: it has corners there. `stretch`: true over stated time.
   State advance(State s, double t, double t_end, double stretch) {
@@ -109,29 +179,37 @@ class Mover {
     return s;
   }
 
-  State rk4(State s, double t, double h) const {
-    const int d = direction_;
-    const double a1 = slide(s.x, s.v, t, d);
+  struct Step {
+    State end;
+    double a_start = 0.0, wave_end = 0.0;
+  };
+
+  Step rk4(const State& s, double t, double h) {
+    const std::array<double, 3> wave = m_.effects.shake_m_s2 == 0.0 ? std::array<double, 3>{} : wave_.over(t, h);
+    const double a1 = slide(s.x, s.v, t, wave[0]);
     const double v2 = s.v + 0.5 * h * a1;
-    const double a2 = slide(s.x + 0.5 * h * s.v, v2, t + 0.5 * h, d);
+    const double a2 = slide(s.x + 0.5 * h * s.v, v2, t + 0.5 * h, wave[1]);
     const double v3 = s.v + 0.5 * h * a2;
-    const double a3 = slide(s.x + 0.5 * h * v2, v3, t + 0.5 * h, d);
+    const double a3 = slide(s.x + 0.5 * h * v2, v3, t + 0.5 * h, wave[1]);
     const double v4 = s.v + h * a3;
-    const double a4 = slide(s.x + h * v3, v4, t + h, d);
-    return {s.x + h / 6.0 * (s.v + 2.0 * v2 + 2.0 * v3 + v4), s.v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)};
+    const double a4 = slide(s.x + h * v3, v4, t + h, wave[2]);
+    return {{s.x + h / 6.0 * (s.v + 2.0 * v2 + 2.0 * v3 + v4), s.v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)},
+            a1,
+            wave[2]};
   }
 
   State advance_part(State s, double t, double h) {
     for (int turn = 0; turn < kMostTurns && h > 0.0; ++turn) {
       if (direction_ == 0 && !leave(s, t, h)) return s;
-      const State next = rk4(s, t, h);
+      const State next = rk4(s, t, h).end;
       if (next.v * direction_ >= 0.0 || !std::isfinite(next.v)) return next;
       // v = 0 on the way: the time by regula falsi, then Newton's steps.
       double at = h * std::abs(s.v) / (std::abs(s.v) + std::abs(next.v));
       State stop = s;
       for (int i = 0; i < 6; ++i) {
-        stop = rk4(s, t, at);
-        const double a = slide(stop.x, stop.v, t + at, direction_);
+        const Step step = rk4(s, t, at);
+        stop = step.end;
+        const double a = slide(stop.x, stop.v, t + at, step.wave_end);
         const double change = a != 0.0 ? -stop.v / a : 0.0;
         if (!(std::abs(change) > 1e-15)) break;
         at = std::clamp(at + change, 0.0, h);
@@ -178,7 +256,8 @@ class Mover {
   }
 
   const TrackModel& m_;
-  double sin_, weight_, cos_, inertia_;
+  double sin_, weight_, cos_, by_inertia_;
+  Wave wave_;
   double step_ = kLongestStep;
   int direction_ = 0;
   bool pushed_ = false;
@@ -211,13 +290,34 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   mover.start(s.v);
   const double stretch = 1.0 + model.effects.rate_error;
   double t = stretch * times_s.front();
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
+  std::vector<double> at(times_s.size());  // true times, never before the one before
+  for (std::size_t i = 0; i < at.size(); ++i) {
     const double rows = model.row_px.empty() ? 0.0 : model.row_px[i] - model.row_px.front();
-    const double next = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + model.effects.line_s * rows;
-    if (next > t) s = mover.advance(s, t, next, stretch);
-    t = std::max(t, next);
-    moved.x_m.push_back(seen(model, s.x, times_s[i]));
-    moved.v_m_s.push_back(s.v);
+    at[i] = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + model.effects.line_s * rows;
+    at[i] = std::max(at[i], i > 0 ? at[i - 1] : t);
+  }
+  const auto add = [&](const State& state) {
+    moved.x_m.push_back(seen(model, state.x, times_s[moved.x_m.size()]));
+    moved.v_m_s.push_back(state.v);
+  };
+  for (std::size_t i = 0; i < at.size();) {
+    // Several frames by one step where it reaches so far.
+    std::size_t last = i;
+    while (last + 1 < at.size() && at[last + 1] - t <= mover.longest_step()) ++last;
+    if (last > i && at[last] > t) {
+      if (const std::optional<Stride> stride = mover.stride(s, t, at[last])) {
+        for (; i < last; ++i) add(stride->at(at[i] - t));
+        s = stride->to;
+        t = at[last];
+        add(s);
+        ++i;
+        continue;
+      }
+    }
+    if (at[i] > t) s = mover.advance(s, t, at[i], stretch);
+    t = at[i];
+    add(s);
+    ++i;
   }
   return moved;
 }

@@ -5,8 +5,9 @@
 ///                       - k (x - x_t)+ + m A sin(2 pi f t + phi) + m push [t < t_r] + a known force + an unnamed one
 ///
 /// sliding; at v = 0 the glider stays while friction of up to its limit, whichever way, can hold it. Runge and Kutta's
-/// fourth order in equal parts of every frame interval (k h and omega h at most 0.3), stopped exactly at v = 0 and at
-/// t_r: a smooth function of all parameters, so that its derivatives follow by finite differences. SI units.
+/// fourth order in equal parts of every frame interval, or over several frames, with a polynomial of fifth order
+/// between (steps of at most 12.6 ms; k h and omega h at most 0.3), stopped exactly at v = 0 and at t_r: a smooth
+/// function of all parameters, so that its derivatives follow by finite differences. SI units.
 #pragma once
 
 #include <functional>

@@ -73,8 +73,10 @@ void read_source(const TomlTable& table, Design design, Axis& axis, const std::f
   } else if (form == "cameras") {
     axis.keys = {"camera_file"};
     for (const std::string& name : table.texts_or_none("cameras")) {
-      const std::filesystem::path path = std::filesystem::weakly_canonical(folder / name);
-      if (!std::filesystem::is_directory(path)) {
+      std::error_code ignored;  // what cannot be looked at says so when it is read
+      const std::filesystem::path resolved = std::filesystem::weakly_canonical(folder / name, ignored);
+      const std::filesystem::path path = resolved.empty() ? folder / name : resolved;
+      if (!std::filesystem::is_directory(path, ignored)) {
         source.values.emplace_back(path.string());
         continue;
       }

@@ -102,16 +102,17 @@ TEST_CASE("an unknown command is named together with those that exist") {
 
 TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {
   const tests::TempDir temp;
+  const auto name = GENERATE(std::string("nothing.toml"), std::string(300, 'n'));  // or that no file can be called
   for (const std::string& command : kCommands) {
     if (!takes_an_input(command)) continue;
-    std::vector<std::string> arguments = {command, (temp / "nothing.toml").string()};
+    std::vector<std::string> arguments = {command, (temp / name).string()};
     if (command == "coverage") arguments.insert(arguments.end(), {"--noise-m", "1e-5"});
     if (command == "require") arguments.insert(arguments.end(), {"--target", "mu=0.001"});
     const tests::ProcessResult result = tests::glidelab(arguments, temp.path());
     INFO(command << ": " << result.err);
     CHECK(result.status == 1);
     CHECK(result.err.starts_with("glidelab: error: "));
-    CHECK(result.err.find("nothing.toml") != std::string::npos);
+    CHECK(result.err.find(name) != std::string::npos);
     CHECK(result.out.empty());
     CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
   }

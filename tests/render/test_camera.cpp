@@ -191,7 +191,8 @@ TEST_CASE("The ray table holds each pixel's ray and its derivative") {
   const Camera camera = some_camera(kLenses[1]);
   const RayTable table = make_ray_table(camera);
   REQUIRE(table.x_y_dxdu_dxdv.size() == 640u * 480u * 4u);
-  for (const auto& [u, v] : {std::pair{0, 0}, {639, 0}, {0, 479}, {639, 479}, {320, 100}}) {
+  for (const auto& pixel : {std::pair{0, 0}, {639, 0}, {0, 479}, {639, 479}, {320, 100}}) {
+    const int u = pixel.first, v = pixel.second;
     const std::size_t at = static_cast<std::size_t>(v) * 640 + static_cast<std::size_t>(u);
     const auto ray = [&](double du, double dv) { return undistorted_at(camera, {u + du, v + dv}).value(); };
     const Eigen::Vector2d along_u = ray(0.5, 0) - ray(-0.5, 0);
