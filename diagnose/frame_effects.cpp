@@ -1,6 +1,7 @@
 #include "diagnose/frame_effects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -14,30 +15,29 @@ namespace {
 constexpr double kMostScatter = 6.0;        // standard deviations
 constexpr std::size_t kFewestScatter = 50;  // points from which a scatter's shape tells anything
 constexpr double kMostAside = 0.2;
-constexpr double kBeyondDoubt = 5.0;  // log evidence
-constexpr double kKnotPoints = 14.0;  // points a bump of the smooth curve
+constexpr double kBeyondDoubt = 5.0;                         // log evidence
+constexpr std::array kPointsABump = {14.0, 10.0, 7.0, 5.0};  // of the smooth curve
+constexpr double kFewestBumps = 4.0;
+constexpr double kOff = 5.0;  // standard deviations
+constexpr double kTwoSd = 2.0;
 
 struct Leftover {
   std::vector<double> over_sd;  // all points of a motion, outliers too, each over its own noise
   std::vector<double> v;
 };
 
-/// What a least-squares curve of bumps leaves of the residuals, in units of the noise.
-Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
-  const TrackedMotion& data = set.motions[i];
-  const Moved moved = move(model_of(set, *fit.layout, fit.at, i), data.t_s,
-                           fit.late.empty() ? std::span<const double>() : std::span(fit.late[i]));
-  const std::vector<double> shared = shared_errors(set, *fit.layout, fit.at, i, moved.x_m);
-  const auto n = static_cast<Eigen::Index>(data.t_s.size());
-  const auto bumps = static_cast<Eigen::Index>(std::max(4.0, static_cast<double>(n) / kKnotPoints));
-  const double span = data.t_s.back() - data.t_s.front(), width = span / static_cast<double>(bumps - 1);
+/// What a least-squares curve of bumps, one to so many points, leaves of `r`; outliers do not count. Bumps stand before
+/// the first point and behind the last as well: without them the curve would bend away there.
+Eigen::VectorXd left_by_curve(const TrackedMotion& data, const Eigen::VectorXd& r, double points_a_bump,
+                              Eigen::Index& bumps) {
+  const Eigen::Index n = r.size();
+  const auto parts = static_cast<Eigen::Index>(std::max(kFewestBumps, static_cast<double>(n) / points_a_bump)) - 1;
+  const double span = data.t_s.back() - data.t_s.front(), width = span / static_cast<double>(parts);
+  bumps = parts + 3;
   Eigen::MatrixXd basis(n, bumps);
-  Eigen::VectorXd r(n);
   for (Eigen::Index p = 0; p < n; ++p) {
-    const auto q = static_cast<std::size_t>(p);
-    r[p] = (data.x_m[q] - moved.x_m[q] - shared[q]) / data.sd_m;
     for (Eigen::Index b = 0; b < bumps; ++b) {
-      const double z = (data.t_s[q] - data.t_s.front()) / width - static_cast<double>(b);
+      const double z = (data.t_s[static_cast<std::size_t>(p)] - data.t_s.front()) / width - static_cast<double>(b - 1);
       basis(p, b) = std::abs(z) < 4.0 ? std::exp(-0.5 * z * z) : 0.0;
     }
   }
@@ -56,8 +56,45 @@ Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
     rest = r - base::product(basis, base::solve_positive(normal, base::transposed_product(kept, of)));
     for (Eigen::Index p = 0; p < n; ++p) {
       const auto q = static_cast<std::size_t>(p);
-      out[q] = std::abs(rest[p]) * data.sd_m > 5.0 * data.sd_of(q) ? 1 : 0;
+      out[q] = std::abs(rest[p]) * data.sd_m > kOff * data.sd_of(q) ? 1 : 0;
     }
+  }
+  return rest;
+}
+
+/// Whether neighbours err alike by more than chance makes; a single one that is far off says nothing of that.
+bool lasts(const TrackedMotion& data, const Eigen::VectorXd& rest) {
+  double products = 0.0, squares = 0.0, pairs = 0.0;
+  const auto clipped = [&](Eigen::Index p) {
+    const double wider = data.sd_of(static_cast<std::size_t>(p)) / data.sd_m;
+    return std::clamp(rest[p] / wider, -kOff, kOff);
+  };
+  for (Eigen::Index p = 0; p + 1 < rest.size(); ++p) {
+    if (data.outlier[static_cast<std::size_t>(p)] || data.outlier[static_cast<std::size_t>(p) + 1]) continue;
+    products += clipped(p) * clipped(p + 1);
+    squares += 0.5 * (clipped(p) * clipped(p) + clipped(p + 1) * clipped(p + 1));
+    pairs += 1.0;
+  }
+  return pairs > 0.0 && products * std::sqrt(pairs) > kTwoSd * squares;
+}
+
+/// What a smooth curve leaves of the residuals, in units of the noise. It is as fine as it must be: what the law lacks
+/// by hundreds of deviations shows a coarse one's own error, first of all at the clip's ends.
+Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
+  const TrackedMotion& data = set.motions[i];
+  const Moved moved = move(model_of(set, *fit.layout, fit.at, i), data.t_s,
+                           fit.late.empty() ? std::span<const double>() : std::span(fit.late[i]));
+  const std::vector<double> shared = shared_errors(set, *fit.layout, fit.at, i, moved.x_m);
+  const auto n = static_cast<Eigen::Index>(data.t_s.size());
+  Eigen::VectorXd r(n), rest;
+  for (Eigen::Index p = 0; p < n; ++p) {
+    const auto q = static_cast<std::size_t>(p);
+    r[p] = (data.x_m[q] - moved.x_m[q] - shared[q]) / data.sd_m;
+  }
+  Eigen::Index bumps = 0;
+  for (const double points : kPointsABump) {
+    rest = left_by_curve(data, r, points, bumps);
+    if (!lasts(data, rest)) break;
   }
   const double taken = std::sqrt(1.0 - std::min(0.5, static_cast<double>(bumps) / static_cast<double>(n)));
   Leftover left;
