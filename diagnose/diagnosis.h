@@ -62,7 +62,7 @@ struct GapSizes {
   std::optional<double> shrink;
   std::vector<std::string> held_out;
   std::vector<double> before_by_clip, after_by_clip;
-  double acceleration_before = 0.0, acceleration_after = 0.0;
+  std::optional<double> acceleration_before, acceleration_after;  ///< m/s²; none of lines, which hold no motion
   std::vector<GapOfParameter> parameters;
 };
 

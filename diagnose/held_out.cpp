@@ -132,7 +132,7 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
   gap.value = std::sqrt(std::max(0.0, chi2) / freedom);
   // Of a root mean square of n points 1/sqrt(2 n), and of the noise that it is held against sqrt(1.32 / n).
   gap.standard_error = std::sqrt(1.82 / freedom);
-  gap.acceleration_m_s2 = a_count > 0.0 ? std::sqrt(a_sum / a_count) : 0.0;
+  if (a_count > 0.0) gap.acceleration_m_s2 = std::sqrt(a_sum / a_count);
   return gap;
 }
 

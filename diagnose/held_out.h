@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct HeldOutGap {
   double value = 0.0;           ///< root mean square of the standardised residuals; 1 is the floor
   double standard_error = 0.0;  ///< of it, where it is 1: from the number of points and the noise's own uncertainty
   std::vector<ClipGap> clips;
-  double acceleration_m_s2 = 0.0;  ///< rms of a(real) - a(model), both smoothed as the analysis does, noise included
+  std::optional<double>
+      acceleration_m_s2;  ///< rms of a(real) - a(model), both smoothed as the analysis does, noise included
 };
 
 /// `set` needs two clips or more (see split_clip).

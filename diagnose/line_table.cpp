@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
 constexpr double kSameEvidence = 3.0;
+constexpr std::size_t kFewestLines = 6;
+constexpr double kRegion = 3.0;     // log evidence from which a family of terms says where
 constexpr double kReadAngle = 0.3;  // degrees: what a person reads off a plumb, where a table says nothing
 
 /// What one term adds to ln(k) and to a0 of every line.
@@ -42,6 +44,10 @@ struct Solution {
   std::vector<double> held_out;
   bool allowed = true;
 };
+
+base::Issue too_few(const std::string& file, std::size_t lines) {
+  return {file, 0, "lines", fmt::format("{} of them", lines), fmt::format("{} or more", kFewestLines)};
+}
 
 std::vector<double> different(const std::vector<TableLine>& lines, double TableLine::*member) {
   std::set<double> values;
@@ -100,7 +106,6 @@ Solution solve(const Data& data, const std::vector<Term>& terms) {
   }
   const auto m = static_cast<double>(n);
   const auto parameters = static_cast<double>(pk + pa + pt);
-  s.log_evidence = -m * std::log(s.sd_k) - m * std::log(s.sd_a) - 0.5 * parameters * std::log(2.0 * m);
   s.off_k = off.head(n);
   s.off_a = off.tail(n);
   s.size = fit.tail(pt);
@@ -121,6 +126,34 @@ Solution solve(const Data& data, const std::vector<Term>& terms) {
     s.held_out.push_back(of_a);
   }
   return s;
+}
+
+/// Of terms beside the nominal model, from what each leaves of one kind of data (header).
+double log_bayes_factor(double left, double nominal_left, double lines, double nominal_parameters, double terms) {
+  const double freedom = lines - nominal_parameters;
+  if (!(freedom > terms)) return 0.0;  // as many parameters as lines say nothing
+  return 0.5 * (freedom - terms) * std::log1p(lines) -
+         0.5 * freedom * std::log1p(lines * left * left / (nominal_left * nominal_left));
+}
+
+/// Log evidence against nothing of both kinds together. A term that acts on both is half a one of each.
+double log_evidence_of(const Data& data, const std::vector<Term>& terms, const Solution& with,
+                       const Solution& nominal) {
+  double of_k = 0.0, of_a = 0.0;
+  for (const Term& term : terms) {
+    const double k = term.of_k.isZero(0.0) ? 0.0 : 1.0, a = term.of_a.isZero(0.0) ? 0.0 : 1.0;
+    of_k += k / std::max(1.0, k + a);
+    of_a += a / std::max(1.0, k + a);
+  }
+  const auto lines = static_cast<double>(data.a0.size());
+  double sum = 0.0;
+  if (of_k > 0.0) {
+    sum += log_bayes_factor(with.sd_k, nominal.sd_k, lines, static_cast<double>(data.base_k.cols()), of_k);
+  }
+  if (of_a > 0.0) {
+    sum += log_bayes_factor(with.sd_a, nominal.sd_a, lines, static_cast<double>(data.base_a.cols()), of_a);
+  }
+  return sum;
 }
 
 std::vector<Term> terms_of(const std::vector<TableLine>& lines) {
@@ -267,33 +300,36 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file) {
     lines.push_back({mass[i], incline[i], direction[i] > 0.0 ? 1 : -1, a0[i], k[i]});
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
-  if (lines.size() < 6) {
-    throw base::InputError(
-        base::Issue{file.string(), 0, "", fmt::format("{} lines", lines.size()), "six lines or more"});
-  }
+  if (lines.size() < kFewestLines) throw base::InputError(too_few(file.string(), lines.size()));
   return lines;
 }
 
 Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g) {
+  if (lines.size() < kFewestLines) throw base::InputError(too_few("", lines.size()));
   const Data data = data_of(lines, g);
   std::vector<Term> terms = terms_of(lines);
   const bool masses = different(lines, &TableLine::mass_kg).size() > 1;
   if (!masses) terms.clear();  // with one mass they are K and mu themselves
   std::vector<Weighed> all;
   all.push_back({{}, false, "", solve(data, {}), kPriorNone});
+  const Solution nominal = all.front().solution;
+  const auto solved = [&](const std::vector<Term>& with) {
+    Solution solution = solve(data, with);
+    solution.log_evidence = log_evidence_of(data, with, solution, nominal);
+    return solution;
+  };
   const auto one = static_cast<double>(std::max<std::size_t>(1, terms.size()));
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    all.push_back({{t}, false, "", solve(data, {terms[t]}), kPriorOne / one});
+    all.push_back({{t}, false, "", solved({terms[t]}), kPriorOne / one});
     for (std::size_t u = 0; u < t; ++u) {
-      all.push_back({{u, t}, false, "", solve(data, {terms[u], terms[t]}), kPriorTwo / (0.5 * one * (one - 1.0))});
+      all.push_back({{u, t}, false, "", solved({terms[u], terms[t]}), kPriorTwo / (0.5 * one * (one - 1.0))});
     }
   }
   const auto families = unnamed_of(lines);
   for (const auto& [variable, family] : families) {
-    all.push_back({{}, true, variable, solve(data, family), kPriorUnnamed / static_cast<double>(families.size())});
+    all.push_back({{}, true, variable, solved(family), kPriorUnnamed / static_cast<double>(families.size())});
   }
-  const double nothing = all.front().solution.log_evidence;
-  double sum = 0.0, most = nothing;
+  double sum = 0.0, most = 0.0;
   for (const Weighed& w : all) most = std::max(most, w.solution.log_evidence);
   for (Weighed& w : all) {
     w.probability *= w.solution.allowed ? std::exp(w.solution.log_evidence - most) : 0.0;
@@ -313,15 +349,12 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g) {
     std::string id;
     for (const std::size_t t : w.terms) id += (id.empty() ? "" : " + ") + terms[t].id;
     diagnosis.ranking.push_back(
-        {id, w.probability, w.solution.allowed ? w.solution.log_evidence - nothing : 0.0, 0.0, w.terms.size(), {}});
+        {id, w.probability, w.solution.allowed ? w.solution.log_evidence : 0.0, 0.0, w.terms.size(), {}});
     if (best == nullptr || w.probability > best->probability) best = &w;
   }
   std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(),
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
-  const double named = std::max(0.0, 1.0 - diagnosis.none - diagnosis.unknown);
-  diagnosis.verdict = named >= std::max(diagnosis.none, diagnosis.unknown) ? "effect"
-                      : diagnosis.none >= diagnosis.unknown                ? "none"
-                                                                           : "unknown";
+  diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
   if (diagnosis.verdict == "effect" && best != nullptr) {
     for (std::size_t k = 0; k < best->terms.size(); ++k) {
       const Term& term = terms[best->terms[k]];
@@ -347,7 +380,7 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g) {
     return (a.unnamed ? a.solution.log_evidence : -1e300) < (b.unnamed ? b.solution.log_evidence : -1e300);
   };
   const Weighed& family = *std::max_element(all.begin(), all.end(), by);
-  if (diagnosis.verdict != "none" && family.solution.log_evidence > nothing + 3.0 && family.solution.size.size() > 0) {
+  if (diagnosis.verdict != "none" && family.solution.log_evidence > kRegion && family.solution.size.size() > 0) {
     Eigen::Index at = 0;
     const double excess = (family.solution.size.cwiseAbs().cwiseQuotient(family.solution.sd)).maxCoeff(&at);
     const auto values =

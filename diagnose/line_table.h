@@ -5,8 +5,13 @@
 ///     ln(k) = ln(K/m),     a0 = gravity sin(alpha_g) - s mu gravity cos(alpha_g)
 ///
 /// and each effect adds its own term to one or both. A table states no errors: those of ln(k) and of a0 are unknown and
-/// are what the lines scatter. Evidence by Schwarz's criterion, -BIC/2 = -(n/2) ln(RSS/n) - (p/2) ln(n) for both kinds
-/// of data together; predictions of a line by the other lines are the held-out gap.
+/// are what the lines scatter, so that few lines carry little. Of n lines with p0 nominal parameters, p terms that leave
+/// RSS of the nominal model's RSS_0 have the Bayes factor, for unknown scatter and terms as large as one line tells
+/// (Zellner's g-prior with g = n; Liang et al. 2008),
+///
+///     (1 + n)^((n - p0 - p) / 2) / (1 + n RSS / RSS_0)^((n - p0) / 2)
+///
+/// for each kind of data. Predictions of a line by the other lines are the held-out gap.
 #pragma once
 
 #include <filesystem>

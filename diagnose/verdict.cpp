@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
 constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
-constexpr double kDoubt = 0.25;        // of nothing: three to one is the least for a claim
 constexpr double kBelowZero = 5.0;     // standard deviations
 constexpr std::size_t kPlotted = 250;
 
@@ -248,11 +247,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   diagnosis.notes = set.notes;
   diagnosis.none = comparison.none;
   diagnosis.unknown = comparison.unknown;
-  const double named = std::max(0.0, 1.0 - comparison.none - comparison.unknown);
-  const bool doubtful = comparison.none >= kDoubt;
-  diagnosis.verdict = named >= comparison.none && named >= comparison.unknown && !doubtful   ? "effect"
-                      : comparison.none >= comparison.unknown || named >= comparison.unknown ? "none"
-                                                                                             : "unknown";
+  diagnosis.verdict = verdict_by(comparison.none, comparison.unknown);
   const Hypothesis* best = best_named(comparison);
   const MotionFit& nominal = comparison.fits.front();
   const MotionFit* fit = &nominal;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace glidelab::diagnose {
 namespace {
 
@@ -98,6 +100,13 @@ std::string summary_of(const Diagnosis& diagnosis) {
                         list_of(effect.equivalent_to));
   }
   return text + gap_words(diagnosis);
+}
+
+std::string verdict_by(double none, double unknown) {
+  constexpr double kDoubt = 0.25;  // of nothing
+  const double named = std::max(0.0, 1.0 - none - unknown);
+  if (none >= kDoubt) return "none";
+  return named >= unknown ? "effect" : "unknown";
 }
 
 }  // namespace glidelab::diagnose

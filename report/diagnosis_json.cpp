@@ -56,8 +56,9 @@ Json gap_json(const diagnose::GapSizes& gap) {
   object["held_out"] = gap.held_out;
   object["by_clip"] = {{"before", gap.before_by_clip}, {"after", gap.after_by_clip}};
   Json acceleration;
-  put(acceleration, "before", gap.acceleration_before);
-  put(acceleration, "after", gap.acceleration_after);
+  const char* none = "there is no motion whose accelerations could be compared";
+  put(acceleration, "before", gap.acceleration_before, none);
+  put(acceleration, "after", gap.acceleration_after, none);
   object["acceleration_m_s2"] = std::move(acceleration);
   object["parameters"] = Json::array();
   for (const diagnose::GapOfParameter& parameter : gap.parameters) {

@@ -57,8 +57,7 @@ std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
   table.row({"unknown", probability_text(diagnosis.unknown), "–"});
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
     const auto& ranked = diagnosis.ranking[i];
-    table.row(
-        {escape(ranked.id), probability_text(ranked.probability), gain_text(ranked.log_evidence_gain)});
+    table.row({escape(ranked.id), probability_text(ranked.probability), gain_text(ranked.log_evidence_gain)});
   }
   return table.str();
 }
@@ -72,13 +71,15 @@ std::string gap_tables(const diagnose::GapSizes& gap) {
   std::string text = clips.str();
   text += fmt::format(
       "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it would be 1 "
-      "± "
-      "{}. {} In acceleration (measured minus model, both smoothed as the analysis smooths): {} m/s² before, {} m/s² "
-      "after, noise included.</p>\n",
+      "± {}. {}{}</p>\n",
       number_text(gap.standard_error, 2),
       gap.shrink ? fmt::format("The gap shrinks by {:.1f} % of what is above the floor.", 100.0 * *gap.shrink)
                  : std::string("It is at the floor."),
-      number_text(gap.acceleration_before, 3), number_text(gap.acceleration_after, 3));
+      gap.acceleration_before && gap.acceleration_after
+          ? fmt::format(" In acceleration (measured minus model, both smoothed as the analysis smooths): {} m/s² "
+                        "before, {} m/s² after, noise included.",
+                        number_text(*gap.acceleration_before, 3), number_text(*gap.acceleration_after, 3))
+          : std::string());
   if (gap.parameters.empty()) return text;
   HtmlTable angles({"inclination of", "against", "standard deviations off, before", "after"}, 2);
   for (const auto& p : gap.parameters) {
