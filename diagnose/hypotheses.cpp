@@ -222,7 +222,8 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   comparison.unnamed = unnamed_families(space);
   Hypothesis unnamed;
   unnamed.unnamed = true;
-  unnamed.log_evidence = log_unnamed_evidence(comparison.unnamed);
+  unnamed.unnamed_log_evidence = log_unnamed_evidence(comparison.unnamed);
+  unnamed.log_evidence = unnamed.unnamed_log_evidence;
   for (const UnnamedFamily& family : comparison.unnamed) unnamed.gain = std::max(unnamed.gain, family.gain);
   comparison.all.push_back(unnamed);
 

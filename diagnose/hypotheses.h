@@ -27,7 +27,7 @@ struct Hypothesis {
   double log_evidence = 0.0;         ///< against nothing, sizes averaged over their priors
   double probability = 0.0;
   int fit = -1;                       ///< index in Comparison::fits
-  double unnamed_log_evidence = 0.0;  ///< the part of it that something unnamed has beside effects
+  double unnamed_log_evidence = 0.0;  ///< the part of it that something unnamed has, beside effects or alone
 };
 
 struct Comparison {

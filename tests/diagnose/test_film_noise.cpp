@@ -155,6 +155,17 @@ TEST_CASE("uneven times are told from errors that go with the place") {
   CHECK(std::abs(noise.jitter_s - 4e-5) < 5.0 * noise.jitter_sd_s + 6e-6);  // and half a step of the sizes tried
 }
 
+TEST_CASE("a step in the picture beside uneven times is not given to these") {
+  // 0.3 px over 0.02 m, a hundred times the noise; 20 µs at 600 px/s are six times. The list holds no such step.
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 2e-5);
+  const tests::MadeExperiment made =
+      filmed([&](double u, double v) { return 0.15 * std::tanh((u - 440.0) / 12.0) + v * normal(random); }, 14);
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
+  CHECK(diagnosis.verdict == "unknown");
+  CHECK(diagnosis.unknown > 0.9);
+}
+
 TEST_CASE("what was not filmed keeps its noise") {
   const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 1);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
