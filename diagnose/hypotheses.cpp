@@ -111,6 +111,7 @@ void add_unnamed(const TrackSet& set, Comparison& comparison) {
   std::sort(around.begin(), around.end(),
             [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
   bool first = true;
+  double likeliest = 0.0;
   for (const Hypothesis& named : around) {
     if (named.log_evidence < 3.0) continue;
     const ScoreSpace space(set, comparison.fits[static_cast<std::size_t>(named.fit)]);
@@ -121,10 +122,12 @@ void add_unnamed(const TrackSet& set, Comparison& comparison) {
     both.log_evidence += both.unnamed_log_evidence;
     for (const UnnamedFamily& family : families) both.gain = std::max(both.gain, named.gain + family.gain);
     comparison.all.push_back(both);
-    if (first) {
+    if (comparison.unnamed_left.empty() || both.log_evidence > likeliest) {
+      likeliest = both.log_evidence;
       comparison.unnamed_left = std::move(families);
-      comparison.left_fit = named.fit;
+      comparison.beside_fit = named.fit;
     }
+    if (first) comparison.left_fit = named.fit;
     first = false;
   }
 }

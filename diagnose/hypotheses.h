@@ -37,8 +37,9 @@ struct Comparison {
   std::vector<FrameEffect> frames;  ///< jitter, tails
   MissingFrames missing;
   std::vector<UnnamedFamily> unnamed;       ///< around nothing
-  std::vector<UnnamedFamily> unnamed_left;  ///< around the best named explanation
-  int left_fit = 0;                         ///< index of its fit
+  int left_fit = 0;                         ///< index of the best named explanation's fit
+  std::vector<UnnamedFamily> unnamed_left;  ///< beside that named explanation with which they are likeliest
+  int beside_fit = 0;                       ///< index of its fit
   std::set<std::size_t> in_pictures;        ///< effects that the pictures speak for or against
   double none = 0.0, unknown = 0.0;
   std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another

@@ -14,6 +14,10 @@ namespace {
 
 constexpr int kMostIterations = 40;
 constexpr double kConverged = 1e-3;  // change of chi², small beside what evidence turns on
+// What the data hardly know (a frame rate beside K, mu and the inclination) lies along a bent valley whose walls are
+// steep: a step along it ends far up a wall, from where undamped steps lead back down; it has failed where so many do
+// not.
+constexpr int kStepsBack = 4;
 constexpr double kWideAlpha = 0.35;  // rad: what holds back an inclination that the data leave open
 using Global = ParameterLayout::Global;
 
@@ -202,6 +206,17 @@ FitPoint step_from(const MotionFit& fit, double damping) {
   return next;
 }
 
+/// The fit at another point: residuals and cost, no derivatives; an infinite cost where a parameter may not be there.
+MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
+  MotionFit next = fit;
+  next.at = std::move(at);
+  next.cost = std::numeric_limits<double>::infinity();
+  if (!inside(*fit.layout, next.at)) return next;
+  linearise_all(set, next, false);
+  next.cost = cost_of(next);
+  return next;
+}
+
 /// x0 and v0 by a parabola through the first points, of those that were not set aside where there are enough.
 Eigen::VectorXd start_of(const TrackedMotion& motion) {
   constexpr std::size_t kStartPoints = 25, kFewestStartPoints = 6;
@@ -325,13 +340,10 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
   double damping = 1e-6;
   while (std::isfinite(fit.cost) && !fit.converged && fit.iterations < kMostIterations) {
     ++fit.iterations;
-    MotionFit next = fit;
-    next.at = step_from(fit, damping);
-    if (inside(*fit.layout, next.at)) {
-      linearise_all(set, next, false);
-      next.cost = cost_of(next);
-    } else {
-      next.cost = std::numeric_limits<double>::infinity();
+    MotionFit next = moved_to(set, fit, step_from(fit, damping));
+    for (int back = 0; back < kStepsBack && std::isfinite(next.cost) && !(next.cost <= fit.cost); ++back) {
+      linearise_all(set, next, true);
+      next = moved_to(set, next, step_from(next, 0.0));
     }
     if (next.cost <= fit.cost) {
       next.converged = fit.cost - next.cost <= kConverged * (1.0 + 1e-5 * fit.cost) && damping <= 1e-2;

@@ -279,7 +279,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   if (diagnosis.verdict == "unknown" && set.clips.size() > 1) {
     // The likeliest function without a name stands in for what is missing.
     const UnnamedFamily* family = likeliest_shared(families);
-    const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.left_fit)] : nominal;
+    const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;
     if (family != nullptr) {
       with = with_unnamed(beside, *family);
       gap_fit = &with;

@@ -100,6 +100,9 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
         region.variable = std::string("t_s");
         region.clip = clip.name;
+        const bool known = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
+                                       [&](const GapRegion& other) { return other.clip == clip.name; });
+        if (known) continue;  // by something likelier
         region.from = 0.0;
         region.to = clip.duration_s;
       }

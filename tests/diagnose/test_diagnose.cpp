@@ -95,6 +95,27 @@ TEST_CASE("a wrong scale and a wrong frame rate are named together: tracks canno
   CHECK(std::find(named.begin(), named.end(), "frame_rate_error") != named.end());
 }
 
+TEST_CASE("a size that only the inclination tells is found in full, however well the positions are known") {
+  // 3 µm in 1200 positions know the scale beside K, mu and the inclination by a stated 0.05 degrees alone, thousands of
+  // times less well than by itself. A scale and a clock make the same of positions: one chi², from wherever it starts.
+  const tests::MadeEffect effect{.seen = [](double x, double) { return 1.06 * x; }};
+  const auto made = tests::made_experiment(tests::made_launches(), effect, 5, 3e-6);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  std::vector<double> gains;
+  for (const char* id : {"scale_error", "frame_rate_error"}) {
+    const std::size_t index = diagnose::effect_index(id);
+    for (const double start : {0.002, 0.03, -0.08}) {
+      const auto fit = diagnose::fit_motions(set, {index}, diagnose::with_effect(set, nominal, index, {start}, {}));
+      INFO(id << " from " << start);
+      CHECK(fit.converged);
+      gains.push_back(0.5 * (nominal.cost - fit.cost));
+    }
+  }
+  for (const double gain : gains) CHECK(std::abs(gain - gains.front()) < 0.05);  // the fit stops at changes of 0.001
+  CHECK(gains.front() > 8.0);  // 6 % of 4 degrees are 4.8 of 0.05: 11.5, give or take 4.8
+}
+
 TEST_CASE("a nominal experiment has nothing missing, and its gap is at the floor") {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), {}, seed));
