@@ -43,6 +43,17 @@ std::vector<Piece> pieces_of(const std::vector<FreeStretch>& stretches, std::siz
   return pieces;
 }
 
+/// The track's shared errors, of every frame.
+std::vector<std::vector<double>> of_frames(const TrackData& track) {
+  std::vector<std::vector<double>> shared_m(track.shared_m.size());
+  for (std::size_t mode = 0; mode < shared_m.size(); ++mode) {
+    if (track.shared_m[mode].empty()) continue;
+    shared_m[mode].resize(track.frame_t_s.size(), 0.0);
+    for (std::size_t i = 0; i < track.frame.size(); ++i) shared_m[mode][track.frame[i]] = track.shared_m[mode][i];
+  }
+  return shared_m;
+}
+
 /// Every frame of the clip, smoothed with the points of its own piece, `left_out` not yet set.
 std::vector<MotionPoint> smooth_frames(const TrackData& track, const Motion& motion,
                                        const std::vector<FreeStretch>& stretches, const PositionNoise& noise,
@@ -298,6 +309,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   clip.v_lim_m_s = recovered_limit(clip.segments);
   clip.motion = smooth_frames(track, motion, free.stretches, noise, clip.bandwidth_s, setup.mass_kg);
   mark_frames(track, motion, free, points, clip.motion);
+  clip.shared_m = of_frames(track);
   clip.left_out = intervals_of(clip.motion);
   clip.stretches = used_stretches(motion, free.stretches, points);
   note_findings(motion, outliers.size(), noise, clip);

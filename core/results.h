@@ -173,7 +173,8 @@ struct ClipResult {
   std::vector<LeftOutInterval> left_out;
   std::vector<std::string> notes;  ///< what a reader should know: a container's other rate, gaps, …
   std::vector<MotionPoint> motion;
-  std::vector<MarkerSighting> sightings;  ///< empty for a track
+  std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of every frame of `motion`; 0 without a marker
+  std::vector<MarkerSighting> sightings;      ///< empty for a track
   /// What the pictures show besides (picture_record.h); none for a track, and where it was not asked for.
   std::shared_ptr<const PictureRecord> pictures;
 };

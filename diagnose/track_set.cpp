@@ -77,17 +77,6 @@ std::vector<Run> runs_of(const core::ClipResult& clip, bool all) {
   return runs;
 }
 
-double mode_at(const core::ClipResult& clip, std::size_t mode, double t) {
-  for (const core::FreeBlock& block : clip.blocks) {
-    if (mode >= block.shared_m.size() || block.shared_m[mode].empty()) continue;
-    if (&block != &clip.blocks.back() && t > block.t_s.back()) continue;
-    const auto after = std::lower_bound(block.t_s.begin(), block.t_s.end(), t);
-    const auto i = static_cast<std::size_t>(std::min<long>(after - block.t_s.begin(), std::ssize(block.t_s) - 1));
-    return block.shared_m[mode][i];
-  }
-  return 0.0;
-}
-
 /// How many times as large the errors of camera and plane are as the calibration's own noise explains: where the
 /// pattern fits its plane view less well than that, corners err in a way that the modes do not hold. Never below 1.
 double calibration_excess(const core::AnalysisResults& results, const std::string& experiment) {
@@ -118,11 +107,10 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   }
   if (motion.t_s.empty()) return motion;
   motion.start_s = motion.t_s.front();
-  std::size_t modes = 0;
-  for (const core::FreeBlock& block : clip.blocks) modes = std::max(modes, block.shared_m.size());
-  motion.shared_m.resize(modes);
-  for (std::size_t m = 0; m < modes; ++m) {
-    for (const double t : motion.t_s) motion.shared_m[m].push_back(excess * mode_at(clip, m, t + first));
+  motion.shared_m.resize(clip.shared_m.size());
+  for (std::size_t m = 0; m < clip.shared_m.size(); ++m) {
+    if (clip.shared_m[m].empty()) continue;
+    for (const std::size_t frame : frames) motion.shared_m[m].push_back(excess * clip.shared_m[m][frame]);
     const bool any =
         std::any_of(motion.shared_m[m].begin(), motion.shared_m[m].end(), [](double s) { return s != 0.0; });
     if (!any) motion.shared_m[m].clear();
@@ -241,7 +229,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
   set.gravity_m_s2 = results.gravity_m_s2;
   std::size_t camera_modes = 0;
   for (const core::ClipResult& clip : results.clips) {
-    for (const core::FreeBlock& block : clip.blocks) camera_modes = std::max(camera_modes, block.shared_m.size());
+    camera_modes = std::max(camera_modes, clip.shared_m.size());
   }
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     const core::ClipResult& clip = results.clips[c];

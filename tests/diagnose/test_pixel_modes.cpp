@@ -186,7 +186,7 @@ TEST_CASE(
   for (auto& clip : made.results.clips) {
     clip.experiment = "folder";
     clip.scale_sd_relative = 1e-4;
-    for (auto& block : clip.blocks) block.shared_m = {std::vector<double>(block.t_s.size(), 2e-6)};
+    clip.shared_m = {std::vector<double>(clip.motion.size(), 2e-6)};
   }
   core::CalibrationResult calibration;
   calibration.experiment = "folder";
