@@ -82,7 +82,7 @@ class NominalFit {
 
   /// Half of chi² that is left; a size of `more` is fitted as well.
   double misfit(const Seen& seen, const std::optional<Eigen::VectorXd>& more = {}) const {
-    constexpr int kMostSteps = 6;
+    constexpr int kMostSteps = 60;     // of which a glider that comes to rest elsewhere takes some ten
     constexpr double kSettled = 0.01;  // of chi²: far less than the classes of strength are wide
     const Eigen::Index many = std::ssize(list_) + (more ? 1 : 0);
     BlindDesign fitted = design_;

@@ -88,6 +88,36 @@ TEST_CASE("what a calibration leaves open is no strength of an effect, and a cod
   CHECK(any);
 }
 
+TEST_CASE("a friction of each direction is no effect where no inclination is stated, whichever glider comes to rest") {
+  // It is the same force as an inclination's, up to cos(alpha): beside 0.35 rad a stated one would have to be known.
+  validate::BlindDesign design;
+  design.groups = {{"level", 0.0, 0.0, {}}, {"inclined", 0.0506, 0.0506, {}}};
+  design.masses = {{0.341, 0.341, 0.0}};
+  design.k_n_s_m = 0.541;
+  design.mu = 0.0127;
+  design.noise_sd_m = 7e-6;
+  const double starts[][2] = {{0.34, -0.77}, {-0.4, 0.62}, {0.35, -0.95}, {-0.38, 0.5}};
+  for (std::size_t c = 0; c < 4; ++c) {
+    design.clips.push_back({"", c / 2, 0, starts[c][0], starts[c][1], 120.0, 150});
+  }
+  bool rests = false;
+  for (const double size : {0.2, 0.35, 0.5}) {
+    validate::BlindEffect effect;
+    effect.put = [](double d, std::size_t, validate::BlindFilm& film) {
+      film.law.changes.push_back([=](double, double v, double, validate::BlindTerms& f) {
+        f.friction_n *= 1.0 + d * (v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0);
+      });
+    };
+    CHECK(validate::BlindDetection(design).gain(effect, size) < 5.0);
+    for (const validate::BlindClip& clip : design.clips) {
+      validate::BlindFilm film = validate::nominal_film(design, clip);
+      effect.put(size, 0, film);
+      for (const double x : validate::seen_positions(clip, film)) rests = rests || std::isnan(x);
+    }
+  }
+  CHECK(rests);
+}
+
 TEST_CASE("every scenario of a filmed case is one that the renderer takes") {
   tests::TempDir temp;
   for (const auto* list : {&validate::filmed_effects(), &validate::filmed_outside_effects()}) {
