@@ -42,7 +42,18 @@ TEST_CASE("errors of single frames are heavy tails, errors that last are none an
     const auto single = spoilt(1, seed), lasting = spoilt(3, seed);
     CHECK(tails_of(single).log_evidence > 10.0);
     CHECK(tails_of(single).in_runs <= 0.0);
-    CHECK(tails_of(lasting).in_runs > 20.0);
+    CHECK_FALSE(tails_of(single).run);
+    const diagnose::FrameEffect tails = tails_of(lasting);
+    CHECK(tails.in_runs > 20.0);
+    REQUIRE(tails.run);
+    CHECK(tails.run->clip);
+    // Three frames from the first to the last are two steps; another error may follow at once, on the same side.
+    CHECK(tails.run->to_s - tails.run->from_s > 1.5 / 150.0);
+    CHECK(tails.run->to_s - tails.run->from_s < 5.5 / 150.0);
+    // 1 mm, of which the smooth curve under such errors takes a part, and the noise is a fiftieth.
+    CHECK(tails.run->size_m > 6e-4);
+    CHECK(tails.run->size_m < 1.1e-3);
+    CHECK(tails.run->excess > 10.0);
     const auto named = diagnose::diagnose_results(single.results, single.setups, {.without = {}, .jobs = 2});
     REQUIRE(named.verdict == "effect");
     CHECK(named.effects.front().id == "heavy_tailed_noise");
@@ -54,7 +65,14 @@ TEST_CASE("errors of single frames are heavy tails, errors that last are none an
 TEST_CASE("a tracker that has to find its marker at each clip's start makes no heavy tails") {
   const tests::MadeEffect effect{.seen = [](double x, double t) { return t < 0.005 ? x + 4e-4 : x; }};
   const auto made = tests::made_experiment(tests::made_launches(), effect, 3, 2e-5, 250, 150.0);
-  CHECK(tails_of(made).in_runs > 10.0);
+  const diagnose::FrameEffect tails = tails_of(made);
+  CHECK(tails.in_runs > 10.0);
+  REQUIRE(tails.run);
+  CHECK_FALSE(tails.run->clip);  // of all clips
+  CHECK(tails.run->from_s == 0.0);
+  CHECK(tails.run->to_s < 0.02);  // three frames at 150 Hz
+  CHECK(tails.run->size_m > 2.5e-4);
+  CHECK(tails.run->size_m < 4.8e-4);  // 0.4 mm and four times the noise
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
   for (const auto& named : diagnosis.effects) CHECK(named.probability < 0.5);
 }
