@@ -3,7 +3,8 @@
 ///
 /// Restricted maximum likelihood: those amplitudes and lengths that make most likely what the positions hold besides
 /// everything slow (bumps ten frames apart are projected out, and, where one shows, a wave with what the fit made of
-/// it), so that neither the usual model nor what it lacks goes in. The white part may differ between motions by some 30 %.
+/// it), so that neither the usual model nor what it lacks goes in. The white part may differ between motions by some
+/// 30 %.
 #pragma once
 
 #include "diagnose/motion_fit.h"
