@@ -3,16 +3,18 @@
 /// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
 /// nothing of the size of the data is stored. Units are the caller's. Stops when a step changes every parameter by less
 /// than its `step` (an absolute measure, one for each parameter), or changes the cost by less than 1e-7 of itself (with
-/// n data that is a step of sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels).
+/// n data that is a step of sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels). So small a step is
+/// taken without another evaluation where it is hardly damped: the cost after it is that of the linear residuals.
 #pragma once
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
-
-#include "base/dense.h"
+#include <utility>
 
 namespace glidelab::core {
 
@@ -37,25 +39,28 @@ struct NormalEquations {
   void complete() { jtj.template triangularView<Eigen::StrictlyUpper>() = jtj.transpose(); }
 };
 
-enum class FitStop { converged, iterations, singular, out_of_range };
+enum class FitStop { converged, iterations, singular, out_of_range, hopeless };
 
 template <int N>
 struct LeastSquaresFit {
   Eigen::Matrix<double, N, 1> parameters;
-  Eigen::Matrix<double, N, N> covariance;  ///< (J^T W J)^-1 times the residual variance
-  double rms = 0.0;                        ///< sqrt(cost / (weight - N)): the residual standard deviation
+  Eigen::Matrix<double, N, 1> evaluated_at;  ///< where J was taken: there, or the last small step before
+  Eigen::Matrix<double, N, N> covariance;    ///< (J^T W J)^-1 times the residual variance
+  double rms = 0.0;                          ///< sqrt(cost / (weight - N)): the residual standard deviation
   int iterations = 0;
   FitStop stop = FitStop::iterations;
 };
 
 /// `evaluate(p)` gives the NormalEquations at p, or nothing where p is outside the model's range (the step is then
-/// shortened). A residual is model minus datum.
-template <int N, class Evaluate>
+/// shortened). A residual is model minus datum. `is_hopeless(fit, equations)` is asked before each step, with the
+/// parameters and iterations so far, and ends the fit.
+template <int N, class Evaluate, class IsHopeless>
 LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matrix<double, N, 1>& start,
-                                     const Eigen::Matrix<double, N, 1>& step, int max_iterations) {
+                                     const Eigen::Matrix<double, N, 1>& step, int max_iterations,
+                                     const IsHopeless& is_hopeless) {
   using Vector = Eigen::Matrix<double, N, 1>;
   LeastSquaresFit<N> fit;
-  fit.parameters = start;
+  fit.parameters = fit.evaluated_at = start;
   fit.covariance.setZero();
   std::optional<NormalEquations<N>> here = evaluate(start);
   if (!here) {
@@ -64,8 +69,13 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
   }
   here->complete();
   constexpr double kFlat = 1e-7;
-  double damping = 1e-3;
+  constexpr double kHardlyDamped = 1e-3;
+  double damping = kHardlyDamped;
   for (; fit.iterations < max_iterations; ++fit.iterations) {
+    if (is_hopeless(std::as_const(fit), std::as_const(*here))) {
+      fit.stop = FitStop::hopeless;
+      return fit;
+    }
     Eigen::Matrix<double, N, N> damped = here->jtj;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-12 * here->jtj.diagonal().maxCoeff();
@@ -75,12 +85,18 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
       return fit;
     }
     const Vector trial = fit.parameters + delta;
+    const bool small = (delta.array().abs() < step.array()).all();
+    if (small && damping <= kHardlyDamped) {
+      fit.parameters = trial;
+      here->cost = std::max(here->cost + delta.dot(2.0 * here->jtr + here->jtj * delta), 0.0);
+      fit.stop = FitStop::converged;
+      break;
+    }
     std::optional<NormalEquations<N>> there = evaluate(trial);
     if (there) there->complete();
-    const bool small = (delta.array().abs() < step.array()).all();
     const bool flat = there && std::abs(here->cost - there->cost) <= kFlat * here->cost;
     if (there && there->cost <= here->cost) {
-      fit.parameters = trial;
+      fit.parameters = fit.evaluated_at = trial;
       here = there;
       damping = std::max(damping * 0.2, 1e-9);
     } else {
@@ -98,13 +114,20 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     return fit;
   }
   fit.rms = std::sqrt(here->cost / freedom);
-  const std::optional<Eigen::MatrixXd> inverse = base::regular_inverse(here->jtj);
-  if (!inverse) {
+  const Eigen::FullPivLU<Eigen::Matrix<double, N, N>> factor(here->jtj);
+  if (!factor.isInvertible()) {
     fit.stop = FitStop::singular;
     return fit;
   }
-  fit.covariance = *inverse * (fit.rms * fit.rms);
+  fit.covariance = factor.inverse() * (fit.rms * fit.rms);
   return fit;
+}
+
+template <int N, class Evaluate>
+LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matrix<double, N, 1>& start,
+                                     const Eigen::Matrix<double, N, 1>& step, int max_iterations) {
+  const auto never = [](const auto&, const auto&) { return false; };
+  return fit_least_squares<N>(evaluate, start, step, max_iterations, never);
 }
 
 }  // namespace glidelab::core

@@ -1,7 +1,5 @@
 #include "core/marker.h"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +19,9 @@ constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitud
 constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
 constexpr double kSharpEdge_px = 0.29;  // the pixel's own extent, 1/sqrt(12): nothing that is not clipped is sharper
 constexpr int kMaxIterations = 14;      // what is a marker takes 3 to 8
-constexpr int kMoreIterations = 16;     // a disc so far, its edge sharper than a pixel: the sensor clips it
+constexpr int kTrials = 4;              // by then the residuals of a disc are nearly those of its fit
+constexpr double kHopelessResidual = 2.0 * kLargestResidual;
+constexpr int kMoreIterations = 16;  // a disc so far, its edge sharper than a pixel: the sensor clips it
 
 /// sin x for |x| up to pi/2, to 6e-8.
 double sine(double x) {
@@ -67,9 +67,9 @@ constexpr double kShadeStrength = 0.05;
 
 /// The sums over the pixels with what is known beforehand.
 template <int N>
-std::optional<NormalEquations<N>> evaluate(const MarkerPixels& window, const Prior& prior,
+std::optional<NormalEquations<N>> evaluate(MarkerModel<N>& pixels, const Prior& prior,
                                            const Eigen::Matrix<double, N, 1>& p) {
-  std::optional<NormalEquations<N>> equations = marker_equations<N>(window, p, PixelWeight::taper);
+  std::optional<NormalEquations<N>> equations = pixels.equations(p);
   if (!equations) return std::nullopt;
   const double a = p[kMuu], b = p[kMuv], c = p[kMvv];
   const double determinant = a * c - b * b;
@@ -121,8 +121,14 @@ std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& gues
   step[kMuu] = step[kMuv] = step[kMvv] = 3e-3 / guess.radius_px;
   step[kLogBlur] = 2e-2;
   const Prior prior{guess.radius_px, guess.blur_px, amplitude};
-  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(window, prior, p); };
-  LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations);
+  MarkerModel<N> pixels(window);
+  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(pixels, prior, p); };
+  const auto is_hopeless = [&](const LeastSquaresFit<N>& so_far, const NormalEquations<N>& here) {
+    if (so_far.iterations < kTrials) return false;
+    const double contrast = std::max(amplitude, so_far.parameters[kBright] - so_far.parameters[kLevel]);
+    return here.cost > here.weight * kHopelessResidual * kHopelessResidual * contrast * contrast;
+  };
+  LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations, is_hopeless);
   if (found.stop == FitStop::iterations && found.parameters[kLogBlur] < std::log(kSharpEdge_px) &&
       found.rms < kLargestResidual * amplitude) {
     found = fit_least_squares<N>(model, found.parameters, step, kMoreIterations);
@@ -137,12 +143,12 @@ std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& gues
   marker.centre = {p[kU], p[kV]};
   // The bright marker's pixels are noisier than the background's, and the taper counts: covariance by the sandwich
   // A^-1 B A^-1 with A = J^T W J, B = sum (w r)^2 J J^T, and N parameters taken from the residuals' freedom.
-  auto noise = marker_equations<N>(window, p, PixelWeight::gradient);
-  noise->complete();
-  const auto inverse = (found.covariance / (found.rms * found.rms)).eval();
-  const auto covariance = (inverse * noise->jtj * inverse).eval();
+  const Eigen::Matrix<double, N, N> noise =
+      pixels.gradient_variance(found.evaluated_at, found.parameters - found.evaluated_at);
+  const Eigen::Matrix<double, 2, N> inverse = found.covariance.template topRows<2>() / (found.rms * found.rms);
+  const Eigen::Matrix2d covariance = inverse * noise * inverse.transpose();
   const double freedom = total_weight / (total_weight - N);
-  marker.sd_px = std::sqrt(0.5 * freedom * (covariance(kU, kU) + covariance(kV, kV)));
+  marker.sd_px = std::sqrt(0.5 * freedom * covariance.trace());
   const double determinant = p[kMuu] * p[kMvv] - p[kMuv] * p[kMuv];
   marker.radius_px = 1.0 / std::sqrt(determinant);
   marker.shape = {p[kMuu], p[kMuv], p[kMvv]};

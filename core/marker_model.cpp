@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/edge_primitives.h"
 
@@ -12,9 +13,20 @@ namespace {
 constexpr int kStrands = 4;
 constexpr int kBatch = 16;  // pixels
 
-const NormalNodes kNodes = make_normal_nodes();
-
 using Batch = std::array<double, kBatch>;
+
+}  // namespace
+
+/// A row of the Jacobian for each pixel, by columns, then the residual.
+template <int N>
+struct MarkerSlopes {
+  alignas(64) std::array<Batch, N> jacobian;
+  alignas(64) Batch residual;
+};
+
+namespace {
+
+const NormalNodes kNodes = make_normal_nodes();
 
 /// What does not change from pixel to pixel.
 template <int N>
@@ -28,13 +40,6 @@ struct Marker {
 /// Where a batch's pixels are: d, M d, and the outline next to them.
 struct Geometry {
   alignas(64) Batch du, dv, mu, mv, rho, per_steep, normal_u, normal_v, s;
-};
-
-/// A row of the Jacobian for each pixel, by columns, then the residual.
-template <int N>
-struct Slopes {
-  alignas(64) std::array<Batch, N> jacobian;
-  alignas(64) Batch residual;
 };
 
 /// Sums over all batches, in strands: the lower half of J' W J by columns, J' W r, W r^2 and W.
@@ -81,7 +86,7 @@ struct Sums {
 
 template <int N>
 [[gnu::always_inline]] inline void derive(const Marker<N>& marker, const Geometry& g, const double* datum,
-                                          Slopes<N>& out) {
+                                          MarkerSlopes<N>& out) {
   alignas(64) Batch value, slope, bend;
   see_edge(g, marker.blur, value, slope, bend);
   const auto& p = marker.p;
@@ -141,7 +146,7 @@ template <int N>
 }
 
 template <int N>
-[[gnu::always_inline]] inline void sum_up(const Slopes<N>& of, const Batch& weight, Sums<N>& sums) {
+[[gnu::always_inline]] inline void sum_up(const MarkerSlopes<N>& of, const Batch& weight, Sums<N>& sums) {
   alignas(64) Batch weighted;
   auto* sum = sums.strands.data();
   for (int column = 0; column < N; ++column) {
@@ -157,38 +162,59 @@ template <int N>
 }
 
 template <int N>
-[[gnu::always_inline]] inline void sum_pixels(const MarkerPixels& pixels, const Marker<N>& marker, PixelWeight weight,
-                                              Sums<N>& sums) {
+[[gnu::always_inline]] inline void sum_pixels(const MarkerPixels& pixels, const Marker<N>& marker,
+                                              MarkerSlopes<N>* slopes, Sums<N>& sums) {
   Geometry geometry;
-  Slopes<N> slopes;
   alignas(64) Batch weights;
-  for (std::size_t first = 0; first < pixels.u().size(); first += kBatch) {
+  for (std::size_t first = 0; first < pixels.u().size(); first += kBatch, ++slopes) {
     place(pixels.u().data() + first, pixels.v().data() + first, marker.p.data(), marker.blur, geometry);
-    derive(marker, geometry, pixels.value().data() + first, slopes);
+    derive(marker, geometry, pixels.value().data() + first, *slopes);
     const double* const taper = pixels.weight().data() + first;
-    if (weight == PixelWeight::taper) {
-      for (int i = 0; i < kBatch; ++i) weights[i] = taper[i];
-    } else {
-      for (int i = 0; i < kBatch; ++i) {
-        const double share = taper[i] * slopes.residual[i];
-        weights[i] = share * share;
-      }
+    for (int i = 0; i < kBatch; ++i) weights[i] = taper[i];
+    sum_up(*slopes, weights, sums);
+  }
+}
+
+/// By weights that are a pixel's share in the variance of the gradient, (w r)^2, a step away from where r was taken.
+template <int N>
+[[gnu::always_inline]] inline void sum_variance(const MarkerPixels& pixels, const MarkerSlopes<N>* slopes,
+                                                const double* step, Sums<N>& sums) {
+  alignas(64) Batch weights;
+  for (std::size_t first = 0; first < pixels.u().size(); first += kBatch, ++slopes) {
+    const double* const taper = pixels.weight().data() + first;
+    alignas(64) Batch residual = slopes->residual;
+    for (int k = 0; k < N; ++k) {
+      for (int i = 0; i < kBatch; ++i) residual[i] += slopes->jacobian[k][i] * step[k];
     }
-    sum_up(slopes, weights, sums);
+    for (int i = 0; i < kBatch; ++i) {
+      const double share = taper[i] * residual[i];
+      weights[i] = share * share;
+    }
+    sum_up(*slopes, weights, sums);
   }
 }
 
 template <int N>
-void sum_pixels_baseline(const MarkerPixels& pixels, const Marker<N>& marker, PixelWeight weight, Sums<N>& sums) {
-  sum_pixels(pixels, marker, weight, sums);
+void sum_pixels_baseline(const MarkerPixels& pixels, const Marker<N>& marker, MarkerSlopes<N>* slopes, Sums<N>& sums) {
+  sum_pixels(pixels, marker, slopes, sums);
+}
+template <int N>
+void sum_variance_baseline(const MarkerPixels& pixels, const MarkerSlopes<N>* slopes, const double* step,
+                           Sums<N>& sums) {
+  sum_variance(pixels, slopes, step, sums);
 }
 
 #if defined(__x86_64__)
 // AVX2 without FMA: the same operations on more lanes.
 template <int N>
-[[gnu::target("avx2")]] void sum_pixels_avx2(const MarkerPixels& pixels, const Marker<N>& marker, PixelWeight weight,
-                                             Sums<N>& sums) {
-  sum_pixels(pixels, marker, weight, sums);
+[[gnu::target("avx2")]] void sum_pixels_avx2(const MarkerPixels& pixels, const Marker<N>& marker,
+                                             MarkerSlopes<N>* slopes, Sums<N>& sums) {
+  sum_pixels(pixels, marker, slopes, sums);
+}
+template <int N>
+[[gnu::target("avx2")]] void sum_variance_avx2(const MarkerPixels& pixels, const MarkerSlopes<N>* slopes,
+                                               const double* step, Sums<N>& sums) {
+  sum_variance(pixels, slopes, step, sums);
 }
 #endif
 
@@ -230,26 +256,51 @@ void MarkerPixels::complete() {
 }
 
 template <int N>
-std::optional<NormalEquations<N>> marker_equations(const MarkerPixels& pixels, const Eigen::Matrix<double, N, 1>& p,
-                                                   PixelWeight weight, [[maybe_unused]] Vectors vectors) {
+MarkerModel<N>::MarkerModel(const MarkerPixels& pixels, Vectors vectors)
+    : pixels_(pixels),
+      vectors_(vectors),
+      slopes_(std::make_unique_for_overwrite<MarkerSlopes<N>[]>(pixels.u().size() / kBatch)) {}
+
+template <int N>
+MarkerModel<N>::~MarkerModel() = default;
+
+template <int N>
+std::optional<NormalEquations<N>> MarkerModel<N>::equations(const Vector& p) {
   const double determinant = p[kMuu] * p[kMvv] - p[kMuv] * p[kMuv];
   const double blur = std::exp(p[kLogBlur]);
   if (!(blur > 0.01) || blur > 20.0 || !(determinant > 1e-6) || !(p[kMuu] > 0.0)) return std::nullopt;
   const Marker<N> marker{p, blur, std::sqrt(determinant), blur * blur + 1.0 / 12.0};
+  known_ = p;
   Sums<N> sums;
 #if defined(__x86_64__)
-  if (base::uses_avx2(vectors)) {
-    sum_pixels_avx2(pixels, marker, weight, sums);
+  if (base::uses_avx2(vectors_)) {
+    sum_pixels_avx2(pixels_, marker, slopes_.get(), sums);
     return equations_of(sums);
   }
 #endif
-  sum_pixels_baseline(pixels, marker, weight, sums);
+  sum_pixels_baseline(pixels_, marker, slopes_.get(), sums);
   return equations_of(sums);
 }
 
-template std::optional<NormalEquations<kUniformParameters>> marker_equations<kUniformParameters>(
-    const MarkerPixels&, const Eigen::Matrix<double, kUniformParameters, 1>&, PixelWeight, Vectors);
-template std::optional<NormalEquations<kShadedParameters>> marker_equations<kShadedParameters>(
-    const MarkerPixels&, const Eigen::Matrix<double, kShadedParameters, 1>&, PixelWeight, Vectors);
+template <int N>
+Eigen::Matrix<double, N, N> MarkerModel<N>::gradient_variance(const Vector& p, const Vector& step) {
+  if (!(known_ && *known_ == p) && !equations(p)) throw std::logic_error("the slopes of no marker");
+  Sums<N> sums;
+#if defined(__x86_64__)
+  if (base::uses_avx2(vectors_)) {
+    sum_variance_avx2(pixels_, slopes_.get(), step.data(), sums);
+  } else {
+    sum_variance_baseline(pixels_, slopes_.get(), step.data(), sums);
+  }
+#else
+  sum_variance_baseline(pixels_, slopes_.get(), step.data(), sums);
+#endif
+  NormalEquations<N> equations = equations_of(sums);
+  equations.complete();
+  return equations.jtj;
+}
+
+template class MarkerModel<kUniformParameters>;
+template class MarkerModel<kShadedParameters>;
 
 }  // namespace glidelab::core

@@ -7,6 +7,7 @@
 
 #include <opencv2/core.hpp>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -52,21 +53,39 @@ class MarkerPixels {
   std::vector<double> u_, v_, value_, weight_;  ///< once complete whole batches, filled up with pixels of no weight
 };
 
-enum class PixelWeight {
-  taper,    ///< a pixel's weight in the fit
-  gradient  ///< its share in the variance of the gradient, (w r)^2: the middle of the sandwich covariance
-};
-
 using Vectors = base::Simd;  ///< there is no portable one here: it is the baseline
 
-/// The sums over the window (not complete() yet); nothing where the parameters are no marker's.
+/// The model's residuals and slopes in one batch of pixels.
 template <int N>
-std::optional<NormalEquations<N>> marker_equations(const MarkerPixels& pixels, const Eigen::Matrix<double, N, 1>& p,
-                                                   PixelWeight weight, Vectors vectors = Vectors::best);
+struct MarkerSlopes;
 
-extern template std::optional<NormalEquations<kUniformParameters>> marker_equations<kUniformParameters>(
-    const MarkerPixels&, const Eigen::Matrix<double, kUniformParameters, 1>&, PixelWeight, Vectors);
-extern template std::optional<NormalEquations<kShadedParameters>> marker_equations<kShadedParameters>(
-    const MarkerPixels&, const Eigen::Matrix<double, kShadedParameters, 1>&, PixelWeight, Vectors);
+/// The sums over a window, whose slopes are kept for a second sum.
+template <int N>
+class MarkerModel {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  /// The pixels, complete(), must outlive it.
+  explicit MarkerModel(const MarkerPixels& pixels, Vectors vectors = Vectors::best);
+  MarkerModel(const MarkerModel&) = delete;
+  MarkerModel& operator=(const MarkerModel&) = delete;
+  ~MarkerModel();
+
+  /// The sums (not complete() yet); nothing where the parameters are no marker's.
+  std::optional<NormalEquations<N>> equations(const Vector& p);
+
+  /// The variance of the gradient, sum (w r)^2 J J^T: the middle of the sandwich covariance. J is that at p, kept where
+  /// equations() was asked for it last, else taken anew; r is that at p + step, to first order. p must be a marker's.
+  Eigen::Matrix<double, N, N> gradient_variance(const Vector& p, const Vector& step);
+
+ private:
+  const MarkerPixels& pixels_;
+  Vectors vectors_;
+  std::unique_ptr<MarkerSlopes<N>[]> slopes_;  ///< of each batch
+  std::optional<Vector> known_;                ///< where they were taken
+};
+
+extern template class MarkerModel<kUniformParameters>;
+extern template class MarkerModel<kShadedParameters>;
 
 }  // namespace glidelab::core

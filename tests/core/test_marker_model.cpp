@@ -37,7 +37,8 @@ template <int N>
 void check_gradient() {
   const MarkerPixels window = pixels();
   const Eigen::Matrix<double, N, 1> p = parameters<N>();
-  const auto here = marker_equations<N>(window, p, PixelWeight::taper);
+  MarkerModel<N> model(window);
+  const auto here = model.equations(p);
   REQUIRE(here);
   // Those of brightness, background and shading; the outline's leave out how its steepness changes.
   for (int k = kBright; k < N; ++k) {
@@ -46,9 +47,7 @@ void check_gradient() {
     Eigen::Matrix<double, N, 1> up = p, down = p;
     up[k] += kStep;
     down[k] -= kStep;
-    const double by_cost = (marker_equations<N>(window, up, PixelWeight::taper)->cost -
-                            marker_equations<N>(window, down, PixelWeight::taper)->cost) /
-                           (4.0 * kStep);
+    const double by_cost = (model.equations(up)->cost - model.equations(down)->cost) / (4.0 * kStep);
     INFO("parameter " << k);
     CHECK(std::abs(by_cost - here->jtr[k]) < 1e-6 * std::sqrt(here->cost * here->jtj(k, k)));
   }
@@ -84,13 +83,26 @@ TEST_CASE("the sums over a marker's pixels are those of the model written out fo
     variance += w * r * w * r * edge.value * edge.value;
   }
   // Rounding of 441 terms.
-  const auto sums = marker_equations<kUniformParameters>(window, p, PixelWeight::taper);
+  MarkerModel<kUniformParameters> fitted(window);
+  const Eigen::Matrix<double, kUniformParameters, 1> none = Eigen::Matrix<double, kUniformParameters, 1>::Zero();
+  const auto sums = fitted.equations(p);
   REQUIRE(sums);
   CHECK(std::abs(sums->cost / cost - 1.0) < 1e-12);
   CHECK(std::abs(sums->weight / weight - 1.0) < 1e-12);
   CHECK(std::abs(sums->jtj(kBright, kBright) / edges - 1.0) < 1e-12);
-  const auto noise = marker_equations<kUniformParameters>(window, p, PixelWeight::gradient);
-  CHECK(std::abs(noise->jtj(kBright, kBright) / variance - 1.0) < 1e-12);
+  CHECK(std::abs(fitted.gradient_variance(p, none)(kBright, kBright) / variance - 1.0) < 1e-12);
+  // In brightness and background the model is linear: a step there gives the residuals that are taken behind it.
+  auto brighter = none, behind = p;
+  brighter[kBright] = 3.0;
+  brighter[kLevel] = -2.0;
+  behind += brighter;
+  const auto stepped = fitted.gradient_variance(p, brighter);
+  CHECK(std::abs(fitted.gradient_variance(behind, none)(kBright, kBright) / stepped(kBright, kBright) - 1.0) < 1e-12);
+  // Slopes that were taken elsewhere since do not count.
+  auto elsewhere = p;
+  elsewhere[kU] += 1.0;
+  fitted.equations(elsewhere);
+  CHECK(std::abs(fitted.gradient_variance(p, none)(kBright, kBright) / variance - 1.0) < 1e-12);
 }
 
 TEST_CASE("wide vectors give a marker's sums to the last bit, and a pixel on the very centre counts as marker") {
@@ -98,25 +110,25 @@ TEST_CASE("wide vectors give a marker's sums to the last bit, and a pixel on the
   auto p = parameters<kShadedParameters>();
   p[kU] = 20.0;
   p[kV] = 18.0;
-  for (const PixelWeight weight : {PixelWeight::taper, PixelWeight::gradient}) {
-    const auto wide = marker_equations<kShadedParameters>(window, p, weight, Vectors::best);
-    const auto plain = marker_equations<kShadedParameters>(window, p, weight, Vectors::baseline);
-    REQUIRE(wide);
-    REQUIRE(plain);
-    CHECK(std::isfinite(wide->cost));
-    CHECK(wide->cost == plain->cost);
-    CHECK(wide->weight == plain->weight);
-    CHECK(wide->jtj == plain->jtj);
-    CHECK(wide->jtr == plain->jtr);
-  }
+  MarkerModel<kShadedParameters> by_wide(window, Vectors::best), by_plain(window, Vectors::baseline);
+  const auto wide = by_wide.equations(p), plain = by_plain.equations(p);
+  REQUIRE(wide);
+  REQUIRE(plain);
+  CHECK(std::isfinite(wide->cost));
+  CHECK(wide->cost == plain->cost);
+  CHECK(wide->weight == plain->weight);
+  CHECK(wide->jtj == plain->jtj);
+  CHECK(wide->jtr == plain->jtr);
+  const Eigen::Matrix<double, kShadedParameters, 1> step = 1e-3 * p;
+  CHECK(by_wide.gradient_variance(p, step) == by_plain.gradient_variance(p, step));
 }
 
 TEST_CASE("parameters that are no marker's give no sums") {
   const MarkerPixels window = pixels();
   auto p = parameters<kUniformParameters>();
   p[kMuv] = 0.5;  // no ellipse
-  CHECK_FALSE(marker_equations<kUniformParameters>(window, p, PixelWeight::taper));
+  CHECK_FALSE(MarkerModel<kUniformParameters>(window).equations(p));
   p = parameters<kUniformParameters>();
   p[kLogBlur] = std::log(30.0);
-  CHECK_FALSE(marker_equations<kUniformParameters>(window, p, PixelWeight::taper));
+  CHECK_FALSE(MarkerModel<kUniformParameters>(window).equations(p));
 }
