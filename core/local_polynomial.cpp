@@ -8,6 +8,7 @@
 
 #include "core/orthogonal_polynomials.h"
 #include "core/quantile.h"
+#include "core/strands.h"
 
 namespace glidelab::core {
 namespace {
@@ -181,15 +182,16 @@ SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values
   const KernelWeights& weights = *row.weights;
   assert(row.first + weights.x.size() <= values.size());
   // About the first value, so that a far origin costs no digits.
-  const double origin = values[row.first];
-  SmoothedPoint point;
-  for (std::size_t i = 0; i < weights.x.size(); ++i) {
-    const double value = values[row.first + i] - origin;
-    point.x_m += weights.x[i] * value;
-    point.v_m_s += weights.v[i] * value;
-  }
-  for (std::size_t i = 0; i < weights.a.size(); ++i) point.a_m_s2 += weights.a[i] * (values[row.first + i] - origin);
-  if (weights.a.empty()) point.a_m_s2 = std::numeric_limits<double>::quiet_NaN();
+  const double* const value = values.data() + row.first;
+  const double* const wx = weights.x.data();
+  const double* const wv = weights.v.data();
+  const double* const wa = weights.a.empty() ? wx : weights.a.data();
+  const double origin = value[0];
+  const auto [x, v, a] = sums_in_strands<3>(weights.x.size(), [&](std::size_t i) {
+    const double beyond = value[i] - origin;
+    return std::array{wx[i] * beyond, wv[i] * beyond, wa[i] * beyond};
+  });
+  SmoothedPoint point{x, v, weights.a.empty() ? std::numeric_limits<double>::quiet_NaN() : a};
   point.x_m += origin;
   return point;
 }

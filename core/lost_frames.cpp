@@ -138,6 +138,24 @@ int lost_between(const Window& window, double noise_m) {
   return best > 0 && explains && whole ? best : 0;
 }
 
+/// Whether one cubic explains point i and those around it so well that nothing is lost before it or beside it: in a
+/// window with fewer of these points a cubic leaves no more.
+bool is_smooth(const Motion& motion, const std::vector<double>& t_s, std::size_t i, double step_s) {
+  const std::size_t before = std::min(i, kBefore), behind = std::min(kBehind, t_s.size() - i - 1), first = i - before;
+  const auto n = static_cast<Eigen::Index>(before + 1 + behind);
+  Eigen::Matrix<double, Eigen::Dynamic, 4, 0, kMostPoints, 4> design(n, 4);
+  Points y(n);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const std::size_t point = first + static_cast<std::size_t>(r);
+    const double u = (t_s[point] - t_s[i]) / step_s * kUnit;
+    design.row(r) << 1.0, u, u * u, u * u * u;
+    y[r] = motion.y_m[point] - motion.y_m[i];
+  }
+  const Eigen::HouseholderQR<decltype(design)> qr(design);
+  y.applyOnTheLeft(qr.householderQ().adjoint());
+  return y.tail(n - 4).squaredNorm() < kEvidence * motion.noise_m * motion.noise_m;
+}
+
 /// Whether a window of these points holds hardly a frame without a marker.
 bool is_close(const Motion& motion, std::size_t first, std::size_t count, double step_s) {
   const double span_s = motion.t_s[first + count - 1] - motion.t_s[first];
@@ -203,6 +221,7 @@ std::vector<LostFrames> losses_of(const Motion& motion, std::vector<LostFrames> 
     for (std::size_t k = i; k < t.size(); ++k) t[k] += lost * step_s;
   };
   for (std::size_t i = 2; i + kFewestBehind <= t.size(); ++i) {
+    if (is_smooth(motion, t, i, step_s)) continue;
     if (const int lost = lost_before(motion, t, i, step_s); lost > 0) {
       add(i, lost);
     } else if (const std::optional<Beside> beside = lost_beside(motion, t, i, step_s)) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <queue>
+#include <utility>
 #include <vector>
 
 #include "core/least_squares.h"
@@ -42,12 +43,14 @@ std::optional<MarkerPixels> cut_window(const Signal& signal, cv::Point2d centre,
   const double taper_from = radius - std::min(2.0, 0.25 * radius);
   for (int v = top; v <= bottom; ++v) {
     for (int u = left; u <= right; ++u) {
-      const double du = u - centre.x, dv = v - centre.y;
-      const double distance = std::sqrt(du * du + dv * dv);
-      if (distance >= radius) continue;
-      const double into_taper = (distance - taper_from) / (radius - taper_from);
-      window.add(u, v, signal.at(u, v),
-                 into_taper <= 0.0 ? 1.0 : 0.5 + 0.5 * sine(std::numbers::pi * (0.5 - into_taper)));
+      const double du = u - centre.x, dv = v - centre.y, square = du * du + dv * dv;
+      if (square >= radius * radius) continue;
+      double weight = 1.0;
+      if (square > taper_from * taper_from) {
+        const double into_taper = (std::sqrt(square) - taper_from) / (radius - taper_from);
+        weight = 0.5 + 0.5 * sine(std::numbers::pi * (0.5 - into_taper));
+      }
+      window.add(u, v, signal.at(u, v), weight);
     }
   }
   window.complete();
@@ -96,15 +99,18 @@ std::optional<NormalEquations<N>> evaluate(MarkerModel<N>& pixels, const Prior& 
 template <int N>
 std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& guess) {
   std::vector<double> inside, around;
+  inside.reserve(window.size());
+  around.reserve(window.size());
+  const double well_inside_px = 0.7 * guess.radius_px;
   for (std::size_t i = 0; i < window.size(); ++i) {
     const double du = window.u()[i] - guess.centre.x, dv = window.v()[i] - guess.centre.y;
-    const double share = std::sqrt(du * du + dv * dv) / guess.radius_px;
-    if (share < 0.7) inside.push_back(window.value()[i]);
-    if (share > 1.0) around.push_back(window.value()[i]);
+    const double square = du * du + dv * dv;
+    if (square < well_inside_px * well_inside_px) inside.push_back(window.value()[i]);
+    if (square > guess.radius_px * guess.radius_px) around.push_back(window.value()[i]);
   }
   if (inside.empty() || around.empty() || window.size() < 2 * static_cast<std::size_t>(N)) return std::nullopt;
-  const double level = median_of(around);
-  const double amplitude = median_of(inside) - level;
+  const double level = median_of(std::move(around));
+  const double amplitude = median_of(std::move(inside)) - level;
   if (!(amplitude > 0.0)) return std::nullopt;
 
   Eigen::Matrix<double, N, 1> start = Eigen::Matrix<double, N, 1>::Zero();

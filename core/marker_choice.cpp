@@ -104,7 +104,7 @@ void MarkerTracker::choose_method(Path& path) const {
                                      [&](const Sample& sample) { return sample.frame == sighting.frame; });
     const auto again = fits[chosen].find(sighting.frame);
     if (again != fits[chosen].end()) {
-      kept.push_back({sighting.frame, again->second});
+      kept.push_back({sighting.frame, again->second, radius_at_(again->second.centre)});
     } else if (!sampled) {
       kept.push_back(sighting);  // followed back, or asleep
     }
@@ -153,8 +153,7 @@ double MarkerTracker::size_ratio(const Path& path) const {
   std::vector<double> ratios;
   const std::size_t step = std::max<std::size_t>(1, path.seen.size() / 50);
   for (std::size_t i = 0; i < path.seen.size(); i += step) {
-    const MarkerFit& fit = path.seen[i].fit;
-    ratios.push_back(fit.radius_px / std::max(radius_at_(fit.centre), 1e-3));
+    ratios.push_back(path.seen[i].size());
   }
   return median_of(ratios);
 }
@@ -270,7 +269,7 @@ TrackedMarker MarkerTracker::finish() {
   // A marker that is half hidden is measured wrong: smaller, or with larger residuals, than in the frames around.
   std::vector<double> sizes, residuals;
   for (const Seen& sighting : path.seen) {
-    sizes.push_back(sighting.fit.radius_px / std::max(radius_at_(sighting.fit.centre), 1e-3));
+    sizes.push_back(sighting.size());
     residuals.push_back(sighting.fit.rms / sighting.fit.amplitude);
   }
   const double usual_size = median_of(sizes);

@@ -195,9 +195,10 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
   const double least =
       std::max({kNoiseSigmas * std::sqrt(2.0) * of_mean, kShareOfBest * best, search.least_contrast, 1e-6});
 
-  for (int v = 0; v < small.rows; ++v) {
-    for (int u = 0; u < small.cols; ++u) {
-      const float here = response.at<float>(v, u);
+  for (int v = begin.y; v < end.y; ++v) {  // there is none elsewhere
+    const auto* const row = response.ptr<float>(v);
+    for (int u = begin.x; u < end.x; ++u) {
+      const float here = row[u];
       if (static_cast<double>(here) < least) continue;
       bool highest = true;
       for (int dv = -1; dv <= 1 && highest; ++dv) {

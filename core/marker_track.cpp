@@ -134,7 +134,7 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
 }
 
 void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const {
-  path.push({frame, found.fit});
+  path.push({frame, found.fit, radius_at_(found.fit.centre)});
   if (path.method != Method::undecided) return;
   const int reach = static_cast<int>(std::ceil(2.2 * found.guess.radius_px + 6.0));
   const cv::Rect box =
@@ -195,7 +195,7 @@ void MarkerTracker::follow_back(Path& path) const {
   for (auto past = past_.rbegin(); past != past_.rend() && missed < 3; ++past) {
     const auto found = find_again(past->signal, past->frame, back, places_at(past->frame));
     if (found) {
-      back.push({past->frame, found->fit});
+      back.push({past->frame, found->fit, radius_at_(found->fit.centre)});
       missed = 0;
     } else {
       ++missed;

@@ -10,6 +10,7 @@
 
 #include <opencv2/core.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <filesystem>
@@ -52,6 +53,9 @@ class MarkerTracker {
   struct Seen {
     std::size_t frame = 0;
     MarkerFit fit;
+    double expected_px = 0.0;  ///< radius that the marker should have there
+
+    double size() const { return fit.radius_px / std::max(expected_px, 1e-3); }
   };
   /// A window around a sighting, kept until the method is chosen.
   struct Sample {

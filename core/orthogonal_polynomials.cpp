@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/strands.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -21,14 +23,11 @@ std::optional<OrthogonalPolynomials> OrthogonalPolynomials::make(int order, std:
   double* now = made.values_.data();
   std::fill_n(now, n, 1.0);
   for (int k = 0;; ++k) {
-    double norm = 0.0, first = 0.0, of_power = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double square = weights[i] * now[i] * now[i];
-      norm += square;
-      first += square * u[i];
-      of_power += power[i];
-      power[i] *= u[i] * u[i];
-    }
+    const auto [norm, first, of_power] = sums_in_strands<3>(n, [&](std::size_t i) {
+      const double square = weights[i] * now[i] * now[i], of_this = power[i];
+      power[i] = of_this * (u[i] * u[i]);
+      return std::array{square, square * u[i], of_this};
+    });
     if (!(norm > kSmallestNorm * of_power)) return {};
     made.norm_.push_back(norm);
     if (k == order) return made;

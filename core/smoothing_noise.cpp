@@ -3,14 +3,16 @@
 #include <cassert>
 
 #include "core/local_polynomial.h"
+#include "core/strands.h"
 
 namespace glidelab::core {
 
 double noise_variance(std::span<const double> weights, std::span<const double> autocovariance) {
   double variance = 0.0;
   for (std::size_t lag = 0; lag < autocovariance.size() && lag < weights.size(); ++lag) {
-    double product = 0.0;
-    for (std::size_t i = 0; i + lag < weights.size(); ++i) product += weights[i] * weights[i + lag];
+    const double* const later = weights.data() + lag;
+    const auto [product] =
+        sums_in_strands<1>(weights.size() - lag, [&](std::size_t i) { return std::array{weights[i] * later[i]}; });
     variance += (lag == 0 ? 1.0 : 2.0) * autocovariance[lag] * product;
   }
   return variance;

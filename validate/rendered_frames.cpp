@@ -93,8 +93,13 @@ class RenderedFrames : public core::FrameSource {
  private:
   template <typename Code>
   void read(const render::FrameMotion& shown, const cv::Rect& rect, cv::Mat& target) {
+    const render::PixelRect part{rect.x, rect.y, rect.width, rect.height};
+    if (target.isContinuous()) {
+      stream_.read(shown, part, std::span<Code>(target.ptr<Code>(), target.total()));
+      return;
+    }
     cv::Mat codes(rect.size(), target.type());
-    stream_.read(shown, {rect.x, rect.y, rect.width, rect.height}, std::span<Code>(codes.ptr<Code>(), codes.total()));
+    stream_.read(shown, part, std::span<Code>(codes.ptr<Code>(), codes.total()));
     codes.copyTo(target);
   }
 
