@@ -89,14 +89,14 @@ std::optional<cv::Point2d> CameraModel::to_normalised(cv::Point2d pixel) const {
   for (int i = 0; i < kMaxIterations; ++i) {
     const Distorted distorted = distort(*this, here);
     const cv::Point2d off = distorted.at - wanted;
-    error = std::hypot(off.x, off.y);
+    error = std::sqrt(off.dot(off));
     // The branch that holds the axis: there the distortion keeps its orientation.
     const double determinant = cv::determinant(distorted.jacobian);
     if (!(determinant > 0.0) || !std::isfinite(error)) return std::nullopt;
     if (error < tolerance) return here;
     const cv::Vec2d step = distorted.jacobian.inv() * cv::Vec2d(off.x, off.y);
     // A long step is shortened, so that the iteration does not jump over the fold.
-    const double length = std::hypot(step[0], step[1]);
+    const double length = std::sqrt(step.dot(step));
     const double share = std::min(1.0, 0.3 / length);
     here -= cv::Point2d(share * step[0], share * step[1]);
   }

@@ -14,6 +14,7 @@ namespace glidelab::core {
 namespace {
 
 constexpr double kUniform = 1e-9;  // steps that differ by less than this part are one step
+constexpr std::size_t kMostPolynomials = 6;
 
 bool has_tails(Kernel kernel) {
   return kernel == Kernel::gaussian || kernel == Kernel::bimodal;
@@ -27,22 +28,38 @@ bool polynomial_weights(int order, const std::vector<double>& u, const std::vect
   if (!basis) return false;
   const std::size_t n = u.size();
   const std::vector<double> at_zero = basis->derivatives(0.0, 2);
-  weights.x.assign(n, 0.0);
-  weights.v.assign(n, 0.0);
-  weights.a.assign(order >= 2 ? n : 0, 0.0);
+  weights.x.resize(n);
+  weights.v.resize(n);
+  weights.a.resize(order >= 2 ? n : 0);
+  struct Share {
+    double x = 0.0, v = 0.0, a = 0.0;
+    const double* polynomial = nullptr;
+  };
+  std::array<Share, kMostPolynomials> shares;
   for (int k = 0; k <= order; ++k) {
     const double* const d = at_zero.data() + 3 * k;
     const double per_norm = 1.0 / basis->norm(k);
-    const double x = d[0] * per_norm, v = d[1] * per_norm / bandwidth_s,
-                 a = d[2] * per_norm / (bandwidth_s * bandwidth_s);
-    const auto p = basis->at_points(k);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double value = kernel[i] * p[i];
-      weights.x[i] += x * value;
-      weights.v[i] += v * value;
-      if (order >= 2) weights.a[i] += a * value;
-    }
+    shares[static_cast<std::size_t>(k)] = {d[0] * per_norm, d[1] * per_norm / bandwidth_s,
+                                           d[2] * per_norm / (bandwidth_s * bandwidth_s), basis->at_points(k).data()};
   }
+  const auto used = std::span(shares).first(static_cast<std::size_t>(order) + 1);
+  const auto sum_to = [&](std::vector<double>& to, double Share::*part) {
+    if (used.size() == 4) {  // the usual order, in one pass
+      const double c0 = used[0].*part, c1 = used[1].*part, c2 = used[2].*part, c3 = used[3].*part;
+      const double *const p0 = used[0].polynomial, *const p1 = used[1].polynomial, *const p2 = used[2].polynomial,
+                          *const p3 = used[3].polynomial;
+      for (std::size_t i = 0; i < to.size(); ++i)
+        to[i] = kernel[i] * (c0 * p0[i] + c1 * p1[i] + c2 * p2[i] + c3 * p3[i]);
+      return;
+    }
+    std::ranges::fill(to, 0.0);
+    for (const Share& share : used) {
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] += share.*part * (kernel[i] * share.polynomial[i]);
+    }
+  };
+  sum_to(weights.x, &Share::x);
+  sum_to(weights.v, &Share::v);
+  sum_to(weights.a, &Share::a);
   return true;
 }
 

@@ -23,8 +23,11 @@ std::vector<double> ModeAxis::displacement(const Restitution& restitution, const
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
                                 const std::vector<cv::Point2d>& places, int downhill) {
   const std::size_t stride = places.size() / kEnough + 1;
-  std::vector<cv::Point2d> some;
-  for (std::size_t i = 0; i < places.size(); i += stride) some.push_back(places[i]);
+  std::vector<cv::Point2d> some, pixels;
+  for (std::size_t i = 0; i < places.size(); i += stride) {
+    some.push_back(places[i]);
+    pixels.push_back(restitution.centre_pixel(places[i]));
+  }
   const bool moves = std::isfinite(without.line().sd_angle_rad);  // else the marker rests, and x runs along X
   const MotionAxis before = moves && stride > 1 ? without.moved_through(some, downhill) : without;
   std::vector<ModeAxis> axes;
@@ -32,9 +35,7 @@ std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis
     ModeAxis moved{mode, without};
     if (moves) {
       std::vector<cv::Point2d> displaced;
-      for (const cv::Point2d& place : some) {
-        displaced.push_back(mode.to_plane(restitution.centre_pixel(place)).value_or(place));
-      }
+      for (std::size_t i = 0; i < some.size(); ++i) displaced.push_back(mode.to_plane(pixels[i]).value_or(some[i]));
       moved.axis = without.turned(before.moved_through(displaced, downhill), before);
     }
     axes.push_back(moved);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <opencv2/calib3d.hpp>
@@ -14,6 +15,16 @@ namespace {
 
 constexpr int kOutlinePoints =
     48;  // of the marker's outline; an ellipse's centre comes out exactly for any even number
+
+/// The directions from the outline's centre to its points.
+const std::array<cv::Point2d, kOutlinePoints> kAround = [] {
+  std::array<cv::Point2d, kOutlinePoints> around;
+  for (int k = 0; k < kOutlinePoints; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / kOutlinePoints;
+    around[static_cast<std::size_t>(k)] = {std::cos(angle), std::sin(angle)};
+  }
+  return around;
+}();
 
 PlanePose pose_from(const Eigen::VectorXd& parameters) {
   PlanePose pose;
@@ -253,10 +264,9 @@ cv::Point2d Restitution::outline_offset(cv::Point2d plane) const {
   const double rim = radius_m_ * std::sqrt(1.0 - share * share);
   const cv::Point2d reference = calibration_.camera.to_pixel({centre[0] / centre[2], centre[1] / centre[2]});
   std::array<cv::Point2d, kOutlinePoints> outline;
-  for (int k = 0; k < kOutlinePoints; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / kOutlinePoints;
-    const cv::Vec3d p = middle + rim * (std::cos(angle) * across + std::sin(angle) * other);
-    outline[static_cast<std::size_t>(k)] = calibration_.camera.to_pixel({p[0] / p[2], p[1] / p[2]}) - reference;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const cv::Vec3d p = middle + rim * (kAround[k].x * across + kAround[k].y * other);
+    outline[k] = calibration_.camera.to_pixel({p[0] / p[2], p[1] / p[2]}) - reference;
   }
   double area = 0.0;
   cv::Point2d moment;
