@@ -8,7 +8,6 @@
 
 #include "core/orthogonal_polynomials.h"
 #include "core/quantile.h"
-#include "core/strands.h"
 
 namespace glidelab::core {
 namespace {
@@ -199,16 +198,15 @@ SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values
   const KernelWeights& weights = *row.weights;
   assert(row.first + weights.x.size() <= values.size());
   // About the first value, so that a far origin costs no digits.
-  const double* const value = values.data() + row.first;
-  const double* const wx = weights.x.data();
-  const double* const wv = weights.v.data();
-  const double* const wa = weights.a.empty() ? wx : weights.a.data();
-  const double origin = value[0];
-  const auto [x, v, a] = sums_in_strands<3>(weights.x.size(), [&](std::size_t i) {
-    const double beyond = value[i] - origin;
-    return std::array{wx[i] * beyond, wv[i] * beyond, wa[i] * beyond};
-  });
-  SmoothedPoint point{x, v, weights.a.empty() ? std::numeric_limits<double>::quiet_NaN() : a};
+  const double origin = values[row.first];
+  using Numbers = Eigen::Map<const Eigen::ArrayXd>;
+  const auto count = static_cast<Eigen::Index>(weights.x.size());
+  const Numbers value(values.data() + row.first, count);
+  const auto sum = [&](const std::vector<double>& of) { return (Numbers(of.data(), count) * (value - origin)).sum(); };
+  SmoothedPoint point;
+  point.x_m = sum(weights.x);
+  point.v_m_s = sum(weights.v);
+  point.a_m_s2 = weights.a.empty() ? std::numeric_limits<double>::quiet_NaN() : sum(weights.a);
   point.x_m += origin;
   return point;
 }

@@ -121,6 +121,11 @@ void put_in_order(float* __restrict first, float* __restrict second, std::size_t
   }
 }
 
+/// The brighter one of each two to the first row. A NaN is never brighter.
+void keep_brighter(float* __restrict first, const float* __restrict second, std::size_t count) {
+  for (std::size_t u = 0; u < count; ++u) first[u] = second[u] > first[u] ? second[u] : first[u];
+}
+
 /// By how much a disc stands out of its surroundings at each pixel of the region: its inner mean above
 /// the brightest but `bright_neighbours` of the means at eight places around it; 0 where more of these are as bright.
 cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, const Scale& scale, int bright_neighbours) {
@@ -149,6 +154,10 @@ cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, const Scale& 
     std::ranges::fill(brightest, kNone);
     for (const std::ptrdiff_t k : step) {
       const float* const there = beside + k;
+      if (bright_neighbours == 0) {
+        keep_brighter(brightest.data(), there, width);
+        continue;
+      }
       for (std::size_t u = 0; u < width; ++u) next[u] = there[u] == there[u] ? there[u] : kNone;
       for (int rank = 0; rank <= bright_neighbours; ++rank) {
         put_in_order(brightest.data() + static_cast<std::size_t>(rank) * width, next.data(), width);

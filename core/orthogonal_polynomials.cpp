@@ -1,9 +1,9 @@
 #include "core/orthogonal_polynomials.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cassert>
-
-#include "core/strands.h"
 
 namespace glidelab::core {
 namespace {
@@ -19,15 +19,16 @@ std::optional<OrthogonalPolynomials> OrthogonalPolynomials::make(int order, std:
   OrthogonalPolynomials made;
   made.points_ = n;
   made.values_.resize(n * (static_cast<std::size_t>(order) + 1));
-  std::vector<double> power(weights.begin(), weights.end());  // K u^(2k)
+  using Numbers = Eigen::Map<const Eigen::ArrayXd>;
+  const auto count = static_cast<Eigen::Index>(n);
+  const Numbers at(u.data(), count), weight(weights.data(), count);
+  Eigen::ArrayXd power = weight;  // K u^(2k)
   double* now = made.values_.data();
   std::fill_n(now, n, 1.0);
   for (int k = 0;; ++k) {
-    const auto [norm, first, of_power] = sums_in_strands<3>(n, [&](std::size_t i) {
-      const double square = weights[i] * now[i] * now[i], of_this = power[i];
-      power[i] = of_this * (u[i] * u[i]);
-      return std::array{square, square * u[i], of_this};
-    });
+    const Numbers p(now, count);
+    const double norm = (weight * p.square()).sum(), first = (weight * p.square() * at).sum(), of_power = power.sum();
+    power *= at.square();
     if (!(norm > kSmallestNorm * of_power)) return {};
     made.norm_.push_back(norm);
     if (k == order) return made;

@@ -3,16 +3,15 @@
 #include <cassert>
 
 #include "core/local_polynomial.h"
-#include "core/strands.h"
 
 namespace glidelab::core {
 
 double noise_variance(std::span<const double> weights, std::span<const double> autocovariance) {
   double variance = 0.0;
   for (std::size_t lag = 0; lag < autocovariance.size() && lag < weights.size(); ++lag) {
-    const double* const later = weights.data() + lag;
-    const auto [product] =
-        sums_in_strands<1>(weights.size() - lag, [&](std::size_t i) { return std::array{weights[i] * later[i]}; });
+    const auto count = static_cast<Eigen::Index>(weights.size() - lag);
+    using Numbers = Eigen::Map<const Eigen::VectorXd>;
+    const double product = Numbers(weights.data(), count).dot(Numbers(weights.data() + lag, count));
     variance += (lag == 0 ? 1.0 : 2.0) * autocovariance[lag] * product;
   }
   return variance;
