@@ -228,8 +228,13 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
   }
   std::vector<Trial> trials(points);
   std::atomic<std::uint64_t> done = 0;
+  RequirementOptions watched = options;  // whoever wants to stop need not wait for all runs of a camera
+  watched.before_run = [&] {
+    if (options.before_run) options.before_run();
+    progress("cameras", static_cast<double>(done) / static_cast<double>(points));
+  };
   base::for_each_parallel(points, options.jobs, [&](std::size_t point) {
-    trials[point] = trial_of(sweep, point, options);
+    trials[point] = trial_of(sweep, point, watched);
     progress("cameras", static_cast<double>(++done) / static_cast<double>(points));
   });
   if (options.confirm == Confirm::clips) {
@@ -239,10 +244,14 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
     }
     if (options.before_rendering) options.before_rendering(size_of(trials, options));
     done = 0;
+    watched.before_run = [&] {
+      if (options.before_run) options.before_run();
+      progress("rendered clips", static_cast<double>(done) / static_cast<double>(close.size()));
+    };
     progress("rendered clips", 0.0);
     base::for_each_parallel(close.size(), options.jobs, [&](std::size_t i) {
       Trial& trial = trials[close[i]];
-      as_candidate(trial.candidate, [&] { judge_by_runs(sweep, close[i], options, Confirm::clips, trial); });
+      as_candidate(trial.candidate, [&] { judge_by_runs(sweep, close[i], watched, Confirm::clips, trial); });
       progress("rendered clips", static_cast<double>(++done) / static_cast<double>(close.size()));
     });
   }

@@ -50,6 +50,7 @@ struct RequirementOptions {
   std::uint64_t runs = 12;  ///< to confirm a point
   int jobs = 1;
   std::function<void(const ConfirmationSize&)> before_rendering = {};
+  std::function<void()> before_run = {};  ///< called before each; may throw to stop
 };
 
 /// One target at one point; in the target's unit and measure.

@@ -92,6 +92,7 @@ bool RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<Ta
   for (TargetResult& result : results) result.found.reset();
   std::vector<Errors> all;
   for (std::uint64_t run = 0; run < options_.runs; ++run) {
+    if (options_.before_run) options_.before_run();
     const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
     const core::AnalysisResults of_run = phase_diagram_of(tracks_of(setting, clean, run, confirm), {});
     add_errors(compare_quantities(of_run, clean.truth), all);

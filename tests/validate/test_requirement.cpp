@@ -89,6 +89,23 @@ values = [50, 125]
   CHECK(requirement.candidates.back().frame_rate_hz == 125.0);
 }
 
+TEST_CASE("Whoever wants to stop a search for cameras waits for one run, not for all of a camera") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = grid(dir, "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n");
+  validate::RequirementOptions options;
+  options.targets = {validate::parse_target("k_over_m_1_s=0.0001")};
+  options.runs = 30;
+  options.targets.front().value = 1.5 * *validate::find_requirement(sweep, options).candidates.front().results[0].bound;
+  int runs = 0;
+  options.before_run = [&] { ++runs; };
+  struct Stopped {};
+  const auto stop_after_three = [&](std::string_view, double) {
+    if (runs > 3) throw Stopped{};
+  };
+  CHECK_THROWS_AS(validate::find_requirement(sweep, options, stop_after_three), Stopped);
+  CHECK(runs == 4);
+}
+
 TEST_CASE("Targets are read with their measure, and anything else is refused") {
   CHECK(validate::parse_target("mu=0.0005").measure == validate::Target::Measure::sd);
   CHECK(validate::parse_target("alpha_deg:error95=0.1").measure == validate::Target::Measure::error95);
