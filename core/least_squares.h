@@ -119,7 +119,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     fit.stop = FitStop::singular;
     return fit;
   }
-  fit.covariance = factor.inverse() * (fit.rms * fit.rms);
+  fit.covariance = factor.solve(Eigen::Matrix<double, N, N>::Identity()) * (fit.rms * fit.rms);
   return fit;
 }
 
