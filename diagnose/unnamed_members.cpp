@@ -72,13 +72,10 @@ void draw_members(const SpreadEvidence& evidence, UnnamedFamily& family) {
 }
 
 /// One size times what is left of it over the time, until a tenth is.
-void draw_settling(const SpreadEvidence& evidence, double longest_s, const std::function<double(double)>& left,
+void draw_settling(double size, double sd, double longest_s, const std::function<double(double)>& left,
                    UnnamedFamily& family) {
-  draw_members(evidence, family);
-  if (family.at.empty()) return;
   constexpr int kDrawn = 72;
   constexpr double kSettled = 0.1;
-  const double size = family.size.front(), sd = family.sd.front();
   double until_s = longest_s;
   while (left(until_s) < kSettled) until_s *= 0.9;
   family.at.clear();
@@ -121,11 +118,11 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
       const Tried tried = try_one(space, columns, family, evidence);
       logs.push_back(tried.log_evidence);
       if (!tried.better) continue;
-      if (late) {
-        draw_settling(
-            evidence, longest, [&](double t_s) { return unsettled(t_s, time_s, quickly); }, family);
-      } else {
+      if (!late) {
         draw_members(evidence, family);
+      } else if (evidence.mean.size() > 0) {
+        const auto left = [&](double t_s) { return unsettled(t_s, time_s, quickly); };
+        draw_settling(evidence.mean[0], std::sqrt(std::max(0.0, evidence.covariance(0, 0))), longest, left, family);
       }
     }
   }

@@ -98,6 +98,9 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
       if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
       if (family->variable == "clip") {  // a clip as a whole
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
+        const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
+                                       [&](const GapRegion& other) { return other.clip == clip.name; });
+        if (named) continue;  // by what explains it better
         region.variable = std::string("t_s");
         region.clip = clip.name;
         const bool known = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),

@@ -97,6 +97,41 @@ TEST_CASE("places beside each other are one region, clips beside each other are 
   CHECK(clips.regions[1].to == 1.0);
 }
 
+TEST_CASE("a lateness that settles is drawn as it settles, until a tenth is left, and sure from the start on") {
+  // 4 ms late at the start, half of it after 60 ms, all clips alike: x at t - l is x - v l + a l²/2, of which the last
+  // is 0.02 mm at most.
+  const double size_s = 4e-3, half_s = 0.06;
+  constexpr double kRate = 150.0;
+  std::vector<std::vector<double>> still;  // the motions on time, for their speeds
+  for (const auto& launch : tests::made_launches()) still.push_back(tests::made_motion({}, launch, {}, 152, kRate));
+  std::size_t clip = 0, frame = 0;
+  const tests::MadeEffect late{.seen = [&](double x, double t) {
+    if (t == 0.0 && frame > 0) ++clip;
+    frame = t == 0.0 ? 0 : frame + 1;
+    const auto& on_time = still[clip];
+    const double v = kRate * (frame > 0 ? 0.5 * (on_time[frame + 1] - on_time[frame - 1])
+                                        : 2.0 * on_time[1] - 1.5 * on_time[0] - 0.5 * on_time[2]);
+    return x - v * size_s / (1.0 + t / half_s);
+  }};
+  const auto made = tests::made_experiment(tests::made_launches(), late, 4, 2e-5, 150, kRate);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
+  // Of the latenesses over time the one without bumps comes last.
+  const auto settling =
+      std::find_if(families.rbegin(), families.rend(), [](const auto& family) { return family.what == "lateness"; });
+  REQUIRE(settling != families.rend());
+  CHECK(settling->at.front() == 0.0);
+  for (std::size_t i = 0; i < settling->at.size(); ++i) {
+    CHECK(settling->size[i] / settling->size.front() == Approx(settling->sd[i] / settling->sd.front()).epsilon(1e-9));
+  }
+  CHECK(settling->size.front() == Approx(-size_s).epsilon(0.35));  // paces are tried by factors of 1.7
+  REQUIRE(settling->regions.size() == 1);
+  CHECK(settling->regions.front().from == 0.0);
+  CHECK(settling->regions.front().to == settling->at.back());
+  CHECK(settling->regions.front().size == settling->size.front());
+}
+
 TEST_CASE("unnamed evidence: a variable is as likely beforehand as another, however many shapes it has") {
   diagnose::UnnamedFamily none, strong;
   none.variable = "x_m";
