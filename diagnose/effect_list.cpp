@@ -143,6 +143,13 @@ std::size_t effect_index(std::string_view id) {
   throw std::out_of_range("no such effect: " + std::string(id));
 }
 
+std::size_t first_alike(std::size_t effect, bool filmed) {
+  const std::string_view id = effect_list()[effect].id;
+  if (id == "scale_error") return effect_index("frame_rate_error");
+  if (id == "camera_motion" && !filmed) return effect_index("base_vibration");
+  return effect;
+}
+
 ShownValue shown(const EffectParameter& parameter, double member) {
   if (parameter.member == &EffectValues::rolloff_s2_m2) {
     return {1.0 / std::sqrt(member), -0.5 / (member * std::sqrt(member))};

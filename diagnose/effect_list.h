@@ -48,6 +48,10 @@ const std::vector<EffectInfo>& effect_list();
 /// Index in effect_list(); std::out_of_range for another word.
 std::size_t effect_index(std::string_view id);
 
+/// The first of those effects that are the same to every experiment of tracks: a wrong scale and a wrong frame rate; of
+/// positions alone, not `filmed`, a camera and a table that shake. An effect without such a double: itself.
+std::size_t first_alike(std::size_t effect, bool filmed);
+
 /// The value as the list of effects has it: v_c from 1/v_c², n from n - 1, s from s - 1; others as they are. The
 /// derivative by the member goes with it, for the standard deviation.
 struct ShownValue {

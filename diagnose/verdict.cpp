@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "diagnose/held_out.h"
 #include "diagnose/next_experiment.h"
@@ -235,11 +236,25 @@ void note_what_drives(const MotionFit& fit, Diagnosis& diagnosis) {
 
 }  // namespace
 
-const Hypothesis* best_named(const Comparison& comparison) {
+const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
+  std::map<std::multiset<std::size_t>, double> sums;
+  const auto causes = [&](const Hypothesis& hypothesis) {
+    std::multiset<std::size_t> same;
+    for (const std::size_t e : hypothesis.effects) same.insert(first_alike(e, set.pictures));
+    return same;
+  };
+  const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };
   for (const Hypothesis& hypothesis : comparison.all) {
-    if (!hypothesis.unnamed && !hypothesis.effects.empty()) return &hypothesis;
+    if (names(hypothesis)) sums[causes(hypothesis)] += hypothesis.probability;
   }
-  return nullptr;
+  const Hypothesis* best = nullptr;  // of the likeliest cause the likeliest name: they come by falling probability
+  double most = -1.0;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (!names(hypothesis) || sums[causes(hypothesis)] <= most) continue;
+    most = sums[causes(hypothesis)];
+    best = &hypothesis;
+  }
+  return best;
 }
 
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures) {
@@ -248,7 +263,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   diagnosis.none = comparison.none;
   diagnosis.unknown = comparison.unknown;
   diagnosis.verdict = verdict_by(comparison.none, comparison.unknown);
-  const Hypothesis* best = best_named(comparison);
+  const Hypothesis* best = best_named(set, comparison);
   const MotionFit& nominal = comparison.fits.front();
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == "effect" && best != nullptr) {

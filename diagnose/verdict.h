@@ -9,7 +9,8 @@ namespace glidelab::diagnose {
 
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {});
 
-/// The best hypothesis that names something, or null.
-const Hypothesis* best_named(const Comparison& comparison);
+/// The likeliest hypothesis that names something, or null; causes that no experiment of tracks tells apart count
+/// together (first_alike()), so that two names for one cause are not beaten by a less likely one with a single name.
+const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);
 
 }  // namespace glidelab::diagnose
