@@ -9,6 +9,7 @@
 
 #include "base/dense.h"
 #include "base/parallel.h"
+#include "diagnose/effect_ranges.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -16,25 +17,7 @@ namespace {
 constexpr double kSeen = 4.0;            // standard deviations that the largest size must make
 constexpr double kNumerical = 1e-15;     // of the raw square: below, the derivatives' errors are all that is left
 constexpr double kLeastWave_px = 0.002;  // in pictures: what finding a marker among pixels errs by itself
-// Of the frame rate: a codec takes frames by twos to fours, each with its own error.
-constexpr double kFastestLossy = 0.2;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  void add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-};
-
-Range range_of_x(const TrackSet& set) {
-  Range range;
-  for (const TrackedMotion& motion : set.motions) {
-    for (const double x : motion.x_m) range.add(x);
-  }
-  return range;
-}
 
 std::vector<double> second_parameters(const TrackSet& set, const EffectInfo& effect) {
   std::vector<double> shapes;
@@ -45,7 +28,7 @@ std::vector<double> second_parameters(const TrackSet& set, const EffectInfo& eff
     for (double v = 0.008; v < 0.7; v *= 1.5) shapes.push_back(v);
     return shapes;
   }
-  const Range x = range_of_x(set);
+  const ParameterRange x = range_of_places(set);
   const int parts = effect.id == "tether" ? 24 : 9;
   for (int i = 0; i < parts; ++i) shapes.push_back(x.low + (x.high - x.low) * (i + 0.5) / parts);
   return shapes;
@@ -55,7 +38,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
   EffectScan scan;
   scan.effect = effect;
-  const double most = highest(space.set(), info.parameters[0]);
+  const double most = range_of(space.set(), info.parameters[0]).high;
   std::vector<double> logs;
   double best = -1.0;
   for (const std::vector<double>& shape : effect_shapes(space.set(), effect)) {
@@ -71,6 +54,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
     const double z = score / std::sqrt(square);
     const double gain = z > 0.0 || info.both_signs ? 0.5 * z * z : 0.0;
     logs.push_back(log_amplitude_evidence(z, z_most, info.both_signs));
+    scan.shapes.push_back({shape, std::move(column), square, score});
     if (gain <= best) continue;
     best = gain;
     scan.gain = gain;
@@ -80,7 +64,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
     scan.values = {std::clamp(std::abs(size) < step ? step : size,
                               info.both_signs ? 0.9 * info.parameters[0].low : step, 0.9 * most)};
     scan.values.insert(scan.values.end(), shape.begin(), shape.end());
-    scan.direction = std::move(column);
+    scan.direction = scan.shapes.back().column;
   }
   scan.log_evidence = log_mean(logs);
   return scan;
@@ -154,16 +138,14 @@ struct Wave {
 Wave find_wave(const ScoreSpace& space) {
   const TrackSet& set = space.set();
   Wave wave;
-  double longest = 0.0, least_m = 0.0, rate = std::numeric_limits<double>::infinity();
+  double longest = 0.0, least_m = 0.0;
   for (const TrackedMotion& motion : set.motions) {
     least_m = std::max(least_m, kLeastWave_px * motion.m_per_px);
     longest = std::max(longest, motion.t_s.back() - motion.t_s.front());
-    rate = std::min(rate, static_cast<double>(motion.t_s.size() - 1) / (motion.t_s.back() - motion.t_s.front()));
   }
-  // At least two turns in the longest motion: slower is a drift, which other causes make as well.
-  const double lowest = 2.0 / longest, highest = (set.lossy ? kFastestLossy : 0.48) * rate;
+  const ParameterRange hz = range_of(set, effect_list()[effect_index("base_vibration")].parameters[1]);
   std::vector<double> logs;
-  for (double f = lowest; f < highest; f += 0.3 / longest) {
+  for (double f = hz.low; f < hz.high; f += 0.3 / longest) {
     double size = 0.0, gain = 0.0;
     logs.push_back(log_wave_evidence(wave_parts(space, f), least_m, size, gain));
     if (gain > wave.gain) wave = {gain, 0.0, size, f};
@@ -202,24 +184,68 @@ EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& w
   return scan;
 }
 
+/// Which way a motion goes at a time, or first after it.
+double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
+  const auto& t = space.set().motions[motion].t_s;
+  const auto& v = space.fit().motions[motion].v_m_s;
+  std::size_t p = 0;
+  while (p + 1 < t.size() && (t[p] < t_s || v[p] == 0.0)) ++p;
+  return v[p] < 0.0 ? -1.0 : 1.0;
+}
+
+constexpr double kUnlike = 0.5;  // standard deviation of one hand's push, over that of the part common to all
+
+/// Sizes of pushes from independent ones: one hand's go along the motions and are about alike.
+Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& ways) {
+  Eigen::MatrixXd sizes(ways.size(), ways.size() + 1);
+  sizes << ways, kUnlike * Eigen::MatrixXd::Identity(ways.size(), ways.size());
+  return sizes;
+}
+
+double log_below(double z) {
+  return std::log(std::max(1e-300, 0.5 * std::erfc(-z / std::numbers::sqrt2)));
+}
+
+/// log of the probability that all of these normal deviates, taken as independent, are positive, or all negative.
+double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
+  double positive = 0.0, negative = 0.0;
+  for (Eigen::Index k = 0; k < mean.size(); ++k) {
+    const double z = mean[k] / std::max(sd[k], 1e-300);
+    positive += log_below(z);
+    negative += log_below(-z);
+  }
+  return log_mean({positive, negative}) + std::log(2.0);
+}
+
+/// The same of pushes_of_one_hand() before anything is measured: the mean over the part that is common to all.
+double log_one_sign_beforehand(Eigen::Index pushes) {
+  constexpr int kParts = 400;
+  constexpr double kWidest = 8.0;
+  double sum = 0.0;
+  for (int i = 0; i < kParts; ++i) {
+    const double common = kWidest * ((i + 0.5) / kParts * 2.0 - 1.0);
+    sum += std::exp(-0.5 * common * common + static_cast<double>(pushes) * log_below(common / kUnlike));
+  }
+  return std::log(2.0 * sum * 2.0 * kWidest / kParts / std::sqrt(kTurn));
+}
+
 EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
   const TrackSet& set = space.set();
   EffectScan scan;
   scan.effect = effect;
-  double longest = 0.0, step = 0.0;
+  double step = 0.0;
   std::vector<std::size_t> from_start;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
-    const TrackedMotion& motion = set.motions[i];
-    const double frame = 1.0 / set.clips[motion.clip].frame_rate_hz;
-    if (motion.t_s.front() > 3.0 * frame) continue;  // the start of the clip is not in it
+    if (!begins_with_its_clip(set, set.motions[i])) continue;
     from_start.push_back(i);
-    longest = std::max(longest, motion.t_s.back());
-    step = std::max(step, frame);
+    step = std::max(step, 1.0 / set.clips[set.motions[i].clip].frame_rate_hz);
   }
   if (from_start.empty()) return scan;
+  const double beforehand = log_one_sign_beforehand(std::ssize(from_start));
   std::vector<double> logs;
   double best = 0.0;
-  for (double t_r = 4.0 * step; t_r < 0.4 * longest; t_r *= 1.3) {
+  const double latest = range_of(set, effect_list()[effect].parameters[0]).high;
+  for (double t_r = 4.0 * step; t_r < latest; t_r *= 1.3) {
     EffectValues values;
     values.release_s = t_r;
     std::vector<ScoreColumn> columns;
@@ -234,15 +260,28 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
         products(a, b) = products(b, a) = space.dot(column, columns[static_cast<std::size_t>(b)]);
       }
     }
-    const SpreadEvidence evidence = log_spread_evidence(products, scores);
-    logs.push_back(evidence.log_evidence);
+    Eigen::VectorXd ways(n);
+    for (Eigen::Index k = 0; k < n; ++k) ways[k] = way_at(space, from_start[static_cast<std::size_t>(k)], t_r);
+    const Eigen::MatrixXd sizes = pushes_of_one_hand(ways), seen = base::product(products, sizes);
+    const SpreadEvidence evidence =
+        log_spread_evidence(base::transposed_product(sizes, seen), base::transposed_product(sizes, scores));
+    if (evidence.mean.size() == 0) {
+      logs.push_back(0.0);  // says nothing
+      continue;
+    }
+    const Eigen::VectorXd push = base::product(sizes, evidence.mean);
+    const Eigen::MatrixXd covariance = base::product(base::product(sizes, evidence.covariance), sizes.transpose());
+    // A hand pushes what it launches, or holds back what it lets go: not this one clip, that one the next.
+    const double one_sign =
+        log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
+    logs.push_back(evidence.log_evidence + one_sign);
     if (evidence.gain <= best) continue;
     best = evidence.gain;
     scan.gain = evidence.free_gain;  // what a full fit is to be held against
     scan.values = {t_r};
     scan.own.assign(set.motions.size(), {0.0});
     for (std::size_t k = 0; k < from_start.size(); ++k) {
-      scan.own[from_start[k]] = {evidence.mean[static_cast<Eigen::Index>(k)]};
+      scan.own[from_start[k]] = {push[static_cast<Eigen::Index>(k)]};
     }
   }
   if (logs.empty() || scan.values.empty()) return scan;

@@ -2,7 +2,7 @@
 ///
 /// An amplitude is a score test; a second parameter is searched on a grid and its evidence averaged over it; a wave has
 /// one amplitude and one frequency for all motions and a free phase in each (averaged over); a push has a size in each
-/// motion and one time.
+/// motion and one time, and pushes go along the motions and are about alike, as one hand's are.
 #pragma once
 
 #include <set>
@@ -11,6 +11,13 @@
 #include "diagnose/score_space.h"
 
 namespace glidelab::diagnose {
+
+/// One value of the second parameter that was tried (none of an effect without one).
+struct TriedShape {
+  std::vector<double> values;
+  ScoreColumn column;                ///< what the first parameter changes,
+  double square = 0.0, score = 0.0;  ///< what is left of it, squared, and its product with what the fit leaves
+};
 
 struct EffectScan {
   std::size_t effect = 0;
@@ -21,6 +28,7 @@ struct EffectScan {
   std::vector<double> values;            ///< of the parameters that are common, where to begin a fit
   std::vector<std::vector<double>> own;  ///< of each motion's own ones
   ScoreColumn direction;                 ///< what it changes, at its best shape
+  std::vector<TriedShape> shapes;        ///< all that would show
 };
 
 /// Values of the second parameter that are tried (one empty list for an effect without one).

@@ -119,7 +119,7 @@ bool inside(const ParameterLayout& layout, const FitPoint& at) {
     if (!std::isfinite(value)) return false;
     if (global.kind == Global::Kind::alpha && std::abs(value) > 1.5) return false;
     if (global.kind != Global::Kind::effect) continue;
-    if (value < global.parameter->low || value > global.high) return false;
+    if (value < global.range.low || value > global.range.high) return false;
   }
   return true;
 }
@@ -163,6 +163,41 @@ void linearise_all(const TrackSet& set, MotionFit& fit, bool derivatives) {
   }
 }
 
+/// The least of y'Ay/2 - b'y, with the effects' parameters within their ranges: what would leave its range stops at the
+/// edge, and the others make the best of that. `scale` times y is the change of the parameters.
+Eigen::VectorXd step_within(const MotionFit& fit, Eigen::MatrixXd a, Eigen::VectorXd b, const Eigen::VectorXd& scale) {
+  const auto& globals = fit.layout->globals();
+  std::vector<bool> held(globals.size(), false);
+  Eigen::VectorXd y = base::solve_positive(a, b);
+  for (bool stopped = true; stopped;) {
+    stopped = false;
+    for (Eigen::Index g = 0; g < y.size(); ++g) {
+      const Global& global = globals[static_cast<std::size_t>(g)];
+      if (global.kind != Global::Kind::effect || held[static_cast<std::size_t>(g)]) continue;
+      const double at = fit.at.global[g], next = at + scale[g] * y[g];
+      if (!(next < global.range.low || next > global.range.high)) continue;
+      const double to_edge = ((next < global.range.low ? global.range.low : global.range.high) - at) / scale[g];
+      b -= to_edge * a.col(g);
+      a.col(g).setZero();
+      a.row(g).setZero();
+      a(g, g) = 1.0;
+      b[g] = to_edge;
+      held[static_cast<std::size_t>(g)] = stopped = true;
+    }
+    if (stopped) y = base::solve_positive(a, b);
+  }
+  return y;
+}
+
+/// What stopped at an edge lies there but for rounding.
+void round_to_edges(const ParameterLayout& layout, Eigen::VectorXd& global) {
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& of = layout.globals()[g];
+    double& value = global[static_cast<Eigen::Index>(g)];
+    if (of.kind == Global::Kind::effect) value = std::clamp(value, of.range.low, of.range.high);
+  }
+}
+
 FitPoint step_from(const MotionFit& fit, double damping) {
   const auto globals = fit.at.global.size();
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(globals, globals);
@@ -196,9 +231,10 @@ FitPoint step_from(const MotionFit& fit, double damping) {
   const Eigen::VectorXd scale = (diagonal.array() + 1e-30).sqrt().inverse();
   Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
   scaled.diagonal().array() += damping + 1e-13;
-  const Eigen::VectorXd change = scale.asDiagonal() * base::solve_positive(scaled, scale.cwiseProduct(right));
+  const Eigen::VectorXd change = scale.cwiseProduct(step_within(fit, scaled, scale.cwiseProduct(right), scale));
   FitPoint next = fit.at;
   next.global += change;
+  round_to_edges(*fit.layout, next.global);
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     const Eigen::VectorXd rest = own_right[i] - base::transposed_product(cross[i], change);
     next.own[i] += base::product(own_inverse[i], rest);
@@ -262,17 +298,18 @@ ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> e
       if (parameter.own) {
         own_.push_back(&parameter);
       } else {
-        globals_.push_back({Kind::effect, 0, &parameter, effect, parameter.step, highest(set, parameter)});
+        globals_.push_back({Kind::effect, 0, &parameter, effect, parameter.step, range_of(set, parameter)});
       }
     }
   }
 }
 
-double highest(const TrackSet& set, const EffectParameter& parameter) {
-  if (!parameter.with_mass) return parameter.high;
-  double heaviest_kg = 1.0;
-  for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
-  return heaviest_kg * parameter.high;
+void ParameterLayout::widen_to(const Eigen::VectorXd& start) {
+  for (std::size_t g = 0; g < globals_.size(); ++g) {
+    ParameterRange& range = globals_[g].range;
+    const double at = start[static_cast<Eigen::Index>(g)];
+    if (globals_[g].kind == Global::Kind::effect) range = {std::min(range.low, at), std::max(range.high, at)};
+  }
 }
 
 std::size_t ParameterLayout::first_of(std::size_t effect) const {
@@ -331,7 +368,9 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
                       const Lateness& late) {
   MotionFit fit;
   fit.effects = effects;
-  fit.layout = std::make_shared<const ParameterLayout>(set, effects);
+  ParameterLayout layout(set, effects);
+  layout.widen_to(start.global);
+  fit.layout = std::make_shared<const ParameterLayout>(std::move(layout));
   fit.at = start;
   fit.late = late;
   fit.statements = statements_of(set, *fit.layout);

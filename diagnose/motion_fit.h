@@ -4,7 +4,8 @@
 ///
 /// weighted with the noise of each motion; what is stated joins as data of its own: inclinations with their standard
 /// deviation, masses with theirs, the camera's and plane's errors c_k ~ N(0, 1). Gauss and Newton's steps damped by
-/// Levenberg and Marquardt, derivatives by finite differences, each motion's own parameters eliminated.
+/// Levenberg and Marquardt, derivatives by finite differences, each motion's own parameters eliminated. An effect's
+/// common parameter stays within its range (effect_ranges.h): it stops at the edge, the others go on.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "diagnose/effect_list.h"
+#include "diagnose/effect_ranges.h"
 #include "diagnose/track_model.h"
 #include "diagnose/track_set.h"
 
@@ -33,22 +35,21 @@ class ParameterLayout {
     const EffectParameter* parameter = nullptr;
     std::size_t effect = 0;
     double step = 0.0;
-    double high = 0.0;  ///< of an effect: what it may be
+    ParameterRange range = {};  ///< of an effect: what it may be
   };
   const std::vector<Global>& globals() const { return globals_; }
   const std::vector<const EffectParameter*>& own() const { return own_; }  ///< after x0, v0
   const std::vector<std::size_t>& effects() const { return effects_; }
   /// Index among globals of an effect's first parameter that is not own.
   std::size_t first_of(std::size_t effect) const;
+  /// Ranges that hold where a fit starts: what was found in whole clips may lie beyond what a part of them shows.
+  void widen_to(const Eigen::VectorXd& start);
 
  private:
   std::vector<Global> globals_;
   std::vector<const EffectParameter*> own_;
   std::vector<std::size_t> effects_;
 };
-
-/// What a parameter may be of these gliders.
-double highest(const TrackSet& set, const EffectParameter& parameter);
 
 struct FitPoint {
   Eigen::VectorXd global;

@@ -63,7 +63,7 @@ Plan plan_of(const core::AnalysisResults& results, const std::vector<core::ClipS
         std::string(list[e].id), std::string(list[e].words), std::string(parameter.key), 0.0, false, {}};
     if (direction.square > 0.0) {
       const double size = kSeenFrom / std::sqrt(direction.square);
-      planned.seen = size <= highest(set, parameter);
+      planned.seen = size <= range_of(set, parameter).high;
       planned.seen_from = std::abs(size_for_reader(parameter, size));
     }
     if (planned.seen) {
