@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "diagnose/joined_evidence.h"
+#include "diagnose/pair_scan.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -16,6 +17,8 @@ constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnam
 constexpr std::size_t kFitted = 9;   // effects of the short list that are fitted in full
 constexpr std::size_t kLeaders = 3;  // that are tried with a second one
 constexpr std::size_t kSeconds = 4;
+constexpr std::size_t kTogether = 4;   // pairs that show together and that no leader found
+constexpr int kExchanges = 3;          // rounds in which the best pair's two lead in turn
 constexpr double kWorthFitting = 1.0;  // log likelihood gained
 constexpr double kTrifle = 6.0;        // log evidence
 constexpr double kTriflePart = 0.01;   // of that of the effects
@@ -91,18 +94,149 @@ void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<cons
   for (Found& one : found) add(comparison, std::move(one));
 }
 
-void add_pairs(const TrackSet& set, const std::set<std::size_t>& without, int jobs, Comparison& comparison) {
+/// One explanation among those fitted; null: none.
+const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects) {
+  for (const Hypothesis& one : comparison.all) {
+    if (one.unnamed || one.fit < 0 || one.effects.size() != effects.size()) continue;
+    if (std::set<std::size_t>(one.effects.begin(), one.effects.end()) == effects) return &one;
+  }
+  return nullptr;
+}
+
+/// A leader with each of the effects that show best beside it.
+void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, int jobs,
+                 Comparison& comparison) {
+  const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
+  const ScoreSpace space(set, base);
+  std::set<std::size_t> others = without;
+  others.insert(leader.effects.begin(), leader.effects.end());
+  const std::vector<EffectScan> scans = scan_effects(space, others, jobs);
+  std::vector<const EffectScan*> best = best_of(scans, kSeconds);
+  std::erase_if(best, [](const EffectScan* scan) { return scan->log_evidence < -1.0; });
+  fit_best(set, base, best, leader, jobs, comparison);
+}
+
+/// One effect's own full fit, made where there was none.
+Found alone(const TrackSet& set, std::size_t effect, Comparison& comparison) {
+  if (const Hypothesis* known = find(comparison, {effect}); known != nullptr) {
+    return {*known, comparison.fits[static_cast<std::size_t>(known->fit)]};
+  }
+  Found found = fit_more(set, comparison.fits.front(), comparison.scans[effect], {});
+  add(comparison, found);
+  return found;
+}
+
+/// The full fit of a second effect that was scanned around some point of the first one's, and its evidence beside that
+/// one's own fit.
+Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan& scan, const Found& leader) {
+  const FitPoint start = with_effect(set, around, scan.effect, scan.values, scan.own);
+  Found found;
+  found.fit = fit_motions(set, {around.effects.front(), scan.effect}, start, leader.fit.late);
+  const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
+  found.hypothesis.effects = found.fit.effects;
+  found.hypothesis.gain = leader.hypothesis.gain + gain;
+  found.hypothesis.log_evidence =
+      leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + (std::isfinite(gain) ? gain : 0.0);
+  return found;
+}
+
+/// Two effects fitted at once, from where they are in the neighbourhood of the nominal fit.
+void add_together(const TrackSet& set, const PairScan& pair, Comparison& comparison) {
+  const auto shows = [&](std::size_t effect) { return comparison.scans[effect].log_evidence; };
+  const bool in_order = shows(pair.first) >= shows(pair.second);
+  const Found leader = alone(set, in_order ? pair.first : pair.second, comparison);
+  EffectScan beside = scan_effect(ScoreSpace(set, leader.fit), in_order ? pair.second : pair.first);
+  if (!beside.visible) return;
+  beside.values = in_order ? pair.second_values : pair.first_values;
+  MotionFit first = comparison.fits.front();
+  first.at =
+      with_effect(set, first, leader.hypothesis.effects.front(), in_order ? pair.first_values : pair.second_values, {});
+  first.effects = leader.hypothesis.effects;
+  add(comparison, fit_beside(set, first, beside, leader));
+}
+
+/// Where one of two is left as the two were fitted and the other is taken out: what is then missing shows as it is, and
+/// not as the first one's own fit has made up for it.
+MotionFit without_one(const TrackSet& set, const MotionFit& both, std::size_t kept) {
+  const ParameterLayout layout(set, {kept});
+  FitPoint at{Eigen::VectorXd(static_cast<Eigen::Index>(layout.globals().size())), {}};
+  Eigen::Index to = 0;
+  for (std::size_t g = 0; g < both.layout->globals().size(); ++g) {
+    const ParameterLayout::Global& global = both.layout->globals()[g];
+    if (global.kind == ParameterLayout::Global::Kind::effect && global.effect != kept) continue;
+    at.global[to++] = both.at.global[static_cast<Eigen::Index>(g)];
+  }
+  const bool first = both.effects.front() == kept;
+  const auto own = static_cast<Eigen::Index>(layout.own().size());
+  for (const Eigen::VectorXd& motion : both.at.own) {
+    Eigen::VectorXd of_one(2 + own);
+    of_one << motion.head(2), (first ? motion.segment(2, own) : motion.tail(own));
+    at.own.push_back(of_one);
+  }
+  return linearise_at(set, {kept}, at);
+}
+
+/// The same pair, its evidence that of its first one beside its second. What an effect costs by itself, where it has to
+/// make up for the other, is not what it costs beside it.
+Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison) {
+  const Found leader = alone(set, both.effects.back(), comparison);
+  const MotionFit around = without_one(set, both, both.effects.back());
+  const EffectScan scan = scan_effect(ScoreSpace(set, around), both.effects.front());
+  Found found;
+  found.fit = both;
+  const double gain = 0.5 * (leader.fit.cost - both.cost);
+  found.hypothesis.effects = {both.effects.back(), both.effects.front()};
+  found.hypothesis.gain = leader.hypothesis.gain + gain;
+  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + gain;
+  return found;
+}
+
+/// In place of one of the best pair's two, whatever shows best beside the other; the same with what is best then.
+void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>& without, int jobs,
+              Comparison& comparison) {
+  for (int round = 0; round < kExchanges; ++round) {
+    const std::vector<Hypothesis> pairs = leaders_of(comparison, 2, 1);
+    if (pairs.empty() || pairs.front().log_evidence <= best_one) return;
+    const Hypothesis best = pairs.front();
+    const MotionFit both = comparison.fits[static_cast<std::size_t>(best.fit)];
+    if (both.effects.size() < 2) return;  // missing frames are in the fit's times
+    for (const std::size_t kept : both.effects) {
+      const Found leader = alone(set, kept, comparison);
+      const MotionFit base = without_one(set, both, kept);
+      std::set<std::size_t> others = without;
+      others.insert(both.effects.begin(), both.effects.end());
+      const std::vector<EffectScan> scans = scan_effects(ScoreSpace(set, base), others, jobs);
+      std::vector<const EffectScan*> seconds = best_of(scans, kSeconds);
+      std::vector<Found> found(seconds.size());
+      base::for_each_parallel(seconds.size(), jobs,
+                              [&](std::size_t i) { found[i] = fit_beside(set, base, *seconds[i], leader); });
+      for (const Found& one : found) {
+        add(comparison, one);
+        if (one.hypothesis.gain > best.gain) add(comparison, turned(set, one.fit, comparison));
+      }
+    }
+    if (leaders_of(comparison, 2, 1).front().effects == best.effects) return;
+  }
+}
+
+/// Pairs by their leaders; those that show together only; and, the best pair's two leading in turn, whatever is better
+/// beside one of them.
+void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, int jobs,
+               Comparison& comparison) {
+  double best_one = 0.0;
   for (const Hypothesis& leader : leaders_of(comparison, 1, kLeaders)) {
     if (leader.log_evidence < 0.0) continue;
-    const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
-    const ScoreSpace space(set, base);
-    std::set<std::size_t> others = without;
-    others.insert(leader.effects.begin(), leader.effects.end());
-    const std::vector<EffectScan> scans = scan_effects(space, others, jobs);
-    std::vector<const EffectScan*> best = best_of(scans, kSeconds);
-    std::erase_if(best, [](const EffectScan* scan) { return scan->log_evidence < -1.0; });
-    fit_best(set, base, best, leader, jobs, comparison);
+    best_one = std::max(best_one, leader.log_evidence);
+    add_seconds(set, leader, without, jobs, comparison);
   }
+  std::size_t more = 0;
+  for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
+    if (more == kTogether || pair.log_evidence <= best_one) break;
+    if (find(comparison, {pair.first, pair.second}) != nullptr) continue;
+    ++more;
+    add_together(set, pair, comparison);
+  }
+  exchange(set, best_one, without, jobs, comparison);
 }
 
 void add_unnamed(const TrackSet& set, Comparison& comparison) {
@@ -252,7 +386,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
       comparison.all.push_back({{dropped}, false, 0.0, -3.0, 0.0, -1});
     }
   }
-  add_pairs(set, left_out, jobs, comparison);
+  add_pairs(set, space, left_out, jobs, comparison);
   add_unnamed(set, comparison);
   const MotionFit& best = comparison.fits[static_cast<std::size_t>(comparison.left_fit)];
   for (const FrameEffect& frame : {scan_jitter(set, best), scan_tails(set, best)}) {

@@ -1,6 +1,7 @@
 /// Which explanation the data bear out: nothing, one effect of the list, two, or something without a name.
 ///
-/// Score tests make a short list; each of it is fitted in full, alone and with a second one; the log evidence is that
+/// Score tests make a short list; each of it is fitted in full, alone and with a second one, and so are pairs that show
+/// together only (pair_scan.h); the log evidence is that
 /// of the linear neighbourhood (sizes and shapes averaged over their prior) with the gain of the full fit in place of
 /// the linear one. Something unnamed competes as unnamed.h has it, beside nothing and beside each leading explanation:
 /// what an effect leaves unexplained counts against its name, unless it shows weakly in a filmed experiment, and is
