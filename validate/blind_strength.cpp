@@ -46,13 +46,16 @@ struct Nuisance {
   double most = 0.0;                                    // that it may change by at once
   double sd = std::numeric_limits<double>::infinity();  // as it is stated
   std::optional<std::size_t> clip = {};                 // of one clip only
+  double BlindDesign::*positive = nullptr;              // stays so: the law has no friction or drag that drives
 };
 
 std::vector<Nuisance> nuisances(const BlindDesign& design) {
   constexpr double kFree = std::numeric_limits<double>::infinity();
   std::vector<Nuisance> list;
   list.push_back({[](BlindDesign& d, double by) { d.k_n_s_m += by; }, 1e-4 * design.k_n_s_m, 0.4 * design.k_n_s_m});
+  list.back().positive = &BlindDesign::k_n_s_m;
   list.push_back({[](BlindDesign& d, double by) { d.mu += by; }, 1e-6, 0.02});
+  list.back().positive = &BlindDesign::mu;
   for (std::size_t g = 0; g < design.groups.size(); ++g) {
     list.push_back({[g](BlindDesign& d, double by) { d.groups[g].true_rad += by; }, 1e-6, 0.03,
                     design.groups[g].stated_sd_rad.value_or(0.35)});
@@ -80,14 +83,17 @@ class NominalFit {
   explicit NominalFit(const BlindDesign& design)
       : design_(design), list_(nuisances(design)), without_(seen_with(design, {})) {}
 
-  /// Half of chi² that is left; a size of `more` is fitted as well.
+  /// Half of chi² that is left; a size of `more` is fitted as well. 0 where the fit does not settle.
   double misfit(const Seen& seen, const std::optional<Eigen::VectorXd>& more = {}) const {
     constexpr int kMostSteps = 60;     // of which a glider that comes to rest elsewhere takes some ten
     constexpr double kSettled = 0.01;  // of chi²: far less than the classes of strength are wide
+    constexpr double kNothing = 0.01;  // chi²: the nominal law takes up all of it
+    constexpr double kDown = 0.9;      // of what must stay positive, in one step
     const Eigen::Index many = std::ssize(list_) + (more ? 1 : 0);
     BlindDesign fitted = design_;
     Eigen::VectorXd at = Eigen::VectorXd::Zero(many);
     double last = 0.0;
+    bool whole = true;  // the last step was
     for (int step = 0; step < kMostSteps; ++step) {
       const Seen now = step == 0 ? without_ : seen_with(fitted, {});
       const Eigen::VectorXd d = difference(seen, now, design_.noise_sd_m);
@@ -114,18 +120,22 @@ class NominalFit {
       left -= base::product(columns, by);
       const double chi2 = left.squaredNorm();
       if (!std::isfinite(chi2)) return 0.0;
-      if (step > 0 && std::abs(chi2 - last) <= kSettled * chi2) return 0.5 * chi2;
+      if (step > 0 && whole && std::abs(chi2 - last) <= std::max(kNothing, kSettled * chi2)) return 0.5 * chi2;
       last = chi2;
       const Eigen::VectorXd change = by.cwiseQuotient(scale);
       double part = 1.0;  // of a step that would leave the neighbourhood in which it was found
       for (std::size_t n = 0; n < list_.size(); ++n) {
-        part = std::min(part, list_[n].most / std::max(1e-300, std::abs(change[static_cast<Eigen::Index>(n)])));
+        const double by_one = change[static_cast<Eigen::Index>(n)];
+        part = std::min(part, list_[n].most / std::max(1e-300, std::abs(by_one)));
+        const auto positive = list_[n].positive;
+        if (positive != nullptr && by_one < 0.0) part = std::min(part, kDown * fitted.*positive / -by_one);
       }
+      whole = part == 1.0;
       at += part * change;
       fitted = design_;
       for (std::size_t n = 0; n < list_.size(); ++n) list_[n].change(fitted, at[static_cast<Eigen::Index>(n)]);
     }
-    return 0.5 * last;
+    return 0.0;  // the fit does not settle: how strong the effect is cannot be told, and another is drawn
   }
 
   const Seen& without() const { return without_; }

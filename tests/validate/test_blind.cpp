@@ -9,6 +9,7 @@
 #include "diagnose/effect_list.h"
 #include "temp_dir.h"
 #include "validate/blind_effects.h"
+#include "validate/blind_strength.h"
 #include "validate/run_blind.h"
 
 using namespace glidelab;
@@ -74,6 +75,23 @@ TEST_CASE("a blind motion on the level stops for good, at v0/(mu g) without drag
   // It stops after v0/(mu g) = 1.02 s and v0²/(2 mu g).
   CHECK(std::abs(motion.back().x_m - (0.1 + 0.04 / (2.0 * 0.02 * 9.8))) < 1e-9);
   CHECK(motion.back().v_m_s == 0.0);
+}
+
+TEST_CASE("inertia that one glider's drag and friction take up has no strength, however large it is") {
+  // (1 + s) m dv/dt = -K v - mu m g sign(v) is the law of a drag K/(1 + s) and a friction mu/(1 + s).
+  validate::BlindDesign design;
+  design.k_n_s_m = 0.54;
+  design.mu = 0.0019;
+  design.noise_sd_m = 1e-4;
+  design.groups.push_back({"level", 0.0, 0.0, 9e-4});
+  design.masses.push_back({0.366, 0.366, 0.0});
+  for (const double v0 : {-1.1, 1.4, -0.55, 1.0})
+    design.clips.push_back({"", 0, 0, v0 < 0.0 ? 0.4 : -0.4, v0, 100.0, 189});
+  validate::BlindRandom random(1);
+  const validate::BlindEffect wheels = validate::draw_effect("rotational_inertia", design, random);
+  const validate::BlindDetection detection(design);
+  for (const double size : {0.1, 0.2, 0.3, 0.4}) CHECK(detection.gain(wheels, size) < 0.01);
+  CHECK_FALSE(validate::size_for(detection, wheels, 30.0).has_value());
 }
 
 TEST_CASE("a blind case is the same for the same seed and index, and its folder holds no word of its truth") {
