@@ -129,7 +129,8 @@ TEST_CASE("a lateness that settles is drawn as it settles, until a tenth is left
   REQUIRE(settling->regions.size() == 1);
   CHECK(settling->regions.front().from == 0.0);
   CHECK(settling->regions.front().to == settling->at.back());
-  CHECK(settling->regions.front().size == settling->size.front());
+  CHECK(settling->regions.front().excess ==
+        Approx(std::abs(settling->size.front()) / settling->sd.front()).epsilon(1e-9));
 }
 
 TEST_CASE("unnamed evidence: a variable is as likely beforehand as another, however many shapes it has") {
