@@ -11,7 +11,8 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kLongestStep = 0.0126;  // s: 80 frames a second need one step a frame
-constexpr double kLongestTurn = 0.3;     // of omega h and k h
+constexpr double kLongestTurn = 0.3;     // of k h, and of omega h of what the cable makes
+constexpr double kLongestWave = 0.9;     // of a shaking's omega h: Simpson's rule errs by (omega h)^4 / 2880 of it
 constexpr int kMostTurns = 20;           // reversals within one step; more is chatter about rest
 constexpr double kBarely = 1e-300;       // m/s: which way, and no faster
 constexpr int kMostLeaving = 40;         // steps to the instant at which friction gives way,
@@ -23,19 +24,33 @@ struct State {
 };
 
 /// Between two instants that one step joins: the polynomial of fifth order through place, speed and acceleration.
-struct Stride {
-  State from, to;
-  double a_from = 0.0, a_to = 0.0, length_s = 0.0;
+class Stride {
+ public:
+  Stride(const State& from, double a_from, const State& to, double a_to, double length_s)
+      : from_(from),
+        to_(to),
+        v_(from.v * length_s),
+        a_(0.5 * a_from * length_s * length_s),
+        by_length_(1.0 / length_s) {
+    const double rest = to.x - from.x - v_ - a_, slope = to.v * length_s - v_ - 2.0 * a_;
+    const double bend = 0.5 * (a_to - a_from) * length_s * length_s;
+    c3_ = 10.0 * rest - 4.0 * slope + bend;
+    c4_ = -15.0 * rest + 7.0 * slope - 2.0 * bend;
+    c5_ = 6.0 * rest - 3.0 * slope + bend;
+  }
 
   State at(double since_s) const {
-    const double h = length_s, u = since_s / h;
-    const double a0 = 0.5 * a_from * h * h, rest = to.x - from.x - from.v * h - a0;
-    const double slope = (to.v - from.v) * h - 2.0 * a0, bend = 0.5 * (a_to - a_from) * h * h;
-    const double c3 = 10.0 * rest - 4.0 * slope + bend, c4 = -15.0 * rest + 7.0 * slope - 2.0 * bend,
-                 c5 = 6.0 * rest - 3.0 * slope + bend;
-    return {from.x + u * (from.v * h + u * (a0 + u * (c3 + u * (c4 + u * c5)))),
-            from.v + u * (2.0 * a0 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5))) / h};
+    const double u = since_s * by_length_;
+    return {from_.x + u * (v_ + u * (a_ + u * (c3_ + u * (c4_ + u * c5_)))),
+            (v_ + u * (2.0 * a_ + u * (3.0 * c3_ + u * (4.0 * c4_ + u * 5.0 * c5_)))) * by_length_};
   }
+
+  const State& to() const { return to_; }
+
+ private:
+  State from_, to_;
+  double v_, a_, by_length_;  // of the place's powers of the part that is gone
+  double c3_ = 0.0, c4_ = 0.0, c5_ = 0.0;
 };
 
 /// sin(omega t + phase) at instants that follow each other by equal steps, without a sine for each.
@@ -79,9 +94,9 @@ class Mover {
         cos_(std::cos(model.alpha_rad)),
         by_inertia_(1.0 / (model.mass_kg + model.effects.wheels_kg)),
         wave_(model.effects.shake_hz, model.effects.shake_phase) {
-    const double rate = std::max(
-        {2.0 * std::numbers::pi * model.effects.shake_hz * (model.effects.shake_m_s2 != 0.0 ? 1.0 : 0.0),
-         std::abs(model.k_n_s_m) / model.mass_kg, std::sqrt(std::max(0.0, model.effects.tether_n_m) / model.mass_kg)});
+    const double shake = model.effects.shake_m_s2 != 0.0 ? 2.0 * std::numbers::pi * model.effects.shake_hz : 0.0;
+    const double rate = std::max({std::abs(model.k_n_s_m) / model.mass_kg, kLongestTurn / kLongestWave * shake,
+                                  std::sqrt(std::max(0.0, model.effects.tether_n_m) / model.mass_kg)});
     step_ = rate > 0.0 ? std::min(kLongestStep, kLongestTurn / rate) : kLongestStep;
   }
 
@@ -132,7 +147,7 @@ class Mover {
     pushed_ = pushed;
     const Step step = rk4(s, t, t_end - t);
     if (!(step.end.v * direction_ > 0.0)) return {};
-    return Stride{s, step.end, step.a_start, slide(step.end.x, step.end.v, t_end, step.wave_end), t_end - t};
+    return Stride(s, step.a_start, step.end, slide(step.end.x, step.end.v, t_end, step.wave_end), t_end - t);
   }
 
   double longest_step() const { return step_; }
@@ -307,7 +322,7 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     if (last > i && at[last] > t) {
       if (const std::optional<Stride> stride = mover.stride(s, t, at[last])) {
         for (; i < last; ++i) add(stride->at(at[i] - t));
-        s = stride->to;
+        s = stride->to();
         t = at[last];
         add(s);
         ++i;

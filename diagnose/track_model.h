@@ -6,8 +6,8 @@
 ///
 /// sliding; at v = 0 the glider stays while friction of up to its limit, whichever way, can hold it. Runge and Kutta's
 /// fourth order in equal parts of every frame interval, or over several frames, with a polynomial of fifth order
-/// between (steps of at most 12.6 ms; k h and omega h at most 0.3), stopped exactly at v = 0 and at t_r: a smooth
-/// function of all parameters, so that its derivatives follow by finite differences. SI units.
+/// between (steps of at most 12.6 ms; k h at most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and
+/// at t_r: a smooth function of all parameters, so that its derivatives follow by finite differences. SI units.
 #pragma once
 
 #include <functional>

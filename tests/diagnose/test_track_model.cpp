@@ -81,7 +81,7 @@ TEST_CASE("a shaken glider is where the closed form has it, whatever the frames"
       for (std::size_t i = 0; i < t.size(); ++i) {
         INFO(hz << " Hz, " << rate << " frames a second, " << t[i] << " s");
         const double gone = std::exp(-k * t[i]);
-        CHECK(moved.v_m_s[i] == Approx(speed(t[i]) + own * gone).margin(2e-6));
+        CHECK(moved.v_m_s[i] == Approx(speed(t[i]) + own * gone).margin(1e-5));  // of some mm/s
         CHECK(moved.x_m[i] == Approx(place(t[i]) - place(0.0) + own / k * (1.0 - gone)).margin(1e-7));
       }
     }
