@@ -5,9 +5,9 @@
 ///     ln(k) = ln(K/m),     a0 = gravity sin(alpha_g) - s mu gravity cos(alpha_g)
 ///
 /// and each effect adds its own term to one or both. A table states no errors: those of ln(k) and of a0 are unknown and
-/// are what the lines scatter, so that few lines carry little. Of n lines with p0 nominal parameters, p terms that leave
-/// RSS of the nominal model's RSS_0 have the Bayes factor, for unknown scatter and terms as large as one line tells
-/// (Zellner's g-prior with g = n; Liang et al. 2008),
+/// are what the lines scatter, so that few lines carry little. Of n lines with p0 nominal parameters, p terms that
+/// leave RSS of the nominal model's RSS_0 have the Bayes factor, for unknown scatter and terms as large as one line
+/// tells (Zellner's g-prior with g = n; Liang et al. 2008),
 ///
 ///     (1 + n)^((n - p0 - p) / 2) / (1 + n RSS / RSS_0)^((n - p0) / 2)
 ///

@@ -36,8 +36,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   rows.push_back({"unknown", fmt::format("{:.3f}", diagnosis.unknown), ""});
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
     const auto& ranked = diagnosis.ranking[i];
-    rows.push_back(
-        {ranked.id, fmt::format("{:.3f}", ranked.probability), gain_text(ranked.log_evidence_gain)});
+    rows.push_back({ranked.id, fmt::format("{:.3f}", ranked.probability), gain_text(ranked.log_evidence_gain)});
   }
   text += text_table(rows, 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
