@@ -193,6 +193,7 @@ double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
   return v[p] < 0.0 ? -1.0 : 1.0;
 }
 
+constexpr double kAnyWay = 0.1;  // of late releases: pushes of any size and sign, each clip its own
 constexpr double kUnlike = 0.5;  // standard deviation of one hand's push, over that of the part common to all
 
 /// Sizes of pushes from independent ones: one hand's go along the motions and are about alike.
@@ -265,18 +266,25 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
     const Eigen::MatrixXd sizes = pushes_of_one_hand(ways), seen = base::product(products, sizes);
     const SpreadEvidence evidence =
         log_spread_evidence(base::transposed_product(sizes, seen), base::transposed_product(sizes, scores));
-    if (evidence.mean.size() == 0) {
+    const SpreadEvidence any = log_spread_evidence(products, scores);
+    if (evidence.mean.size() == 0 || any.mean.size() == 0) {
       logs.push_back(0.0);  // says nothing
       continue;
     }
-    const Eigen::VectorXd push = base::product(sizes, evidence.mean);
+    Eigen::VectorXd push = base::product(sizes, evidence.mean);
     const Eigen::MatrixXd covariance = base::product(base::product(sizes, evidence.covariance), sizes.transpose());
-    // A hand pushes what it launches, or holds back what it lets go: not this one clip, that one the next.
+    // A hand pushes what it launches, or holds back what it lets go: seldom this one clip, that one the next.
     const double one_sign =
         log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
-    logs.push_back(evidence.log_evidence + one_sign);
-    if (evidence.gain <= best) continue;
-    best = evidence.gain;
+    const double of_one_hand = std::log1p(-kAnyWay) + evidence.log_evidence + one_sign;
+    const double of_any = std::log(kAnyWay) + any.log_evidence;
+    const double more = std::max(of_one_hand, of_any);
+    logs.push_back(more + std::log(std::exp(of_one_hand - more) + std::exp(of_any - more)));
+    const bool alike = of_one_hand >= of_any;
+    if (!alike) push = any.mean;
+    const double gain = alike ? evidence.gain : any.gain;
+    if (gain <= best) continue;
+    best = gain;
     scan.gain = evidence.free_gain;  // what a full fit is to be held against
     scan.values = {t_r};
     scan.own.assign(set.motions.size(), {0.0});

@@ -2,7 +2,7 @@
 ///
 /// An amplitude is a score test; a second parameter is searched on a grid and its evidence averaged over it; a wave has
 /// one amplitude and one frequency for all motions and a free phase in each (averaged over); a push has a size in each
-/// motion and one time, and pushes go along the motions and are about alike, as one hand's are.
+/// motion and one time; nine times in ten pushes go along the motions and are about alike, as one hand's are.
 #pragma once
 
 #include <set>
