@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "core/analyze.h"
 #include "diagnose/driven_motions.h"
+#include "diagnose/edge_losses.h"
 #include "diagnose/film_noise.h"
 #include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
@@ -102,6 +103,11 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
 /// is no noise and no outlier.
 void settle_noise(TrackSet& set) {
   MissingFrames missing = find_missing_frames(set, fit_nominal(set));
+  if (missing.count > 0) {
+    const std::vector<EdgePosition> beyond = positions_beyond_gaps(set, missing.fit);
+    for (const EdgePosition& position : beyond) set.motions[position.motion].outlier[position.point] = 0;
+    if (!beyond.empty()) missing = find_missing_frames(set, fit_nominal(set));
+  }
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
   const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
   if (missing.count > 0 && set.pictures) refit();

@@ -96,3 +96,22 @@ TEST_CASE("lost frames are named, the gap falls to the floor, and no launch is a
   CHECK(std::abs(diagnosis.gap->after - 1.0) < 0.1);
   CHECK(diagnosis.next_experiment.find("nothing") == std::string::npos);
 }
+
+TEST_CASE("frames lost right behind the first ones of several clips, or before the last, are lost frames as well") {
+  // Four clips lose one behind their first, second or third frame or before their last two, besides one in a hundred.
+  const unsigned seed = GENERATE(1u, 2u, 3u, 4u, 5u);
+  Losses losses = drawn(tests::made_launches().size(), seed);
+  losses.of_clip[0].insert(1);
+  losses.of_clip[1].insert(2);
+  losses.of_clip[2].insert({2, 3});
+  losses.of_clip[3].insert(3);
+  losses.of_clip[4].insert(kFrames - 3);
+  const auto made = made_with(losses, seed);
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  INFO("seed " << seed << ": " << diagnosis.summary);
+  CHECK(diagnosis.verdict == "effect");
+  REQUIRE_FALSE(diagnosis.effects.empty());
+  CHECK(diagnosis.effects.front().id == "dropped_frames");
+  REQUIRE(diagnosis.gap);
+  CHECK(std::abs(diagnosis.gap->after - 1.0) < 0.1);
+}
