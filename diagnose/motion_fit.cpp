@@ -18,6 +18,7 @@ constexpr double kConverged = 1e-3;  // change of chi², small beside what evide
 // steep: a step along it ends far up a wall, from where undamped steps lead back down; it has failed where so many do
 // not.
 constexpr int kStepsBack = 4;
+constexpr int kVainWaysBack = 2;     // then there is no valley
 constexpr double kWideAlpha = 0.35;  // rad: what holds back an inclination that the data leave open
 using Global = ParameterLayout::Global;
 
@@ -57,8 +58,12 @@ Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& 
   return move(model, set.motions[i].t_s, late.empty() ? std::span<const double>() : std::span(late[i]));
 }
 
+/// `forward` finds the way of a fit in half the time; `central`, with an error that is the square of that, is for what
+/// rests on the result: what is left of an effect that the nuisance nearly takes up must not be their error.
+enum class Derivatives { none, forward, central };
+
 FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
-                    const Lateness& late, bool derivatives) {
+                    const Lateness& late, Derivatives derivatives) {
   const TrackedMotion& data = set.motions[i];
   const auto n = static_cast<Eigen::Index>(data.t_s.size());
   FitMotion of;
@@ -74,21 +79,22 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
     of.plain[p] = weight[q] * (data.x_m[q] - base.x_m[q] - shared[q]);
   }
   of.residual = whitened(data, of.plain);
-  if (!derivatives) return of;
+  if (derivatives == Derivatives::none) return of;
   of.global = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(globals.size()));
   of.own = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(2 + layout.own().size()));
   FitPoint near = at;
-  // Central differences: what is left of an effect that the nuisance nearly takes up must not be their error.
+  const bool central = derivatives == Derivatives::central;
   const auto fill = [&](double& parameter, double step, auto column) {
     const double kept = parameter;
     parameter = kept + step;
     const Moved above = moved(set, layout, near, i, late);
     parameter = kept - step;
-    const Moved below = moved(set, layout, near, i, late);
+    const Moved below = central ? moved(set, layout, near, i, late) : base;
     parameter = kept;
+    const double apart = central ? 2.0 * step : step;
     for (Eigen::Index p = 0; p < n; ++p) {
       const auto q = static_cast<std::size_t>(p);
-      column[p] = weight[q] * (above.x_m[q] - below.x_m[q]) / (2.0 * step);
+      column[p] = weight[q] * (above.x_m[q] - below.x_m[q]) / apart;
     }
   };
   for (std::size_t g = 0; g < globals.size(); ++g) {
@@ -156,7 +162,7 @@ double cost_of(const MotionFit& fit) {
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
-void linearise_all(const TrackSet& set, MotionFit& fit, bool derivatives) {
+void linearise_all(const TrackSet& set, MotionFit& fit, Derivatives derivatives) {
   fit.motions.clear();
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     fit.motions.push_back(linearise(set, *fit.layout, fit.at, i, fit.late, derivatives));
@@ -248,10 +254,26 @@ MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
   next.at = std::move(at);
   next.cost = std::numeric_limits<double>::infinity();
   if (!inside(*fit.layout, next.at)) return next;
-  linearise_all(set, next, false);
+  linearise_all(set, next, Derivatives::none);
   next.cost = cost_of(next);
   return next;
 }
+
+/// How much a step is held back. Where one has failed, the next few are held back as much as succeeded last, so that
+/// not every other step is lost.
+struct Damping {
+  double value = 1e-6;
+  double least = 1e-9;
+
+  void lower() {
+    value = std::max({1e-9, 0.1 * value, least});
+    least *= 0.3;
+  }
+  void raise() {
+    least = 3.0 * value;
+    value *= 10.0;
+  }
+};
 
 /// x0 and v0 by a parabola through the first points, of those that were not set aside where there are enough.
 Eigen::VectorXd start_of(const TrackedMotion& motion) {
@@ -374,26 +396,31 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
   fit.at = start;
   fit.late = late;
   fit.statements = statements_of(set, *fit.layout);
-  linearise_all(set, fit, true);
+  linearise_all(set, fit, Derivatives::forward);
   fit.cost = cost_of(fit);
-  double damping = 1e-6;
+  Damping damping;
+  int vain_ways_back = 0;
   while (std::isfinite(fit.cost) && !fit.converged && fit.iterations < kMostIterations) {
     ++fit.iterations;
-    MotionFit next = moved_to(set, fit, step_from(fit, damping));
-    for (int back = 0; back < kStepsBack && std::isfinite(next.cost) && !(next.cost <= fit.cost); ++back) {
-      linearise_all(set, next, true);
-      next = moved_to(set, next, step_from(next, 0.0));
+    MotionFit next = moved_to(set, fit, step_from(fit, damping.value));
+    if (!(next.cost <= fit.cost) && vain_ways_back < kVainWaysBack) {
+      for (int back = 0; back < kStepsBack && std::isfinite(next.cost) && !(next.cost <= fit.cost); ++back) {
+        linearise_all(set, next, Derivatives::forward);
+        next = moved_to(set, next, step_from(next, 0.0));
+      }
+      vain_ways_back += next.cost <= fit.cost ? -1 : 1;
     }
     if (next.cost <= fit.cost) {
-      next.converged = fit.cost - next.cost <= kConverged * (1.0 + 1e-5 * fit.cost) && damping <= 1e-2;
-      linearise_all(set, next, true);
+      next.converged = fit.cost - next.cost <= kConverged * (1.0 + 1e-5 * fit.cost) && damping.value <= 1e-2;
+      linearise_all(set, next, Derivatives::forward);
       fit = std::move(next);
-      damping = std::max(1e-9, 0.1 * damping);
+      damping.lower();
     } else {
-      damping *= 10.0;
-      fit.converged = damping > 1e6;  // rounding, or the edge of what is allowed
+      damping.raise();
+      fit.converged = damping.value > 1e6;  // rounding, or the edge of what is allowed
     }
   }
+  linearise_all(set, fit, Derivatives::central);
   return fit;
 }
 
@@ -403,7 +430,7 @@ MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effe
   fit.layout = std::make_shared<const ParameterLayout>(set, effects);
   fit.at = at;
   fit.statements = statements_of(set, *fit.layout);
-  linearise_all(set, fit, true);
+  linearise_all(set, fit, Derivatives::central);
   fit.cost = cost_of(fit);
   return fit;
 }

@@ -17,6 +17,8 @@ constexpr int kMostTurns = 20;           // reversals within one step; more is c
 constexpr double kBarely = 1e-300;       // m/s: which way, and no faster
 constexpr int kMostLeaving = 40;         // steps to the instant at which friction gives way,
 constexpr double kSameTime_s = 1e-13;    // to this
+constexpr double kStiff = 0.1;           // of the longest step: from there on a motion takes no more
+constexpr double kMostSteps = 1e5;       // than these
 constexpr double kRounding_s = 1e-15;    // of times of some seconds
 
 struct State {
@@ -315,6 +317,12 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     moved.x_m.push_back(seen(model, state.x, times_s[moved.x_m.size()]));
     moved.v_m_s.push_back(state.v);
   };
+  if (mover.longest_step() < kStiff * kLongestStep && !(at.back() - t <= kMostSteps * mover.longest_step())) {
+    // A fit that has lost its way asks for millions of steps; nothing that was filmed is as stiff as that.
+    moved.x_m.assign(at.size(), std::numeric_limits<double>::quiet_NaN());
+    moved.v_m_s = moved.x_m;
+    return moved;
+  }
   for (std::size_t i = 0; i < at.size();) {
     // Several frames by one step where it reaches so far.
     std::size_t last = i;

@@ -87,3 +87,18 @@ TEST_CASE("a shaken glider is where the closed form has it, whatever the frames"
     }
   }
 }
+
+TEST_CASE("a drag as no fit should ask for is not followed, where it would take for ever") {
+  diagnose::TrackModel model = glider();
+  model.v0_m_s = 0.6;
+  for (const double k : {1e6, 1e12, 1e300}) {  // stopped within a microsecond, in 1e5 to 1e300 steps of k h = 0.3
+    model.k_n_s_m = k;
+    const diagnose::Moved moved = diagnose::move(model, times(100.0));
+    REQUIRE(moved.x_m.size() == times(100.0).size());
+    CHECK_FALSE(std::isfinite(moved.x_m.back()));
+  }
+  model.k_n_s_m = 400.0;  // a thousand a second: three steps to a millisecond, and at rest but for the slope
+  const diagnose::Moved slow = diagnose::move(model, times(100.0));
+  const double v_lim = model.mass_kg * model.gravity_m_s2 * std::sin(model.alpha_rad) / model.k_n_s_m;
+  CHECK(std::abs(slow.v_m_s.back() - v_lim) < 1e-9);
+}
