@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "diagnose/unnamed_shape.h"
 
@@ -12,7 +13,10 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;
-constexpr double kMostSwings = 600;  // periods that are tried
+constexpr double kMostSwings = 600;  // that are tried in full,
+constexpr double kFinestSwings =
+    2000;  // periods over the whole range that are tried at all: the pixels of a wide picture
+constexpr double kShowsALittle = 3.0, kShows = 8.0;  // log likelihood
 
 struct Ranges {
   Grid x, v, t;
@@ -74,6 +78,81 @@ void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std:
              families);
 }
 
+/// sin and cos of 2 pi f x as changes of all positions.
+std::vector<ScoreColumn> swing_columns(const ScoreSpace& space, double f_1_m) {
+  std::vector<ScoreColumn> columns;
+  for (const double phase : {0.0, 0.25}) {
+    std::vector<Eigen::VectorXd> changes;
+    for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+      const auto& at = space.modelled(i);
+      Eigen::VectorXd change(static_cast<Eigen::Index>(at.size()));
+      for (std::size_t p = 0; p < at.size(); ++p) {
+        change[static_cast<Eigen::Index>(p)] = std::sin(2.0 * std::numbers::pi * (f_1_m * at[p] + phase));
+      }
+      changes.push_back(std::move(change));
+    }
+    columns.push_back(space.project(changes));
+  }
+  return columns;
+}
+
+void draw_swing(const Grid& x, double f_1_m, const SpreadEvidence& evidence, UnnamedFamily& family) {
+  family.at.clear();
+  family.size.clear();
+  family.sd.clear();
+  constexpr int kDrawn = 240;
+  for (int j = 0; j <= kDrawn; ++j) {
+    const double place = x.low + (x.high - x.low) * j / kDrawn, turn = 2.0 * std::numbers::pi * f_1_m * place;
+    const Eigen::Vector2d basis(std::sin(turn), std::cos(turn));
+    family.at.push_back(place);
+    family.size.push_back(basis.dot(evidence.mean));
+    family.sd.push_back(std::sqrt(std::max(0.0, basis.dot(evidence.covariance * basis))));
+  }
+}
+
+/// What swings of many periods gain, by the sums of r sin and r cos alone: what is fitted takes up nothing of them.
+/// `at` f, then f + step, and so on by turning each point's sine and cosine on.
+class FineSwings {
+ public:
+  FineSwings(const ScoreSpace& space, double f_1_m, double step_1_m) {
+    const Eigen::VectorXd& rest = space.residual().rest;
+    for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+      const TrackedMotion& motion = space.set().motions[i];
+      for (std::size_t p = 0; p < motion.x_m.size(); ++p) {
+        if (motion.outlier[p] != 0) continue;
+        const double turn = 2.0 * std::numbers::pi * space.modelled(i)[p], weight = 1.0 / motion.sd_of(p);
+        waves_.push_back({weight * rest[space.offset(i) + static_cast<Eigen::Index>(p)], std::sin(turn * f_1_m),
+                          std::cos(turn * f_1_m), std::sin(turn * step_1_m), std::cos(turn * step_1_m)});
+        squares_ += 0.5 * weight * weight;
+      }
+    }
+    nothing_ = log_spread_evidence(squares_ * Eigen::Matrix2d::Identity(), Eigen::Vector2d::Zero()).log_evidence;
+  }
+
+  /// Of the present f; then goes on to the next.
+  SpreadEvidence next() {
+    Eigen::Vector2d sums = Eigen::Vector2d::Zero();
+    for (Wave& w : waves_) {
+      sums += w.residual * Eigen::Vector2d(w.sin, w.cos);
+      const double sin = w.sin * w.step_cos + w.cos * w.step_sin;
+      w.cos = w.cos * w.step_cos - w.sin * w.step_sin;
+      w.sin = sin;
+    }
+    SpreadEvidence evidence;
+    evidence.free_gain = 0.5 * sums.squaredNorm() / squares_;
+    evidence.log_evidence = nothing_;
+    if (evidence.free_gain < kShowsALittle) return evidence;
+    return log_spread_evidence(squares_ * Eigen::Matrix2d::Identity(), sums);
+  }
+
+ private:
+  struct Wave {
+    double residual, sin, cos, step_sin, step_cos;
+  };
+  std::vector<Wave> waves_;
+  double squares_ = 0.0, nothing_ = 0.0;
+};
+
 /// A displacement that swings with the place: sin and cos of 2 pi f x, one f for all motions, averaged over.
 UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
@@ -87,36 +166,28 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   if (ways.empty() || !(range > 0.0)) return family;
   std::nth_element(ways.begin(), ways.begin() + std::ssize(ways) / 2, ways.end());
   // Half of all frames lie closer than this: two of them a turn at least; and no more looks than kMostSwings.
-  const double highest = std::min(0.5 / std::max(ways[ways.size() / 2], 1e-9), kMostSwings * 0.3 / range);
+  const double step = 0.3 / range;
+  const double highest = std::min(0.5 / std::max(ways[ways.size() / 2], 1e-9), kMostSwings * step);
   std::vector<double> logs;
-  for (double f = 2.0 / range; f < highest; f += 0.3 / range) {
-    std::vector<ScoreColumn> columns;
-    for (const double phase : {0.0, 0.25}) {
-      std::vector<Eigen::VectorXd> changes;
-      for (std::size_t i = 0; i < set.motions.size(); ++i) {
-        const auto& at = space.modelled(i);
-        Eigen::VectorXd change(static_cast<Eigen::Index>(at.size()));
-        for (std::size_t p = 0; p < at.size(); ++p) {
-          change[static_cast<Eigen::Index>(p)] = std::sin(2.0 * std::numbers::pi * (f * at[p] + phase));
-        }
-        changes.push_back(std::move(change));
-      }
-      columns.push_back(space.project(changes));
-    }
+  double f = 2.0 / range;
+  const auto try_swing = [&] {
     SpreadEvidence evidence;
-    const Tried tried = try_one(space, columns, family, evidence);
+    const Tried tried = try_one(space, swing_columns(space, f), family, evidence);
     logs.push_back(tried.log_evidence);
-    if (!tried.better) continue;
-    family.at.clear();
-    family.size.clear();
-    family.sd.clear();
-    constexpr int kDrawn = 240;
-    for (int j = 0; j <= kDrawn; ++j) {
-      const double place = x.low + range * j / kDrawn, turn = 2.0 * std::numbers::pi * f * place;
-      const Eigen::Vector2d basis(std::sin(turn), std::cos(turn));
-      family.at.push_back(place);
-      family.size.push_back(basis.dot(evidence.mean));
-      family.sd.push_back(std::sqrt(std::max(0.0, basis.dot(evidence.covariance * basis))));
+    if (tried.better) draw_swing(x, f, evidence, family);
+  };
+  for (; f < highest; f += step) try_swing();
+  // Finer ones pass from frame to frame by more than a turn, each motion in steps of its own, and show by the place all
+  // the same: the pixels, when a marker crosses some of them from frame to frame. Of films these are in the fit.
+  if (!set.pictures) {
+    FineSwings fine(space, f, step);
+    for (; f < kFinestSwings / range; f += step) {
+      const SpreadEvidence evidence = fine.next();
+      if (evidence.free_gain > kShows) {
+        try_swing();
+      } else {
+        logs.push_back(evidence.log_evidence);
+      }
     }
   }
   if (!logs.empty()) family.log_evidence = log_mean(logs);
