@@ -11,6 +11,7 @@ constexpr double kFastest = 0.48;      // of the frame rate
 constexpr double kFastestLossy = 0.2;  // a codec takes frames by twos to fours, each with its own error
 constexpr double kLatest = 0.4;        // of the longest motion: later it is no start
 constexpr double kFewFrames = 3.0;
+constexpr double kShortestPush = 4.0;  // frames: one that ends before that is an error of single frames
 
 ParameterRange range_of_waves(const TrackSet& set) {
   double longest = 0.0, rate = std::numeric_limits<double>::infinity();
@@ -47,6 +48,9 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
       if (begins_with_its_clip(set, motion)) longest = std::max(longest, motion.t_s.back());
     }
     if (longest > 0.0) range.high = kLatest * longest;
+    double frame = 0.0;
+    for (const TrackedClip& clip : set.clips) frame = std::max(frame, 1.0 / clip.frame_rate_hz);
+    range.low = kShortestPush * frame;
   }
   if (parameter.with_mass) {
     double heaviest_kg = 1.0;

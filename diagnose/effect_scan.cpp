@@ -234,19 +234,17 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
   const TrackSet& set = space.set();
   EffectScan scan;
   scan.effect = effect;
-  double step = 0.0;
   std::vector<std::size_t> from_start;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     if (!begins_with_its_clip(set, set.motions[i])) continue;
     from_start.push_back(i);
-    step = std::max(step, 1.0 / set.clips[set.motions[i].clip].frame_rate_hz);
   }
   if (from_start.empty()) return scan;
   const double beforehand = log_one_sign_beforehand(std::ssize(from_start));
   std::vector<double> logs;
   double best = 0.0;
-  const double latest = range_of(set, effect_list()[effect].parameters[0]).high;
-  for (double t_r = 4.0 * step; t_r < latest; t_r *= 1.3) {
+  const ParameterRange range = range_of(set, effect_list()[effect].parameters[0]);
+  for (double t_r = range.low; t_r < range.high; t_r *= 1.3) {
     EffectValues values;
     values.release_s = t_r;
     std::vector<ScoreColumn> columns;

@@ -19,7 +19,7 @@ constexpr double kFinestSwings =
 constexpr double kShowsALittle = 3.0, kShows = 8.0;  // log likelihood
 
 struct Ranges {
-  Grid x, v, t;
+  Grid x, v, t, speed;
 };
 
 Ranges ranges_of(const ScoreSpace& space) {
@@ -27,12 +27,15 @@ Ranges ranges_of(const ScoreSpace& space) {
   for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
     for (const double x : space.set().motions[i].x_m) ranges.x.add(x);
     for (const double t : space.set().motions[i].t_s) ranges.t.add(t);
-    for (const double v : space.fit().motions[i].v_m_s) ranges.v.add(v);
+    for (const double v : space.fit().motions[i].v_m_s) {
+      ranges.v.add(v);
+      ranges.speed.add(std::abs(v));
+    }
   }
   return ranges;
 }
 
-/// A force f(place) of any smooth shape.
+/// A force f(place) of any smooth shape; of friction, which turns with the motion, the place among speeds is |v|.
 void add_force(const ScoreSpace& space, const Grid& grid, int variable, const std::string& name,
                const std::string& what, bool with_mass, bool friction, std::vector<UnnamedFamily>& families) {
   const TrackSet& set = space.set();
@@ -43,7 +46,7 @@ void add_force(const ScoreSpace& space, const Grid& grid, int variable, const st
       const double factor = with_mass ? set.masses[motion.mass].mass_kg : 1.0;
       const double middle = grid.at(b), width = grid.width();
       forces.push_back([=](double x, double v, double t) {
-        const double place = variable == 0 ? x : variable == 1 ? v : t;
+        const double place = variable == 0 ? x : variable == 2 ? t : friction ? std::abs(v) : v;
         return factor * (friction && v < 0.0 ? -1.0 : 1.0) * bump(place, middle, width);
       });
     }
@@ -200,9 +203,10 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
 void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families) {
   const Ranges ranges = ranges_of(space);
   for (const int bumps : {kSmooth, kCoarse, kFine}) {
-    Grid v = ranges.v, x = ranges.x, t = ranges.t;
-    v.bumps = x.bumps = t.bumps = bumps;
+    Grid v = ranges.v, x = ranges.x, t = ranges.t, speed = ranges.speed;
+    v.bumps = x.bumps = t.bumps = speed.bumps = bumps;
     add_force(space, v, 1, "v_m_s", "force", false, false, families);
+    add_force(space, speed, 1, "v_m_s", "friction", false, true, families);
     add_force(space, x, 0, "x_m", "acceleration", true, false, families);
     add_force(space, x, 0, "x_m", "friction", true, true, families);
     add_displacement(space, x, Seen::over_x, families);

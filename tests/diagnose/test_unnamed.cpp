@@ -158,3 +158,19 @@ TEST_CASE("pixels that pull the marker are seen, also where it crosses several o
   CHECK(diagnosis.regions.front().variable == "x_m");
   CHECK(diagnosis.regions.front().what == "displacement");
 }
+
+TEST_CASE("friction that sets in above some speed is no hand that pushes against every start") {
+  // Three motions, each fastest at its start: half as much friction again above 0.8 m/s acts for the first 0.1 to 0.3
+  // s.
+  const std::vector<tests::MadeLaunch> launches = {
+      {0.335, 0.0, 0.5, -1.2}, {0.335, 0.0, -0.5, 1.1}, {0.335, 4.0, 0.3, -1.1}};
+  const tests::MadeEffect cushion = {[](double mass_kg, double, double v, double) {
+    const double part = 0.5 + 0.5 * std::tanh((std::abs(v) - 0.8) / 0.03);
+    return -(v > 0.0 ? 1.0 : -1.0) * 0.5 * 0.006 * mass_kg * 9.80665 * part;
+  }};
+  const auto made = tests::made_experiment(launches, cushion, 4, 2e-5, 150, 150.0);
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  INFO(diagnosis.summary << " " << surest(diagnosis));
+  CHECK(surest(diagnosis) < 0.8);
+  CHECK(diagnosis.verdict == "unknown");
+}
