@@ -9,10 +9,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -114,8 +114,10 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     return fit;
   }
   fit.rms = std::sqrt(here->cost / freedom);
-  const Eigen::FullPivLU<Eigen::Matrix<double, N, N>> factor(here->jtj);
-  if (!factor.isInvertible()) {
+  // What has no inverse, as FullPivLU says it: of a matrix without negative eigenvalues both take the same pivots.
+  const Eigen::LDLT<Eigen::Matrix<double, N, N>> factor(here->jtj);
+  const auto pivots = factor.vectorD().cwiseAbs();
+  if (!(pivots.minCoeff() > N * std::numeric_limits<double>::epsilon() * pivots.maxCoeff())) {
     fit.stop = FitStop::singular;
     return fit;
   }

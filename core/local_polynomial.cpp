@@ -98,11 +98,15 @@ LocalPolynomial::LocalPolynomial(std::span<const double> t_s, PolynomialOptions 
     if (std::abs(t_s_[j] - t_s_[j - 1] - step) <= kUniform * step) run_[j] = run_[j - 1] + 1;
     longest = std::max(longest, run_[j]);
   }
+  kernel_.resize(std::min(half, longest) + 1);
+  for (std::size_t i = 0; i < kernel_.size(); ++i) {
+    kernel_[i] = kernel_value(options_.kernel, static_cast<double>(i) * step / bandwidth);
+  }
   if (half < 2 || longest < 2 * half) return;
   std::vector<double> u(2 * half + 1), kernel(2 * half + 1);
   for (std::size_t i = 0; i < u.size(); ++i) {
     u[i] = (static_cast<double>(i) - static_cast<double>(half)) * step / bandwidth;
-    kernel[i] = kernel_value(options_.kernel, u[i]);
+    kernel[i] = kernel_[i < half ? half - i : i - half];
   }
   auto weights = std::make_shared<KernelWeights>();
   if (std::count_if(kernel.begin(), kernel.end(), [](double k) { return k > 0.0; }) < options_.order + 2) return;
@@ -115,15 +119,18 @@ bool LocalPolynomial::interior(std::size_t j) const {
   return half_ > 0 && j >= half_ && j + half_ < t_s_.size() && run_[j + half_] >= 2 * half_;
 }
 
-std::optional<KernelRow> LocalPolynomial::general_row(double at_s) const {
+/// Of a point whose window has the uniform step the kernel's values are known (its weights are exact for any kernel).
+std::optional<KernelRow> LocalPolynomial::general_row(double at_s, std::optional<std::size_t> point) const {
   const auto from = std::lower_bound(t_s_.begin(), t_s_.end(), at_s - reach_s_);
   const auto to = std::upper_bound(from, t_s_.end(), at_s + reach_s_);
   const auto first = static_cast<std::size_t>(from - t_s_.begin());
   std::vector<double> u(static_cast<std::size_t>(to - from)), kernel(u.size());
+  const std::size_t before = point ? *point - first : 0, after = u.size() - before - 1;
+  const bool uniform = point && std::max(before, after) < kernel_.size() && run_[first + u.size() - 1] + 1 >= u.size();
   int within = 0;
   for (std::size_t i = 0; i < u.size(); ++i) {
     u[i] = (t_s_[first + i] - at_s) / options_.bandwidth_s;
-    kernel[i] = kernel_value(options_.kernel, u[i]);
+    kernel[i] = uniform ? kernel_[i < before ? before - i : i - before] : kernel_value(options_.kernel, u[i]);
     if (kernel[i] > 0.0) ++within;
     if (!options_.weights.empty()) kernel[i] *= options_.weights[first + i];
   }
@@ -142,7 +149,7 @@ std::optional<KernelRow> LocalPolynomial::row(double at_s) const {
 std::optional<KernelRow> LocalPolynomial::row_of_point(std::size_t j) const {
   assert(j < t_s_.size());
   if (interior(j)) return KernelRow{j - half_, filter_};
-  return general_row(t_s_[j]);
+  return general_row(t_s_[j], j);
 }
 
 void LocalPolynomial::filter(std::span<const double> values, std::size_t from, std::size_t to,
@@ -188,7 +195,7 @@ std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<cons
       j = to;
       continue;
     }
-    if (const auto row = general_row(t_s_[j])) out[j] = weighted_sums(*row, values);
+    if (const auto row = general_row(t_s_[j], j)) out[j] = weighted_sums(*row, values);
     ++j;
   }
   return out;

@@ -85,7 +85,7 @@ class LocalPolynomial {
   std::span<const double> times() const { return t_s_; }
 
  private:
-  std::optional<KernelRow> general_row(double at_s) const;
+  std::optional<KernelRow> general_row(double at_s, std::optional<std::size_t> point = {}) const;
   bool interior(std::size_t j) const;
   void filter(std::span<const double> values, std::size_t from, std::size_t to,
               std::vector<std::optional<SmoothedPoint>>& out) const;
@@ -95,6 +95,7 @@ class LocalPolynomial {
   double reach_s_ = 0.0;
   std::size_t half_ = 0;                         // taps to each side of the filter; 0 where there is none
   std::vector<std::size_t> run_;                 // run_[j]: points before j that follow each other at the uniform step
+  std::vector<double> kernel_;                   // at whole uniform steps, where there are any
   std::shared_ptr<const KernelWeights> filter_;  // weights of 2 half_ + 1 points
 };
 

@@ -238,21 +238,15 @@ NormalEquations<N> equations_of(const Sums<N>& sums) {
 }  // namespace
 
 void MarkerPixels::reserve(std::size_t pixels) {
-  for (std::vector<double>* values : {&u_, &v_, &value_, &weight_}) values->reserve(pixels + kBatch);
-}
-
-void MarkerPixels::add(int u, int v, double value, double weight) {
-  u_.push_back(u);
-  v_.push_back(v);
-  value_.push_back(value);
-  weight_.push_back(weight);
-  ++size_;
+  for (std::vector<double>* values : {&u_, &v_, &value_, &weight_}) values->resize(pixels + kBatch);
 }
 
 void MarkerPixels::complete() {
   const std::size_t whole = (size_ + kBatch - 1) / kBatch * kBatch;
-  for (std::vector<double>* values : {&u_, &v_, &value_}) values->resize(whole, values->empty() ? 0.0 : values->back());
-  weight_.resize(whole, 0.0);
+  for (std::vector<double>* values : {&u_, &v_, &value_, &weight_}) {
+    values->resize(size_);
+    values->resize(whole, values != &weight_ && size_ > 0 ? values->back() : 0.0);
+  }
 }
 
 template <int N>

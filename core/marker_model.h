@@ -38,7 +38,13 @@ inline constexpr int kShadedParameters = kShadeR + 1;
 class MarkerPixels {
  public:
   void reserve(std::size_t pixels);
-  void add(int u, int v, double value, double weight);
+  void add(int u, int v, double value, double weight) {
+    if (size_ == u_.size()) reserve(2 * size_);
+    u_[size_] = u;
+    v_[size_] = v;
+    value_[size_] = value;
+    weight_[size_++] = weight;
+  }
   /// To be called after the last pixel.
   void complete();
 
@@ -50,7 +56,8 @@ class MarkerPixels {
 
  private:
   std::size_t size_ = 0;
-  std::vector<double> u_, v_, value_, weight_;  ///< once complete whole batches, filled up with pixels of no weight
+  std::vector<double> u_, v_, value_,
+      weight_;  ///< with room; once complete() whole batches, filled up with pixels of no weight
 };
 
 using Vectors = base::Simd;  ///< there is no portable one here: it is the baseline

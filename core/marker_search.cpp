@@ -1,13 +1,12 @@
 #include "core/marker_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/area_means.h"
 #include "core/contrast_parts.h"
+#include "core/disc_response.h"
 #include "core/pixel_noise.h"
 
 namespace glidelab::core {
@@ -49,127 +48,19 @@ cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
   return values;
 }
 
-/// Means over squares of 2 half + 1 pixels, of what of them lies inside the picture, for centres in the picture and up
-/// to `beyond` pixels outside; NaN where nothing does. Sums are those of an integral picture.
-cv::Mat square_means(const cv::Mat& sums, int half, int beyond) {
-  const int width = sums.cols - 1, height = sums.rows - 1;
-  cv::Mat means(height + 2 * beyond, width + 2 * beyond, CV_32F);
-  std::vector<int> left(static_cast<std::size_t>(means.cols)), right(left.size());
-  for (int u = 0; u < means.cols; ++u) {
-    left[static_cast<std::size_t>(u)] = std::max(u - beyond - half, 0);
-    right[static_cast<std::size_t>(u)] = std::min(u - beyond + half + 1, width);
-  }
-  for (int v = 0; v < means.rows; ++v) {
-    const int top = std::max(v - beyond - half, 0), bottom = std::min(v - beyond + half + 1, height);
-    auto* row = means.ptr<float>(v);
-    if (top >= bottom) {
-      std::fill(row, row + means.cols, std::numeric_limits<float>::quiet_NaN());
-      continue;
-    }
-    const auto* upper = sums.ptr<double>(top);
-    const auto* lower = sums.ptr<double>(bottom);
-    const auto mean_at = [&](int u) {
-      const int l = left[static_cast<std::size_t>(u)], r = right[static_cast<std::size_t>(u)];
-      if (l >= r) return std::numeric_limits<float>::quiet_NaN();
-      const double area = static_cast<double>(r - l) * (bottom - top);
-      return static_cast<float>((lower[r] - upper[r] - lower[l] + upper[l]) / area);
-    };
-    // Between the borders all squares are whole.
-    const int first = std::min(half + beyond, means.cols), last = std::max(first, width - half + beyond);
-    for (int u = 0; u < first; ++u) row[u] = mean_at(u);
-    const double share = 1.0 / (static_cast<double>(2 * half + 1) * (bottom - top));
-    for (int u = first; u < last; ++u) {
-      const int l = u - beyond - half, r = u - beyond + half + 1;
-      const double sum = lower[r] - upper[r] - lower[l] + upper[l];
-      row[u] = static_cast<float>(sum * share);
-    }
-    for (int u = last; u < means.cols; ++u) row[u] = mean_at(u);
-  }
-  return means;
-}
-
-/// Half the sides of the squares within and around a disc.
-int inner_half(double radius) {
-  return std::max(0, static_cast<int>(std::lround(0.6 * radius - 0.3)));
-}
-int outer_half(double radius) {
-  return std::max(0, static_cast<int>(std::lround(0.4 * radius - 0.3)));
-}
-
 /// How a picture is looked at for discs of a radius.
 struct Scale {
   double shrink;  ///< of the picture
   double radius;  ///< of the disc, in the shrunk picture
+  DiscSquares squares;
 
-  explicit Scale(double radius_px) : shrink(std::max(1.0, radius_px / kWorkingRadiusPx)), radius(radius_px / shrink) {}
-  int inner() const { return inner_half(radius); }
-  int outer() const { return outer_half(radius); }
-  /// From the disc's centre to those of the squares beside it.
-  int away() const { return static_cast<int>(std::lround(radius + 1.0 + outer() + 0.3 * radius)); }
+  explicit Scale(double radius_px)
+      : shrink(std::max(1.0, radius_px / kWorkingRadiusPx)), radius(radius_px / shrink), squares(radius) {}
   /// What lies as far around a centre in the region belongs to the picture that is looked at.
   int surroundings_px() const { return static_cast<int>(std::ceil(3.0 * radius * shrink + 3.0)); }
   /// No pixel that is farther away counts for the contrast at a place.
-  int sight_px() const { return static_cast<int>(std::ceil((away() + outer() + 1.0) * shrink)) + 1; }
+  int sight_px() const { return static_cast<int>(std::ceil((squares.away + squares.outer + 1.0) * shrink)) + 1; }
 };
-
-/// The brighter one of each two to the first row, the other to the second.
-void put_in_order(float* __restrict first, float* __restrict second, std::size_t count) {
-  for (std::size_t u = 0; u < count; ++u) {
-    const float a = first[u], b = second[u];
-    first[u] = a > b ? a : b;
-    second[u] = a < b ? a : b;
-  }
-}
-
-/// The brighter one of each two to the first row. A NaN is never brighter.
-void keep_brighter(float* __restrict first, const float* __restrict second, std::size_t count) {
-  for (std::size_t u = 0; u < count; ++u) first[u] = second[u] > first[u] ? second[u] : first[u];
-}
-
-/// By how much a disc stands out of its surroundings at each pixel of the region: its inner mean above
-/// the brightest but `bright_neighbours` of the means at eight places around it; 0 where more of these are as bright.
-cv::Mat response_of(const cv::Mat& values, const cv::Rect& region, const Scale& scale, int bright_neighbours) {
-  const int away = scale.away();
-  const int diagonal = static_cast<int>(std::lround(away * 0.75));
-  const std::array<cv::Point, 8> around{
-      cv::Point(away, 0),  cv::Point(diagonal, diagonal),   cv::Point(0, away),  cv::Point(-diagonal, diagonal),
-      cv::Point(-away, 0), cv::Point(-diagonal, -diagonal), cv::Point(0, -away), cv::Point(diagonal, -diagonal)};
-  cv::Mat sums;
-  cv::integral(values, sums, CV_64F);
-  const cv::Mat in = square_means(sums, scale.inner(), 0);
-  const cv::Mat out = square_means(sums, scale.outer(), away);
-  std::array<std::ptrdiff_t, 8> step{};
-  for (std::size_t k = 0; k < around.size(); ++k) {
-    step[k] = static_cast<std::ptrdiff_t>(around[k].y) * out.cols + around[k].x;
-  }
-  cv::Mat response(values.size(), CV_32F, cv::Scalar(0.0F));
-  // The brightest of the eight in falling order, of a whole row at once. A NaN is never brighter.
-  constexpr float kNone = -std::numeric_limits<float>::infinity();
-  const auto width = static_cast<std::size_t>(region.width);
-  std::vector<float> brightest(width * static_cast<std::size_t>(bright_neighbours + 1)), next(width);
-  for (int v = region.y; v < region.br().y; ++v) {
-    const float* const inside = in.ptr<float>(v) + region.x;
-    const float* const beside = out.ptr<float>(v + away) + away + region.x;
-    float* const result = response.ptr<float>(v) + region.x;
-    std::ranges::fill(brightest, kNone);
-    for (const std::ptrdiff_t k : step) {
-      const float* const there = beside + k;
-      if (bright_neighbours == 0) {
-        keep_brighter(brightest.data(), there, width);
-        continue;
-      }
-      for (std::size_t u = 0; u < width; ++u) next[u] = there[u] == there[u] ? there[u] : kNone;
-      for (int rank = 0; rank <= bright_neighbours; ++rank) {
-        put_in_order(brightest.data() + static_cast<std::size_t>(rank) * width, next.data(), width);
-      }
-    }
-    const float* const rank = brightest.data() + static_cast<std::size_t>(bright_neighbours) * width;
-    for (std::size_t u = 0; u < width; ++u) {
-      result[u] = inside[u] > rank[u] && rank[u] > kNone ? inside[u] - rank[u] : 0.0F;
-    }
-  }
-  return response;
-}
 
 /// Adds what stands out in the region. The noise, where it is given, is that of the shrunk picture's pixels.
 void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& search, const Scale& scale,
@@ -178,8 +69,11 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
   cv::Mat small;
   const cv::Size size(std::max(1, static_cast<int>(std::lround(taken.width / scale.shrink))),
                       std::max(1, static_cast<int>(std::lround(taken.height / scale.shrink))));
-  values(taken).convertTo(small, CV_32F);
-  if (scale.shrink > 1.0) cv::resize(small, small, size, 0, 0, cv::INTER_AREA);
+  if (scale.shrink > 1.0) {
+    small = area_means(values(taken), size);
+  } else {
+    values(taken).convertTo(small, CV_32F);
+  }
   const double fu = static_cast<double>(taken.width) / small.cols;
   const double fv = static_cast<double>(taken.height) / small.rows;
   const auto to_picture = [&](double u, double v) {
@@ -196,11 +90,11 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
   const auto line = [&](int v) { return to_picture(0, v).y; };
   const cv::Point begin(first_in(small.cols, region.x - 0.5, column), first_in(small.rows, region.y - 0.5, line));
   const cv::Point end(first_in(small.cols, region.br().x, column), first_in(small.rows, region.br().y, line));
-  const cv::Mat response = response_of(small, cv::Rect(begin, end), scale, search.bright_neighbours);
+  const cv::Mat response = disc_response(small, cv::Rect(begin, end), scale.squares, search.bright_neighbours);
   double best = 0.0;
   cv::minMaxLoc(response, nullptr, &best);
   const double of_pixel = noise ? *noise : noise_of(small);
-  const double of_mean = of_pixel / (2.0 * std::min(scale.inner(), scale.outer()) + 1.0);
+  const double of_mean = of_pixel / (2.0 * std::min(scale.squares.inner, scale.squares.outer) + 1.0);
   const double least =
       std::max({kNoiseSigmas * std::sqrt(2.0) * of_mean, kShareOfBest * best, search.least_contrast, 1e-6});
 

@@ -37,7 +37,7 @@ struct Blob {
 struct BlobSearch {
   double radius_px = 0.0;
   cv::Rect region;            ///< where its centre may be
-  int bright_neighbours = 1;  ///< of the eight patches around it, how many may be as bright as it is
+  int bright_neighbours = 1;  ///< of the eight patches around it (0 to 3), how many may be as bright as it is
   double least_contrast = 0.0;
   std::size_t most = 40;  ///< the ones of the highest contrast
 };

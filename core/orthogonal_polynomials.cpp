@@ -18,7 +18,9 @@ std::optional<OrthogonalPolynomials> OrthogonalPolynomials::make(int order, std:
   const std::size_t n = u.size();
   OrthogonalPolynomials made;
   made.points_ = n;
-  made.values_.resize(n * (static_cast<std::size_t>(order) + 1));
+  const auto polynomials = static_cast<std::size_t>(order) + 1;
+  made.values_.resize(n * polynomials);
+  for (std::vector<double>* numbers : {&made.norm_, &made.alpha_, &made.beta_}) numbers->reserve(polynomials);
   using Numbers = Eigen::Map<const Eigen::ArrayXd>;
   const auto count = static_cast<Eigen::Index>(n);
   const Numbers at(u.data(), count), weight(weights.data(), count);

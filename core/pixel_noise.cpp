@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <cstdint>
 #include <vector>
 
 namespace glidelab::core {
@@ -23,6 +23,28 @@ double noise_by(std::vector<float>& differences) {
   return static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
 }
 
+template <class Pixel>
+double shrunk_noise(const cv::Mat& values, int shrink) {
+  std::vector<float> differences;
+  const int rows = values.rows / shrink, columns = values.cols / shrink;
+  const int step = std::max(1, rows / kNoiseStrips);
+  const float share = 1.0F / static_cast<float>(shrink * shrink);
+  std::vector<std::int64_t> sums(static_cast<std::size_t>(columns));
+  std::vector<float> row(sums.size());
+  for (int strip = 0; strip < rows; strip += step) {
+    std::ranges::fill(sums, 0);
+    for (int v = strip * shrink; v < (strip + 1) * shrink; ++v) {
+      const Pixel* from = values.ptr<Pixel>(v);
+      for (std::int64_t& sum : sums) {
+        for (int u = 0; u < shrink; ++u) sum += *from++;
+      }
+    }
+    std::ranges::transform(sums, row.begin(), [&](std::int64_t sum) { return share * static_cast<float>(sum); });
+    add_differences(row.data(), columns, differences);
+  }
+  return noise_by(differences);
+}
+
 }  // namespace
 
 double noise_of(const cv::Mat& values) {
@@ -33,16 +55,8 @@ double noise_of(const cv::Mat& values) {
 }
 
 double noise_when_shrunk(const cv::Mat& values, int shrink) {
-  std::vector<float> differences;
-  const int rows = values.rows / shrink, columns = values.cols / shrink;
-  const int step = std::max(1, rows / kNoiseStrips);
-  cv::Mat strip, row;
-  for (int v = 0; v < rows; v += step) {
-    values(cv::Rect(0, v * shrink, columns * shrink, shrink)).convertTo(strip, CV_32F);
-    cv::resize(strip, row, cv::Size(columns, 1), 0, 0, cv::INTER_AREA);
-    add_differences(row.ptr<float>(), columns, differences);
-  }
-  return noise_by(differences);
+  return values.depth() == CV_8U ? shrunk_noise<std::uint8_t>(values, shrink)
+                                 : shrunk_noise<std::uint16_t>(values, shrink);
 }
 
 }  // namespace glidelab::core

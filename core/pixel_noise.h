@@ -8,7 +8,7 @@ namespace glidelab::core {
 /// Standard deviation of one pixel, of a picture of floats.
 double noise_of(const cv::Mat& values);
 
-/// The same of the picture shrunk by a whole number, from some of its rows; values of any depth.
+/// The same of the picture shrunk by a whole number, from some of its rows; values of 8 or 16 bits.
 double noise_when_shrunk(const cv::Mat& values, int shrink);
 
 }  // namespace glidelab::core

@@ -97,9 +97,9 @@ TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
         if (!step.polygon->is_patch) {
           light += coverage[i] * step.radiance;
           box_part += coverage[i];
-        } else if (box_part > 0.0) {
-          const double patched = std::min(coverage[i], box_part);
-          light += patched * (step.radiance - light / box_part);
+        } else {  // nothing where there is no part of the box
+          const double patched = std::min(coverage[i], box_part), part = box_part > 0.0 ? box_part : 1.0;
+          light += patched * (step.radiance - light / part);
         }
       }
     }

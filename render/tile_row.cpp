@@ -16,20 +16,48 @@ constexpr std::size_t kMostLines = 4;
 /// A polygon's lines in the coordinates of each pixel, one after the other.
 struct RowLines {
   std::array<TileRow, kMostLines> s, gx, gy, reach;
+  TileRow through;   ///< how many lines cut the pixel
+  TileRow coverage;  ///< right where that is one line at most, or the pixel is outside of one
+  bool cut_twice;    ///< any pixel by two lines and more, and outside of none
 };
 
+/// The square of a pixel against each line: half_plane_coverage, without branches.
 [[gnu::always_inline]] inline void lines_in_pixels(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
                                                    RowLines& out) {
+  TileRow through, outside, coverage;
+  for (int i = 0; i < kRayTile; ++i) {
+    through[i] = outside[i] = 0.0;
+    coverage[i] = 1.0;
+  }
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    const double a = lines[k].x(), b = lines[k].y(), c = lines[k].z();
+    const double la = lines[k].x(), lb = lines[k].y(), lc = lines[k].z();
     for (int i = 0; i < kRayTile; ++i) {
-      const double gx = a * rays.dxdu[i] + b * rays.dydu[i], gy = a * rays.dxdv[i] + b * rays.dydv[i];
-      out.s[k][i] = a * rays.x[i] + b * rays.y[i] + c;
+      const double gx = la * rays.dxdu[i] + lb * rays.dydu[i], gy = la * rays.dxdv[i] + lb * rays.dydv[i];
+      const double s = la * rays.x[i] + lb * rays.y[i] + lc;
+      const double ax = std::abs(gx), ay = std::abs(gy), reach = 0.5 * (ax + ay);
+      out.s[k][i] = s;
       out.gx[k][i] = gx;
       out.gy[k][i] = gy;
-      out.reach[k][i] = 0.5 * (std::abs(gx) + std::abs(gy));
+      out.reach[k][i] = reach;
+      const double a = ax > ay ? ax : ay, b = ax > ay ? ay : ax, t = std::abs(s);
+      const double over = 0.5 * (a + b) - t, corner = over > 0.0 ? over : 0.0;
+      const double both = 2.0 * a * b, area = both > 1e-300 ? both : 1e-300;
+      const bool across = t <= 0.5 * (a - b);
+      const double part = (across ? t : corner * corner) / (across ? a : area);
+      const double beyond = across ? 0.5 - part : part;
+      coverage[i] = s < reach ? (s > 0.0 ? 1.0 - beyond : beyond) : coverage[i];
+      through[i] += s < reach ? 1.0 : 0.0;
+      outside[i] = s <= -reach ? 1.0 : outside[i];
     }
   }
+  double most = 0.0;
+  for (int i = 0; i < kRayTile; ++i) {
+    const double count = outside[i] > 0.0 ? 0.0 : through[i];
+    most = most > count ? most : count;
+    out.through[i] = count;
+    out.coverage[i] = outside[i] > 0.0 ? 0.0 : coverage[i];
+  }
+  out.cut_twice = most > 1.0;
 }
 
 /// A sphere as one view sees it.
@@ -53,8 +81,8 @@ struct Ball {
     const double turned = off_x * ball.y - off_y * ball.x;
     const double ray2 = 1.0 + (x * x + y * y);
     const double square = z2 * (off_x * off_x + off_y * off_y) + turned * turned;  // of the distance, times ray2
-    const double step = std::sqrt(rays.dxdu[i] * rays.dxdu[i] + rays.dydu[i] * rays.dydu[i]) +
-                        std::sqrt(rays.dxdv[i] * rays.dxdv[i] + rays.dydv[i] * rays.dydv[i]);
+    const double step =
+        (std::abs(rays.dxdu[i]) + std::abs(rays.dydu[i])) + (std::abs(rays.dxdv[i]) + std::abs(rays.dydv[i]));
     const double reach = 0.55 * (ball.distance + ball.radius) * step;
     const double far = ball.radius + reach, near = ball.radius - reach;
     const double outside = square > far * far * ray2 ? 1.0 : 0.0;
@@ -73,7 +101,7 @@ struct Quarters {
 };
 
 [[gnu::always_inline]] inline void cover_quarters(const Ball& ball, int count, Quarters& q) {
-  const double z2 = ball.z * ball.z, least = 1e-3 * ball.radius, per_bend = 24.0 * ball.radius;
+  const double z2 = ball.z * ball.z, least = 1e-3 * ball.radius, bend = 1.0 / (24.0 * ball.radius);
   for (int i = 0; i < count; ++i) {
     // The distance's gradient in the picture makes it a distance in pixels.
     const double x = q.x[i], y = q.y[i], ex = x - ball.center_x, ey = y - ball.center_y;
@@ -81,13 +109,13 @@ struct Quarters {
     const double turn = ex * ball.y - ey * ball.x;
     const double distance2 = (z2 * (ex * ex + ey * ey) + turn * turn) / ray2;
     const double root = std::sqrt(distance2), distance = root > least ? root : least;
-    const double scale = ray2 * distance;
-    const double rise_x = (z2 * ex + turn * ball.y - distance2 * x) / scale;
-    const double rise_y = (z2 * ey - turn * ball.x - distance2 * y) / scale;
+    const double per_scale = 1.0 / (ray2 * distance);
+    const double rise_x = (z2 * ex + turn * ball.y - distance2 * x) * per_scale;
+    const double rise_y = (z2 * ey - turn * ball.x - distance2 * y) * per_scale;
     const double gu = 0.5 * (rise_x * q.dxdu[i] + rise_y * q.dydu[i]);
     const double gv = 0.5 * (rise_x * q.dxdv[i] + rise_y * q.dydv[i]);
     // The arc lies inside its tangent: on average over a square's side by 1/(24 R) of it.
-    const double bulge = (gu * gu + gv * gv) / per_bend;
+    const double bulge = (gu * gu + gv * gv) * bend;
     // half_plane_coverage, without branches.
     const double s = ball.radius - distance - bulge, t = std::abs(s), au = std::abs(gu), av = std::abs(gv);
     const double a = au > av ? au : av, b = au > av ? av : au;
@@ -175,21 +203,17 @@ TileRow polygon_row(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
 #else
   lines_in_pixels_baseline(lines, rays, at);
 #endif
-  TileRow coverage;
+  if (!at.cut_twice) return at.coverage;
   std::array<PixelLine, kMostLines> through;  // one for all pixels: to clear it is a quarter of the work
   for (int i = 0; i < kRayTile; ++i) {
-    std::size_t through_count = 0;
-    bool outside = false;
-    for (std::size_t k = 0; k < lines.size() && !outside; ++k) {
-      outside = at.s[k][i] <= -at.reach[k][i];
-      if (at.s[k][i] < at.reach[k][i]) through[through_count++] = {at.s[k][i], at.gx[k][i], at.gy[k][i]};
+    if (!(at.through[i] > 1.0)) continue;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      if (at.s[k][i] < at.reach[k][i]) through[count++] = {at.s[k][i], at.gx[k][i], at.gy[k][i]};
     }
-    coverage[i] = outside              ? 0.0
-                  : through_count == 0 ? 1.0
-                  : through_count == 1 ? half_plane_coverage(through[0])
-                                       : convex_coverage(std::span(through).first(through_count));
+    at.coverage[i] = convex_coverage(std::span(through).first(count));
   }
-  return coverage;
+  return at.coverage;
 }
 
 TileRow sphere_row(const Eigen::Vector3d& center_C, double radius_m, const RowRays& rays, [[maybe_unused]] Simd simd) {

@@ -1,5 +1,7 @@
 #include "core/least_squares.h"
 
+#include <Eigen/LU>
+
 #include <cmath>
 #include <vector>
 

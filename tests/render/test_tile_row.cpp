@@ -1,9 +1,11 @@
 #include "render/tile_row.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "catch.h"
+#include "render/coverage.h"
 
 using namespace glidelab;
 using namespace glidelab::render;
@@ -67,4 +69,41 @@ TEST_CASE("wide vectors cover a row to the last bit as narrow ones do") {
     CHECK(sphere_row(c, 0.012, rays, Simd::best) == sphere_row(c, 0.012, rays, Simd::baseline));
     CHECK(polygon_row(lines, rays, Simd::best) == polygon_row(lines, rays, Simd::baseline));
   }
+}
+
+TEST_CASE("a polygon covers a row of pixels as its lines cut each of them") {
+  // Directions of lines through points near the row, in all quadrants and along the rows and columns.
+  std::size_t once = 0, twice = 0, outside = 0, whole = 0;
+  const RowRays rays = row_at(0.1, -0.05);
+  for (int first = 0; first < 24; ++first) {
+    for (int second = 0; second < 24; ++second) {
+      std::vector<Eigen::Vector3d> lines;
+      for (const int number : {first, second}) {
+        const double angle = 0.26179938779914941 * number;  // 15 degrees
+        const double x = 0.1 + (number % 7) * 1.1 / kFocal, y = -0.05 + 0.15 * (number % 5 - 2) / kFocal;
+        lines.emplace_back(std::cos(angle), std::sin(angle), -std::cos(angle) * x - std::sin(angle) * y);
+      }
+      const TileRow coverage = polygon_row(lines, rays);
+      for (int i = 0; i < kRayTile; ++i) {
+        std::vector<PixelLine> through;
+        bool out = false;
+        for (const Eigen::Vector3d& line : lines) {
+          const PixelLine at{line.x() * rays.x[i] + line.y() * rays.y[i] + line.z(),
+                             line.x() * rays.dxdu[i] + line.y() * rays.dydu[i],
+                             line.x() * rays.dxdv[i] + line.y() * rays.dydv[i]};
+          const double reach = 0.5 * (std::abs(at.gx) + std::abs(at.gy));
+          out = out || at.s <= -reach;
+          if (at.s < reach) through.push_back(at);
+        }
+        // The area of the square that is left, from its corners: to some roundings.
+        const double wanted = out ? 0.0 : through.empty() ? 1.0 : convex_coverage(through);
+        CHECK(std::abs(coverage[i] - wanted) < 1e-11);
+        outside += out ? 1 : 0;
+        whole += !out && through.empty() ? 1 : 0;
+        once += !out && through.size() == 1 ? 1 : 0;
+        twice += !out && through.size() == 2 ? 1 : 0;
+      }
+    }
+  }
+  CHECK(std::min({once, twice, outside, whole}) > 100);  // each of the cases was met
 }
