@@ -172,26 +172,29 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const double step = 0.3 / range;
   const double highest = std::min(0.5 / std::max(ways[ways.size() / 2], 1e-9), kMostSwings * step);
   std::vector<double> logs;
-  double f = 2.0 / range;
-  const auto try_swing = [&] {
+  const auto try_swing = [&](double f) {
     SpreadEvidence evidence;
     const Tried tried = try_one(space, swing_columns(space, f), family, evidence);
-    logs.push_back(tried.log_evidence);
     if (tried.better) draw_swing(x, f, evidence, family);
+    return tried.log_evidence;
   };
-  for (; f < highest; f += step) try_swing();
+  double f = 2.0 / range;
+  for (; f < highest; f += step) logs.push_back(try_swing(f));
   // Finer ones pass from frame to frame by more than a turn, each motion in steps of its own, and show by the place all
   // the same: the pixels, when a marker crosses some of them from frame to frame. Of films these are in the fit.
   if (!set.pictures) {
     FineSwings fine(space, f, step);
+    double most = kShows, best_f = 0.0;
+    std::size_t best = 0;
     for (; f < kFinestSwings / range; f += step) {
       const SpreadEvidence evidence = fine.next();
-      if (evidence.free_gain > kShows) {
-        try_swing();
-      } else {
-        logs.push_back(evidence.log_evidence);
-      }
+      logs.push_back(evidence.log_evidence);
+      if (evidence.free_gain <= most) continue;
+      most = evidence.free_gain;
+      best_f = f;
+      best = logs.size() - 1;
     }
+    if (best_f > 0.0) logs[best] = try_swing(best_f);
   }
   if (!logs.empty()) family.log_evidence = log_mean(logs);
   name_regions(family);
