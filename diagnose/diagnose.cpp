@@ -159,7 +159,10 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
   note_loss(pictures, set);
   settle_noise(set);
-  Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures);
+  const auto weighed = [&](double from, double to) {
+    return [&progress, from, to](double part) { progress("weighing explanations", from + part * (to - from)); };
+  };
+  Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.1, 0.5));
   if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > 1.5)) {
     // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
     TrackSet trimmed = track_set(results, setups, false);
@@ -175,7 +178,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
       progress("weighing explanations", 0.5);
       note_loss(pictures, set);
       settle_noise(set);
-      comparison = compare_hypotheses(set, without, options.jobs, &pictures);
+      comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.5, 0.9));
     }
   }
   progress("measuring the gap", 0.9);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <utility>
@@ -27,6 +28,16 @@ bool moves(std::size_t effect) {
   const Search search = effect_list()[effect].search;
   return search != Search::frames && search != Search::noise && search != Search::pictures;
 }
+
+/// How many at a time, and whom to tell how far it is: who may end it there, by an exception.
+struct Work {
+  int jobs = 1;
+  const std::function<void(double)>& done;
+  double part = 0.0;
+
+  void look() const { done(part); }
+  Work at(double now) const { return {jobs, done, now}; }
+};
 
 struct Found {
   Hypothesis hypothesis;
@@ -86,11 +97,14 @@ std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t siz
   return leaders;
 }
 
-/// Full fits of the best scans around a fit, `jobs` at a time.
+/// Full fits of the best scans around a fit.
 void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best,
-              const Hypothesis& beside, int jobs, Comparison& comparison) {
+              const Hypothesis& beside, const Work& work, Comparison& comparison) {
   std::vector<Found> found(best.size());
-  base::for_each_parallel(best.size(), jobs, [&](std::size_t i) { found[i] = fit_more(set, base, *best[i], beside); });
+  base::for_each_parallel(best.size(), work.jobs, [&](std::size_t i) {
+    work.look();
+    found[i] = fit_more(set, base, *best[i], beside);
+  });
   for (Found& one : found) add(comparison, std::move(one));
 }
 
@@ -104,16 +118,17 @@ const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>
 }
 
 /// A leader with each of the effects that show best beside it.
-void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, int jobs,
+void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, const Work& work,
                  Comparison& comparison) {
   const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
   const ScoreSpace space(set, base);
   std::set<std::size_t> others = without;
   others.insert(leader.effects.begin(), leader.effects.end());
-  const std::vector<EffectScan> scans = scan_effects(space, others, jobs);
+  work.look();
+  const std::vector<EffectScan> scans = scan_effects(space, others, work.jobs);
   std::vector<const EffectScan*> best = best_of(scans, kSeconds);
   std::erase_if(best, [](const EffectScan* scan) { return scan->log_evidence < -1.0; });
-  fit_best(set, base, best, leader, jobs, comparison);
+  fit_best(set, base, best, leader, work, comparison);
 }
 
 /// One effect's own full fit, made where there was none.
@@ -192,7 +207,7 @@ Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison)
 }
 
 /// In place of one of the best pair's two, whatever shows best beside the other; the same with what is best then.
-void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>& without, int jobs,
+void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>& without, const Work& work,
               Comparison& comparison) {
   for (int round = 0; round < kExchanges; ++round) {
     const std::vector<Hypothesis> pairs = leaders_of(comparison, 2, 1);
@@ -205,11 +220,14 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
       const MotionFit base = without_one(set, both, kept);
       std::set<std::size_t> others = without;
       others.insert(both.effects.begin(), both.effects.end());
-      const std::vector<EffectScan> scans = scan_effects(ScoreSpace(set, base), others, jobs);
+      work.look();
+      const std::vector<EffectScan> scans = scan_effects(ScoreSpace(set, base), others, work.jobs);
       std::vector<const EffectScan*> seconds = best_of(scans, kSeconds);
       std::vector<Found> found(seconds.size());
-      base::for_each_parallel(seconds.size(), jobs,
-                              [&](std::size_t i) { found[i] = fit_beside(set, base, *seconds[i], leader); });
+      base::for_each_parallel(seconds.size(), work.jobs, [&](std::size_t i) {
+        work.look();
+        found[i] = fit_beside(set, base, *seconds[i], leader);
+      });
       for (const Found& one : found) {
         add(comparison, one);
         if (one.hypothesis.gain > best.gain) add(comparison, turned(set, one.fit, comparison));
@@ -221,25 +239,26 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
 
 /// Pairs by their leaders; those that show together only; and, the best pair's two leading in turn, whatever is better
 /// beside one of them.
-void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, int jobs,
+void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
                Comparison& comparison) {
   double best_one = 0.0;
   for (const Hypothesis& leader : leaders_of(comparison, 1, kLeaders)) {
     if (leader.log_evidence < 0.0) continue;
     best_one = std::max(best_one, leader.log_evidence);
-    add_seconds(set, leader, without, jobs, comparison);
+    add_seconds(set, leader, without, work, comparison);
   }
   std::size_t more = 0;
   for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
     if (more == kTogether || pair.log_evidence <= best_one) break;
     if (find(comparison, {pair.first, pair.second}) != nullptr) continue;
     ++more;
+    work.look();
     add_together(set, pair, comparison);
   }
-  exchange(set, best_one, without, jobs, comparison);
+  exchange(set, best_one, without, work.at(0.6), comparison);
 }
 
-void add_unnamed(const TrackSet& set, Comparison& comparison) {
+void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) {
   std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
   for (const Hypothesis& pair : leaders_of(comparison, 2, 2)) around.push_back(pair);
   std::sort(around.begin(), around.end(),
@@ -248,6 +267,7 @@ void add_unnamed(const TrackSet& set, Comparison& comparison) {
   double likeliest = 0.0;
   for (const Hypothesis& named : around) {
     if (named.log_evidence < 3.0) continue;
+    work.look();
     const ScoreSpace space(set, comparison.fits[static_cast<std::size_t>(named.fit)]);
     std::vector<UnnamedFamily> families = unnamed_families(space);
     Hypothesis both = named;
@@ -348,14 +368,17 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
 }  // namespace
 
 Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs,
-                              const PictureEvidence* pictures) {
+                              const PictureEvidence* pictures, const std::function<void(double)>& done) {
+  const Work work{jobs, done};
   const std::set<std::size_t> left_out(without.begin(), without.end());
   Comparison comparison;
   comparison.fits.push_back(fit_nominal(set));
   comparison.all.push_back({{}, false, 0.0, 0.0, 0.0, 0});
   const MotionFit nominal = comparison.fits.front();
   const ScoreSpace space(set, nominal);
+  work.look();
   comparison.scans = scan_effects(space, left_out, jobs);
+  work.at(0.1).look();
   comparison.unnamed = unnamed_families(space);
   Hypothesis unnamed;
   unnamed.unnamed = true;
@@ -365,7 +388,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   comparison.all.push_back(unnamed);
 
   const Hypothesis nothing = comparison.all.front();
-  fit_best(set, nominal, best_of(comparison.scans, kFitted), nothing, jobs, comparison);
+  fit_best(set, nominal, best_of(comparison.scans, kFitted), nothing, work.at(0.2), comparison);
   for (const EffectScan& scan : comparison.scans) {
     const bool fitted = std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& h) {
       return h.effects == std::vector<std::size_t>{scan.effect};
@@ -374,6 +397,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
       comparison.all.push_back({{scan.effect}, false, scan.gain, scan.log_evidence, 0.0, -1});
   }
   if (const auto dropped = effect_index("dropped_frames"); !left_out.contains(dropped)) {
+    work.at(0.4).look();
     comparison.missing = find_missing_frames(set, nominal);
     if (comparison.missing.count > 0) {
       Found found;
@@ -386,8 +410,8 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
       comparison.all.push_back({{dropped}, false, 0.0, -3.0, 0.0, -1});
     }
   }
-  add_pairs(set, space, left_out, jobs, comparison);
-  add_unnamed(set, comparison);
+  add_pairs(set, space, left_out, work.at(0.5), comparison);
+  add_unnamed(set, work.at(0.8), comparison);
   const MotionFit& best = comparison.fits[static_cast<std::size_t>(comparison.left_fit)];
   for (const FrameEffect& frame : {scan_jitter(set, best), scan_tails(set, best)}) {
     if (!left_out.contains(frame.effect)) comparison.frames.push_back(frame);

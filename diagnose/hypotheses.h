@@ -10,6 +10,7 @@
 /// Prior odds: nothing 0.3, one effect 0.4 (shared by those that these data can show), two 0.1, unnamed 0.2.
 #pragma once
 
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -48,8 +49,10 @@ struct Comparison {
 
 struct PictureEvidence;
 
-/// `without` are effects that are not considered; `pictures`, what filmed clips show besides (null for tracks).
-Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1,
-                              const PictureEvidence* pictures = nullptr);
+/// `without` are effects that are not considered; `pictures`, what filmed clips show besides (null for tracks). `done`
+/// is told before each fit, from any thread, how much of it is done (0 to 1); what it throws ends the comparison.
+Comparison compare_hypotheses(
+    const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1,
+    const PictureEvidence* pictures = nullptr, const std::function<void(double)>& done = [](double) {});
 
 }  // namespace glidelab::diagnose

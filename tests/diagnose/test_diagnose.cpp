@@ -1,7 +1,9 @@
 #include "diagnose/diagnose.h"
 
 #include <algorithm>
+#include <atomic>
 #include <random>
+#include <string_view>
 
 #include "base/errors.h"
 #include "catch.h"
@@ -259,4 +261,22 @@ TEST_CASE("a drag below zero, which would drive the glider, is a note") {
   const std::string driven = note_of({.force = [k](double, double, double v, double) { return 1.3 * k * v; }});
   CHECK(driven.find("a drag below zero (-0.28") != std::string::npos);
   CHECK(note_of({}).empty());
+}
+
+TEST_CASE("whoever is told how far it is can end a diagnosis between two fits") {
+  struct Enough {};
+  const tests::MadeEffect drag{.force = [](double, double, double v, double) { return -0.02 * v * std::abs(v); }};
+  const auto made = tests::made_experiment(tests::made_launches(), drag, 3);
+  std::atomic<int> told = 0;
+  double last = 0.0;
+  const auto progress = [&](std::string_view stage, double fraction) {
+    if (stage != "weighing explanations") return;
+    CHECK(fraction >= last);
+    CHECK(fraction < 0.9);
+    last = fraction;
+    if (++told == 8) throw Enough{};
+  };
+  const auto run = [&] { diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 1}, progress); };
+  CHECK_THROWS_AS(run(), Enough);
+  CHECK(told == 8);
 }
