@@ -13,8 +13,9 @@
 
 namespace glidelab::tests {
 
-/// Results of the folder that an experimenter would have; nothing where the data are not there.
-inline std::optional<core::AnalysisResults> analyze_real(const std::string& name) {
+/// What `use` makes of the folder that an experimenter would have; nothing where the data are not there.
+template <typename Use>
+auto with_real(const std::string& name, const Use& use) -> std::optional<decltype(use(std::filesystem::path()))> {
   namespace fs = std::filesystem;
   const fs::path data = fs::path(tests::kSourceDir) / "../shared/real" / name;
   if (!fs::exists(data)) {
@@ -26,7 +27,13 @@ inline std::optional<core::AnalysisResults> analyze_real(const std::string& name
     fs::create_symlink(fs::canonical(file), temp / file.path().filename());
   }
   fs::copy_file(fs::path(tests::kSourceDir) / "tests/real" / name / "experiment.toml", temp / "experiment.toml");
-  return core::analyze({temp.path()}, {std::nullopt, 2});
+  return use(temp.path());
+}
+
+inline std::optional<core::AnalysisResults> analyze_real(const std::string& name) {
+  return with_real(name, [](const std::filesystem::path& folder) {
+    return core::analyze({folder}, {std::nullopt, 2});
+  });
 }
 
 }  // namespace glidelab::tests
