@@ -56,8 +56,8 @@ class MarkerPixels {
 
  private:
   std::size_t size_ = 0;
-  std::vector<double> u_, v_, value_,
-      weight_;  ///< with room; once complete() whole batches, filled up with pixels of no weight
+  /// With room; once complete() whole batches, filled up with pixels of no weight.
+  std::vector<double> u_, v_, value_, weight_;
 };
 
 using Vectors = base::Simd;  ///< there is no portable one here: it is the baseline

@@ -43,14 +43,13 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
   if (parameter.member == &E::shake_hz || parameter.member == &E::camera_hz) return range_of_waves(set);
   ParameterRange range{parameter.low, parameter.high};
   if (parameter.member == &E::release_s) {
-    double longest = 0.0;
+    double longest = 0.0, frame = 0.0;
     for (const TrackedMotion& motion : set.motions) {
-      if (begins_with_its_clip(set, motion)) longest = std::max(longest, motion.t_s.back());
+      if (!begins_with_its_clip(set, motion)) continue;
+      longest = std::max(longest, motion.t_s.back());
+      frame = std::max(frame, 1.0 / set.clips[motion.clip].frame_rate_hz);
     }
-    if (longest > 0.0) range.high = kLatest * longest;
-    double frame = 0.0;
-    for (const TrackedClip& clip : set.clips) frame = std::max(frame, 1.0 / clip.frame_rate_hz);
-    range.low = kShortestPush * frame;
+    if (longest > 0.0) range = {kShortestPush * frame, kLatest * longest};
   }
   if (parameter.with_mass) {
     double heaviest_kg = 1.0;

@@ -50,8 +50,8 @@ struct Moved {
 };
 
 /// At the stated times (rising, from the clip's first frame). `late_s`, where not empty, is what the true time of each
-/// frame is later than stated. Not finite where the motion runs away,
-/// or would need 1e5 steps and each of them under 1.26 ms (a motion of 1 s with K/m above 3e4 1/s).
+/// frame is later than stated. Not finite where the motion runs away, or would need more than 1e5 steps, each under
+/// 1.26 ms (a motion of 1 s with K/m above 3e4 1/s).
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
 }  // namespace glidelab::diagnose

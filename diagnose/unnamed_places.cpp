@@ -13,9 +13,8 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;
-constexpr double kMostSwings = 600;  // that are tried in full,
-constexpr double kFinestSwings =
-    2000;  // periods over the whole range that are tried at all: the pixels of a wide picture
+constexpr double kMostSwings = 600;                  // that are tried in full
+constexpr double kFinestSwings = 2000;               // periods over the whole range: the pixels of a wide picture
 constexpr double kShowsALittle = 3.0, kShows = 8.0;  // log likelihood
 
 struct Ranges {
@@ -99,13 +98,17 @@ std::vector<ScoreColumn> swing_columns(const ScoreSpace& space, double f_1_m) {
   return columns;
 }
 
+/// Of many periods those in the middle: all of them would be drawn with too few points to be what they are.
 void draw_swing(const Grid& x, double f_1_m, const SpreadEvidence& evidence, UnnamedFamily& family) {
   family.at.clear();
   family.size.clear();
   family.sd.clear();
   constexpr int kDrawn = 240;
+  constexpr double kDrawnPeriods = 12.0;
+  const double range = x.high - x.low, drawn = std::min(range, kDrawnPeriods / f_1_m);
   for (int j = 0; j <= kDrawn; ++j) {
-    const double place = x.low + (x.high - x.low) * j / kDrawn, turn = 2.0 * std::numbers::pi * f_1_m * place;
+    const double place = x.low + 0.5 * (range - drawn) + drawn * j / kDrawn,
+                 turn = 2.0 * std::numbers::pi * f_1_m * place;
     const Eigen::Vector2d basis(std::sin(turn), std::cos(turn));
     family.at.push_back(place);
     family.size.push_back(basis.dot(evidence.mean));
@@ -114,7 +117,7 @@ void draw_swing(const Grid& x, double f_1_m, const SpreadEvidence& evidence, Unn
 }
 
 /// What swings of many periods gain, by the sums of r sin and r cos alone: what is fitted takes up nothing of them.
-/// `at` f, then f + step, and so on by turning each point's sine and cosine on.
+/// Of f, then of f + step, and so on, by turning each point's sine and cosine on.
 class FineSwings {
  public:
   FineSwings(const ScoreSpace& space, double f_1_m, double step_1_m) {

@@ -21,7 +21,19 @@ struct RowLines {
   bool cut_twice;    ///< any pixel by two lines and more, and outside of none
 };
 
-/// The square of a pixel against each line: half_plane_coverage, without branches.
+/// half_plane_coverage, without branches.
+[[gnu::always_inline]] inline double inside_part(double s, double gx, double gy) {
+  const double ax = std::abs(gx), ay = std::abs(gy), t = std::abs(s);
+  const double a = ax > ay ? ax : ay, b = ax > ay ? ay : ax;
+  const double over = 0.5 * (a + b) - t, corner = over > 0.0 ? over : 0.0;
+  const double both = 2.0 * a * b, area = both > 1e-300 ? both : 1e-300;
+  const bool across = t <= 0.5 * (a - b);
+  const double part = (across ? t : corner * corner) / (across ? a : area);
+  const double beyond = across ? 0.5 - part : part;
+  return s > 0.0 ? 1.0 - beyond : beyond;
+}
+
+/// The square of a pixel against each line.
 [[gnu::always_inline]] inline void lines_in_pixels(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
                                                    RowLines& out) {
   TileRow through, outside, coverage;
@@ -34,18 +46,12 @@ struct RowLines {
     for (int i = 0; i < kRayTile; ++i) {
       const double gx = la * rays.dxdu[i] + lb * rays.dydu[i], gy = la * rays.dxdv[i] + lb * rays.dydv[i];
       const double s = la * rays.x[i] + lb * rays.y[i] + lc;
-      const double ax = std::abs(gx), ay = std::abs(gy), reach = 0.5 * (ax + ay);
+      const double reach = 0.5 * (std::abs(gx) + std::abs(gy)), part = inside_part(s, gx, gy);
       out.s[k][i] = s;
       out.gx[k][i] = gx;
       out.gy[k][i] = gy;
       out.reach[k][i] = reach;
-      const double a = ax > ay ? ax : ay, b = ax > ay ? ay : ax, t = std::abs(s);
-      const double over = 0.5 * (a + b) - t, corner = over > 0.0 ? over : 0.0;
-      const double both = 2.0 * a * b, area = both > 1e-300 ? both : 1e-300;
-      const bool across = t <= 0.5 * (a - b);
-      const double part = (across ? t : corner * corner) / (across ? a : area);
-      const double beyond = across ? 0.5 - part : part;
-      coverage[i] = s < reach ? (s > 0.0 ? 1.0 - beyond : beyond) : coverage[i];
+      coverage[i] = s < reach ? part : coverage[i];
       through[i] += s < reach ? 1.0 : 0.0;
       outside[i] = s <= -reach ? 1.0 : outside[i];
     }
@@ -116,15 +122,7 @@ struct Quarters {
     const double gv = 0.5 * (rise_x * q.dxdv[i] + rise_y * q.dydv[i]);
     // The arc lies inside its tangent: on average over a square's side by 1/(24 R) of it.
     const double bulge = (gu * gu + gv * gv) * bend;
-    // half_plane_coverage, without branches.
-    const double s = ball.radius - distance - bulge, t = std::abs(s), au = std::abs(gu), av = std::abs(gv);
-    const double a = au > av ? au : av, b = au > av ? av : au;
-    const double over = 0.5 * (a + b) - t, corner = over > 0.0 ? over : 0.0;
-    const double both = 2.0 * a * b, area = both > 1e-300 ? both : 1e-300;
-    const bool across = t <= 0.5 * (a - b);
-    const double part = (across ? t : corner * corner) / (across ? a : area);
-    const double beyond = across ? 0.5 - part : part;
-    q.coverage[i] = s > 0.0 ? 1.0 - beyond : beyond;
+    q.coverage[i] = inside_part(ball.radius - distance - bulge, gu, gv);
   }
 }
 

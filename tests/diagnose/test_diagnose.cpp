@@ -1,7 +1,6 @@
 #include "diagnose/diagnose.h"
 
 #include <algorithm>
-#include <atomic>
 #include <random>
 #include <string_view>
 
@@ -267,7 +266,7 @@ TEST_CASE("whoever is told how far it is can end a diagnosis between two fits") 
   struct Enough {};
   const tests::MadeEffect drag{.force = [](double, double, double v, double) { return -0.02 * v * std::abs(v); }};
   const auto made = tests::made_experiment(tests::made_launches(), drag, 3);
-  std::atomic<int> told = 0;
+  int told = 0;
   double last = 0.0;
   const auto progress = [&](std::string_view stage, double fraction) {
     if (stage != "weighing explanations") return;

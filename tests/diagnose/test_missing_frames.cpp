@@ -98,7 +98,7 @@ TEST_CASE("lost frames are named, the gap falls to the floor, and no launch is a
 }
 
 TEST_CASE("frames lost right behind the first ones of several clips, or before the last, are lost frames as well") {
-  // Four clips lose one behind their first, second or third frame or before their last two, besides one in a hundred.
+  // Five clips lose one or two behind their first, second or third frame or before their last two, besides a fiftieth.
   const unsigned seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   Losses losses = drawn(tests::made_launches().size(), seed);
   losses.of_clip[0].insert(1);

@@ -161,8 +161,7 @@ TEST_CASE("pixels that pull the marker are seen, also where it crosses several o
 }
 
 TEST_CASE("friction that sets in above some speed is no hand that pushes against every start") {
-  // Three motions, each fastest at its start: half as much friction again above 0.8 m/s acts for the first 0.1 to 0.3
-  // s.
+  // Three motions, each fastest at its start: half as much friction again acts above 0.8 m/s, the first 0.1 to 0.3 s.
   const std::vector<tests::MadeLaunch> launches = {
       {0.335, 0.0, 0.5, -1.2}, {0.335, 0.0, -0.5, 1.1}, {0.335, 4.0, 0.3, -1.1}};
   const tests::MadeEffect cushion = {[](double mass_kg, double, double v, double) {
