@@ -201,6 +201,13 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   }
   if (!logs.empty()) family.log_evidence = log_mean(logs);
   name_regions(family);
+  if (family.regions.empty()) return family;
+  // It acts everywhere, and not only where it is drawn.
+  UnnamedRegion largest = *std::max_element(family.regions.begin(), family.regions.end(),
+                                            [](const auto& a, const auto& b) { return a.excess < b.excess; });
+  largest.from = x.low;
+  largest.to = x.high;
+  family.regions = {largest};
   return family;
 }
 

@@ -158,6 +158,9 @@ TEST_CASE("pixels that pull the marker are seen, also where it crosses several o
   REQUIRE_FALSE(diagnosis.regions.empty());
   CHECK(diagnosis.regions.front().variable == "x_m");
   CHECK(diagnosis.regions.front().what == "displacement");
+  CHECK(diagnosis.regions.front().to - diagnosis.regions.front().from > 1.0);  // m: all of the track
+  // 20 µm, of which a 24th part is unsure; the largest of all periods that were tried is larger by some such.
+  CHECK(std::abs(std::abs(diagnosis.regions.front().size) - 2e-5) < 4e-6);
 }
 
 TEST_CASE("friction that sets in above some speed is no hand that pushes against every start") {
