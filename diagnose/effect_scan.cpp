@@ -193,8 +193,9 @@ double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
   return v[p] < 0.0 ? -1.0 : 1.0;
 }
 
-constexpr double kAnyWay = 0.1;  // of late releases: pushes of any size and sign, each clip its own
-constexpr double kUnlike = 0.5;  // standard deviation of one hand's push, over that of the part common to all
+constexpr double kAnyWay = 0.1;     // of late releases: pushes of any size and sign, each clip its own
+constexpr double kHoldsBack = 0.1;  // of one hand's: it drags, instead of pushing
+constexpr double kUnlike = 0.5;     // standard deviation of one hand's push, over that of the part common to all
 
 /// Sizes of pushes from independent ones: one hand's go along the motions and are about alike.
 Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& ways) {
@@ -207,7 +208,8 @@ double log_below(double z) {
   return std::log(std::max(1e-300, 0.5 * std::erfc(-z / std::numbers::sqrt2)));
 }
 
-/// log of the probability that all of these normal deviates, taken as independent, are positive, or all negative.
+/// log of the probability that all of these normal deviates, taken as independent, are positive, or all negative; of
+/// the latter kHoldsBack, as far as it was as likely beforehand.
 double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
   double positive = 0.0, negative = 0.0;
   for (Eigen::Index k = 0; k < mean.size(); ++k) {
@@ -215,7 +217,9 @@ double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
     positive += log_below(z);
     negative += log_below(-z);
   }
-  return log_mean({positive, negative}) + std::log(2.0);
+  positive += std::log1p(-kHoldsBack);
+  negative += std::log(kHoldsBack);
+  return log_mean({positive, negative}) + 2.0 * std::log(2.0);
 }
 
 /// The same of pushes_of_one_hand() before anything is measured: the mean over the part that is common to all.
@@ -271,7 +275,7 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
     }
     Eigen::VectorXd push = base::product(sizes, evidence.mean);
     const Eigen::MatrixXd covariance = base::product(base::product(sizes, evidence.covariance), sizes.transpose());
-    // A hand pushes what it launches, or holds back what it lets go: seldom this one clip, that one the next.
+    // A hand pushes what it launches; seldom it holds back what it lets go, or this one clip and not the next.
     const double one_sign =
         log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
     const double of_one_hand = std::log1p(-kAnyWay) + evidence.log_evidence + one_sign;

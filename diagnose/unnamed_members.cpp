@@ -134,6 +134,27 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
   return family;
 }
 
+/// Each clip at a scale of its own, as when the camera is moved between them.
+UnnamedFamily scale_family(const ScoreSpace& space) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = family_of("clip", "scale", "");
+  std::vector<ScoreColumn> columns;
+  for (std::size_t c = 0; c < set.clips.size(); ++c) {
+    std::vector<Eigen::VectorXd> changes(set.motions.size());
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      const std::vector<double>& x = space.modelled(i);
+      if (set.motions[i].clip == c) changes[i] = Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
+    }
+    columns.push_back(space.project(changes));
+    family.names.push_back(set.clips[c].name);
+  }
+  SpreadEvidence evidence;
+  family = solve(space, columns, family, evidence);
+  draw_members(evidence, family);
+  name_regions(family);
+  return family;
+}
+
 /// A force of one kind whose size differs between members (masses, set-ups, motions).
 UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable, const std::string& what,
                             std::size_t TrackedMotion::*member, std::size_t members, int kind) {
@@ -181,6 +202,7 @@ void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& fa
   if (set.clips.size() > 1) {
     families.push_back(member_family(space, "clip", "force", &TrackedMotion::clip, set.clips.size(), 0));
     families.push_back(member_family(space, "clip", "viscous drag", &TrackedMotion::clip, set.clips.size(), 1));
+    families.push_back(scale_family(space));
   }
 }
 

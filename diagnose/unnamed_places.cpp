@@ -13,6 +13,8 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;
+constexpr double kFewestSwings = 2.0;                // periods over the whole range: fewer are any smooth shape
+constexpr double kMostPulls = 25.0;                  // periods of a force, which moves the less the finer it is
 constexpr double kMostSwings = 600;                  // that are tried in full
 constexpr double kFinestSwings = 2000;               // periods over the whole range: the pixels of a wide picture
 constexpr double kShowsALittle = 3.0, kShows = 8.0;  // log likelihood
@@ -116,6 +118,17 @@ void draw_swing(const Grid& x, double f_1_m, const SpreadEvidence& evidence, Unn
   }
 }
 
+/// What swings acts everywhere, and not only where it is drawn.
+void name_everywhere(const Grid& x, UnnamedFamily& family) {
+  name_regions(family);
+  if (family.regions.empty()) return;
+  UnnamedRegion largest = *std::max_element(family.regions.begin(), family.regions.end(),
+                                            [](const auto& a, const auto& b) { return a.excess < b.excess; });
+  largest.from = x.low;
+  largest.to = x.high;
+  family.regions = {largest};
+}
+
 /// What swings of many periods gain, by the sums of r sin and r cos alone: what is fitted takes up nothing of them.
 /// Of f, then of f + step, and so on, by turning each point's sine and cosine on.
 class FineSwings {
@@ -181,7 +194,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
     if (tried.better) draw_swing(x, f, evidence, family);
     return tried.log_evidence;
   };
-  double f = 2.0 / range;
+  double f = kFewestSwings / range;
   for (; f < highest; f += step) logs.push_back(try_swing(f));
   // Finer ones pass from frame to frame by more than a turn, each motion in steps of its own, and show by the place all
   // the same: the pixels, when a marker crosses some of them from frame to frame. Of films these are in the fit.
@@ -200,14 +213,36 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
     if (best_f > 0.0) logs[best] = try_swing(best_f);
   }
   if (!logs.empty()) family.log_evidence = log_mean(logs);
-  name_regions(family);
-  if (family.regions.empty()) return family;
-  // It acts everywhere, and not only where it is drawn.
-  UnnamedRegion largest = *std::max_element(family.regions.begin(), family.regions.end(),
-                                            [](const auto& a, const auto& b) { return a.excess < b.excess; });
-  largest.from = x.low;
-  largest.to = x.high;
-  family.regions = {largest};
+  name_everywhere(x, family);
+  return family;
+}
+
+/// An acceleration that swings with the place, as magnets in a row or the teeth of a rack make it.
+UnnamedFamily pull_family(const ScoreSpace& space, const Grid& x) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = family_of("x_m", "acceleration", "m/s²");
+  const double range = x.high - x.low;
+  if (!(range > 0.0)) return family;
+  std::vector<double> logs;
+  for (double periods = kFewestSwings; periods <= kMostPulls; periods += 0.5) {
+    std::vector<ScoreColumn> columns;
+    for (const double phase : {0.0, 0.25}) {
+      std::vector<UnnamedForce> forces;
+      for (const TrackedMotion& motion : set.motions) {
+        const double mass_kg = set.masses[motion.mass].mass_kg;
+        forces.push_back([=](double at, double, double) {
+          return mass_kg * std::sin(2.0 * std::numbers::pi * (periods / range * at + phase));
+        });
+      }
+      columns.push_back(space.of_force(forces, 1e-4));
+    }
+    SpreadEvidence evidence;
+    const Tried tried = try_one(space, columns, family, evidence);
+    if (tried.better) draw_swing(x, periods / range, evidence, family);
+    logs.push_back(tried.log_evidence);
+  }
+  family.log_evidence = log_mean(logs);
+  name_everywhere(x, family);
   return family;
 }
 
@@ -220,6 +255,7 @@ void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& fam
     v.bumps = x.bumps = t.bumps = speed.bumps = bumps;
     add_force(space, v, 1, "v_m_s", "force", false, false, families);
     add_force(space, speed, 1, "v_m_s", "friction", false, true, families);
+    if (space.set().masses.size() > 1) add_force(space, speed, 1, "v_m_s", "friction", true, true, families);
     add_force(space, x, 0, "x_m", "acceleration", true, false, families);
     add_force(space, x, 0, "x_m", "friction", true, true, families);
     add_displacement(space, x, Seen::over_x, families);
@@ -230,6 +266,7 @@ void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& fam
     add_force(space, t, 2, "t_s", "friction", true, true, families);
   }
   families.push_back(swing_family(space, ranges.x));
+  families.push_back(pull_family(space, ranges.x));
 }
 
 }  // namespace glidelab::diagnose

@@ -127,7 +127,9 @@ std::string stage_of(const std::vector<UnnamedFamily>& families) {
   const auto best = std::max_element(families.begin(), families.end(),
                                      [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
   if (best == families.end()) return "";
-  return best->what == "displacement" ? "optics" : best->what == "lateness" ? "timing" : "dynamics";
+  return best->what == "displacement" || best->what == "scale" ? "optics"
+         : best->what == "lateness"                            ? "timing"
+                                                               : "dynamics";
 }
 
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, Diagnosis& diagnosis) {

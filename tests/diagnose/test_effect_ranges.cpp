@@ -86,4 +86,8 @@ TEST_CASE("pushes that go along the motions are a hand's, the same pushes this w
   // However plainly they show: log 128 of the signs, one in ten, seven more that are like the first to half their size,
   // in all 13; twice that. Where pushes must go one way it is hundreds.
   CHECK(evidence(any_way, 0.8) > evidence(along, 0.8) - 26.0);
+  // A hand that holds back what it lets go is one in ten of those that do all alike.
+  std::array<double, 8> against = {};
+  for (std::size_t k = 0; k < against.size(); ++k) against[k] = -along[k];
+  CHECK(evidence(along, 0.3) - evidence(against, 0.3) == Approx(std::log(9.0)).margin(1.0));
 }

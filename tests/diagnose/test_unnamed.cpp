@@ -177,3 +177,61 @@ TEST_CASE("friction that sets in above some speed is no hand that pushes against
   CHECK(surest(diagnosis) < 0.8);
   CHECK(diagnosis.verdict == "unknown");
 }
+
+TEST_CASE("friction over how fast it moves: in proportion to the load or not, as it is") {
+  const bool with_load = GENERATE(true, false);
+  const tests::MadeEffect more = {[&](double mass_kg, double, double v, double) {
+    const double part = 0.5 + 0.5 * std::tanh((std::abs(v) - 0.6) / 0.03);
+    return -(v > 0.0 ? 1.0 : -1.0) * 0.02 * part * (with_load ? mass_kg : 0.4);
+  }};
+  const auto made = tests::made_experiment(tests::made_launches(), more, 4, 2e-5);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
+  const auto best = std::max_element(families.begin(), families.end(),
+                                     [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+  CHECK(best->variable == "v_m_s");
+  CHECK(best->what == "friction");
+  CHECK(best->unit == (with_load ? "m/s²" : "N"));
+}
+
+TEST_CASE("magnets in a row: a force that swings with the place, too fine for smooth curves, has no name") {
+  // 0.3 m/s² with a period of 6 cm, over 1.4 m. At 1 m/s it moves the glider by 0.3 (0.06 / 2 pi)² = 27 µm.
+  const tests::MadeEffect cogs = {[](double mass_kg, double x, double, double) {
+    return 0.3 * mass_kg * std::sin(2.0 * std::numbers::pi * x / 0.06);
+  }};
+  const diagnose::Diagnosis diagnosis = diagnosed(cogs, 3);
+  INFO(diagnosis.summary);
+  CHECK(diagnosis.verdict == "unknown");
+  REQUIRE_FALSE(diagnosis.regions.empty());
+  const diagnose::GapRegion& region = diagnosis.regions.front();
+  CHECK(region.variable == "x_m");
+  CHECK(region.what == "acceleration");
+  CHECK(region.to - region.from > 1.0);
+  CHECK(std::abs(region.size) == Approx(0.3).epsilon(0.2));  // periods are tried in steps of a fiftieth
+}
+
+TEST_CASE("a camera that is moved between the clips shows each at a scale of its own") {
+  constexpr std::array<double, 8> kMore = {0.006, -0.004, 0.002, -0.008, 0.004, -0.006, 0.008, -0.002};
+  std::size_t clip = 0;
+  double last = -1.0;
+  const tests::MadeEffect moved{.seen = [&](double x, double t) {
+    if (t < last) ++clip;
+    last = t;
+    return (1.0 + kMore[clip]) * x;
+  }};
+  const auto made = tests::made_experiment(tests::made_launches(), moved, 6, 2e-5);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
+  const auto scale =
+      std::find_if(families.begin(), families.end(), [](const auto& family) { return family.what == "scale"; });
+  REQUIRE(scale != families.end());
+  REQUIRE(scale->size.size() == kMore.size());
+  for (const auto& family : families) CHECK(family.log_evidence <= scale->log_evidence);
+  // On a level track a motion at another scale is nearly one that began at another speed, and the data say so.
+  for (std::size_t c = 0; c < kMore.size(); ++c) {
+    CHECK(std::abs(scale->size[c] - kMore[c]) < 3.0 * scale->sd[c]);
+    CHECK(scale->sd[c] < (c % 4 < 2 ? 0.006 : 0.003));
+  }
+}
