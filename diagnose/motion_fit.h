@@ -14,56 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/effect_list.h"
-#include "diagnose/effect_ranges.h"
-#include "diagnose/track_model.h"
+#include "diagnose/linearised_motion.h"
+#include "diagnose/parameter_layout.h"
 #include "diagnose/track_set.h"
 
 namespace glidelab::diagnose {
-
-/// What is later than stated of each point of each motion (dropped frames); empty: nothing.
-using Lateness = std::vector<std::vector<double>>;
-
-/// Which parameters there are, and where they stand.
-class ParameterLayout {
- public:
-  ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects);
-
-  struct Global {
-    enum class Kind { k, mu, alpha, mass, mode, scale, effect } kind;
-    std::size_t index = 0;  ///< of the group, mass or mode
-    const EffectParameter* parameter = nullptr;
-    std::size_t effect = 0;
-    double step = 0.0;
-    ParameterRange range = {};  ///< of an effect: what it may be
-  };
-  const std::vector<Global>& globals() const { return globals_; }
-  const std::vector<const EffectParameter*>& own() const { return own_; }  ///< after x0, v0
-  const std::vector<std::size_t>& effects() const { return effects_; }
-  /// Index among globals of an effect's first parameter that is not own.
-  std::size_t first_of(std::size_t effect) const;
-  /// Ranges that hold where a fit starts: what was found in whole clips may lie beyond what a part of them shows.
-  void widen_to(const Eigen::VectorXd& start);
-
- private:
-  std::vector<Global> globals_;
-  std::vector<const EffectParameter*> own_;
-  std::vector<std::size_t> effects_;
-};
-
-struct FitPoint {
-  Eigen::VectorXd global;
-  std::vector<Eigen::VectorXd> own;  ///< x0, v0 (at the motion's first point), then the effects' own
-};
-
-/// Residuals over the noise, and their derivatives (of the model) by the parameters, over the noise.
-struct FitMotion {
-  Eigen::VectorXd residual;  ///< of unit white noise
-  Eigen::VectorXd plain;     ///< over each position's own noise, with what neighbours share of it
-  Eigen::MatrixXd global;
-  Eigen::MatrixXd own;
-  std::vector<double> v_m_s;
-};
 
 /// A statement as one more residual: (stated - parameter)/sd.
 struct FitStatement {
@@ -85,14 +40,6 @@ struct MotionFit {
   bool converged = false;
   int iterations = 0;
 };
-
-/// The motion of one track under the point's parameters; `unnamed` is an additional force.
-TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
-                    const UnnamedForce* unnamed = nullptr);
-
-/// What the shared errors (of camera, plane, scale, pixels) at this point add to a motion's modelled positions `x_m`.
-std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
-                                  std::size_t motion, const std::vector<double>& x_m);
 
 /// From a point in the layout of these effects.
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
