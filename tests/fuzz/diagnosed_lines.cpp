@@ -9,6 +9,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto file = folder.with("lines.csv", data, size);
   return fuzz::read_or_refuse<base::NumericalError>([&] {
     const auto lines = diagnose::read_lines(file);
-    if (lines.size() <= 24) diagnose::diagnose_lines(lines, 9.80665);  // time grows with the lines; the paper has 8
+    if (lines.size() <= 24) diagnose::diagnose_lines(lines, 9.80665);  // time grows with the lines; the paper has 12
   });
 }
