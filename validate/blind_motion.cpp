@@ -17,6 +17,7 @@ constexpr double kTolerance = 1e-11;                                        // m
 constexpr double kLongestStep = 2e-3, kFirstStep = 1e-4, kRestStep = 2e-4;  // s
 constexpr int kHalvings = 60;                                               // of 2 ms: to rounding
 constexpr double kRunsAway = 1e3;                                           // m
+constexpr int kMostSteps = 1'000'000;  // of one motion: 200 s at rest; a mass of nothing under a drag takes billions
 
 BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
   const double weight = law.mass_kg * law.gravity_m_s2;
@@ -42,7 +43,9 @@ class Glider {
 
   BlindSample at(double t) {
     while (t_ < t) {
-      if (way_ == 0) {
+      if (++steps_ > kMostSteps) {
+        lose();
+      } else if (way_ == 0) {
         rest_until(t);
       } else {
         slide_until(t);
@@ -69,11 +72,7 @@ class Glider {
       const double end = std::min(t, stepper.current_time());
       State next;
       stepper.calc_state(end, next);
-      if (!(std::abs(next[0]) < kRunsAway)) {
-        s_ = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-        t_ = std::numeric_limits<double>::infinity();
-        return;
-      }
+      if (!(std::abs(next[0]) < kRunsAway) || ++steps_ > kMostSteps) return lose();
       if (next[1] * way_ < 0.0) {
         stop_within(stepper, t_, end);
         return;
@@ -81,6 +80,11 @@ class Glider {
       s_ = next;
       t_ = end;
     }
+  }
+
+  void lose() {
+    s_ = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    t_ = std::numeric_limits<double>::infinity();
   }
 
   template <typename Stepper>
@@ -101,6 +105,7 @@ class Glider {
   State s_;
   double t_ = 0.0;
   int way_ = 0;
+  int steps_ = 0;
 };
 
 }  // namespace

@@ -37,7 +37,8 @@ struct BlindSample {
   double v_m_s = 0.0;
 };
 
-/// From (x0, v0) at the first of the times, which rise. NaN from where it runs away (1 km).
+/// From (x0, v0) at the first of the times, which rise. NaN from where it runs away (1 km), or where a million steps
+/// have not brought it.
 std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v0_m_s, std::span<const double> times_s);
 
 }  // namespace glidelab::validate

@@ -134,6 +134,7 @@ class NominalFit {
       at += part * change;
       fitted = design_;
       for (std::size_t n = 0; n < list_.size(); ++n) list_[n].change(fitted, at[static_cast<Eigen::Index>(n)]);
+      if (is_lost(fitted)) return 0.0;
     }
     return 0.0;  // the fit does not settle: how strong the effect is cannot be told, and another is drawn
   }
@@ -141,6 +142,15 @@ class NominalFit {
   const Seen& without() const { return without_; }
 
  private:
+  /// A mass of another glider: what the fit is after then is no law of this one.
+  bool is_lost(const BlindDesign& fitted) const {
+    constexpr double kLeft = 0.5;  // of a mass
+    for (std::size_t m = 0; m < fitted.masses.size(); ++m) {
+      if (!(fitted.masses[m].true_kg > kLeft * design_.masses[m].true_kg)) return true;
+    }
+    return false;
+  }
+
   Eigen::VectorXd derivative(const BlindDesign& at, const Nuisance& one, const Seen& now) const {
     BlindDesign changed = at;
     one.change(changed, one.step);

@@ -77,6 +77,14 @@ TEST_CASE("a blind motion on the level stops for good, at v0/(mu g) without drag
   CHECK(motion.back().v_m_s == 0.0);
 }
 
+TEST_CASE("a blind motion that would take billions of steps ends, and says that it is lost") {
+  // 1 N s/m on a microgram: a rate of 1e9 a second, of which an explicit step takes a few.
+  const validate::BlindLaw law{1e-9, 1.0, 0.0, 0.3, 9.8, {}};
+  const auto motion = validate::blind_motion(law, 0.0, 1.0, times(100, 0.01));
+  CHECK(motion.front().x_m == 0.0);
+  CHECK(std::isnan(motion.back().x_m));
+}
+
 TEST_CASE("inertia that one glider's drag and friction take up has no strength, however large it is") {
   // (1 + s) m dv/dt = -K v - mu m g sign(v) is the law of a drag K/(1 + s) and a friction mu/(1 + s).
   validate::BlindDesign design;
