@@ -137,7 +137,7 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
 /// Each clip at a scale of its own, as when the camera is moved between them.
 UnnamedFamily scale_family(const ScoreSpace& space) {
   const TrackSet& set = space.set();
-  UnnamedFamily family = family_of("clip", "scale", "");
+  UnnamedFamily family = family_of("clip", "scale", "m/m");
   std::vector<ScoreColumn> columns;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
     std::vector<Eigen::VectorXd> changes(set.motions.size());
