@@ -31,14 +31,16 @@ TEST_CASE("A target that is within reach ends with status 0, one beyond any sett
   INFO(reached.err);
   CHECK(reached.status == 0);
   CHECK(fs::exists(easy / "out/report.html"));
-  for (const nlohmann::json& candidate : answer_in(easy / "out")["candidates"]) {
+  const nlohmann::json within = answer_in(easy / "out");
+  for (const nlohmann::json& candidate : within["candidates"]) {
     CHECK(candidate["verdict"].get<std::string>().starts_with("reached"));
   }
   const tests::ProcessResult missed = require_of(hard, "k_over_m_1_s=1e-6");
   CHECK(missed.status == 4);
   CHECK(missed.err.find("nothing reaches k_over_m_1_s=1e-6") != std::string::npos);
   CHECK(fs::exists(hard / "out/report.html"));
-  for (const nlohmann::json& candidate : answer_in(hard / "out")["candidates"]) {
+  const nlohmann::json beyond = answer_in(hard / "out");
+  for (const nlohmann::json& candidate : beyond["candidates"]) {
     CHECK(candidate["verdict"] == "impossible");
   }
 }
