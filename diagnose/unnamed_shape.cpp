@@ -151,18 +151,26 @@ Tried try_one(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, 
 }
 
 void name_regions(UnnamedFamily& family) {
-  for (std::size_t i = 0; i < family.at.size(); ++i) {
-    const double z = family.sd[i] > 0.0 ? std::abs(family.size[i]) / family.sd[i] : 0.0;
-    if (z < kSure) continue;
-    const bool goes_on = family.names.empty() && !family.regions.empty() && i > 0 &&
-                         family.regions.back().to == family.at[i - 1];  // members with names have no neighbours
-    if (!goes_on) family.regions.push_back({family.at[i], family.at[i], 0.0, 0.0});
-    UnnamedRegion& region = family.regions.back();
-    region.to = family.at[i];
-    if (z > region.excess) {
-      region.excess = z;
-      region.size = family.size[i];
+  const auto sureness = [&](std::size_t i) {
+    return family.sd[i] > 0.0 ? std::abs(family.size[i]) / family.sd[i] : 0.0;
+  };
+  for (std::size_t i = 0; i < family.at.size();) {
+    if (sureness(i) < kSure) {
+      ++i;
+      continue;
     }
+    std::size_t end = i + 1;
+    const bool neighbours = family.names.empty();  // members with names have none
+    while (neighbours && end < family.at.size() && sureness(end) >= kSure) ++end;
+    UnnamedRegion region{family.at[i], family.at[end - 1], 0.0, 0.0};
+    for (std::size_t k = i; k < end; ++k) region.excess = std::max(region.excess, sureness(k));
+    // The largest size of those that are about as sure as any: a bump is as sure at its foot as at its top.
+    for (std::size_t k = i; k < end; ++k) {
+      if (sureness(k) < 0.5 * region.excess || std::abs(family.size[k]) < std::abs(region.size)) continue;
+      region.size = family.size[k];
+    }
+    family.regions.push_back(region);
+    i = end;
   }
 }
 

@@ -86,7 +86,7 @@ Plot curve_plot(const diagnose::GapCurve& curve) {
   return {Drawing{script, std::vector{data}},
           fmt::format("The smooth {} over {} that would fill the gap, with two standard deviations", curve.what,
                       axis_of(curve.variable)),
-          fmt::format("Curve of a {} over {}", curve.what, axis_of(curve.variable))};
+          fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
 }
 
 Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int variable) {

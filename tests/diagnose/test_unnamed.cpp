@@ -99,6 +99,19 @@ TEST_CASE("places beside each other are one region, clips beside each other are 
   CHECK(clips.regions[1].to == 1.0);
 }
 
+TEST_CASE("a bump is as large as its top, and what is hardly sure at its edge is not its size") {
+  diagnose::UnnamedFamily bump;
+  bump.at = {0.0, 1.0, 2.0, 3.0, 4.0};
+  bump.size = {1e-6, 0.5, 2.0, 0.5, 7.0};
+  bump.sd = {1e-7, 0.05, 0.2, 0.05, 2.0};  // ten of them everywhere, but at the end 3.5
+  diagnose::name_regions(bump);
+  REQUIRE(bump.regions.size() == 1);
+  CHECK(bump.regions[0].from == 0.0);
+  CHECK(bump.regions[0].to == 4.0);
+  CHECK(bump.regions[0].size == 2.0);
+  CHECK(bump.regions[0].excess == Approx(10.0));
+}
+
 TEST_CASE("a lateness that settles is drawn as it settles, until a tenth is left, and sure from the start on") {
   // 4 ms late at the start, half of it after 60 ms, all clips alike: x at t - l is x - v l + a l²/2, of which the last
   // is 0.02 mm at most.
