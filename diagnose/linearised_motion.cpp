@@ -29,9 +29,9 @@ double step_of(const Global& global, double at) {
   }
 }
 
-Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i, const Lateness& late,
-            const UnnamedForce* unnamed = nullptr) {
-  const TrackModel model = model_of(set, layout, at, i, unnamed);
+Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
+            const Lateness& late) {
+  const TrackModel model = model_of(set, layout, at, i);
   return move(model, set.motions[i].t_s, late.empty() ? std::span<const double>() : std::span(late[i]));
 }
 

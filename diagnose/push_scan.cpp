@@ -38,18 +38,17 @@ double log_below(double z) {
 /// log of the probability that all of these normal deviates, taken as independent, are positive, or all negative; of
 /// the latter kHoldsBack, as far as it was as likely beforehand.
 double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
-  double positive = 0.0, negative = 0.0;
+  double positive = std::log1p(-kHoldsBack), negative = std::log(kHoldsBack);
   for (Eigen::Index k = 0; k < mean.size(); ++k) {
     const double z = mean[k] / std::max(sd[k], 1e-300);
     positive += log_below(z);
     negative += log_below(-z);
   }
-  positive += std::log1p(-kHoldsBack);
-  negative += std::log(kHoldsBack);
-  return log_mean({positive, negative}) + 2.0 * std::log(2.0);
+  return log_mean({positive, negative}) + std::log(2.0);
 }
 
-/// The same of pushes_of_one_hand() before anything is measured: the mean over the part that is common to all.
+/// log of the probability that pushes_of_one_hand() all have one sign, of two, before anything is measured: the mean
+/// over the part that is common to all.
 double log_one_sign_beforehand(Eigen::Index pushes) {
   constexpr int kParts = 400;
   constexpr double kWidest = 8.0;
@@ -58,7 +57,7 @@ double log_one_sign_beforehand(Eigen::Index pushes) {
     const double common = kWidest * ((i + 0.5) / kParts * 2.0 - 1.0);
     sum += std::exp(-0.5 * common * common + static_cast<double>(pushes) * log_below(common / kUnlike));
   }
-  return std::log(2.0 * sum * 2.0 * kWidest / kParts / std::sqrt(2.0 * std::numbers::pi));
+  return std::log(sum * 2.0 * kWidest / kParts / std::sqrt(2.0 * std::numbers::pi));
 }
 
 }  // namespace

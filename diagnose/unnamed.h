@@ -17,12 +17,12 @@ namespace glidelab::diagnose {
 struct UnnamedRegion {
   double from = 0.0, to = 0.0;
   double excess = 0.0;  ///< largest size over its standard deviation
-  double size = 0.0;    ///< largest size: N, m/s² or m
+  double size = 0.0;    ///< largest of those at least half as sure as the surest: in the family's unit
 };
 
 struct UnnamedFamily {
   std::string variable;  ///< x_m, v_m_s, t_s, mass_kg, direction, group, clip
-  std::string what;      ///< "force", "friction", "displacement", "acceleration", "lateness"
+  std::string what;      ///< "force", "friction", "displacement", "acceleration", "lateness", "viscous drag", "scale"
   std::string unit;      ///< of the sizes
   double log_evidence = 0.0;
   double gain = 0.0;

@@ -37,7 +37,8 @@ struct Tried {
 Tried try_one(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily& family,
               SpreadEvidence& evidence);
 
-/// The stretches of `at` in which the size is sure; of members with names each by itself.
+/// The stretches of `at` in which the size is sure, each with the largest of the sizes that are at least half as sure
+/// as its surest; of members with names each by itself.
 void name_regions(UnnamedFamily& family);
 
 /// The three shapes that a function over a grid may have: smooth anywhere, one bump, one step.

@@ -156,8 +156,33 @@ ConfirmationSize size_of(const std::vector<Trial>& trials, const RequirementOpti
   film_tracks(least->setting->scenario, 1, 1);
   const double one_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   size.seconds = one_s * all / pixels_of(least->setting->scenario) * static_cast<double>(options.runs) /
-                 std::min<double>(std::max(1, options.jobs), static_cast<double>(size.close));
+                 std::min<double>(std::max(1, options.jobs), static_cast<double>(options.runs));
   return size;
+}
+
+/// Renders those that are close: one after another, each with its runs on all threads.
+void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, const base::Progress& progress,
+                      std::vector<Trial>& trials) {
+  const ConfirmationSize size = size_of(trials, options);
+  if (options.before_rendering) options.before_rendering(size);
+  std::uint64_t done = 0;
+  std::atomic<std::uint64_t> begun = 0;  // of a camera's runs; those of what is thought away count no more
+  RequirementOptions watched = options;
+  watched.before_run = [&] {
+    if (options.before_run) options.before_run();
+    const std::uint64_t before = std::min(begun++, options.runs);
+    progress("rendered clips", static_cast<double>(done * options.runs + before) /
+                                   static_cast<double>(std::max<std::uint64_t>(1, size.recordings)));
+  };
+  progress("rendered clips", 0.0);
+  for (std::uint64_t point = 0; point < trials.size(); ++point) {
+    Trial& trial = trials[point];
+    if (!trial.close) continue;
+    begun = 0;
+    as_candidate(trial.candidate, [&] { judge_by_runs(sweep, point, watched, Confirm::clips, trial); });
+    ++done;
+  }
+  progress("rendered clips", 1.0);
 }
 
 }  // namespace
@@ -228,33 +253,17 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
   }
   std::vector<Trial> trials(points);
   std::atomic<std::uint64_t> done = 0;
-  RequirementOptions watched = options;  // whoever wants to stop need not wait for all runs of a camera
-  watched.before_run = [&] {
+  RequirementOptions one_thread = options;
+  one_thread.jobs = 1;
+  one_thread.before_run = [&] {  // whoever wants to stop need not wait for all runs of a camera
     if (options.before_run) options.before_run();
     progress("cameras", static_cast<double>(done) / static_cast<double>(points));
   };
   base::for_each_parallel(points, options.jobs, [&](std::size_t point) {
-    trials[point] = trial_of(sweep, point, watched);
+    trials[point] = trial_of(sweep, point, one_thread);
     progress("cameras", static_cast<double>(++done) / static_cast<double>(points));
   });
-  if (options.confirm == Confirm::clips) {
-    std::vector<std::size_t> close;
-    for (std::size_t point = 0; point < points; ++point) {
-      if (trials[point].close) close.push_back(point);
-    }
-    if (options.before_rendering) options.before_rendering(size_of(trials, options));
-    done = 0;
-    watched.before_run = [&] {
-      if (options.before_run) options.before_run();
-      progress("rendered clips", static_cast<double>(done) / static_cast<double>(close.size()));
-    };
-    progress("rendered clips", 0.0);
-    base::for_each_parallel(close.size(), options.jobs, [&](std::size_t i) {
-      Trial& trial = trials[close[i]];
-      as_candidate(trial.candidate, [&] { judge_by_runs(sweep, close[i], watched, Confirm::clips, trial); });
-      progress("rendered clips", static_cast<double>(++done) / static_cast<double>(close.size()));
-    });
-  }
+  if (options.confirm == Confirm::clips) confirm_by_clips(sweep, options, progress, trials);
   for (Trial& trial : trials) requirement.candidates.push_back(std::move(trial.candidate));
   requirement.by_price = std::all_of(requirement.candidates.begin(), requirement.candidates.end(),
                                      [](const Candidate& candidate) { return candidate.price.has_value(); });

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "base/parallel.h"
 #include "core/quantile.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/comparison.h"
@@ -77,9 +78,7 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
   if (confirm == Confirm::clips) {
     std::unique_ptr<FilmStudio>& studio = studios_[run];
     if (!studio) studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_);
-    MadeTracks made = studio->film(setting.scenario, seed, 1);
-    stage_ = studio->stage();
-    return made;
+    return studio->film(setting.scenario, seed, 1);
   }
   // Clips of one scenario have about one noise: their root mean square.
   const std::vector<double> noise_m = noise_of(setting, clean.truth);
@@ -90,14 +89,21 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
 
 bool RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results) {
   for (TargetResult& result : results) result.found.reset();
-  std::vector<Errors> all;
-  for (std::uint64_t run = 0; run < options_.runs; ++run) {
+  // A studio whose clips go through a file draws what stands still with each of them.
+  if (confirm == Confirm::clips && !stage_ && !render::lossy(setting.scenario.codec)) {
+    stage_ = render::set_stage(setting.scenario, options_.jobs);
+  }
+  std::vector<std::vector<QuantityComparison>> of_runs(options_.runs);
+  base::for_each_parallel(options_.runs, options_.jobs, [&](std::size_t run) {
     if (options_.before_run) options_.before_run();
     const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
-    const core::AnalysisResults of_run = phase_diagram_of(tracks_of(setting, clean, run, confirm), {});
-    add_errors(compare_quantities(of_run, clean.truth), all);
-    add_errors(compare_quantities(diagnose::with_trajectory_fits(of_run), clean.truth), all);
-  }
+    const core::AnalysisResults lines = phase_diagram_of(tracks_of(setting, clean, run, confirm), {});
+    of_runs[run] = compare_quantities(lines, clean.truth);
+    const auto fits = compare_quantities(diagnose::with_trajectory_fits(lines), clean.truth);
+    of_runs[run].insert(of_runs[run].end(), fits.begin(), fits.end());
+  });
+  std::vector<Errors> all;
+  for (const std::vector<QuantityComparison>& of_run : of_runs) add_errors(of_run, all);
   bool reached = true;
   for (std::size_t t = 0; t < options_.targets.size(); ++t) {
     judge_errors(all, options_.targets[t], results[t]);

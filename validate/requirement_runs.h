@@ -13,7 +13,8 @@
 
 namespace glidelab::validate {
 
-/// The runs of one point. Rendered ones share what stands still, and each run's calibration with what is thought away.
+/// The runs of one point, on options.jobs threads. Rendered ones share what stands still, and each run's calibration
+/// with what is thought away.
 class RecordedRuns {
  public:
   /// As RequirementOptions::confirm says, tracks or clips. All outlive this.
@@ -38,7 +39,7 @@ class RecordedRuns {
   std::uint64_t point_;
   const RequirementOptions& options_;
   std::vector<std::unique_ptr<FilmStudio>> studios_;  ///< of each run, once it was filmed
-  std::shared_ptr<const render::Stage> stage_;
+  std::shared_ptr<const render::Stage> stage_;        ///< once any was
 };
 
 }  // namespace glidelab::validate
