@@ -178,6 +178,15 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   CHECK(size.points == 1);
   CHECK(size.recordings == 3);
   CHECK(size.seconds > 0.0);
+  // On two threads the runs are the same.
+  options.jobs = 2;
+  const validate::Requirement again = validate::find_requirement(sweep, options);
+  CHECK(again.candidates.front().results[0].found == only.results[0].found);
+  REQUIRE(again.candidates.front().limits.size() == only.limits.size());
+  for (std::size_t i = 0; i < only.limits.size(); ++i) {
+    CHECK(again.candidates.front().limits[i].name == only.limits[i].name);
+    CHECK(again.candidates.front().limits[i].gain == only.limits[i].gain);
+  }
   // A target that tracks reach with a factor of 4 to spare is not worth a picture.
   options.targets[0].value = 100.0 * bound;
   const validate::Requirement easy = validate::find_requirement(sweep, options);
