@@ -39,6 +39,7 @@ Put as_in_tracks(std::string id, std::function<void(const BlindEffect&, double s
     if (id == "timestamp_jitter") {
       const double exposed_s = scene.camera.exposure_s + scene.camera.line_s * scene.camera.height_px;
       effect.largest = std::min(effect.largest, (1.0 / scene.camera.rate_hz - exposed_s) / 12.0);
+      if (!(effect.largest > 0.0)) return std::nullopt;  // a shutter that is open for the whole frame time
     }
     const auto strength = size_for(BlindDetection(scene.motion), effect, wanted);
     if (!strength) return std::nullopt;
