@@ -40,7 +40,7 @@ struct GapRegion {
   std::string unit;  ///< of size: N, m/s², m, N s/m
   std::string what;  ///< force, friction, displacement, …
   std::string clip;  ///< where it is one clip's
-  /// What the accelerations lack at most, in the size's unit, where the size is far more than that: not to be believed.
+  /// What the usual model lacks at most, in the size's unit, where the size is far more than that: not to be believed.
   std::optional<double> lacking = {};
 };
 

@@ -116,7 +116,7 @@ Eigen::VectorXd difference(const std::vector<double>& a, const std::vector<doubl
 
 }  // namespace
 
-ScoreColumn ScoreSpace::of_force(const std::vector<UnnamedForce>& forces, double size_n) const {
+std::vector<Eigen::VectorXd> ScoreSpace::changes_by(const std::vector<UnnamedForce>& forces, double size_n) const {
   std::vector<Eigen::VectorXd> changes(set_.motions.size());
   for (std::size_t i = 0; i < changes.size(); ++i) {
     if (!forces[i]) continue;
@@ -124,7 +124,11 @@ ScoreColumn ScoreSpace::of_force(const std::vector<UnnamedForce>& forces, double
     const TrackModel model = model_of(set_, *fit_.layout, fit_.at, i, &small);
     changes[i] = difference(moved_by(i, model).x_m, base_[i], size_n);
   }
-  return project(changes);
+  return changes;
+}
+
+ScoreColumn ScoreSpace::of_force(const std::vector<UnnamedForce>& forces, double size_n) const {
+  return project(changes_by(forces, size_n));
 }
 
 ScoreColumn ScoreSpace::of_effect(std::size_t effect, const std::vector<double>& shape) const {

@@ -28,7 +28,9 @@ class ScoreSpace {
 
   /// One vector a motion: change of the modelled positions in metres.
   ScoreColumn project(const std::vector<Eigen::VectorXd>& by_motion) const;
-  /// By an additional force in N, each motion its own (empty functions: none).
+  /// Change of the modelled positions of each motion in metres a newton, by an additional force, each motion its own
+  /// (empty functions: none), by its forward difference at `size_n` (N).
+  std::vector<Eigen::VectorXd> changes_by(const std::vector<UnnamedForce>& forces, double size_n) const;
   ScoreColumn of_force(const std::vector<UnnamedForce>& forces, double size_n) const;
   /// By the first parameter of an effect whose other ones have these values.
   ScoreColumn of_effect(std::size_t effect, const std::vector<double>& shape) const;

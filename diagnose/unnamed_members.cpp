@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "base/dense.h"
 #include "diagnose/unnamed_shape.h"
 
 namespace glidelab::diagnose {
@@ -16,42 +17,59 @@ UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, in
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of("clip", "displacement", "m");
   std::vector<ScoreColumn> columns;
-  std::vector<std::size_t> clip_of;  // of each bump
+  std::vector<Grid> grids;  // of each motion
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const auto& t = set.motions[i].t_s;
-    const double span = t.back() - t.front();
-    const int bumps = std::clamp(static_cast<int>(span / apart_s), fewest, most);
-    const double width = span / (bumps - 1);
-    for (int b = 0; b < bumps; ++b) {
+    Grid grid;
+    grid.add(t.front());
+    grid.add(t.back());
+    grid.bumps = std::clamp(static_cast<int>((t.back() - t.front()) / apart_s), fewest, most);
+    for (int b = 0; b < grid.bumps; ++b) {
       std::vector<Eigen::VectorXd> changes(set.motions.size());
       changes[i].resize(static_cast<Eigen::Index>(t.size()));
       for (std::size_t p = 0; p < t.size(); ++p) {
-        changes[i][static_cast<Eigen::Index>(p)] = bump(t[p], t.front() + width * b, width);
+        changes[i][static_cast<Eigen::Index>(p)] = bump(t[p], grid.at(b), grid.width());
       }
       columns.push_back(space.project(changes));
-      clip_of.push_back(set.motions[i].clip);
     }
+    grids.push_back(grid);
   }
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
-  // Of each clip the bump that shows best.
-  std::vector<double> excess(set.clips.size(), 0.0);
+  // Of each clip the curve that its bumps make together, where it is largest and about as sure as anywhere.
+  family.size.assign(set.clips.size(), 0.0);
+  family.sd.assign(set.clips.size(), 0.0);
+  std::vector<double> surest(set.clips.size(), 0.0);
+  Eigen::Index first = 0;
+  for (std::size_t i = 0; i < set.motions.size() && evidence.mean.size() > 0; ++i) {
+    UnnamedFamily curve;
+    draw_curve(grids[i], evidence.mean.segment(first, grids[i].bumps),
+               evidence.covariance.block(first, first, grids[i].bumps, grids[i].bumps), curve);
+    first += grids[i].bumps;
+    name_regions(curve);
+    const std::size_t c = set.motions[i].clip;
+    for (const UnnamedRegion& region : curve.regions) {
+      if (region.excess <= surest[c]) continue;
+      surest[c] = region.excess;
+      family.size[c] = region.size;
+      family.sd[c] = std::abs(region.size) / region.excess;
+    }
+  }
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
     family.at.push_back(static_cast<double>(c));
     family.names.push_back(set.clips[c].name);
   }
-  family.size.assign(set.clips.size(), 0.0);
-  family.sd.assign(set.clips.size(), 0.0);
-  for (Eigen::Index b = 0; b < evidence.mean.size(); ++b) {
-    const std::size_t c = clip_of[static_cast<std::size_t>(b)];
-    const double sd = std::sqrt(std::max(0.0, evidence.covariance(b, b)));
-    if (!(sd > 0.0) || std::abs(evidence.mean[b]) <= excess[c] * sd) continue;
-    excess[c] = std::abs(evidence.mean[b]) / sd;
-    family.size[c] = evidence.mean[b];
-    family.sd[c] = sd;
-  }
   name_regions(family);
   return family;
+}
+
+/// Sizes less their mean: what all members have in common is taken up by what is fitted, and no data tell it.
+void relative_to_mean(SpreadEvidence& evidence) {
+  const Eigen::Index n = evidence.mean.size();
+  const Eigen::MatrixXd less =
+      Eigen::MatrixXd::Identity(n, n) - Eigen::MatrixXd::Constant(n, n, 1.0 / static_cast<double>(n));
+  evidence.mean = base::product(less, evidence.mean);
+  evidence.covariance = base::product(base::product(less, evidence.covariance), less);
 }
 
 /// How far something has settled at t: 1 at the start, a half or so at `time_s`, slowly (as creep does) or quickly.
@@ -150,6 +168,7 @@ UnnamedFamily scale_family(const ScoreSpace& space) {
   }
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
+  if (evidence.mean.size() > 0) relative_to_mean(evidence);
   draw_members(evidence, family);
   name_regions(family);
   return family;
@@ -173,6 +192,7 @@ UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable
   }
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
+  if (evidence.mean.size() > 0) relative_to_mean(evidence);
   draw_members(evidence, family);
   for (std::size_t m = 0; m < family.at.size(); ++m) {
     if (variable == "mass_kg") family.at[m] = set.masses[m].mass_kg;

@@ -36,24 +36,36 @@ Ranges ranges_of(const ScoreSpace& space) {
   return ranges;
 }
 
-/// A force f(place) of any smooth shape; of friction, which turns with the motion, the place among speeds is |v|.
-void add_force(const ScoreSpace& space, const Grid& grid, int variable, const std::string& name,
-               const std::string& what, bool with_mass, bool friction, std::vector<UnnamedFamily>& families) {
+enum class Place { x, v, t };
+enum class Force { drive, friction, drag };
+enum class Load { none, mass, either };
+
+/// A force f(place) of any smooth shape; a friction, which turns with the motion; or a drag, which goes with the speed.
+/// The place among speeds is |v| but for what drives. In N, or in proportion to the mass; where there is more than one
+/// mass it may be either.
+void add_force(const ScoreSpace& space, const Grid& grid, Place over, const char* variable, Force kind, Load load,
+               std::vector<UnnamedFamily>& families) {
   const TrackSet& set = space.set();
-  std::vector<ScoreColumn> columns;
+  std::vector<ScoreColumn> in_n, by_mass;
   for (int b = 0; b < grid.bumps; ++b) {
-    std::vector<UnnamedForce> forces;
-    for (const TrackedMotion& motion : set.motions) {
-      const double factor = with_mass ? set.masses[motion.mass].mass_kg : 1.0;
-      const double middle = grid.at(b), width = grid.width();
-      forces.push_back([=](double x, double v, double t) {
-        const double place = variable == 0 ? x : variable == 2 ? t : friction ? std::abs(v) : v;
-        return factor * (friction && v < 0.0 ? -1.0 : 1.0) * bump(place, middle, width);
-      });
-    }
-    columns.push_back(space.of_force(forces, 1e-4));
+    const double middle = grid.at(b), width = grid.width();
+    const UnnamedForce force = [=](double x, double v, double t) {
+      const double of_speed = kind == Force::drive ? v : std::abs(v);
+      const double size = bump(over == Place::x ? x : over == Place::t ? t : of_speed, middle, width);
+      return kind == Force::drive ? size : kind == Force::drag ? -v * size : v < 0.0 ? -size : size;
+    };
+    std::vector<Eigen::VectorXd> changes = space.changes_by(std::vector<UnnamedForce>(set.motions.size(), force), 1e-4);
+    if (load != Load::mass) in_n.push_back(space.project(changes));
+    if (load == Load::none) continue;
+    for (std::size_t i = 0; i < changes.size(); ++i) changes[i] *= set.masses[set.motions[i].mass].mass_kg;
+    by_mass.push_back(space.project(changes));
   }
-  add_shapes(space, columns, grid, family_of(name, what, with_mass ? "m/s²" : "N"), families);
+  const char* const what = kind == Force::drive ? "force" : kind == Force::friction ? "friction" : "viscous drag";
+  if (!in_n.empty()) {
+    add_shapes(space, in_n, grid, family_of(variable, what, kind == Force::drag ? "N s/m" : "N"), families);
+  }
+  if (by_mass.empty()) return;
+  add_shapes(space, by_mass, grid, family_of(variable, kind == Force::drive ? "acceleration" : what, "m/s²"), families);
 }
 
 enum class Seen { over_x, over_t, late };
@@ -250,20 +262,22 @@ UnnamedFamily pull_family(const ScoreSpace& space, const Grid& x) {
 
 void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families) {
   const Ranges ranges = ranges_of(space);
+  const bool more_masses = space.set().masses.size() > 1;
   for (const int bumps : {kSmooth, kCoarse, kFine}) {
     Grid v = ranges.v, x = ranges.x, t = ranges.t, speed = ranges.speed;
     v.bumps = x.bumps = t.bumps = speed.bumps = bumps;
-    add_force(space, v, 1, "v_m_s", "force", false, false, families);
-    add_force(space, speed, 1, "v_m_s", "friction", false, true, families);
-    if (space.set().masses.size() > 1) add_force(space, speed, 1, "v_m_s", "friction", true, true, families);
-    add_force(space, x, 0, "x_m", "acceleration", true, false, families);
-    add_force(space, x, 0, "x_m", "friction", true, true, families);
+    add_force(space, v, Place::v, "v_m_s", Force::drive, Load::none, families);
+    add_force(space, speed, Place::v, "v_m_s", Force::friction, more_masses ? Load::either : Load::none, families);
+    add_force(space, x, Place::x, "x_m", Force::drive, more_masses ? Load::either : Load::mass, families);
+    add_force(space, x, Place::x, "x_m", Force::friction, Load::mass, families);
     add_displacement(space, x, Seen::over_x, families);
     add_displacement(space, t, Seen::over_t, families);
     add_displacement(space, t, Seen::late, families);
     if (bumps == kFine) continue;
-    add_force(space, t, 2, "t_s", "acceleration", true, false, families);
-    add_force(space, t, 2, "t_s", "friction", true, true, families);
+    add_force(space, t, Place::t, "t_s", Force::drive, more_masses ? Load::either : Load::mass, families);
+    add_force(space, t, Place::t, "t_s", Force::friction, Load::mass, families);
+    add_force(space, x, Place::x, "x_m", Force::drag, Load::none, families);
+    add_force(space, t, Place::t, "t_s", Force::drag, Load::none, families);
   }
   families.push_back(swing_family(space, ranges.x));
   families.push_back(pull_family(space, ranges.x));

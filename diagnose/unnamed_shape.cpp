@@ -43,25 +43,6 @@ double left_of(const ScoreSpace& space, double gain) {
   return std::max(1.0, (space.dot(residual, residual) - 2.0 * gain) / points);
 }
 
-/// The function that the bumps' sizes make, and its band.
-void draw(const Grid& grid, const SpreadEvidence& evidence, UnnamedFamily& family) {
-  if (evidence.mean.size() == 0) return;
-  constexpr int kDrawn = 72;
-  for (int j = 0; j <= kDrawn; ++j) {
-    const double x = grid.low + (grid.high - grid.low) * j / kDrawn;
-    Eigen::VectorXd basis(grid.bumps);
-    for (int i = 0; i < grid.bumps; ++i) basis[i] = bump(x, grid.at(i), grid.width());
-    double variance = 0.0;
-    for (int a = 0; a < grid.bumps; ++a) {
-      for (int b = 0; b < grid.bumps; ++b) variance += basis[a] * evidence.covariance(a, b) * basis[b];
-    }
-    family.at.push_back(x);
-    family.size.push_back(basis.dot(evidence.mean));
-    family.sd.push_back(std::sqrt(std::max(0.0, variance)));
-  }
-  name_regions(family);
-}
-
 /// One bump alone, or one step (all bumps from some place on), wherever it explains most: the evidence is averaged over
 /// the places. What acts at one place only is paid for once, and not for all the places where nothing is.
 UnnamedFamily one_place(const ScoreSpace& space, const Normal& normal, const std::vector<ScoreColumn>& columns,
@@ -100,7 +81,8 @@ UnnamedFamily one_place(const ScoreSpace& space, const Normal& normal, const std
   }
   family.tau = std::numeric_limits<double>::infinity();
   best.covariance *= left_of(space, best.gain);
-  draw(grid, best, family);
+  draw_curve(grid, best.mean, best.covariance, family);
+  name_regions(family);
   return family;
 }
 
@@ -122,6 +104,23 @@ UnnamedFamily family_of(std::string variable, std::string what, std::string unit
   family.what = std::move(what);
   family.unit = std::move(unit);
   return family;
+}
+
+void draw_curve(const Grid& grid, const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
+                UnnamedFamily& family) {
+  constexpr int kDrawn = 72;
+  for (int j = 0; j <= kDrawn; ++j) {
+    const double x = grid.low + (grid.high - grid.low) * j / kDrawn;
+    Eigen::VectorXd basis(grid.bumps);
+    for (int i = 0; i < grid.bumps; ++i) basis[i] = bump(x, grid.at(i), grid.width());
+    double variance = 0.0;
+    for (int a = 0; a < grid.bumps; ++a) {
+      for (int b = 0; b < grid.bumps; ++b) variance += basis[a] * covariance(a, b) * basis[b];
+    }
+    family.at.push_back(x);
+    family.size.push_back(basis.dot(sizes));
+    family.sd.push_back(std::sqrt(std::max(0.0, variance)));
+  }
 }
 
 UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
@@ -179,7 +178,8 @@ void add_shapes(const ScoreSpace& space, const std::vector<ScoreColumn>& columns
   const Normal normal = normal_of(space, columns);
   SpreadEvidence evidence;
   families.push_back(solve(space, columns, family, evidence));
-  draw(grid, evidence, families.back());
+  if (evidence.mean.size() > 0) draw_curve(grid, evidence.mean, evidence.covariance, families.back());
+  name_regions(families.back());
   families.push_back(one_place(space, normal, columns, grid, false, family));
   families.push_back(one_place(space, normal, columns, grid, true, family));
 }

@@ -28,6 +28,10 @@ UnnamedFamily family_of(std::string variable, std::string what, std::string unit
 UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
                     SpreadEvidence& evidence);
 
+/// The function that bumps of these sizes make together, and its standard deviation, at 73 places of the grid.
+void draw_curve(const Grid& grid, const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
+                UnnamedFamily& family);
+
 /// One of many shapes that a family may have: where it gains more than those before, the family takes its gain, columns
 /// and tau.
 struct Tried {

@@ -17,10 +17,10 @@ constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
 constexpr double kBelieved = 2.0;  // times what accelerations lack: drag and friction take up some of it
 
-/// Speed and acceleration of what a fit leaves of a motion, each at its largest: by the parabola through nine
-/// neighbours at even times, none of them set aside.
+/// Place, speed and acceleration of what a fit leaves of a motion, each at its largest; the latter two by the parabola
+/// through nine neighbours at even times, none of them set aside.
 struct LargestRest {
-  double v_m_s = 0.0, a_m_s2 = 0.0;
+  double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;
 };
 
 LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>& rest_m) {
@@ -28,6 +28,9 @@ LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>&
   constexpr double kMean = 20.0 / 3.0, kSquares = 60.0, kFourths = 308.0;  // sums of k², and of (k² - mean)², k to 4
   constexpr double kUneven = 0.2;
   LargestRest largest;
+  for (std::size_t p = 0; p < rest_m.size(); ++p) {
+    if (motion.outlier[p] == 0) largest.x_m = std::max(largest.x_m, std::abs(rest_m[p]));
+  }
   for (std::size_t p = kBeside; p + kBeside < motion.t_s.size(); ++p) {
     const double before = motion.t_s[p] - motion.t_s[p - kBeside], behind = motion.t_s[p + kBeside] - motion.t_s[p];
     if (std::abs(behind - before) > kUneven * before) continue;
@@ -49,26 +52,48 @@ LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>&
 
 }  // namespace
 
-double most_lacking_n(const TrackSet& set, const MotionFit& nominal) {
-  double most = 0.0;
+Lacking most_lacking(const TrackSet& set, const MotionFit& nominal) {
+  Lacking most;
+  double slowest_m_s = std::numeric_limits<double>::infinity(), shortest_m = slowest_m_s;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const TrackedMotion& motion = set.motions[i];
     const TrackModel model = model_of(set, *nominal.layout, nominal.at, i);
-    const std::vector<double> modelled =
-        move(model, motion.t_s, nominal.late.empty() ? std::span<const double>() : std::span(nominal.late[i])).x_m;
-    std::vector<double> rest_m = shared_errors(set, *nominal.layout, nominal.at, i, modelled);
-    for (std::size_t p = 0; p < rest_m.size(); ++p) rest_m[p] = motion.x_m[p] - modelled[p] - rest_m[p];
+    const Moved moved =
+        move(model, motion.t_s, nominal.late.empty() ? std::span<const double>() : std::span(nominal.late[i]));
+    std::vector<double> rest_m = shared_errors(set, *nominal.layout, nominal.at, i, moved.x_m);
+    double fastest = 0.0;
+    for (std::size_t p = 0; p < rest_m.size(); ++p) {
+      rest_m[p] = motion.x_m[p] - moved.x_m[p] - rest_m[p];
+      fastest = std::max(fastest, std::abs(moved.v_m_s[p]));
+    }
     const LargestRest rest = largest_rest(motion, rest_m);
-    most = std::max(most, model.mass_kg * rest.a_m_s2 + std::abs(model.k_n_s_m) * rest.v_m_s);
+    const auto [low, high] = std::minmax_element(moved.x_m.begin(), moved.x_m.end());
+    if (low != high) shortest_m = std::min(shortest_m, *high - *low);
+    slowest_m_s = std::min(slowest_m_s, fastest);
+    most.position_m = std::max(most.position_m, rest.x_m);
+    most.force_n = std::max(most.force_n, model.mass_kg * rest.a_m_s2 + std::abs(model.k_n_s_m) * rest.v_m_s);
+  }
+  most.drag_n_s_m = most.force_n / slowest_m_s;
+  most.scale = most.position_m / shortest_m;
+  most.time_s = most.position_m / slowest_m_s;
+  for (const TrackedMass& mass : set.masses) {
+    most.acceleration_m_s2 = std::max(most.acceleration_m_s2, most.force_n / mass.mass_kg);
   }
   return most;
 }
 
+double Lacking::in(const std::string& unit) const {
+  return unit == "N"       ? force_n
+         : unit == "m/s²"  ? acceleration_m_s2
+         : unit == "N s/m" ? drag_n_s_m
+         : unit == "m"     ? position_m
+         : unit == "s"     ? time_s
+                           : scale;
+}
+
 void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
                  Diagnosis& diagnosis) {
-  const double lacking_n = most_lacking_n(set, nominal);
-  double lightest_kg = std::numeric_limits<double>::infinity();
-  for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
+  const Lacking most = most_lacking(set, nominal);
   std::vector<const UnnamedFamily*> sorted;
   for (const UnnamedFamily& family : families) sorted.push_back(&family);
   std::sort(sorted.begin(), sorted.end(),
@@ -92,9 +117,7 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
     for (std::size_t r = 0; r < regions.size() && r < 2 && diagnosis.regions.size() < kMostRegions; ++r) {
       GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
                        regions[r].size,  family->unit,    family->what,  ""};
-      const double lacking = region.unit == "N"      ? lacking_n
-                             : region.unit == "m/s²" ? lacking_n / lightest_kg
-                                                     : std::numeric_limits<double>::infinity();
+      const double lacking = most.in(region.unit);
       if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
       if (family->variable == "clip") {  // a clip as a whole
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];

@@ -2,6 +2,7 @@
 /// effect shows in the pictures.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "diagnose/diagnosis.h"
@@ -17,9 +18,20 @@ namespace glidelab::diagnose {
 void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
                  Diagnosis& diagnosis);
 
-/// The force that the usual model lacks where it lacks most, as the accelerations show it: m r'' + K r' of what the fit
-/// leaves of the positions, their noise included; of all motions the most.
-double most_lacking_n(const TrackSet& set, const MotionFit& nominal);
+/// What the usual model lacks where it lacks most, of all motions the most, noise included. What is fitted takes up
+/// some of what acts; a size far beyond these is read off what is hardly seen.
+struct Lacking {
+  double position_m = 0.0;         ///< |r| of what the fit leaves of the positions
+  double force_n = 0.0;            ///< m r'' + K r', as the accelerations show it
+  double acceleration_m_s2 = 0.0;  ///< the same over the lightest mass
+  double drag_n_s_m = 0.0;         ///< force_n over the top speed of the slowest motion
+  double time_s = 0.0;             ///< position_m over that speed
+  double scale = 0.0;              ///< position_m over the shortest motion's way
+  /// By a region's unit: m, N, m/s², N s/m, s; else a scale.
+  double in(const std::string& unit) const;
+};
+
+Lacking most_lacking(const TrackSet& set, const MotionFit& nominal);
 
 /// Where errors of single frames come together, if that says more than any unnamed function. Whether it does.
 bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,

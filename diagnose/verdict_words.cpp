@@ -80,8 +80,8 @@ std::string summary_of(const Diagnosis& diagnosis) {
       if (!region.clip.empty()) text = text + " and is largest in clip " + region.clip;
       if (region.lacking) {
         text += fmt::format(
-            ": {}. How large it is these data do not tell: the estimate, {:.2g} {}, is far more than the accelerations "
-            "lack anywhere ({:.2g} {}).",
+            ": {}. How large it is these data do not tell: the estimate, {:.2g} {}, is far more than the usual model "
+            "lacks anywhere ({:.2g} {}).",
             region.what, region.size, region.unit, *region.lacking, region.unit);
       } else {
         text += fmt::format(": {} of up to {:.2g} {}.", region.what, region.size, region.unit);

@@ -159,12 +159,12 @@ TEST_CASE("the force that a model lacks is seen in the accelerations") {
       tests::made_launches(),
       {.force = [](double, double, double, double t) { return t > 0.6 && t < 0.9 ? 0.1 : 0.0; }}, 3, 1e-6, 150, 100.0);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  const double lacking = diagnose::most_lacking_n(set, diagnose::fit_nominal(set));
+  const double lacking = diagnose::most_lacking(set, diagnose::fit_nominal(set)).force_n;
   CHECK(lacking > 0.05);
   CHECK(lacking < 0.2);
   const auto whole = tests::made_experiment(tests::made_launches(), {}, 3, 1e-6, 150, 100.0);
   const diagnose::TrackSet nothing = diagnose::track_set(whole.results, whole.setups, true);
-  CHECK(diagnose::most_lacking_n(nothing, diagnose::fit_nominal(nothing)) < 0.005);
+  CHECK(diagnose::most_lacking(nothing, diagnose::fit_nominal(nothing)).force_n < 0.005);
 }
 
 TEST_CASE("a size far beyond what the accelerations lack is not stated as one") {

@@ -208,6 +208,48 @@ TEST_CASE("friction over how fast it moves: in proportion to the load or not, as
   CHECK(best->unit == (with_load ? "m/s²" : "N"));
 }
 
+TEST_CASE("a magnet at one place pulls every glider by the same force, whatever its mass") {
+  const tests::MadeEffect magnet = {
+      [](double, double x, double, double) { return 0.01 * std::exp(-std::pow((x - 0.1) / 0.08, 2)); }};
+  const diagnose::Diagnosis diagnosis = diagnosed(magnet, 5);
+  INFO(diagnosis.summary);
+  CHECK(diagnosis.verdict == "unknown");
+  REQUIRE_FALSE(diagnosis.regions.empty());
+  const diagnose::GapRegion& region = diagnosis.regions.front();
+  CHECK(region.variable == "x_m");
+  CHECK(region.what == "force");
+  CHECK(region.unit == "N");
+  CHECK(region.from < 0.1);
+  CHECK(region.to > 0.1);
+  CHECK(std::abs(region.size) == Approx(0.01).epsilon(0.25));  // a constant is an inclination
+}
+
+TEST_CASE("a brake that weakens in each clip is a drag over the time") {
+  const tests::MadeEffect warm = {[](double, double, double v, double t) { return 0.08 * v * t; }};
+  const diagnose::Diagnosis diagnosis = diagnosed(warm, 5);
+  INFO(diagnosis.summary);
+  CHECK(diagnosis.verdict == "unknown");
+  REQUIRE_FALSE(diagnosis.regions.empty());
+  CHECK(diagnosis.regions.front().variable == "t_s");
+  CHECK(diagnosis.regions.front().what == "viscous drag");
+}
+
+TEST_CASE("a drag of each mass is told as its difference from the others: what they share is the drag that is fitted") {
+  const tests::MadeEffect unlike = {
+      [](double mass_kg, double, double v, double) { return (mass_kg < 0.4 ? 0.02 : -0.02) * v; }};
+  const auto made = tests::made_experiment(tests::made_launches(), unlike, 6, 2e-5);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
+  const auto drag = std::find_if(families.begin(), families.end(), [](const auto& family) {
+    return family.variable == "mass_kg" && family.what == "viscous drag";
+  });
+  REQUIRE(drag != families.end());
+  REQUIRE(drag->size.size() == 2);
+  CHECK(drag->size[0] + drag->size[1] == Approx(0.0).margin(1e-9));
+  CHECK(std::abs(drag->size[1] - drag->size[0]) == Approx(0.04).epsilon(0.05));
+}
+
 TEST_CASE("magnets in a row: a force that swings with the place, too fine for smooth curves, has no name") {
   // 0.3 m/s² with a period of 6 cm, over 1.4 m. At 1 m/s it moves the glider by 0.3 (0.06 / 2 pi)² = 27 µm.
   const tests::MadeEffect cogs = {[](double mass_kg, double x, double, double) {
