@@ -24,7 +24,7 @@ struct RequireOptions {
   std::string sweep;
   std::vector<std::string> targets;
   std::string confirm = "tracks";
-  std::uint64_t runs = 12;
+  std::uint64_t runs = 12, track_runs = 200;
 };
 
 void require_command(const RequireOptions& options) {
@@ -34,6 +34,7 @@ void require_command(const RequireOptions& options) {
                 : options.confirm == "clips" ? validate::Confirm::clips
                                              : validate::Confirm::tracks;
   how.runs = options.runs;
+  how.track_runs = options.track_runs;
   how.jobs = options.common.jobs;
   validate::Sweep sweep = validate::read_sweep(options.sweep);
   if (options.common.seed) sweep.seed = *options.common.seed;
@@ -74,9 +75,10 @@ void add_require(CLI::App& app, Command& chosen) {
       ->type_name("FILE")
       ->required();
   command
-      ->add_option("--target", options->targets,
-                   "QUANTITY=VALUE (standard deviation), QUANTITY:error95=VALUE or QUANTITY:bias=VALUE; quantities are "
-                   "k_over_m_1_s, mu, alpha_deg, v_lim_m_s")
+      ->add_option(
+          "--target", options->targets,
+          "QUANTITY=VALUE (root mean square error), QUANTITY:error95=VALUE (what 95 % of the errors stay within) or "
+          "QUANTITY:bias=VALUE (mean error); quantities are k_over_m_1_s, mu, alpha_deg, v_lim_m_s")
       ->type_name("TARGET")
       ->required();
   command
@@ -87,9 +89,13 @@ void add_require(CLI::App& app, Command& chosen) {
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}))
       ->capture_default_str();
-  command->add_option("--runs", options->runs, "Runs that confirm one camera")
+  command->add_option("--runs", options->runs, "Rendered runs that confirm one camera, with --confirm clips")
       ->type_name("N")
       ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command->add_option("--track-runs", options->track_runs, "Runs as tracks that judge one camera")
+      ->type_name("N")
+      ->check(CLI::Range(2, 1000000))
       ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/require-<name of the sweep file>",
                      "Seed of the runs; default: the sweep's");

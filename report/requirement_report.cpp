@@ -13,6 +13,7 @@
 #include "report/plot_style.h"
 #include "report/quantity_names.h"
 #include "report/text_table.h"
+#include "validate/error_measure.h"
 
 namespace glidelab::report {
 namespace {
@@ -29,7 +30,7 @@ bool reached(const Candidate& candidate) {
 std::string target_name(const Target& target, const std::string& factor = {}) {
   std::string unit = unit_of(target.quantity);
   if (!factor.empty()) unit = factor + (unit.empty() ? "" : " " + unit);
-  const char* measure = target.measure == Target::Measure::sd        ? "sd"
+  const char* measure = target.measure == Target::Measure::sd        ? "rms error"
                         : target.measure == Target::Measure::error95 ? "95 % error"
                                                                      : "bias";
   return fmt::format("{} of {}{}", measure, symbol_of(target.quantity), unit.empty() ? "" : fmt::format(" ({})", unit));
@@ -63,7 +64,7 @@ std::string bound_text(const std::optional<double>& bound, double scale) {
   return bound && std::isfinite(*bound) ? number_text(*bound / scale, 2) : "–";
 }
 
-/// "sd of µ at most 0.0005, 95 % error of α (°) at most 0.01".
+/// "rms error of µ at most 0.0005, 95 % error of α (°) at most 0.01".
 std::string targets_text(const Requirement& requirement) {
   std::string text;
   for (const Target& target : requirement.targets) {
@@ -74,6 +75,11 @@ std::string targets_text(const Requirement& requirement) {
 
 std::string order_text(const Requirement& requirement) {
   return requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)";
+}
+
+/// "3 of 200"; nothing where none was run.
+std::string beyond_text(const validate::TargetResult& result) {
+  return result.runs == 0 ? "–" : fmt::format("{} of {}", result.beyond, result.runs);
 }
 
 /// What no track knows is said where tracks judged.
@@ -114,6 +120,7 @@ void add_results(std::vector<std::string>& cells, const Requirement& requirement
     const double scale = scale_of(requirement.targets[t]).size;
     cells.push_back(bound_text(candidate.results[t].bound, scale));
     cells.push_back(found_text(candidate.results[t], scale));
+    cells.push_back(beyond_text(candidate.results[t]));
   }
 }
 
@@ -178,6 +185,7 @@ Page requirement_report(const Requirement& requirement) {
   for (const Target& target : requirement.targets) {
     header.push_back("bound: " + escape(target_name(target, scale_of(target).factor)));
     header.push_back("by runs" + escape(same_unit(target)));
+    header.push_back("runs beyond the target");
   }
   HtmlTable good(header, 4);
   header.insert(header.begin() + 4, "what limits it");
@@ -210,11 +218,17 @@ Page requirement_report(const Requirement& requirement) {
       "clips).</p>\n",
       requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
       : requirement.confirm == validate::Confirm::clips
-          ? fmt::format("Where it allows the target, {} runs judge, by the better estimator: rendered where a verdict "
-                        "says so, else tracks with that noise.",
-                        requirement.runs)
+          ? fmt::format("Where it allows the target, runs judge, by the better estimator: {} rendered ones where a "
+                        "verdict says so, else {} tracks with that noise.",
+                        requirement.runs, requirement.track_runs)
           : fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
-                        requirement.runs));
+                        requirement.track_runs));
+  body += fmt::format(
+      "<p class=\"soft\">An rms error has the bias in it; a 95 % error is what 95 % of the runs stay within. ± is one "
+      "standard deviation, found by drawing the runs anew {} times (bias: that of the errors over the root of their "
+      "number); where it spans the target, nothing is decided. \"Runs beyond the target\" err by more than its value: "
+      "few and far ones are frames lost without a trace, not noise.</p>\n",
+      validate::kResamples);
   return page(requirement.name, body);
 }
 
@@ -223,6 +237,7 @@ std::string requirement_text(const Requirement& requirement) {
   for (const Target& target : requirement.targets) {
     rows.front().push_back("bound: " + target_name(target, scale_of(target).factor));
     rows.front().push_back("by runs" + same_unit(target));
+    rows.front().push_back("runs beyond");
   }
   std::string below;
   for (const Candidate& candidate : requirement.candidates) {
@@ -248,7 +263,13 @@ std::string requirement_json(const Requirement& requirement) {
   document["format"] = 1;
   document["name"] = requirement.name;
   document["order"] = requirement.by_price ? "price" : "pixels_s";
-  for (const Target& target : requirement.targets) document["targets"].push_back(target.name());
+  for (const Target& target : requirement.targets) {
+    document["targets"].push_back(target.name());
+    document["measures"].push_back(target.measure == Target::Measure::sd ? "root mean square error, a bias included"
+                                   : target.measure == Target::Measure::error95
+                                       ? "what 95 % of the runs' errors stay within"
+                                       : "size of the mean error");
+  }
   document["candidates"] = Json::array();
   for (const Candidate& candidate : requirement.candidates) {
     Json object;
@@ -267,7 +288,11 @@ std::string requirement_json(const Requirement& requirement) {
       of["target"] = requirement.targets[t].name();
       put(of, "bound", result.bound, "the motion does not determine it");
       put(of, "found", result.found, "not run");
-      if (result.found) put(of, "found_sd", result.found_sd);
+      if (result.found) {
+        put(of, "found_sd", result.found_sd);
+        of["runs"] = result.runs;
+        of["runs_beyond_target"] = result.beyond;
+      }
       if (!result.estimator.empty()) of["estimator"] = result.estimator;
       object["targets"].push_back(std::move(of));
     }

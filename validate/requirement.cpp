@@ -69,15 +69,15 @@ struct Trial {
 
 void judge_by_runs(const Sweep& sweep, std::uint64_t point, RequirementOptions options, Confirm confirm, Trial& trial) {
   options.confirm = confirm;
+  if (confirm == Confirm::tracks) options.runs = options.track_runs;
   Candidate& candidate = trial.candidate;
   candidate.limits.clear();
   RecordedRuns runs(sweep, *trial.setting, point, options);
-  const bool reached = runs.judge(candidate.results);
+  candidate.verdict = runs.judge(candidate.results);
   candidate.judged_by = confirm;
-  candidate.verdict = reached ? Verdict::reached : Verdict::missed;
   const double found = hardest_found(candidate.results, options.targets);
   if (confirm == Confirm::tracks) trial.close = found < kClear && found > 1.0 / kClearOfClips;
-  if (reached || !std::isfinite(candidate.need)) return;
+  if (candidate.verdict == Verdict::reached || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
   for (Limit& limit : runs.limits(candidate.results)) candidate.limits.push_back(std::move(limit));
   std::stable_sort(candidate.limits.begin(), candidate.limits.end(),
@@ -223,6 +223,8 @@ std::string describe(const Candidate& candidate) {
       return "reached, the bound has room";
     case Verdict::unconfirmed:
       return "possible, not run";
+    case Verdict::undecided:
+      return fmt::format("undecided, by {}", by);
     case Verdict::missed:
       return fmt::format("missed, by {}", by);
     case Verdict::impossible:
@@ -244,6 +246,7 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
   requirement.name = sweep.name;
   requirement.targets = options.targets;
   requirement.confirm = options.confirm;
+  requirement.track_runs = options.track_runs;
   requirement.runs = options.runs;
   const std::uint64_t points = point_count(sweep);
   constexpr std::uint64_t kMost = 100000;  // they are held and shown together

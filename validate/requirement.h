@@ -1,12 +1,14 @@
 /// Which of a sweep's points (cameras, settings) reach a target: first by the Cramér-Rao bound, then by runs.
 ///
-/// A target is on the worst configuration of the scenario: its standard deviation ("sd"), the half-width that holds 95
-/// % of the errors ("error95" = 1.96 rms error) or the mean error ("bias"). The bound takes the noise of the sweep's
-/// tracks, or predicts it from the camera (validate/camera_noise.h). A point whose bound is above the target cannot
-/// reach it. Any other is run as tracks with that noise and judged by its errors (of the better estimator), for a bound
-/// knows nothing of dropped frames. Where rendered clips are to confirm, those that miss the target by less than kClear
-/// or reach it by less than kClearOfClips are rendered as well, with lens, shutter, codec and calibration, and these
-/// judge. Where nothing is run, a bound below the target by kClear is said to have room.
+/// A target is on the worst configuration of the scenario: its root mean square error, a bias included ("sd": of an
+/// unbiased estimator the standard deviation), what 95 % of the errors stay within ("error95"), or the mean error
+/// ("bias"); validate/error_measure.h. The bound takes the noise of the sweep's tracks, or predicts it from the camera
+/// (validate/camera_noise.h), and is that of the standard deviation, times 1.96 for "error95". A point whose bound is
+/// above the target cannot reach it. Any other is run as tracks with that noise and judged by its errors (of the better
+/// estimator), for a bound knows nothing of dropped frames. Where rendered clips are to confirm, those that miss the
+/// target by less than kClear or reach it by less than kClearOfClips are rendered as well, with lens, shutter, codec
+/// and calibration, and these judge. Where the errors' uncertainty spans the target, nothing is decided. Where nothing
+/// is run, a bound below the target by kClear is said to have room.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +27,8 @@ inline constexpr double kClear = 4.0;
 inline constexpr double kClearOfClips = 20.0;
 
 struct Target {
-  enum class Measure { sd, error95, bias };
-  std::string quantity;  ///< "mu"
+  enum class Measure { sd, error95, bias };  ///< sd: root mean square error
+  std::string quantity;                      ///< "mu"
   Measure measure = Measure::sd;
   double value = 0.0;
   std::string name() const;  ///< "mu sd 0.0005"
@@ -47,7 +49,8 @@ struct ConfirmationSize {
 struct RequirementOptions {
   std::vector<Target> targets;
   Confirm confirm = Confirm::tracks;
-  std::uint64_t runs = 12;  ///< to confirm a point
+  std::uint64_t track_runs = 200;  ///< of a point as tracks: one run in a hundred may be far off
+  std::uint64_t runs = 12;         ///< of a point that is rendered
   int jobs = 1;
   std::function<void(const ConfirmationSize&)> before_rendering = {};
   std::function<void()> before_run = {};  ///< called before each; may throw to stop
@@ -57,7 +60,9 @@ struct RequirementOptions {
 struct TargetResult {
   std::optional<double> bound;  ///< empty where the motion does not determine the quantity
   std::optional<double> found;  ///< by runs
-  double found_sd = 0.0;        ///< uncertainty of it
+  double found_sd = 0.0;        ///< standard deviation of it
+  std::size_t runs = 0;         ///< whose errors these are
+  std::size_t beyond = 0;       ///< of these, with an error larger than the target's value
   std::string estimator;
 };
 
@@ -71,6 +76,7 @@ enum class Verdict {
   reached,      ///< by runs
   by_bound,     ///< the bound has room of kClear
   unconfirmed,  ///< the bound allows it, and nothing was run
+  undecided,    ///< by runs: found - found_sd is within the target, found + found_sd is not
   missed,       ///< by runs
   impossible,   ///< the bound is above the target
   refused,      ///< the scenario or the analysis refuses it: `why`
@@ -97,7 +103,7 @@ struct Requirement {
   std::string name;
   std::vector<Target> targets;
   Confirm confirm = Confirm::none;
-  std::uint64_t runs = 0;
+  std::uint64_t track_runs = 0, runs = 0;
   bool by_price = false;              ///< all have a price; else by pixels a second
   std::vector<Candidate> candidates;  ///< the cheapest first
   bool any_reached() const;

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "core/quantile.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/comparison.h"
+#include "validate/error_measure.h"
 #include "validate/film_studio.h"
 #include "validate/made_tracks.h"
 #include "validate/sweep_design.h"
@@ -17,13 +17,10 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-/// Errors of one estimator in one quantity of one configuration, over the runs.
+/// Errors of one estimator in one quantity of one configuration, run by run; infinite where there is no answer.
 struct Errors {
   std::string estimator, configuration, quantity;
   std::vector<double> errors;
-  bool missing = false;
 };
 
 void add_errors(const std::vector<QuantityComparison>& quantities, std::vector<Errors>& all) {
@@ -32,42 +29,39 @@ void add_errors(const std::vector<QuantityComparison>& quantities, std::vector<E
     auto found = std::find_if(all.begin(), all.end(), [&](const Errors& e) {
       return e.estimator == q.estimator && e.configuration == q.configuration && e.quantity == q.quantity;
     });
-    if (found == all.end()) found = all.insert(all.end(), {q.estimator, q.configuration, q.quantity, {}, false});
-    if (q.error) {
-      found->errors.push_back(*q.error);
-    } else {
-      found->missing = true;
-    }
+    if (found == all.end()) found = all.insert(all.end(), {q.estimator, q.configuration, q.quantity, {}});
+    found->errors.push_back(q.error.value_or(std::numeric_limits<double>::infinity()));
   }
-}
-
-double measure_of(const Errors& errors, Target::Measure measure) {
-  if (errors.missing || errors.errors.empty()) return kNever;
-  double sum = 0.0, square = 0.0;
-  for (const double error : errors.errors) {
-    sum += error;
-    square += error * error;
-  }
-  const double n = static_cast<double>(errors.errors.size());
-  if (measure == Target::Measure::bias) return std::abs(sum / n);
-  return std::sqrt(square / n) * (measure == Target::Measure::error95 ? core::kNormal95 : 1.0);
 }
 
 /// The better estimator's measure, each judged by its worst configuration.
 void judge_errors(const std::vector<Errors>& all, const Target& target, TargetResult& result) {
   for (const char* estimator : {"phase-diagram", "trajectory"}) {
-    double worst = 0.0;
-    std::size_t runs = 0;
+    std::optional<ErrorMeasure> worst;
     for (const Errors& errors : all) {
       if (errors.estimator != estimator || errors.quantity != target.quantity) continue;
-      worst = std::max(worst, measure_of(errors, target.measure));
-      runs = errors.errors.size();
+      const ErrorMeasure measure = measure_errors(errors.errors, target);
+      if (!worst || measure.value > worst->value) worst = measure;
     }
-    if (runs == 0 || (result.found && *result.found <= worst)) continue;
-    result.found = worst;
-    result.found_sd = worst / std::sqrt(2.0 * static_cast<double>(runs));
+    if (!worst || (result.found && *result.found <= worst->value)) continue;
+    result.found = worst->value;
+    result.found_sd = worst->sd;
+    result.runs = worst->runs;
+    result.beyond = worst->beyond;
     result.estimator = estimator;
   }
+}
+
+/// Of one target, or of several: one that is missed decides.
+Verdict verdict_of(const std::vector<TargetResult>& results, const std::vector<Target>& targets) {
+  bool sure = true;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const TargetResult& result = results[t];
+    if (!result.found || !std::isfinite(*result.found)) return Verdict::missed;
+    if (*result.found - result.found_sd > targets[t].value) return Verdict::missed;
+    sure = sure && *result.found + result.found_sd <= targets[t].value;
+  }
+  return sure ? Verdict::reached : Verdict::undecided;
 }
 
 }  // namespace
@@ -87,7 +81,7 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
   return with_noise(clean, std::sqrt(square), seed);
 }
 
-bool RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results) {
+Verdict RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results) {
   for (TargetResult& result : results) result.found.reset();
   // A studio whose clips go through a file draws what stands still with each of them.
   if (confirm == Confirm::clips && !stage_ && !render::lossy(setting.scenario.codec)) {
@@ -104,12 +98,8 @@ bool RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<Ta
   });
   std::vector<Errors> all;
   for (const std::vector<QuantityComparison>& of_run : of_runs) add_errors(of_run, all);
-  bool reached = true;
-  for (std::size_t t = 0; t < options_.targets.size(); ++t) {
-    judge_errors(all, options_.targets[t], results[t]);
-    reached = reached && results[t].found && *results[t].found <= options_.targets[t].value;
-  }
-  return reached;
+  for (std::size_t t = 0; t < options_.targets.size(); ++t) judge_errors(all, options_.targets[t], results[t]);
+  return verdict_of(results, options_.targets);
 }
 
 std::vector<Limit> RecordedRuns::limits(const std::vector<TargetResult>& results) {

@@ -17,13 +17,13 @@ namespace glidelab::validate {
 /// with what is thought away.
 class RecordedRuns {
  public:
-  /// As RequirementOptions::confirm says, tracks or clips. All outlive this.
+  /// As RequirementOptions::confirm says, tracks or clips: options.runs of them. All outlive this.
   RecordedRuns(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options)
       : sweep_(sweep), setting_(setting), point_(point), options_(options), studios_(options.runs) {}
 
-  /// Fills `results` (one for each target) with the better estimator's errors over the runs; true where all targets are
-  /// reached.
-  bool judge(std::vector<TargetResult>& results) { return judge(setting_, options_.confirm, results); }
+  /// Fills `results` (one for each target) with the better estimator's errors over the runs; reached, missed (any of
+  /// them), or undecided.
+  Verdict judge(std::vector<TargetResult>& results) { return judge(setting_, options_.confirm, results); }
 
   /// What is in no bound, thought away one by one, by the same runs: how many times smaller the errors in `results` are
   /// with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec, and with the true
@@ -31,7 +31,7 @@ class RecordedRuns {
   std::vector<Limit> limits(const std::vector<TargetResult>& results);
 
  private:
-  bool judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results);
+  Verdict judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results);
   MadeTracks tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run, Confirm confirm);
 
   const Sweep& sweep_;

@@ -27,7 +27,7 @@ validate::Requirement one_camera(const std::string& quantity, double target, dou
   candidate.pixels_s = 1e7;
   candidate.frame_rate_hz = 30.0;
   candidate.noise_m = 2.46e-5;
-  candidate.results = {{bound, 1.1 * bound, 0.3 * bound, "trajectory"}};
+  candidate.results = {{bound, 1.1 * bound, 0.3 * bound, 200, 3, "trajectory"}};
   requirement.candidates = {candidate};
   return requirement;
 }
@@ -50,14 +50,15 @@ validate::CoverageRow row(const std::string& estimator, const std::string& quant
 
 TEST_CASE("require says its target, and its columns in the thousandths, millionths … in which the target has digits") {
   const std::string mu = report::requirement_text(one_camera("mu", 0.0005, 1.8e-5));
-  CHECK(has(mu, "sd of µ at most 0.0005 on the worst configuration"));
-  CHECK(has(mu, "bound: sd of µ (10⁻⁶)  by runs (10⁻⁶)"));
+  CHECK(has(mu, "rms error of µ at most 0.0005 on the worst configuration"));
+  CHECK(has(mu, "bound: rms error of µ (10⁻⁶)  by runs (10⁻⁶)"));
+  CHECK(has(mu, "3 of 200"));
   CHECK(has(mu, "18      19.8 ± 5.4"));
   CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
   const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
-  CHECK(has(k, "bound: sd of K/m (10⁻³ 1/s)  by runs (10⁻³ 1/s)"));
+  CHECK(has(k, "bound: rms error of K/m (10⁻³ 1/s)  by runs (10⁻³ 1/s)"));
   const std::string alpha = report::requirement_text(one_camera("alpha_deg", 1.0, 0.5));
-  CHECK(has(alpha, "bound: sd of α (°)  by runs (°)"));
+  CHECK(has(alpha, "bound: rms error of α (°)  by runs (°)"));
   validate::Requirement rendered = one_camera("mu", 0.0005, 1.8e-5);
   rendered.confirm = validate::Confirm::clips;
   CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));

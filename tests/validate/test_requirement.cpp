@@ -43,7 +43,7 @@ values = [1e-5, 4e-5]
   validate::RequirementOptions options;
   options.targets = {validate::parse_target("k_over_m_1_s=0.02")};
   options.confirm = validate::Confirm::tracks;
-  options.runs = 40;
+  options.track_runs = 40;
   const validate::Requirement requirement = validate::find_requirement(sweep, options);
   REQUIRE(requirement.candidates.size() == 4);
   const auto bound = [&](const std::string& name) { return *named(requirement, name).results[0].bound; };
@@ -89,12 +89,28 @@ values = [50, 125]
   CHECK(requirement.candidates.back().frame_rate_hz == 125.0);
 }
 
+TEST_CASE("A target within the errors' uncertainty is undecided") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = grid(dir, "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n");
+  validate::RequirementOptions options;
+  options.targets = {validate::parse_target("k_over_m_1_s:bias=1")};
+  const validate::TargetResult found = validate::find_requirement(sweep, options).candidates.front().results[0];
+  CHECK(found.runs == 200);
+  CHECK(found.beyond == 0);
+  const auto verdict_at = [&](double target) {
+    options.targets.front().value = target;
+    return validate::describe(validate::find_requirement(sweep, options).candidates.front());
+  };
+  CHECK(verdict_at(*found.found + 0.5 * found.found_sd) == "undecided, by tracks");
+  CHECK(verdict_at(*found.found + 1.5 * found.found_sd) == "reached, by tracks");
+}
+
 TEST_CASE("Whoever wants to stop a search for cameras waits for one run, not for all of a camera") {
   const tests::TempDir dir;
   const validate::Sweep sweep = grid(dir, "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n");
   validate::RequirementOptions options;
   options.targets = {validate::parse_target("k_over_m_1_s=0.0001")};
-  options.runs = 30;
+  options.track_runs = 30;
   options.targets.front().value = 1.5 * *validate::find_requirement(sweep, options).candidates.front().results[0].bound;
   int runs = 0;
   options.before_run = [&] { ++runs; };
