@@ -225,6 +225,7 @@ std::string blind_json(const BlindRun& run) {
   document["in_named_set"] = shares_json(score.in_set);
   document["outside_unknown"] = shares_json(score.recognised);
   document["outside_variable_named"] = share_json(score.where);
+  document["outside_variable_first"] = share_json(score.where_first);
   document["left_out"] = shares_json(score.left_out);
   document["reliability"] = Json::array();
   for (const auto& bin : score.reliability) {

@@ -240,7 +240,9 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
                                         [](const BlindNamed& effect) { return effect.probability > kSure; }));
     if (verdict.verdict == "unknown") {
       const auto& where = verdict.where;
-      count(score.where, std::find(where.begin(), where.end(), outcome.causes.front().variable) != where.end());
+      const std::string& variable = outcome.causes.front().variable;
+      count(score.where, std::find(where.begin(), where.end(), variable) != where.end());
+      count(score.where_first, !where.empty() && where.front() == variable);
     }
   }
   add_shrink(outcome, score);

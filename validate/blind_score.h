@@ -95,6 +95,7 @@ struct BlindScore {
   BlindShare false_alarm;                        ///< none: anything else
   BlindShare wrong_name;                         ///< outside: a name with probability over 0.8
   BlindShare where;                              ///< outside and unknown: the true variable among the regions
+  BlindShare where_first;                        ///< outside and unknown: it is that of the first one
   std::vector<ReliabilityBin> reliability;
   double calibration_error = 0.0;              ///< expected: mean |stated - right| over cases
   std::vector<double> shrink_of_oracle;        ///< single, strong: shrink over the true effect's own, each case

@@ -24,7 +24,13 @@ std::vector<double> times(std::size_t n, double step) {
 }
 
 /// A diagnosis.json that names what it is told to.
-std::string diagnosis_text(const std::string& verdict, const std::string& id, double p) {
+std::string diagnosis_text(const std::string& verdict, const std::string& id, double p,
+                           const std::vector<std::string>& regions = {}) {
+  std::string where;
+  for (const std::string& variable : regions) {
+    if (!where.empty()) where += ", ";
+    where += R"({"variable": ")" + variable + R"("})";
+  }
   const std::string effect =
       id.empty() ? "" : R"({"id": ")" + id + R"(", "probability": )" + std::to_string(p) + R"(, "equivalent_to": []})";
   const std::string ranked = id.empty()
@@ -34,13 +40,14 @@ std::string diagnosis_text(const std::string& verdict, const std::string& id, do
   const double none = verdict == "none" ? p : 0.0, unknown = verdict == "unknown" ? p : 0.0;
   return R"({"format": 1, "verdict": ")" + verdict + R"(", "points": 1000, "effects": [)" + effect +
          R"(], "probability": {"none": )" + std::to_string(none) + R"(, "unknown": )" + std::to_string(unknown) +
-         R"(}, "ranking": [)" + ranked + R"(], "where": {"regions": []}, "gap": null})";
+         R"(}, "ranking": [)" + ranked + R"(], "where": {"regions": [)" + where + R"(]}, "gap": null})";
 }
 
 validate::BlindOutcome outcome(validate::BlindKind kind, const std::string& truth, double gain,
-                               const std::string& verdict, const std::string& named, double p) {
+                               const std::string& verdict, const std::string& named, double p,
+                               const std::vector<std::string>& regions = {}) {
   tests::TempDir temp;
-  base::write_file(temp / "diagnosis.json", diagnosis_text(verdict, named, p));
+  base::write_file(temp / "diagnosis.json", diagnosis_text(verdict, named, p, regions));
   validate::BlindOutcome one;
   one.kind = kind;
   if (!truth.empty()) one.causes.push_back({truth, 1.0, {}, "x_m", gain});
@@ -182,6 +189,21 @@ TEST_CASE("pictures tell a camera that shakes from a table that does, and what a
   auto other = outcome(BlindKind::none, "", 0.0, "effect", "stribeck", 0.9);
   validate::set_aside({"compression"}, other.verdict);
   CHECK(other.verdict.verdict == "effect");
+}
+
+TEST_CASE("a score tells whether what is outside is looked for in the right variable, and whether that is the first") {
+  using validate::BlindKind;
+  const auto score = validate::score_blind({
+      outcome(BlindKind::outside, "cogging", 100.0, "unknown", "", 0.9, {"x_m", "t_s"}),
+      outcome(BlindKind::outside, "cogging", 100.0, "unknown", "", 0.9, {"t_s", "x_m"}),
+      outcome(BlindKind::outside, "cogging", 100.0, "unknown", "", 0.9, {"t_s"}),
+      outcome(BlindKind::outside, "cogging", 100.0, "unknown", "", 0.9),
+      outcome(BlindKind::outside, "cogging", 100.0, "none", "", 0.9, {"x_m"}),
+  });
+  CHECK(score.where.of == 4);
+  CHECK(score.where.yes == 2);
+  CHECK(score.where_first.of == 4);
+  CHECK(score.where_first.yes == 1);
 }
 
 TEST_CASE("a score counts names, alarms and what was not recognised") {
