@@ -23,6 +23,7 @@
 #include "report/gnuplot.h"
 #include "report/plan_report.h"
 #include "validate/made_tracks.h"
+#include "validate/twin_motions.h"
 
 namespace glidelab::app {
 namespace {
@@ -97,12 +98,20 @@ void diagnose(const DiagnoseCommand& options) {
   base::StagedOutput staged(out);
 
   ProgressDisplay display(options.common.quiet, options.common.verbose);
-  const diagnose::Diagnosis diagnosis =
-      diagnose::diagnose(folders, {.without = options.without, .jobs = options.common.jobs, .outside = options.outside},
-                         display.callback());
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose(folders,
+                                                           {.without = options.without,
+                                                            .jobs = options.common.jobs,
+                                                            .twin = !options.twin.empty(),
+                                                            .outside = options.outside},
+                                                           display.callback());
   base::write_file(staged.dir() / "diagnosis.json", report::diagnosis_json(diagnosis));
   if (!options.no_page) {
-    report::write_page(staged.dir(), "report.html", report::diagnosis_report(title, diagnosis));
+    const bool twin = !options.twin.empty() && !diagnosis.twin.empty();
+    report::write_page(
+        staged.dir(), "report.html",
+        report::diagnosis_report(title, diagnosis,
+                                 twin ? validate::twin_motions(diagnosis, options.common.seed.value_or(1))
+                                      : std::vector<validate::TwinMotion>{}));
   }
   throw_if_interrupted();
   staged.publish_files();
@@ -116,8 +125,10 @@ void diagnose(const DiagnoseCommand& options) {
   if (diagnosis.twin.empty()) throw base::NotMet("a table of lines has no motions that a twin could repeat");
   if (!diagnosis.twin_lacks.empty()) {
     std::string lacks;
-    for (const std::string& id : diagnosis.twin_lacks) lacks += (lacks.empty() ? "" : ", ") + id;
-    throw base::NotMet(fmt::format("{} is written without {}: a scenario cannot express it", options.twin, lacks));
+    for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
+      lacks += fmt::format("{}{} ({})", lacks.empty() ? "" : ", ", lack.what, lack.why);
+    }
+    throw base::NotMet(fmt::format("{} is written without {}", options.twin, lacks));
   }
   say(options.common, fmt::format("twin: {}", options.twin));
 }
@@ -139,7 +150,8 @@ void add_diagnose(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "--twin", options->twin,
-          "Write the fitted motions, with the effect that is named, as a scenario for simulate, render, validate")
+          "Write the fitted motions, with the effect that is named and the camera as far as it is known, as a scenario "
+          "for simulate, render, validate; status 4 where the scenario cannot say all of it")
       ->type_name("SCENARIO.toml")
       ->check([](const std::string& text) {
         return text.ends_with(".toml") ? std::string()
@@ -156,7 +168,7 @@ void add_diagnose(CLI::App& app, Command& chosen) {
   command->add_flag("--no-page", options->no_page, "Write diagnosis.json only, no report.html");
   add_allow_outside(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/diagnose-<name of the first folder>",
-                     "Accepted as by every command; a diagnosis draws no random numbers");
+                     "Of the noise beside a twin on the page; a diagnosis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { diagnose(*options); }; });
 }
 

@@ -17,6 +17,8 @@
 #include "diagnose/picture_evidence.h"
 #include "diagnose/speed_noise.h"
 #include "diagnose/track_set.h"
+#include "diagnose/twin.h"
+#include "diagnose/twin_camera.h"
 #include "diagnose/verdict.h"
 #include "diagnose/whitening.h"
 
@@ -144,11 +146,26 @@ double misfit(const TrackSet& set, const Comparison& comparison) {
   return comparison.fits[static_cast<std::size_t>(fit)].cost / points;
 }
 
+/// What the analysis made of the same clips.
+void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion>& measured) {
+  for (MeasuredMotion& one : measured) {
+    for (const core::ClipResult& clip : results.clips) {
+      if (twin_clip_name(clip.name) != one.clip) continue;
+      for (const core::MotionPoint& point : clip.motion) {
+        if (!point.smoothed || point.left_out != core::LeftOut::used) continue;
+        one.v_m_s.push_back(point.v_m_s);
+        one.a_m_s2.push_back(point.a_m_s2);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
                            const DiagnoseOptions& options, const base::Progress& progress,
-                           const std::vector<std::optional<core::CameraSettings>>& cameras) {
+                           const std::vector<std::optional<core::CameraSettings>>& cameras,
+                           const std::vector<core::Experiment>& folders) {
   const std::vector<std::size_t> without = indices(options.without);
   TrackSet set = track_set(results, setups, true);
   check(set);
@@ -157,6 +174,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   progress("weighing explanations", 0.1);
   PictureEvidence pictures;
   if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
+  if (options.twin) pictures.filming = filming_of(results, folders, options.jobs);
   note_loss(pictures, set);
   settle_noise(set);
   const auto weighed = [&](double from, double to) {
@@ -182,13 +200,16 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     }
   }
   progress("measuring the gap", 0.9);
-  return verdict_of(set, comparison, std::move(pictures));
+  Diagnosis diagnosis = verdict_of(set, comparison, std::move(pictures));
+  add_speeds(results, diagnosis.measured);
+  return diagnosis;
 }
 
 Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
                    const base::Progress& progress) {
   std::vector<core::ClipSetup> setups;
   std::vector<std::optional<core::CameraSettings>> cameras;
+  std::vector<core::Experiment> experiments;
   for (const std::filesystem::path& folder : folders) {
     const core::Experiment experiment = core::read_experiment(folder, options.outside);
     if (experiment.lines) {
@@ -200,6 +221,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     }
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     cameras.resize(setups.size(), experiment.camera);
+    experiments.push_back(experiment);
   }
   const core::AnalysisResults results =
       core::analyze(folders,
@@ -209,7 +231,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
                      .pictures = true,
                      .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .outside = options.outside}},
                     progress);
-  return diagnose_results(results, setups, options, progress, cameras);
+  return diagnose_results(results, setups, options, progress, cameras, experiments);
 }
 
 }  // namespace glidelab::diagnose

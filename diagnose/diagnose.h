@@ -22,6 +22,7 @@ namespace glidelab::diagnose {
 struct DiagnoseOptions {
   std::vector<std::string> without;  ///< effects that are not considered
   int jobs = 1;
+  bool twin = false;  ///< a twin is wanted, with the camera as the folders tell of it; else it has a scenario's own
   core::OutsideFiles outside = core::OutsideFiles::refused;  ///< whether a folder may name files outside
 };
 
@@ -31,9 +32,11 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
                    const base::Progress& progress = base::no_progress);
 
 /// The same from an analysis that was made already; `setups` are all folders' clips in order, `cameras` what is stated
-/// of each clip's camera (needed where the analysis kept the pictures).
+/// of each clip's camera (needed where the analysis kept the pictures), `folders` what else they state (for a twin's
+/// camera; without them it is a scenario's own).
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
                            const DiagnoseOptions& options, const base::Progress& progress = base::no_progress,
-                           const std::vector<std::optional<core::CameraSettings>>& cameras = {});
+                           const std::vector<std::optional<core::CameraSettings>>& cameras = {},
+                           const std::vector<core::Experiment>& folders = {});
 
 }  // namespace glidelab::diagnose

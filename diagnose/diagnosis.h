@@ -14,6 +14,12 @@ struct DiagnosedParameter {
   double sd = 0.0;
 };
 
+/// One of several effects that would look the same.
+struct AlikeEffect {
+  std::string id, words;
+  std::optional<double> probability;  ///< none where no explanation that was weighed holds it: it counts as another's
+};
+
 struct DiagnosedEffect {
   std::string id;
   std::string stage;
@@ -21,6 +27,9 @@ struct DiagnosedEffect {
   double probability = 0.0;                ///< that it acts, alone or with another
   std::vector<std::string> equivalent_to;  ///< what these data cannot tell from it
   std::vector<DiagnosedParameter> parameters;
+  double joint_probability = 0.0;  ///< that it or one of `equivalent_to` acts
+  /// It and those, by falling probability; empty where it stands alone.
+  std::vector<AlikeEffect> alike = {};
 };
 
 struct RankedExplanation {
@@ -97,6 +106,22 @@ struct PictureCurve {
   std::vector<double> expected, fitted;  ///< as stated, and as found; empty where there is none
 };
 
+/// What a twin has not, because no scenario can say it.
+struct TwinLack {
+  std::string what;  ///< an effect, or words
+  std::string why;
+};
+
+/// Positions of one clip as the analysis has them, for what stands beside a twin.
+struct MeasuredMotion {
+  std::string clip;
+  double start_s = 0.0;      ///< of the twin's clip, after the data's first frame
+  double noise_m = 0.0;      ///< of one position
+  double bandwidth_s = 0.0;  ///< of the analysis' smoothing
+  std::vector<double> t_s, x_m;
+  std::vector<double> v_m_s, a_m_s2;  ///< smoothed, of the points that the lines rest on
+};
+
 struct Diagnosis {
   std::string verdict;     ///< none, effect, unknown
   std::size_t points = 0;  ///< positions that took part
@@ -113,9 +138,11 @@ struct Diagnosis {
   std::vector<ResidualCurve> residuals;
   std::vector<PictureFinding> pictures;  ///< empty for tracks
   std::vector<PictureCurve> picture_curves;
-  std::vector<std::string> notes;       ///< limits that a reader should know
-  std::string twin;                     ///< the fitted motions as a scenario file; empty for a table of lines
-  std::vector<std::string> twin_lacks;  ///< named effects that a scenario cannot express
+  std::vector<std::string> notes;  ///< limits that a reader should know
+  std::string twin;                ///< the fitted motions as a scenario file; empty for a table of lines
+  std::vector<TwinLack> twin_lacks;
+  double twin_from_m = 0.0;              ///< x of the data where the twin's x is 0
+  std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
 };
 
 }  // namespace glidelab::diagnose

@@ -11,6 +11,8 @@
 #include "base/csv.h"
 #include "base/dense.h"
 #include "base/errors.h"
+#include "diagnose/alike_effects.h"
+#include "diagnose/effect_list.h"
 #include "diagnose/verdict_words.h"
 
 namespace glidelab::diagnose {
@@ -263,6 +265,20 @@ struct Weighed {
   double probability = 0.0;
 };
 
+void join_sets(const std::vector<Term>& terms, const std::vector<Weighed>& all, Diagnosis& diagnosis) {
+  std::vector<NamedExplanation> named;
+  for (const Weighed& w : all) {
+    if (w.unnamed) continue;
+    NamedExplanation& one = named.emplace_back(NamedExplanation{{}, w.probability});
+    for (const std::size_t t : w.terms) one.ids.push_back(terms[t].id);
+  }
+  const auto words = [&](const std::string& id) {
+    const auto term = std::find_if(terms.begin(), terms.end(), [&](const Term& t) { return t.id == id; });
+    return term != terms.end() ? term->words : std::string(effect_list()[effect_index(id)].words);
+  };
+  join_alike(named, words, diagnosis);
+}
+
 std::string next_of(const std::vector<TableLine>& lines, const Solution& friction, const Solution& bias) {
   const std::vector<double> masses = different(lines, &TableLine::mass_kg);
   double k = 0.0;
@@ -374,6 +390,7 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g) {
       if (term.id == "load_independent_friction") effect.equivalent_to.emplace_back("eddy_rolloff");
       diagnosis.effects.push_back(effect);
     }
+    join_sets(terms, all, diagnosis);
     diagnosis.stage = diagnosis.effects.front().stage;
   }
   const auto by = [](const Weighed& a, const Weighed& b) {

@@ -16,6 +16,7 @@
 #include "core/picture_record.h"
 #include "core/results.h"
 #include "diagnose/diagnosis.h"
+#include "diagnose/twin_camera.h"
 
 namespace glidelab::diagnose {
 
@@ -37,6 +38,7 @@ struct PictureEvidence {
   std::vector<PictureCurve> curves;
   std::vector<FilmedClip> clips;
   double fastest_px_s = 0.0;  ///< of the marker
+  std::optional<Filming> filming;
 };
 
 PictureEvidence picture_evidence(std::vector<FilmedClip> clips);

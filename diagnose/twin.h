@@ -2,25 +2,35 @@
 ///
 /// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
 /// Expressed exactly: K, mu, quadratic_drag, eddy_rolloff or power_law_drag, stribeck, load_independent_friction (more
-/// mu for a lighter glider), direction_asymmetry (a constant force), and of the clock frame_rate_error, dropped_frames,
-/// timestamp_jitter. A scenario has no forces that depend on the place or the time, and no wrong scale, and
-/// no force that was recorded: what needs one is listed, and the twin lacks it. x counts from the middle of the data.
+/// mu for a lighter glider), direction_asymmetry (a constant force), rotational_inertia (all forces, gravity with them,
+/// less by the factor m/(m + m_w): m dv/dt is then the same), and what twin_effects.h says of camera and clock. A
+/// scenario has no forces that depend on the place or the time, and none that was recorded: what needs one is listed,
+/// and the twin lacks it. The camera is that of the folder as far as it is known (twin_camera.h); what is assumed
+/// stands in the file's first lines. x counts from the middle of the data.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "diagnose/hypotheses.h"
+#include "diagnose/diagnosis.h"
+#include "diagnose/motion_fit.h"
+#include "diagnose/twin_camera.h"
 
 namespace glidelab::diagnose {
 
 struct Twin {
   std::string toml;
-  std::vector<std::string> lacks;  ///< what a scenario cannot express
+  std::vector<TwinLack> lacks;
+  double from_m = 0.0;  ///< x of the data where the twin's x is 0
+  /// Clips that the twin has, as indices in TrackSet::clips, and when each begins after its first frame.
+  std::vector<std::pair<std::size_t, double>> clips;
 };
 
-/// Of a fit and what single frames show; `effects` are those that are named.
-Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects,
-             const Comparison& comparison);
+/// Of a fit and the sizes of the effects that are named. `nameless`: something is missing that has no name.
+Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
+             const std::optional<Filming>& filming);
+
+/// As a clip is called in the twin's file: what is no letter, digit, "-" or "_" is "-".
+std::string twin_clip_name(const std::string& name);
 
 }  // namespace glidelab::diagnose

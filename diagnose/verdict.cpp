@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "diagnose/alike_effects.h"
 #include "diagnose/held_out.h"
 #include "diagnose/next_experiment.h"
 #include "diagnose/twin.h"
@@ -223,6 +224,36 @@ Isolability isolability_of(const TrackSet& set, const MotionFit& nominal, const 
   return result;
 }
 
+std::vector<NamedExplanation> named_explanations(const Comparison& comparison) {
+  std::vector<NamedExplanation> named;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed) continue;
+    NamedExplanation& one = named.emplace_back(NamedExplanation{{}, hypothesis.probability});
+    for (const std::size_t e : hypothesis.effects) one.ids.emplace_back(effect_list()[e].id);
+  }
+  return named;
+}
+
+/// Of the clips that the twin repeats, from their first motion's start on.
+std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
+  std::vector<MeasuredMotion> measured;
+  for (const auto& [clip, start_s] : twin.clips) {
+    const auto motion = std::find_if(set.motions.begin(), set.motions.end(),
+                                     [&, at = clip](const TrackedMotion& one) { return one.clip == at; });
+    MeasuredMotion& one = measured.emplace_back();
+    one.clip = twin_clip_name(set.clips[clip].name);
+    one.start_s = start_s;
+    one.noise_m = motion->sd_m;
+    one.bandwidth_s = set.clips[clip].bandwidth_s;
+    for (std::size_t p = 0; p < motion->t_s.size(); ++p) {
+      if (motion->outlier[p]) continue;
+      one.t_s.push_back(motion->t_s[p]);
+      one.x_m.push_back(motion->x_m[p]);
+    }
+  }
+  return measured;
+}
+
 /// Drag and friction take energy from a glider. A fit that has them give some says that something stated is wrong.
 void note_what_drives(const MotionFit& fit, Diagnosis& diagnosis) {
   const Eigen::MatrixXd covariance = common_covariance(fit);
@@ -278,6 +309,9 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     }
     std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    join_alike(
+        named_explanations(comparison),
+        [](const std::string& id) { return std::string(effect_list()[effect_index(id)].words); }, diagnosis);
     diagnosis.stage = diagnosis.effects.front().stage;
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
@@ -306,10 +340,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   note_what_drives(*fit, diagnosis);
   diagnosis.residuals = residuals_of(set, nominal, *fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
-  const bool named_fit = diagnosis.verdict == "effect" && best != nullptr;
-  Twin twin = twin_of(set, *fit, named_fit ? best->effects : std::vector<std::size_t>{}, comparison);
+  Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == "unknown", pictures.filming);
+  diagnosis.measured = measured_of(set, twin);
   diagnosis.twin = std::move(twin.toml);
   diagnosis.twin_lacks = std::move(twin.lacks);
+  diagnosis.twin_from_m = twin.from_m;
   diagnosis.next_experiment = next_experiment(set, comparison, diagnosis);
   diagnosis.pictures = std::move(pictures.findings);
   diagnosis.picture_curves = std::move(pictures.curves);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace glidelab::diagnose {
 namespace {
@@ -17,12 +18,32 @@ std::string percent(double probability) {
   return fmt::format("{:.0f} %", 100.0 * probability);
 }
 
-std::string list_of(const std::vector<std::string>& words) {
+std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ") {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
   }
   return text;
+}
+
+std::string count_in_words(std::size_t count) {
+  static const std::array<const char*, 9> kWords = {"two",   "three", "four", "five", "six",
+                                                    "seven", "eight", "nine", "ten"};
+  return count >= 2 && count - 2 < kWords.size() ? kWords[count - 2] : fmt::format("{}", count);
+}
+
+/// One effect, or the set that these data cannot tell apart, before any of its members.
+std::string claim(const DiagnosedEffect& effect) {
+  if (effect.alike.empty()) {
+    return fmt::format("{} ({}, {})", effect.words, effect.id, percent(effect.probability));
+  }
+  std::vector<std::string> members;
+  for (const AlikeEffect& one : effect.alike) {
+    members.push_back(one.probability ? fmt::format("{} ({}, {})", one.words, one.id, percent(*one.probability))
+                                      : fmt::format("{} ({})", one.words, one.id));
+  }
+  return fmt::format("one of these {}, {} together, and cannot tell which: {}", count_in_words(members.size()),
+                     percent(effect.joint_probability), list_of(members, ", or "));
 }
 
 std::string in_words(const std::string& variable) {
@@ -42,8 +63,12 @@ std::string gap_words(const Diagnosis& diagnosis) {
       "dry friction, gravity) as their noise explains",
       times(gap.before));
   if (diagnosis.verdict == "effect" && gap.shrink) {
+    const bool one = diagnosis.effects.size() == 1;
     text += fmt::format("; with {} in the model it is {} times (1 is the floor)",
-                        diagnosis.effects.size() > 1 ? "these effects" : "this effect", times(gap.after));
+                        !one                                      ? "these effects"
+                        : diagnosis.effects.front().alike.empty() ? "this effect"
+                                                                  : diagnosis.effects.front().id,
+                        times(gap.after));
   }
   if (diagnosis.verdict == "unknown" && gap.shrink && gap.after < gap.before) {
     text += fmt::format(
@@ -90,15 +115,8 @@ std::string summary_of(const Diagnosis& diagnosis) {
     return text + gap_words(diagnosis);
   }
   std::vector<std::string> words;
-  for (const DiagnosedEffect& effect : diagnosis.effects) {
-    words.push_back(fmt::format("{} ({}, {})", effect.words, effect.id, percent(effect.probability)));
-  }
+  for (const DiagnosedEffect& effect : diagnosis.effects) words.push_back(claim(effect));
   std::string text = fmt::format("The data show {}.", list_of(words));
-  for (const DiagnosedEffect& effect : diagnosis.effects) {
-    if (effect.equivalent_to.empty()) continue;
-    text += fmt::format(" They cannot tell {} from {}: any of these would look the same.", effect.id,
-                        list_of(effect.equivalent_to));
-  }
   return text + gap_words(diagnosis);
 }
 

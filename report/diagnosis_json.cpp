@@ -22,6 +22,7 @@ Json effect_json(const diagnose::DiagnosedEffect& effect) {
   object["stage"] = effect.stage;
   put(object, "probability", effect.probability);
   object["equivalent_to"] = effect.equivalent_to;
+  put(object, "joint_probability", effect.joint_probability);
   object["parameters"] = parameters_json(effect.parameters);
   return object;
 }

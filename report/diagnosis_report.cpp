@@ -5,6 +5,7 @@
 #include "report/diagnosis_plots.h"
 #include "report/html.h"
 #include "report/number_text.h"
+#include "report/twin_plots.h"
 
 namespace glidelab::report {
 namespace {
@@ -23,7 +24,9 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
   std::string text = "<div class=\"tiles\">";
   if (diagnosis.verdict == "effect") {
     for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-      text += tile(probability_text(effect.probability), effect.id);
+      std::string names;
+      for (const diagnose::AlikeEffect& one : effect.alike) names += (names.empty() ? "one of " : ", ") + one.id;
+      text += tile(probability_text(effect.joint_probability), names.empty() ? effect.id : names);
     }
   } else {
     text += tile(diagnosis.verdict, "verdict");
@@ -38,7 +41,7 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string effect_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"effect", "stage", "probability", "size", "not to be told from"}, 2);
+  HtmlTable table({"effect", "stage", "probability", "size", "not to be told from", "one of these, together"}, 2);
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     std::string size, same;
     for (const auto& p : effect.parameters) {
@@ -46,7 +49,7 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
     }
     for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
     table.row({escape(effect.id), escape(effect.stage), probability_text(effect.probability), size.empty() ? "–" : size,
-               same.empty() ? "–" : same});
+               same.empty() ? "–" : same, same.empty() ? "–" : probability_text(effect.joint_probability)});
   }
   return table.empty() ? "" : table.str();
 }
@@ -111,9 +114,21 @@ std::string region_table(const diagnose::Diagnosis& diagnosis) {
   return table.empty() ? "" : table.str();
 }
 
+Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<validate::TwinMotion>& twin) {
+  Html text = std::string(
+      "<h2>The twin beside the data</h2>\n<p>The twin is the simulation with the fitted motions in it. Its positions "
+      "are "
+      "exact but for noise as the data have it; what a camera does to them is not in them.</p>\n");
+  for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
+    text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
+  }
+  return text + figures(twin_plots(twin));
+}
+
 }  // namespace
 
-Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis) {
+Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
+                      const std::vector<validate::TwinMotion>& twin) {
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
   body += tiles(diagnosis);
   body += fmt::format("<p>{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(diagnosis.summary),
@@ -121,6 +136,7 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
   for (const std::string& note : diagnosis.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   body += "<h2>The verdict</h2>\n" + effect_table(diagnosis) + figures(verdict_plots(diagnosis));
   body += "<h2>Where the gap lies</h2>\n" + figures(where_plots(diagnosis)) + region_table(diagnosis);
+  if (!twin.empty()) body += twin_section(diagnosis, twin);
   if (!diagnosis.pictures.empty()) {
     body +=
         "<h2>What the pictures show</h2>\n<p>Some faults of a camera hardly move the positions that are found, and "

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "diagnose/diagnosis.h"
 #include "report/html.h"
+#include "validate/twin_motions.h"
 
 namespace glidelab::report {
 
-/// `title` names what was diagnosed. EnvironmentError where gnuplot fails.
-Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis);
+/// `title` names what was diagnosed; `twin`, where one was asked for, is shown beside the data. EnvironmentError where
+/// gnuplot fails.
+Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
+                      const std::vector<validate::TwinMotion>& twin = {});
 
 }  // namespace glidelab::report

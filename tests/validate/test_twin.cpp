@@ -5,6 +5,8 @@
 #include "catch.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/made_motions.h"
+#include "diagnose/track_model.h"
+#include "diagnose/twin.h"
 #include "render/scenario.h"
 #include "temp_dir.h"
 #include "validate/made_tracks.h"
@@ -51,5 +53,58 @@ TEST_CASE("a twin says which effect a scenario cannot express") {
   const auto made = tests::made_experiment(tests::made_launches(), bow, 7);
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
   REQUIRE(diagnosis.verdict == "effect");
-  CHECK(diagnosis.twin_lacks == std::vector<std::string>{"track_bow"});
+  CHECK(diagnosis.twin_lacks.front().what == "track_bow");
+}
+
+TEST_CASE("each force that a scenario has moves the twin as the fit's own model moves") {
+  const auto made = tests::made_experiment(tests::made_launches(), {}, 5);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  // Members as effect_values.h has them: 1/v_c², n - 1, s - 1.
+  const std::vector<std::pair<std::string, std::vector<double>>> cases = {{"quadratic_drag", {0.05}},
+                                                                          {"eddy_rolloff", {0.2}},
+                                                                          {"power_law_drag", {0.15}},
+                                                                          {"stribeck", {1.5, 0.1}},
+                                                                          {"load_independent_friction", {0.01}},
+                                                                          {"direction_asymmetry", {0.3}},
+                                                                          {"rotational_inertia", {0.02}}};
+  for (const auto& [id, values] : cases) {
+    INFO(id);
+    const std::size_t effect = diagnose::effect_index(id);
+    const diagnose::MotionFit fit =
+        diagnose::linearise_at(set, {effect}, diagnose::with_effect(set, nominal, effect, values, {}));
+    const diagnose::Twin twin = diagnose::twin_of(set, fit, {{id, "dynamics", "", 1.0, {}, {}, 1.0, {}}}, false, {});
+    CHECK(twin.lacks.empty());
+    const auto tracks =
+        validate::make_tracks(render::read_scenario(twin.toml, "twin.toml", render::ScenarioChecks::values), 1);
+    double most = 0.0, moved = 0.0;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      const diagnose::TrackedMotion& motion = set.motions[i];
+      const auto at = std::find_if(tracks.setups.begin(), tracks.setups.end(), [&](const auto& setup) {
+        return setup.name == diagnose::twin_clip_name(set.clips[motion.clip].name);
+      });
+      REQUIRE(at != tracks.setups.end());
+      const auto& x_m = tracks.tracks[static_cast<std::size_t>(at - tracks.setups.begin())].x_m;
+      const std::vector<double> fitted =
+          diagnose::move(diagnose::model_of(set, *fit.layout, fit.at, i), motion.t_s).x_m;
+      const std::vector<double> without =
+          diagnose::move(diagnose::model_of(set, *nominal.layout, nominal.at, i), motion.t_s).x_m;
+      for (std::size_t p = 0; p < std::min(fitted.size(), x_m.size()); ++p) {
+        most = std::max(most, std::abs(fitted[p] - twin.from_m - x_m[p]));
+        moved = std::max(moved, std::abs(fitted[p] - without[p]));
+      }
+    }
+    CHECK(moved > 1e-3);  // the effect moves the glider far more
+    CHECK(most < 1e-6);   // than two integrators and nine figures of a file differ
+  }
+}
+
+TEST_CASE("a twin of something without a name says that it lacks it") {
+  const auto made = tests::made_experiment(tests::made_launches(), {}, 5);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::Twin twin = diagnose::twin_of(set, diagnose::fit_nominal(set), {}, true, {});
+  REQUIRE(twin.lacks.size() == 1);
+  CHECK(twin.lacks.front().what == "what is missing");
+  CHECK(twin.toml.find("# Not in it: what is missing (it has no name).") != std::string::npos);
+  CHECK(twin.toml.find("# Assumed: the whole camera") != std::string::npos);
 }

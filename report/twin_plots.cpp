@@ -1,0 +1,70 @@
+#include "report/twin_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "report/plot_style.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr std::size_t kPoints = 4000;  // of all clips
+
+/// Two sets of points, the second one over the first.
+std::string points(const char* below, const char* above) {
+  return fmt::format(
+      "plot $data using 1:2 with points pt 7 ps 0.3 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
+      "'{0}' "
+      "title '{2}', $twin using 1:2 with points pt 7 ps 0.15 lc rgb '{1}' notitle, keyentry with points pt 7 ps 0.8 lc "
+      "rgb '{1}' title '{3}'\n",
+      kColors[4], kColors[1], below, above);
+}
+
+void add(const std::vector<double>& at, const std::vector<double>& value, double scale, std::size_t step,
+         PlotData& into) {
+  for (std::size_t p = 0; p < at.size(); p += step) into.rows.push_back({at[p], scale * value[p]});
+}
+
+void never_empty(PlotData& data) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  if (data.rows.empty()) data.rows = {{kNan, kNan}};
+}
+
+}  // namespace
+
+std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
+  PlotData rest{"data", {}}, noise{"twin", {}}, data{"data", {}}, twin{"twin", {}};
+  std::size_t count = 0;
+  for (const validate::TwinMotion& motion : motions) count += motion.t_s.size();
+  const std::size_t step = 1 + count / kPoints;
+  double largest_m = 0.0;
+  for (const validate::TwinMotion& motion : motions) {
+    for (const double x : motion.rest_m) largest_m = std::max(largest_m, std::abs(x));
+  }
+  const bool micrometres = largest_m < 2e-4;
+  const double scale = micrometres ? 1e6 : 1e3;
+  for (const validate::TwinMotion& motion : motions) {
+    add(motion.t_s, motion.rest_m, scale, step, rest);
+    add(motion.t_s, motion.noise_m, scale, step, noise);
+    add(motion.v_m_s, motion.a_m_s2, 1.0, step, data);
+    add(motion.twin_v_m_s, motion.twin_a_m_s2, 1.0, step, twin);
+  }
+  for (PlotData* one : {&rest, &noise, &data, &twin}) never_empty(*one);
+  return {
+      {Drawing{std::string(kFrame) + "set offsets 0, graph 0.02, graph 0.06, graph 0.06\nset xlabel 'time t (s)'\n" +
+                   fmt::format("set ylabel 'position  ({})'\n", micrometres ? "µm" : "mm") +
+                   points("data − twin", "noise of the twin"),
+               std::vector{rest, noise}},
+       "What the measured positions of all clips lie off the twin's: as much as noise alone, where nothing is missing",
+       "Measured positions less those of the twin over time, beside noise"},
+      {Drawing{std::string(kFrame) + "set xlabel 'speed v (m/s)'\nset ylabel 'acceleration a (m/s²)'\n" +
+                   points("data", "twin"),
+               std::vector{data, twin}},
+       "Acceleration over speed, of the data and of the twin, smoothed alike",
+       "Acceleration over speed of data and twin"}};
+}
+
+}  // namespace glidelab::report
