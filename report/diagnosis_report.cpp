@@ -117,8 +117,8 @@ std::string region_table(const diagnose::Diagnosis& diagnosis) {
 Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<validate::TwinMotion>& twin) {
   Html text = std::string(
       "<h2>The twin beside the data</h2>\n<p>The twin is the simulation with the fitted motions in it. Its positions "
-      "are "
-      "exact but for noise as the data have it; what a camera does to them is not in them.</p>\n");
+      "are exact but for noise as the data have it; of what a camera does to them only a wrong scale or perspective is "
+      "in them.</p>\n");
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 
 #include "core/phase_diagram.h"
 #include "render/scenario.h"
@@ -28,13 +29,34 @@ std::optional<double> at_time(const core::TrackData& track, double t_s) {
   return x;
 }
 
+double size_of(const diagnose::Diagnosis& diagnosis, std::string_view id, std::string_view key) {
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
+      if (effect.id == id && parameter.key == key) return parameter.value;
+    }
+  }
+  return 0.0;
+}
+
+/// x as a wrong scale or perspective shows it, where one is named: (1 + e) x and x / (1 + p x), x of the data.
+void see(const diagnose::Diagnosis& diagnosis, MadeTracks& made) {
+  const double e = size_of(diagnosis, "scale_error", "e"), p = size_of(diagnosis, "perspective_error", "p_1_m");
+  for (core::TrackData& track : made.tracks) {
+    for (double& x_m : track.x_m) {
+      const double there = diagnosis.twin_from_m + x_m;
+      x_m = (1.0 + e) * there / (1.0 + p * there) - diagnosis.twin_from_m;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<TwinMotion> twin_motions(const diagnose::Diagnosis& diagnosis, std::uint64_t seed) {
   render::Scenario scenario = render::read_scenario(diagnosis.twin, "twin.toml", render::ScenarioChecks::values);
   scenario.recording.clock.dropped_fraction = 0.0;
   scenario.recording.clock.jitter_s = 0.0;
-  const MadeTracks exact = make_tracks(scenario, seed);
+  MadeTracks exact = make_tracks(scenario, seed);
+  see(diagnosis, exact);
   std::vector<TwinMotion> motions;
   std::vector<double> noise_m(exact.tracks.size(), 0.0);
   const auto place = [&](const std::string& clip) {

@@ -2,7 +2,7 @@
 /// much noise as the data have.
 ///
 /// Exact positions: the scenario's clock but for lost frames and uneven times, which fall elsewhere in every recording;
-/// of the camera nothing. Smoothed with each clip's own bandwidth. SI units.
+/// of the camera a wrong scale and a wrong perspective, no more. Smoothed with each clip's own bandwidth. SI units.
 #pragma once
 
 #include <cstdint>

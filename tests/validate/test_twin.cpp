@@ -10,6 +10,7 @@
 #include "render/scenario.h"
 #include "temp_dir.h"
 #include "validate/made_tracks.h"
+#include "validate/twin_motions.h"
 
 using namespace glidelab;
 
@@ -107,4 +108,25 @@ TEST_CASE("a twin of something without a name says that it lacks it") {
   CHECK(twin.lacks.front().what == "what is missing");
   CHECK(twin.toml.find("# Not in it: what is missing (it has no name).") != std::string::npos);
   CHECK(twin.toml.find("# Assumed: the whole camera") != std::string::npos);
+}
+
+TEST_CASE("a twin with a wrong scale lies on the data beside it, and one without what is missing does not") {
+  const auto rms = [](const diagnose::Diagnosis& diagnosis) {
+    double square = 0.0, noise = 0.0;
+    for (const validate::TwinMotion& motion : validate::twin_motions(diagnosis, 1)) {
+      REQUIRE(motion.rest_m.size() > 50);
+      for (const double x : motion.rest_m) square += x * x;
+      for (const double x : motion.noise_m) noise += x * x;
+    }
+    return std::sqrt(square / noise);
+  };
+  const tests::MadeEffect longer = {{}, [](double x, double) { return 1.03 * x; }};
+  const auto made = tests::made_experiment(tests::made_launches(), longer, 3);
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  REQUIRE(diagnosis.verdict == "effect");
+  // 1200 positions each: a ratio of two such is 1 to 2.9 %; five of those.
+  CHECK(std::abs(rms(diagnosis) - 1.0) < 0.15);
+  auto without = diagnosis;
+  without.effects.clear();
+  if (diagnosis.effects.front().id == "scale_error") CHECK(rms(without) > 10.0);
 }
