@@ -122,6 +122,12 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
   }
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    if (effect.id != "rolling_shutter" && effect.id != "camera_motion") continue;
+    text += fmt::format(
+        "<p class=\"note\">{} acts in the twin's pictures only: here the data lie off by what it does.</p>\n",
+        escape(effect.id));
+  }
   return text + figures(twin_plots(twin));
 }
 

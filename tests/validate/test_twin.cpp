@@ -121,7 +121,7 @@ TEST_CASE("a twin with a wrong scale lies on the data beside it, and one without
     return std::sqrt(square / noise);
   };
   const tests::MadeEffect longer = {{}, [](double x, double) { return 1.03 * x; }};
-  const auto made = tests::made_experiment(tests::made_launches(), longer, 3);
+  const auto made = tests::made_experiment(tests::made_launches(), longer, 3, 3e-5, 150, 100.0, 0.005);
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
   REQUIRE(diagnosis.verdict == "effect");
   // 1200 positions each: a ratio of two such is 1 to 2.9 %; five of those.
