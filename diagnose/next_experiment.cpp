@@ -4,199 +4,260 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <utility>
+#include <vector>
 
-#include "base/dense.h"
+#include "diagnose/expected_evidence.h"
 #include "diagnose/held_out.h"
+#include "diagnose/next_changes.h"
+#include "diagnose/next_words.h"
+#include "diagnose/verdict.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kDecides = 5.0;  // expected log likelihood at which a clip is worth recording
-constexpr double kSlowest = 0.2;  // launch that is suggested, of the fastest one that there is
+constexpr double kDecides = 5.0;         // expected log likelihood at which a change is worth making
+constexpr double kBeyondDoubt = 1000.0;  // its figure means no more than that
+constexpr double kStillLikely = 0.05;    // probability of a rival
+constexpr std::size_t kMostRivals = 3;
+constexpr double kSharpens = 0.95;  // of the standard deviation: more is not worth a clip
 
-struct Candidate {
-  std::string words;
-  std::size_t group = 0;
-  double mass_kg = 0.0;
-  double v0_m_s = 0.0;
-  double rate_hz = 0.0;
-};
-
-std::string speed_words(double v) {
-  return fmt::format("{} at {:.2g} m/s", v < 0.0 ? "uphill" : "downhill", std::abs(v));
-}
-
-std::vector<Candidate> candidates_of(const TrackSet& set, const MotionFit& fit) {
-  double slow = 1e9, fast = 0.0, rate = 0.0, light = 1e9, heavy = 0.0;
-  for (std::size_t i = 0; i < set.motions.size(); ++i) {
-    const double v = std::abs(fit.at.own[i][1]);
-    slow = std::min(slow, v);
-    fast = std::max(fast, v);
-    rate = std::max(rate, set.clips[set.motions[i].clip].frame_rate_hz);
-    light = std::min(light, set.masses[set.motions[i].mass].mass_kg);
-    heavy = std::max(heavy, set.masses[set.motions[i].mass].mass_kg);
-  }
-  std::vector<Candidate> candidates;
-  for (std::size_t g = 0; g < set.groups.size(); ++g) {
-    const std::string where =
-        set.groups.size() > 1 ? fmt::format(" on set-up \"{}\"", set.groups[g].name) : std::string();
-    for (const int direction : {-1, 1}) {
-      for (const double mass : {light, heavy, 1.6 * heavy, 0.6 * light}) {
-        // Where a motion was released, half of the slowest launch is no launch.
-        for (const double v : {std::max(0.5 * slow, kSlowest * fast), fast, 1.8 * fast}) {
-          const bool new_mass = mass != light && mass != heavy;
-          candidates.push_back({fmt::format("a launch {}{} with {}{:.0f} g", speed_words(direction * v), where,
-                                            new_mass ? "the mass changed to " : "", 1000.0 * mass),
-                                g, mass, direction * v, rate});
-        }
-      }
-    }
-  }
-  return candidates;
-}
-
-/// Expected difference in log likelihood of one clip made by `a`, explained by `b` as well as it can.
-double decides(const TrackSet& set, const MotionFit& a, const MotionFit& b, const Eigen::MatrixXd& covariance_b,
-               const Candidate& candidate) {
-  TrackSet one = set;
-  one.motions.clear();
-  one.clips = {{"next", candidate.rate_hz, 0.0, 0, 0.0}};
-  one.masses.push_back({candidate.mass_kg, 0.0});
-  TrackedMotion motion;
-  motion.group = candidate.group;
-  motion.mass = one.masses.size() - 1;
-  motion.sd_m = set.motions.front().sd_m;
-  motion.scale_sd = set.motions.front().scale_sd;
-  const double span = set.motions.front().t_s.back() - set.motions.front().t_s.front();
-  const auto frames = static_cast<std::size_t>(std::clamp(span * candidate.rate_hz, 20.0, 2000.0));
-  for (std::size_t k = 0; k < frames; ++k) motion.t_s.push_back(static_cast<double>(k) / candidate.rate_hz);
-  motion.outlier.assign(frames, 0);
-  motion.x_m.assign(frames, 0.0);
-  one.motions.push_back(motion);
-  const double x0 = set.groups[candidate.group].x_mid_m + (candidate.v0_m_s < 0.0 ? 0.4 : -0.4);
-  const auto point = [&](const MotionFit& fit) {
-    FitPoint at{fit.at.global, {Eigen::VectorXd::Zero(fit.at.own.front().size())}};
-    at.own[0][0] = x0;
-    at.own[0][1] = candidate.v0_m_s;
-    return at;
-  };
-  const TrackModel made = model_of(one, *a.layout, point(a), 0);
-  one.motions[0].x_m = move(made, motion.t_s).x_m;
-  const MotionFit seen = linearise_at(one, b.effects, point(b));
-  const FitMotion& by = seen.motions.front();
-  if (!by.residual.allFinite() || !by.global.allFinite() || !by.own.allFinite()) return 0.0;
-  Eigen::MatrixXd normal = base::transposed_product(by.own, by.own);
-  for (Eigen::Index o = 0; o < normal.rows(); ++o) normal(o, o) = normal(o, o) * (1.0 + 1e-12) + 1e-9;
-  const Eigen::MatrixXd gain = base::solve_positive(normal, by.own.transpose());
-  const Eigen::VectorXd u = by.residual - base::product(by.own, base::product(gain, by.residual));
-  const Eigen::MatrixXd g = by.global - base::product(by.own, base::product(gain, by.global));
-  // u'(1 + G C G')^-1 u with C = L L': by Woodbury.
-  const base::SymmetricEigen eigen = base::symmetric_eigen(covariance_b);
-  const Eigen::VectorXd root = eigen.values.cwiseMax(0.0).cwiseSqrt();
-  const Eigen::MatrixXd gl = base::product(g, Eigen::MatrixXd(eigen.vectors * root.asDiagonal()));
-  Eigen::MatrixXd inner = base::transposed_product(gl, gl);
-  inner.diagonal().array() += 1.0;
-  const Eigen::VectorXd along = base::transposed_product(gl, u);
-  const Eigen::VectorXd taken = base::solve_positive(inner, along);
-  return std::max(0.0, 0.5 * (u.squaredNorm() - along.dot(taken)));
-}
-
-bool holds(const std::vector<std::string>& ids, const char* id) {
+bool holds(const std::vector<std::string>& ids, const std::string& id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-/// Pairs that no further clip of the same kind can split.
-std::string known_pair(const Diagnosis& diagnosis) {
-  for (const DiagnosedEffect& effect : diagnosis.effects) {
-    std::vector<std::string> set = effect.equivalent_to;
-    set.push_back(effect.id);
-    if (holds(set, "scale_error") && holds(set, "frame_rate_error")) {
-      return "Film a running stop-watch (it shows the frame rate) and measure a length on the track with a ruler (it "
-             "shows "
-             "the scale): no further clip of the glider tells a wrong scale from a wrong frame rate.";
-    }
-    if (holds(set, "camera_motion") && holds(set, "base_vibration")) {
-      return "Keep a mark that is fixed to the table in the picture: it moves with the camera if the camera shakes, "
-             "and "
-             "stays if only the track does.";
-    }
-    if (holds(set, "direction_asymmetry") && (holds(set, "scale_error") || holds(set, "frame_rate_error"))) {
-      return "Turn the track round (or the glider on it) and record the same launches again: an asymmetry of the "
-             "glider "
-             "turns with it, a wrong scale does not.";
+std::vector<std::string> only_in(const Hypothesis& a, const Hypothesis& b) {
+  std::vector<std::string> ids;
+  for (const std::size_t e : a.effects) {
+    if (std::find(b.effects.begin(), b.effects.end(), e) == b.effects.end()) {
+      ids.emplace_back(effect_list()[e].id);
     }
   }
-  return {};
+  return ids;
 }
 
-std::string for_unknown(const Diagnosis& diagnosis) {
-  const std::string variable = diagnosis.regions.empty() ? "" : diagnosis.regions.front().variable;
-  if (variable == "x_m") {
-    return "Move the camera along the track by a third of the view and record the same launches again: what belongs to "
-           "the track stays at its place on it, what belongs to the picture moves.";
+std::string joined(const std::vector<std::string>& ids) {
+  std::string text;
+  for (const std::string& id : ids) text += (text.empty() ? "" : " + ") + id;
+  return text;
+}
+
+/// Whether the diagnosis says that these data cannot tell `other` from the leading explanation.
+bool equivalent(const Diagnosis& diagnosis, const Hypothesis& first, const Hypothesis& other) {
+  const std::vector<std::string> of_first = only_in(first, other), of_other = only_in(other, first);
+  if (of_first.size() != 1 || of_other.size() != 1) return false;
+  return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const DiagnosedEffect& effect) {
+    return effect.id == of_first.front() && holds(effect.equivalent_to, of_other.front());
+  });
+}
+
+const Hypothesis* leading(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis) {
+  if (diagnosis.verdict == "effect") return best_named(set, comparison);
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (!hypothesis.unnamed && hypothesis.effects.empty()) return &hypothesis;
   }
-  if (variable == "v_m_s") {
-    return "Record launches at two further speeds, with one mass and on one inclination: the force that is missing "
-           "depends on the speed, and its shape tells what it is.";
+  return nullptr;
+}
+
+/// Most likely first: those with a twentieth of the probability, and those that these data cannot tell from the first.
+std::vector<const Hypothesis*> rivals_of(const Comparison& comparison, const Diagnosis& diagnosis,
+                                         const Hypothesis& first) {
+  std::vector<const Hypothesis*> rivals;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed || rivals.size() == kMostRivals) continue;
+    if (only_in(first, hypothesis).empty() && only_in(hypothesis, first).empty()) continue;
+    const bool likely = hypothesis.probability >= kStillLikely || equivalent(diagnosis, first, hypothesis);
+    if (likely) rivals.push_back(&hypothesis);
   }
-  if (variable == "mass_kg") return "Record a further mass, half way between two others, launched both ways.";
-  return "Repeat one of the launches three times without changing anything: what differs between the repetitions is no "
-         "law of motion.";
+  return rivals;
+}
+
+const MotionFit* fit_of(const Comparison& comparison, const Hypothesis& of) {
+  return of.fit < 0 ? nullptr : &comparison.fits[static_cast<std::size_t>(of.fit)];
+}
+
+std::string likelihood_words(double gain) {
+  if (gain > kBeyondDoubt) return fmt::format("more than {:.0f}", kBeyondDoubt);
+  return gain < 10.0 ? fmt::format("{:.1f}", gain) : fmt::format("{:.0f}", gain);
+}
+
+/// Two explanations, of which one is taken for right: the one that has what the other lacks, because nothing shows of
+/// an effect that is not there.
+struct Contest {
+  const Hypothesis *right, *other;
+  double probability = 0.0;  // of the rival
+
+  Contest(const Hypothesis& first, const Hypothesis& rival)
+      : right(&first), other(&rival), probability(rival.probability) {
+    if (only_in(first, rival).empty()) std::swap(right, other);
+  }
+};
+
+/// "whether it is scale_error or direction_asymmetry or frame_rate_error, and whether there is stribeck".
+std::string doubt_words(const std::vector<Contest>& contests) {
+  std::string between, there;
+  for (std::size_t c = 0; c < contests.size(); ++c) {
+    const std::string is = joined(only_in(*contests[c].right, *contests[c].other));
+    const std::string or_is = joined(only_in(*contests[c].other, *contests[c].right));
+    if (or_is.empty()) {
+      there += (there.empty() ? "" : " or ") + is;
+      continue;
+    }
+    if (between.find(is) == std::string::npos) between += (between.empty() ? "" : " or ") + is;
+    between += " or " + or_is;
+  }
+  std::string words = between.empty() ? "" : "whether it is " + between;
+  if (!there.empty()) words += (words.empty() ? "" : ", and ") + ("whether there is " + there);
+  return words;
+}
+
+struct Choice {
+  const Change* change = nullptr;
+  double gain = 0.0;
+};
+
+/// The change after which the odds of all rivals together fall most: by exp(gain).
+Choice choose(const TrackSet& set, const Comparison& comparison, const std::vector<Contest>& contests,
+              const std::vector<Change>& changes) {
+  std::vector<Eigen::MatrixXd> covariances;
+  double odds = 0.0;
+  for (const Contest& contest : contests) {
+    covariances.push_back(common_covariance(*fit_of(comparison, *contest.other)));
+    odds += contest.probability;
+  }
+  Choice best;
+  for (const Change& change : changes) {
+    std::vector<double> gains;
+    for (std::size_t c = 0; c < contests.size(); ++c) {
+      const MotionFit &right = *fit_of(comparison, *contests[c].right),
+                      &other = *fit_of(comparison, *contests[c].other);
+      gains.push_back(expected_split(set, right, other, covariances[c], change));
+    }
+    const double least = *std::min_element(gains.begin(), gains.end());
+    double left = 0.0;
+    for (std::size_t c = 0; c < gains.size(); ++c) left += contests[c].probability / odds * std::exp(least - gains[c]);
+    const double gain = least - std::log(left);
+    if (std::isfinite(gain) && gain > best.gain) best = {&change, gain};
+  }
+  return best;
+}
+
+/// What splits the leading explanation from its rivals, or else from the likeliest of them.
+std::string split(const TrackSet& set, const Comparison& comparison, std::vector<Contest> contests) {
+  const std::vector<Change> changes = feasible_changes(set, comparison.fits.front());
+  Choice best = choose(set, comparison, contests, changes);
+  if (contests.size() > 1 && best.gain < kDecides) {
+    contests.erase(contests.begin() + 1, contests.end());
+    best = choose(set, comparison, contests, changes);
+  }
+  const std::string doubt = doubt_words(contests);
+  if (best.change == nullptr || best.gain < kDecides) {
+    return fmt::format(
+        "None of {} changes weighed ({}) would settle {} (expected log likelihood {:.2g} at most): a "
+        "lower noise (a longer lens, a larger marker) or many more clips would.",
+        changes.size(), kinds_in_words(changes), doubt, best.gain);
+  }
+  return fmt::format("{}: of {} changes weighed ({}) this one would settle best {} (expected log likelihood {}).",
+                     best.change->words, changes.size(), kinds_in_words(changes), doubt, likelihood_words(best.gain));
+}
+
+/// A parameter for a person: its name, unit, place among the common ones, size, and what of the fit's it is.
+struct Weak {
+  std::string name, unit;
+  Eigen::Index at = 0;
+  double value = 0.0, by_member = 1.0;
+};
+
+/// Those that the explanation names; of the usual model, K and mu.
+std::vector<Weak> named_parameters(const MotionFit& fit) {
+  std::vector<Weak> named;
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    const auto at = static_cast<Eigen::Index>(g);
+    if (globals[g].parameter == nullptr || globals[g].parameter->key.empty()) continue;
+    const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
+    if (!std::isfinite(value.value)) continue;  // a v_c that fits best where it is absent
+    named.push_back({fmt::format("{} of {}", globals[g].parameter->key, effect_list()[globals[g].effect].id), "", at,
+                     value.value, value.by_member});
+  }
+  if (named.empty()) named = {{"K", " N s/m", 0, fit.at.global[0], 1.0}, {"mu", "", 1, fit.at.global[1], 1.0}};
+  return named;
+}
+
+/// What would be known better of an explanation that has no rival.
+std::string sharpen(const TrackSet& set, const Comparison& comparison, const MotionFit& fit) {
+  const Eigen::MatrixXd before = common_covariance(fit);
+  const auto sd_of = [](const Weak& weak, const Eigen::MatrixXd& covariance) {
+    return std::sqrt(std::max(0.0, covariance(weak.at, weak.at))) * std::abs(weak.by_member);
+  };
+  const std::vector<Weak> named = named_parameters(fit);
+  const Weak& weak = *std::max_element(named.begin(), named.end(), [&](const Weak& a, const Weak& b) {
+    return sd_of(a, before) * std::abs(b.value) < sd_of(b, before) * std::abs(a.value);
+  });
+  const double sd = sd_of(weak, before);
+  const std::vector<Change> changes = feasible_changes(set, comparison.fits.front());
+  double best = sd;
+  const Change* choice = nullptr;
+  for (const Change& change : changes) {
+    const double after = sd_of(weak, expected_covariance(set, fit, before, change));
+    if (!std::isfinite(after) || after >= best) continue;
+    best = after;
+    choice = &change;
+  }
+  // As many digits of it as its standard deviation leaves, and one more.
+  const double ratio = sd > 0.0 ? std::abs(weak.value) / sd : 1.0;
+  const int digits = 2 + std::max(0, static_cast<int>(std::ceil(std::log10(std::max(1.0, ratio)))));
+  const std::string known = fmt::format("Nothing else is likely; known least is {} ({:.{}g} ± {:.2g}{}).", weak.name,
+                                        weak.value, std::min(digits, 10), sd, weak.unit);
+  if (choice == nullptr || best > kSharpens * sd) {
+    return fmt::format(
+        "{} None of {} changes weighed ({}) would sharpen it by a twentieth: more clips of each kind "
+        "would, by the root of their number.",
+        known, changes.size(), kinds_in_words(changes));
+  }
+  return fmt::format("{} {}: of {} changes weighed ({}) this one sharpens it most, to ± {:.2g}{}.", known,
+                     choice->words, changes.size(), kinds_in_words(changes), best, weak.unit);
+}
+
+/// The first of these effects that only pictures or single frames show: its sentence.
+std::string for_pictures(const std::vector<std::string>& ids) {
+  for (const std::string& id : ids) {
+    const std::string words = next_for_pictures(id);
+    if (!words.empty()) return words;
+  }
+  return {};
 }
 
 }  // namespace
 
 std::string next_experiment(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis) {
-  if (diagnosis.verdict == "unknown") return for_unknown(diagnosis);
-  const std::string pair = known_pair(diagnosis);
-  if (!pair.empty()) return pair;
-  // The leading explanation that has a fit, and its strongest rival of other effects.
-  const Hypothesis* first = nullptr;
-  const Hypothesis* rival = nullptr;
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (hypothesis.unnamed || hypothesis.fit < 0) continue;
-    if (first == nullptr) {
-      first = &hypothesis;
-    } else if (rival == nullptr && hypothesis.effects.size() <= 1) {
-      rival = &hypothesis;
-    }
+  if (diagnosis.verdict == "unknown") return next_for_unnamed(set, comparison.fits.front(), diagnosis);
+  const Hypothesis* first = leading(set, comparison, diagnosis);
+  if (first == nullptr) return "Repeat one launch of each kind: the more clips, the surer.";
+  std::vector<Contest> contests;
+  for (const Hypothesis* rival : rivals_of(comparison, diagnosis, *first)) {
+    const Contest contest(*first, *rival);
+    std::string pictures = for_pictures(only_in(*contest.right, *contest.other));
+    if (pictures.empty()) pictures = for_pictures(only_in(*contest.other, *contest.right));
+    if (!pictures.empty() && contests.empty())
+      return fmt::format("In doubt is {}. {}", doubt_words({contest}), pictures);
+    const bool fitted = fit_of(comparison, *contest.right) != nullptr && fit_of(comparison, *contest.other) != nullptr;
+    if (pictures.empty() && fitted) contests.push_back(contest);
   }
-  if (first == nullptr || rival == nullptr) return "Repeat one launch of each kind: the more clips, the surer.";
-  const auto motion_of = [&](const Hypothesis& one) {
-    return comparison.fits[static_cast<std::size_t>(one.fit)].effects;
-  };
-  if (!first->effects.empty() && motion_of(*first).empty() && motion_of(*rival).empty()) {
-    return "It shows in single frames: no other launch tells more of it. Record the same launch once more with less "
-           "for "
-           "the camera to do (fewer pixels, more light, its own time stamps written), and see whether it goes.";
+  if (!contests.empty()) return split(set, comparison, std::move(contests));
+  std::vector<std::string> named;
+  for (const DiagnosedEffect& effect : diagnosis.effects) named.push_back(effect.id);
+  const std::string pictures = for_pictures(named);
+  if (!pictures.empty()) return pictures;
+  if (diagnosis.verdict == "effect" && diagnosis.unknown >= kStillLikely && !diagnosis.regions.empty()) {
+    return next_for_unnamed(set, comparison.fits.front(), diagnosis);
   }
-  const MotionFit& a = comparison.fits[static_cast<std::size_t>(first->effects.empty() ? rival->fit : first->fit)];
-  const MotionFit& b = comparison.fits[static_cast<std::size_t>(first->effects.empty() ? first->fit : rival->fit)];
-  const Eigen::MatrixXd covariance = common_covariance(b);
-  double best = 0.0;
-  const Candidate* choice = nullptr;
-  const std::vector<Candidate> candidates = candidates_of(set, comparison.fits.front());
-  for (const Candidate& candidate : candidates) {
-    const double gain = decides(set, a, b, covariance, candidate);
-    if (std::isfinite(gain) && gain > best) {
-      best = gain;
-      choice = &candidate;
-    }
+  const MotionFit* fit = fit_of(comparison, *first);
+  std::string words = sharpen(set, comparison, fit != nullptr ? *fit : comparison.fits.front());
+  if (diagnosis.verdict == "none" && set.masses.size() == 1) {
+    words += " With one mass a friction that does not grow with the load counts as mu: a second mass tells.";
   }
-  const auto name = [](const MotionFit& fit) {
-    return fit.effects.empty() ? std::string("nothing") : std::string(effect_list()[fit.effects.front()].id);
-  };
-  if (choice == nullptr || best < kDecides) {
-    return fmt::format(
-        "One more clip would hardly split {} from {}: a lower noise (a longer lens, a larger marker, more frames a "
-        "second) "
-        "would.",
-        name(a), name(b));
-  }
-  return fmt::format(
-      "Record {}: of {} possible clips this one would tell {} from {} best (expected log likelihood {:.3g}).",
-      choice->words, candidates.size(), name(a), name(b), best);
+  return words;
 }
 
 }  // namespace glidelab::diagnose
