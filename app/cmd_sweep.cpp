@@ -10,6 +10,8 @@
 #include "app/progress_display.h"
 #include "base/errors.h"
 #include "base/staged_output.h"
+#include "base/temporary_folder.h"
+#include "render/camera_file.h"
 #include "report/gnuplot.h"
 #include "report/sweep_report.h"
 #include "validate/run_sweep.h"
@@ -68,13 +70,14 @@ void show_run(const validate::Sweep& sweep, std::uint64_t run) {
   }
   const validate::RunScenario scenario = validate::scenario_with(sweep, validate::values_of(sweep, run));
   print_result(fmt::format("# run {} of {}, seed {}, noise of tracks {} m\n{}", run, sweep.file.string(),
-                           validate::seed_of(sweep, run), scenario.noise_m, scenario.text));
+                           validate::seed_of(sweep, run), scenario.noise_m,
+                           render::with_camera_written_in(scenario.text, sweep.scenario_file)));
 }
 
 void check_size(const SweepOptions& options, const validate::Sweep& sweep) {
   const std::uint64_t runs = validate::run_count(sweep);
   if (runs > kManyRuns && !options.many) {
-    const validate::RunCost cost = validate::cost_of_run(sweep, 0);
+    const validate::RunCost cost = validate::cost_of_runs(sweep, {}, runs, options.common.jobs);
     const auto all = static_cast<double>(runs);
     throw base::InputError(base::Issue{options.sweep, 0, "",
                                        fmt::format("{} runs (about {} on {} threads, {} of disk)", runs,
@@ -87,13 +90,54 @@ void check_size(const SweepOptions& options, const validate::Sweep& sweep) {
 void finish(const SweepOptions& options, const validate::Sweep& sweep, validate::SweepDatabase& database,
             const fs::path& out, const base::Progress& progress, ProgressDisplay& display) {
   const validate::SweepSummary summary = validate::summarize(sweep, database.database());
-  base::StagedOutput staged(out);
-  report::write_page(staged.dir(), "report.html", report::sweep_report(summary, progress));
-  throw_if_interrupted();
-  staged.publish_files();
+  // The shards of a job array share a folder: a page is of the whole.
+  const bool page = options.shard.empty();
+  if (page) {
+    base::StagedOutput staged(out);
+    report::write_page(staged.dir(), "report.html", report::sweep_report(summary, progress));
+    throw_if_interrupted();
+    staged.publish_files();
+  }
   display.clear();
   print_result(options.common.json ? report::sweep_json(summary) : report::sweep_text(summary));
-  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+  if (page) say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+}
+
+void say_size(const SweepOptions& options, const validate::SweepEstimate& estimate) {
+  say(options.common, fmt::format("{} runs, {} of them to do: about {} on {} threads, {} of disk in the end ({} free)",
+                                  estimate.runs, estimate.missing, duration_text(estimate.seconds), options.common.jobs,
+                                  bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
+}
+
+std::string database_name(const validate::Shard& shard) {
+  return shard.count == 1 ? "sweep.sqlite" : fmt::format("sweep-{}-of-{}.sqlite", shard.index, shard.count);
+}
+
+/// Nothing is written: where there is no database yet the size is that of an empty one elsewhere.
+void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const validate::Shard& shard,
+             const fs::path& out) {
+  const base::TemporaryFolder elsewhere("dry-run");
+  const bool there = fs::exists(out / database_name(shard));
+  validate::SweepDatabase database((there ? out : elsewhere.path()) / database_name(shard), sweep, GLIDELAB_VERSION,
+                                   shard);
+  fs::path disk = fs::absolute(out);
+  while (!fs::exists(disk) && disk.has_relative_path()) disk = disk.parent_path();
+  say_size(options, validate::estimate_sweep(sweep, database, shard, options.common.jobs, disk));
+}
+
+/// Where nothing was there before, a merge that fails leaves nothing.
+void merge(const SweepOptions& options, const validate::Sweep& sweep, const fs::path& out) {
+  std::vector<fs::path> others;
+  for (const std::string& other : options.merge) others.push_back(fs::absolute(other));
+  const fs::path file = out / database_name({});
+  const bool was_there = fs::exists(file);
+  try {
+    validate::SweepDatabase(file, sweep, GLIDELAB_VERSION, {}).take(others);
+  } catch (...) {
+    std::error_code ignored;  // what is wrong with the merge is what is said
+    if (!was_there) fs::remove(file, ignored);
+    throw;
+  }
 }
 
 void sweep_command(const SweepOptions& options) {
@@ -102,38 +146,40 @@ void sweep_command(const SweepOptions& options) {
   if (options.show) return show_run(sweep, *options.show);
   check_size(options, sweep);
   const validate::Shard shard = shard_of(options.shard);
-  report::check_gnuplot();
+  if (options.shard.empty()) report::check_gnuplot();
   const fs::path out = output_folder(options.common, "sweep", options.sweep);
+  if (options.dry_run) return dry_run(options, sweep, shard, out);
   check_writable(out);
   std::error_code error;
   fs::create_directories(out, error);
   if (error) base::throw_system_error(out.string(), "cannot be made", error.value());
 
-  const std::string name =
-      shard.count == 1 ? "sweep.sqlite" : fmt::format("sweep-{}-of-{}.sqlite", shard.index, shard.count);
-  validate::SweepDatabase database(out / name, sweep, GLIDELAB_VERSION, shard);
   ProgressDisplay display(options.common.quiet, options.common.verbose);
   const base::Progress progress = display.callback();
-  for (const std::string& other : options.merge) {
+  if (!options.merge.empty()) {
     progress("merging", 0.0);
-    database.take(fs::absolute(other));
+    merge(options, sweep, out);
   }
-  const validate::SweepEstimate estimate = validate::estimate_sweep(sweep, database, shard, options.common.jobs);
-  say(options.common, fmt::format("{} runs, {} of them to do: about {} on {} threads, {} of disk in the end ({} free)",
-                                  estimate.runs, estimate.missing, duration_text(estimate.seconds), options.common.jobs,
-                                  bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
-  if (options.dry_run) return;
-  if (estimate.missing > 0 && estimate.bytes > estimate.free_bytes) {
-    throw base::EnvironmentError(fmt::format("{}: the sweep needs about {}, and {} are free", out.string(),
-                                             bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
-  }
+  validate::SweepDatabase database(out / database_name(shard), sweep, GLIDELAB_VERSION, shard);
   if (options.merge.empty()) {
+    const validate::SweepEstimate estimate = validate::estimate_sweep(sweep, database, shard, options.common.jobs, out);
+    say_size(options, estimate);
+    if (estimate.missing > 0 && estimate.bytes_to_come > estimate.free_bytes) {
+      throw base::EnvironmentError(fmt::format("{}: what is missing of the sweep needs about {}, and {} are free",
+                                               out.string(), bytes_text(estimate.bytes_to_come),
+                                               bytes_text(estimate.free_bytes)));
+    }
+    display.count("runs", estimate.missing);
     const validate::SweepOutcome outcome = validate::run_sweep(sweep, database, shard, options.common.jobs, progress);
     display.clear();
     if (outcome.done > 0) {
       say(options.common, fmt::format("{} runs in {}: {:.3g} runs/s", outcome.done, duration_text(outcome.wall_s),
                                       static_cast<double>(outcome.done) / outcome.wall_s));
     }
+  } else if (database.runs() < validate::run_count(sweep)) {
+    display.clear();
+    say(options.common, fmt::format("not complete: {} of {} runs are missing; the sweep without --merge does them",
+                                    validate::run_count(sweep) - database.runs(), validate::run_count(sweep)));
   }
   finish(options, sweep, database, out, progress, display);
 }
@@ -145,12 +191,17 @@ void add_sweep(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Run a scenario many times with varied values, and see how errors depend on them (docs/sweep.md)");
   command->add_option("SWEEP", options->sweep, "A sweep file (docs/sweep.md)")->type_name("FILE")->required();
-  command->add_option("--shard", options->shard, "Only part i of n of the runs, into a database of its own")
+  command->add_option("--shard", options->shard, "Only part i of n of the runs, into a database of its own; no page")
       ->type_name("I/N")
       ->check(check_shard);
-  command->add_option("--merge", options->merge, "Put databases of shards together into sweep.sqlite; runs nothing")
-      ->type_name("FILE");
-  command->add_option("--show", options->show, "Print the whole scenario of one run, and do nothing else")
+  command
+      ->add_option("--merge", options->merge,
+                   "Put databases of shards together into sweep.sqlite, all or none; runs nothing")
+      ->type_name("FILE")
+      ->excludes("--shard");
+  command
+      ->add_option("--show", options->show,
+                   "Print the whole scenario of one run, its camera written in, and do nothing else")
       ->type_name("RUN");
   command->add_flag("--many-runs", options->many, fmt::format("Allow more than {} runs", kManyRuns));
   command->add_flag("--dry-run", options->dry_run, "Say how many runs, how long and how much disk, and stop");

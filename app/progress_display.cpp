@@ -45,6 +45,21 @@ base::Progress ProgressDisplay::callback() {
   return [this](std::string_view stage, double fraction) { update(stage, fraction); };
 }
 
+void ProgressDisplay::count(std::string stage, std::uint64_t pieces) {
+  const std::lock_guard lock(mutex_);
+  counted_stage_ = std::move(stage);
+  pieces_ = static_cast<double>(pieces);
+}
+
+/// ", 25 runs/s"; slow ones by the minute or the hour.
+std::string ProgressDisplay::rate(double elapsed_s) const {
+  if (stage_ != counted_stage_ || elapsed_s <= 0.0 || fraction_ <= 0.0) return {};
+  const double each_s = fraction_ * pieces_ / elapsed_s;
+  if (each_s >= 1.0) return fmt::format(", {:.3g} {}/s", each_s, stage_);
+  if (each_s * 60.0 >= 1.0) return fmt::format(", {:.3g} {}/min", each_s * 60.0, stage_);
+  return fmt::format(", {:.3g} {}/h", each_s * 3600.0, stage_);
+}
+
 void ProgressDisplay::clear() {
   const std::lock_guard lock(mutex_);
   end_stage(Clock::now());
@@ -93,9 +108,9 @@ void ProgressDisplay::draw_bar(Clock::time_point now) {
   const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
   constexpr int kWidth = 30;
   const int full = static_cast<int>(std::lround(fraction_ * kWidth));
-  std::string line = fmt::format("{} [{}{}] {:3.0f} %{}", stage_, std::string(static_cast<std::size_t>(full), '#'),
+  std::string line = fmt::format("{} [{}{}] {:3.0f} %{}{}", stage_, std::string(static_cast<std::size_t>(full), '#'),
                                  std::string(static_cast<std::size_t>(kWidth - full), '.'), 100.0 * fraction_,
-                                 time_left(elapsed_s, fraction_));
+                                 time_left(elapsed_s, fraction_), rate(elapsed_s));
   const auto room = static_cast<std::size_t>(std::max(columns() - 1, 10));
   line.resize(room, ' ');  // covers what stood there; cut where the terminal is narrow
   fmt::print(stderr, "\r{}", line);
@@ -109,7 +124,8 @@ void ProgressDisplay::print_line(Clock::time_point now) {
   last_shown_ = now;
   tenths_printed_ = tenths;
   const double elapsed_s = std::chrono::duration<double>(now - stage_start_).count();
-  fmt::print(stderr, "{}: {} %{}\n", stage_, 10 * tenths, tenths < 10 ? time_left(elapsed_s, fraction_) : "");
+  fmt::print(stderr, "{}: {} %{}{}\n", stage_, 10 * tenths, tenths < 10 ? time_left(elapsed_s, fraction_) : "",
+             rate(elapsed_s));
 }
 
 }  // namespace glidelab::app

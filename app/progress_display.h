@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ class ProgressDisplay {
   /// The function to hand to the work; refers to this object.
   base::Progress callback();
 
+  /// Says how many pieces this stage has, so that it tells how many of them are done in a second.
+  void count(std::string stage, std::uint64_t pieces);
+
   /// Removes the bar, so that something else can be printed.
   void clear();
 
@@ -38,7 +42,11 @@ class ProgressDisplay {
   bool verbose_;
   bool terminal_;
   std::mutex mutex_;
+  std::string rate(double elapsed_s) const;
+
   std::string stage_;
+  std::string counted_stage_;
+  double pieces_ = 0.0;
   double fraction_ = 0.0;
   int tenths_printed_ = -1;
   bool bar_shown_ = false;

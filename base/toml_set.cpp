@@ -179,19 +179,52 @@ std::string toml_text(const TomlScalar& value) {
   return fmt::format("\"{}\"", std::get<std::string>(value));
 }
 
-std::string with_values(std::string_view toml, const std::string& shown_as,
-                        const std::vector<TomlAssignment>& assignments) {
+namespace {
+
+toml::table parsed(std::string_view toml, const std::string& shown_as) {
   try {
-    toml::table tree = toml::parse(toml, shown_as);
-    for (const TomlAssignment& assignment : assignments) Setter(shown_as, assignment).apply(tree);
-    std::ostringstream text;
-    text << tree << '\n';
-    return text.str();
+    return toml::parse(toml, shown_as);
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
     throw InputError(Issue{shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
                            fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
   }
+}
+
+std::string text_of(const toml::table& tree) {
+  std::ostringstream text;
+  text << tree << '\n';
+  return text.str();
+}
+
+}  // namespace
+
+std::string with_missing(std::string_view toml, const std::string& shown_as, std::string_view others,
+                         const std::string& others_shown_as, const std::vector<TomlSection>& sections,
+                         std::string_view taken_out) {
+  toml::table tree = parsed(toml, shown_as);
+  const toml::table more = parsed(others, others_shown_as);
+  for (const TomlSection& section : sections) {
+    const toml::table* from = more.get_as<toml::table>(section.name);
+    if (from == nullptr) continue;
+    // Whoever reads the document says where a section is no table.
+    toml::table* to = tree.insert(section.name, toml::table{}).first->second.as_table();
+    if (to == nullptr) continue;
+    for (const auto& [key, value] : *from) {
+      if (std::find(section.without.begin(), section.without.end(), key.str()) == section.without.end()) {
+        to->insert(key, value);
+      }
+    }
+  }
+  tree.erase(taken_out);
+  return text_of(tree);
+}
+
+std::string with_values(std::string_view toml, const std::string& shown_as,
+                        const std::vector<TomlAssignment>& assignments) {
+  toml::table tree = parsed(toml, shown_as);
+  for (const TomlAssignment& assignment : assignments) Setter(shown_as, assignment).apply(tree);
+  return text_of(tree);
 }
 
 }  // namespace glidelab::base

@@ -31,4 +31,16 @@ std::string toml_text(const TomlScalar& value);
 std::string with_values(std::string_view toml, const std::string& shown_as,
                         const std::vector<TomlAssignment>& assignments);
 
+/// A table of a document, and the keys of it that are not to be taken over.
+struct TomlSection {
+  std::string name;
+  std::vector<std::string> without;
+};
+
+/// The document with the keys that its `sections` lack and those of `others` have, and without the root's key
+/// `taken_out`; as TOML. InputError, named as shown, where one of the two is no TOML.
+std::string with_missing(std::string_view toml, const std::string& shown_as, std::string_view others,
+                         const std::string& others_shown_as, const std::vector<TomlSection>& sections,
+                         std::string_view taken_out);
+
 }  // namespace glidelab::base

@@ -6,6 +6,9 @@
 #include <array>
 #include <vector>
 
+#include "base/staged_output.h"
+#include "base/toml_set.h"
+
 namespace glidelab::render {
 namespace {
 
@@ -93,6 +96,21 @@ CameraFile take_camera_file(const std::filesystem::path& path, TomlFile& scenari
     scenario.add_missing(section, values, table ? left_out(*table, section) : std::vector<std::string>{});
   }
   return camera;
+}
+
+std::string with_camera_written_in(std::string_view scenario_text, const std::filesystem::path& scenario_file) {
+  const TomlFile scenario = TomlFile::parse(scenario_text, scenario_file.string());
+  const std::optional<std::string> camera = scenario.root().maybe_text("camera_file");
+  if (!camera) return std::string(scenario_text);
+  const std::filesystem::path path = scenario_file.parent_path() / *camera;
+  read_camera_name(path);  // says what is wrong with the file
+  std::vector<base::TomlSection> sections;
+  for (const char* section : kSections) {
+    const std::optional<TomlTable> table = scenario.root().maybe_table(section);
+    sections.push_back({section, table ? left_out(*table, section) : std::vector<std::string>{}});
+  }
+  return base::with_missing(scenario_text, scenario_file.string(), base::read_file(path), path.string(), sections,
+                            "camera_file");
 }
 
 }  // namespace glidelab::render

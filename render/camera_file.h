@@ -25,6 +25,11 @@ struct CameraFile {
 CameraFile take_camera_file(const std::filesystem::path& path, base::TomlFile& scenario,
                             std::string_view scenario_text);
 
+/// The scenario's text with its camera file's values written in (as take_camera_file() does it) and `camera_file` left
+/// out: it means the same wherever it stands. Unchanged without a camera file, which counts from the folder of
+/// `scenario_file`.
+std::string with_camera_written_in(std::string_view scenario_text, const std::filesystem::path& scenario_file);
+
 /// The name and the price class of the camera file at `path` alone.
 CameraFile read_camera_name(const std::filesystem::path& path);
 

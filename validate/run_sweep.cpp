@@ -4,6 +4,7 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "base/errors.h"
 #include "base/parallel.h"
@@ -57,23 +58,36 @@ std::uint64_t runs_of(const Sweep& sweep, const Shard& shard) {
 
 }  // namespace
 
-RunCost cost_of_run(const Sweep& sweep, std::uint64_t run) {
-  const Clock::time_point start = Clock::now();
-  const RunRecord record = RunWorker(sweep).evaluate(run);
-  return {seconds_since(start), bytes_of(record)};
+RunCost cost_of_runs(const Sweep& sweep, const Shard& shard, std::uint64_t runs, int jobs) {
+  const std::uint64_t there = runs_of(sweep, shard);
+  const std::uint64_t samples = std::min<std::uint64_t>(there, runs >= 100 ? 5 : runs >= 30 ? 3 : 1);
+  std::vector<RunCost> costs(samples);
+  base::for_each_parallel(samples, jobs, [&](std::size_t i) {
+    const Clock::time_point start = Clock::now();
+    // The middle of the i-th of equal parts; runs are at most 2^53, and 2 samples + 1 at most 11.
+    const std::uint64_t of_shard = there * (2 * i + 1) / (2 * samples);
+    const RunRecord record = RunWorker(sweep).evaluate(shard.index - 1 + shard.count * of_shard);
+    costs[i] = {seconds_since(start), bytes_of(record)};
+  });
+  RunCost mean;
+  for (const RunCost& cost : costs) {
+    mean.seconds += cost.seconds / static_cast<double>(samples);
+    mean.bytes += cost.bytes / static_cast<double>(samples);
+  }
+  return mean;
 }
 
-SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs) {
+SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs,
+                             const std::filesystem::path& disk) {
   SweepEstimate estimate;
   estimate.runs = runs_of(sweep, shard);
   estimate.missing = estimate.runs - std::min(estimate.runs, database.runs());
-  const std::filesystem::path folder = std::filesystem::absolute(database.database().file()).parent_path();
-  estimate.free_bytes = static_cast<double>(std::filesystem::space(folder).available);
-  const std::optional<std::uint64_t> first = MissingRuns(database, shard, run_count(sweep)).next();
-  if (!first) return estimate;
-  const RunCost cost = cost_of_run(sweep, *first);
+  estimate.free_bytes = static_cast<double>(std::filesystem::space(disk).available);
+  if (estimate.missing == 0) return estimate;
+  const RunCost cost = cost_of_runs(sweep, shard, estimate.missing, jobs);
   estimate.seconds = cost.seconds * static_cast<double>(estimate.missing) / std::max(1, jobs);
   estimate.bytes = cost.bytes * static_cast<double>(estimate.runs);
+  estimate.bytes_to_come = cost.bytes * static_cast<double>(estimate.missing);
   return estimate;
 }
 

@@ -11,23 +11,28 @@
 
 namespace glidelab::validate {
 
-/// What a sweep will take, from one run of it that was measured and thrown away.
+/// What a sweep will take, from some runs of it that were measured and thrown away.
 struct SweepEstimate {
-  std::uint64_t runs = 0;     ///< of the shard
-  std::uint64_t missing = 0;  ///< of these, not in the database yet
-  double seconds = 0.0;       ///< for what is missing, on `jobs` threads
-  double bytes = 0.0;         ///< of the database in the end
-  double free_bytes = 0.0;    ///< on its disk
+  std::uint64_t runs = 0;      ///< of the shard
+  std::uint64_t missing = 0;   ///< of these, not in the database yet
+  double seconds = 0.0;        ///< for what is missing, on `jobs` threads
+  double bytes = 0.0;          ///< of the database in the end
+  double bytes_to_come = 0.0;  ///< of these, for what is missing
+  double free_bytes = 0.0;     ///< on its disk
 };
 
-/// What one run takes, by running it: processor time of one thread, and its share of the database.
+/// What a run takes, by running some: time of one thread, and its share of the database.
 struct RunCost {
   double seconds = 0.0, bytes = 0.0;
 };
-RunCost cost_of_run(const Sweep& sweep, std::uint64_t run);
 
-/// Evaluates the first missing run.
-SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs);
+/// Means over runs that lie evenly over the shard's part of the design: 5 where `runs` are 100 or more, 3 from 30 on,
+/// else 1, for what they cost is thrown away.
+RunCost cost_of_runs(const Sweep& sweep, const Shard& shard, std::uint64_t runs, int jobs);
+
+/// `disk`: a folder on the disk whose free space is asked for.
+SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs,
+                             const std::filesystem::path& disk);
 
 struct SweepOutcome {
   std::uint64_t done = 0;    ///< runs of this call

@@ -65,6 +65,10 @@ SqlStatement& SqlStatement::bind_null(int parameter) {
   check(sqlite3_bind_null(statement_.get(), parameter));
   return *this;
 }
+SqlStatement& SqlStatement::bind_column(int parameter, const SqlStatement& other, int column) {
+  check(sqlite3_bind_value(statement_.get(), parameter, sqlite3_column_value(other.statement_.get(), column)));
+  return *this;
+}
 SqlStatement& SqlStatement::bind(int parameter, const std::optional<double>& value) {
   return value ? bind(parameter, *value) : bind_null(parameter);
 }

@@ -24,6 +24,8 @@ class SqlStatement {
   SqlStatement& bind(int parameter, double value);
   SqlStatement& bind(int parameter, std::string_view value);
   SqlStatement& bind_null(int parameter);
+  /// What stands in a column of another statement's row, of any type.
+  SqlStatement& bind_column(int parameter, const SqlStatement& other, int column);
   /// NULL where there is none, or where the number is not finite.
   SqlStatement& bind(int parameter, const std::optional<double>& value);
 

@@ -73,7 +73,8 @@ struct Sweep {
   std::optional<double> field_m;  ///< width of the plane that the picture shall show: sets the camera's distance
   std::vector<Axis> axes;
   std::vector<Analysis> analyses;
-  std::vector<std::string> camera_files;  ///< texts of the cameras that occur, as part of what the sweep is
+  /// Texts of the cameras that occur (the scenario's own, or those of an axis), as part of what the sweep is.
+  std::vector<std::string> camera_files;
 };
 
 /// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,

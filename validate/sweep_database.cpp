@@ -30,6 +30,8 @@ INSERT INTO "schema" VALUES
  ('run', 'run', '', 'number of the run, from 0'), ('run', 'point', '', 'combination of values: run / replicates'),
  ('run', 'replicate', '', 'which of the runs of its point'), ('run', 'seed', '', 'of all random numbers of the run'),
  ('run', 'status', '', 'done or failed'), ('run', 'why', '', 'why a run failed'),
+ ('result', 'run', '', 'number of the run'), ('clip', 'run', '', 'number of the run'),
+ ('timing', 'run', '', 'number of the run'), ('clip', 'clip', '', 'its name in the scenario'),
  ('result', 'configuration', '', 'its name in the scenario'), ('result', 'estimator', '', 'how it was analysed'),
  ('result', 'quantity', '', 'what was recovered, with its unit: k_over_m_1_s, mu, alpha_deg, v_lim_m_s'),
  ('result', 'truth', 'of the quantity', 'what the scenario put in; null where it has no such thing'),
@@ -235,29 +237,47 @@ void SweepDatabase::add(const RunRecord& record, double wall_s) {
   transaction.commit();
 }
 
-void SweepDatabase::take(const fs::path& other) {
-  {
+void SweepDatabase::take(const std::vector<fs::path>& others) {
+  for (const fs::path& other : others) {  // what is no database of this sweep is said before anything is taken
+    std::error_code error;
+    if (!fs::is_regular_file(other, error)) {
+      throw base::InputError(base::Issue{other.string(), 0, "", "no such file", "a database of this sweep"});
+    }
     Database there(other, Database::Mode::read);
     std::vector<std::pair<std::string, std::string>> expected = identity_;
     expected.pop_back();  // of any shard
     check_identity(there, expected);
   }
-  SqlStatement attach = database_.prepare("ATTACH ?1 AS other");
-  attach.bind(1, std::string_view(other.native())).run();
-  SqlStatement twice = database_.prepare("SELECT run FROM other.run WHERE run IN (SELECT run FROM main.run) LIMIT 1");
-  if (twice.step()) {
-    throw base::InputError(base::Issue{other.string(), 0, fmt::format("run {}", twice.integer(0)),
-                                       "a run that another of the databases has too", "shards that share no run"});
-  }
-  twice.reset();
-  {
-    Transaction transaction(database_);
-    for (const char* table : {"run", "result", "clip", "timing"}) {
-      database_.run(fmt::format("INSERT INTO main.{0} SELECT * FROM other.{0}", table));
+  Transaction transaction(database_);
+  SqlStatement twice = database_.prepare("SELECT 1 FROM run WHERE run = ?1");
+  const auto copy = [&](Database& there, const char* table, int columns) {
+    std::string marks = "?1";
+    for (int i = 2; i <= columns; ++i) marks += fmt::format(", ?{}", i);
+    SqlStatement add = database_.prepare(fmt::format("INSERT INTO {} VALUES ({})", table, marks));
+    SqlStatement rows = there.prepare(fmt::format("SELECT * FROM {}", table));
+    while (rows.step()) {
+      for (int i = 0; i < columns; ++i) add.bind_column(i + 1, rows, i);
+      add.run();
     }
-    transaction.commit();
+  };
+  for (const fs::path& other : others) {
+    Database there(other, Database::Mode::read);
+    SqlStatement runs = there.prepare("SELECT run FROM run");
+    while (runs.step()) {
+      const bool known = twice.bind(1, runs.integer(0)).step();
+      twice.reset();
+      if (known) {
+        throw base::InputError(base::Issue{other.string(), 0, fmt::format("run {}", runs.integer(0)),
+                                           "a run that another of the databases has too", "shards that share no run"});
+      }
+    }
+    runs.reset();
+    copy(there, "run", 6 + static_cast<int>(axes_));
+    copy(there, "result", 12);
+    copy(there, "clip", 10);
+    copy(there, "timing", 2);
   }
-  database_.run("DETACH other");
+  transaction.commit();
 }
 
 double bytes_of(const RunRecord& record) {

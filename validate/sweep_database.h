@@ -54,9 +54,9 @@ class SweepDatabase {
   std::uint64_t runs();
   void add(const RunRecord& record, double wall_s);
 
-  /// Takes over all runs of another database of the same sweep and version (any shard). InputError for another sweep's,
-  /// and for a run that is there already.
-  void take(const std::filesystem::path& other);
+  /// Takes over all runs of other databases of the same sweep and version (any shard), all of them or none (one
+  /// transaction). InputError for a file that is not there, another sweep's, and a run that is there already.
+  void take(const std::vector<std::filesystem::path>& others);
 
   Database& database() { return database_; }
 

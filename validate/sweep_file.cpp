@@ -230,6 +230,15 @@ Sweep read_sweep(const std::filesystem::path& path) {
   sweep.scenario_file = path.parent_path() / scenario;
   sweep.scenario_text = base::read_file(sweep.scenario_file);
   point_count(sweep);
+  const bool cameras_vary = std::any_of(sweep.axes.begin(), sweep.axes.end(), [](const Axis& axis) {
+    return axis.keys == std::vector<std::string>{"camera_file"};
+  });
+  if (!cameras_vary) {
+    const base::TomlFile own = base::TomlFile::parse(sweep.scenario_text, sweep.scenario_file.string());
+    if (const auto camera = own.root().maybe_text("camera_file")) {
+      sweep.camera_files.push_back(base::read_file(sweep.scenario_file.parent_path() / *camera));
+    }
+  }
   try_values(sweep);
   for (const Axis& axis : sweep.axes) {
     if (axis.keys != std::vector<std::string>{"camera_file"}) continue;

@@ -143,12 +143,29 @@ TEST_CASE("What a sweep refuses is one clear message with the right status") {
   }
 }
 
+TEST_CASE("A merge takes all of its files or none, and says what is not there yet; a shard writes no page") {
+  const tests::TempDir dir;
+  const std::string sweep = tests::write_sweep(dir.path(), "", tests::kTwoKeys);
+  const fs::path out = dir / "out";
+  REQUIRE(tests::glidelab({"sweep", sweep, "-q", "-o", out, "--shard", "1/2"}).status == 0);
+  CHECK_FALSE(fs::exists(out / "report.html"));
+  const std::string part = out / "sweep-1-of-2.sqlite";
+  const tests::ProcessResult wrong = tests::glidelab({"sweep", sweep, "-o", out, "--merge", part, dir / "none.sqlite"});
+  CHECK(wrong.status == 1);
+  CHECK(wrong.err.find("none.sqlite") != std::string::npos);
+  CHECK_FALSE(fs::exists(out / "sweep.sqlite"));
+  const tests::ProcessResult half = tests::glidelab({"sweep", sweep, "-o", out, "--merge", part});
+  CHECK(half.status == 0);
+  CHECK(half.err.find("not complete: 3 of 6 runs are missing") != std::string::npos);
+}
+
 TEST_CASE("The size is said before a sweep starts, and a run's whole scenario can be had") {
   const tests::TempDir dir;
   const std::string sweep = tests::write_sweep(dir.path(), "replicates = 3", tests::kTwoKeys);
   const tests::ProcessResult dry = tests::glidelab({"sweep", sweep, "-o", dir / "out", "--dry-run"});
   CHECK(dry.status == 0);
   CHECK(dry.err.find("18 runs, 18 of them to do") != std::string::npos);
+  CHECK_FALSE(fs::exists(dir / "out"));
   const tests::ProcessResult shown = tests::glidelab({"sweep", sweep, "--show", "17"});
   CHECK(shown.status == 0);
   base::write_file(dir / "run17.toml", shown.out);

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "catch.h"
+#include "render/camera_file.h"
 #include "temp_dir.h"
 #include "test_paths.h"
 #include "validate/run_sweep.h"
@@ -54,7 +55,7 @@ TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and a
   validate::SweepOutcome outcome;
   {
     validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
-    CHECK(validate::estimate_sweep(sweep, database, {}, 1).missing == 12);
+    CHECK(validate::estimate_sweep(sweep, database, {}, 1, dir.path()).missing == 12);
     outcome = validate::run_sweep(sweep, database, {}, 1);
     CHECK(outcome.done == 12);
     CHECK(outcome.failed == 0);
@@ -79,8 +80,13 @@ TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and a
     CHECK(validate::run_sweep(sweep, database, {part, 3}, 1).done == 4);
   }
   validate::SweepDatabase merged(dir / "c.sqlite", sweep, "1", {});
-  for (const char* part : {"c3.sqlite", "c1.sqlite", "c2.sqlite"}) merged.take(dir / part);
-  CHECK_THROWS_WITH(merged.take(dir / "c2.sqlite"), Contains("run 1"));
+  // Half of a merge is none: what is missing, or comes twice, leaves nothing behind.
+  CHECK_THROWS_AS(merged.take({dir / "c3.sqlite", dir / "none.sqlite", dir / "c1.sqlite"}), base::InputError);
+  CHECK(merged.runs() == 0);
+  CHECK_THROWS_WITH(merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c3.sqlite"}), Contains("run 2"));
+  CHECK(merged.runs() == 0);
+  merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c2.sqlite"});
+  CHECK_THROWS_WITH(merged.take({dir / "c2.sqlite"}), Contains("run 1"));
   const std::string all = contents(dir / "a.sqlite");
   // 12 runs; 1 configuration x 2 estimators x 4 quantities; 1 clip
   CHECK(std::count(all.begin(), all.end(), '\n') == 12 + 12 * 8 + 12);
@@ -170,6 +176,70 @@ TEST_CASE("What is wrong with a sweep is said before the first run, by its key")
                                   "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"),
              Contains("twice"));
   CHECK_THAT(message("colour = 3", kNoise), Contains("colour"));
+}
+
+TEST_CASE("Every column of every table has a row in the schema") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", tests::kTwoKeys));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SqlStatement none = database.database().prepare(
+      "SELECT t.name || '.' || c.name FROM sqlite_master t JOIN pragma_table_info(t.name) c "
+      "WHERE t.type = 'table' AND t.name IN ('run', 'result', 'clip', 'timing') AND NOT EXISTS "
+      "(SELECT 1 FROM \"schema\" s WHERE s.\"table\" = t.name AND s.\"column\" = c.name)");
+  std::string missing;
+  while (none.step()) missing += none.text(0) + " ";
+  CHECK(missing == "");
+}
+
+TEST_CASE("What a sweep takes is estimated from runs across its design, and disk only for what is missing") {
+  const tests::TempDir dir;
+  // The last of the four points is refused: a short row. Run 0 is of the first.
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 10", kNoise + R"(
+[[vary]]
+key = "camera.frame_rate_hz"
+values = [50, 80]
+[[vary]]
+key = "camera.exposure_s"
+values = [0.001, 0.015]
+)"));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::RunWorker worker(sweep);
+  const double full = validate::bytes_of(worker.evaluate(0)), refused = validate::bytes_of(worker.evaluate(39));
+  REQUIRE(refused < 0.5 * full);
+  // Three samples of 40: in the middle of each third, runs 6, 20 and 33.
+  const validate::SweepEstimate before = validate::estimate_sweep(sweep, database, {}, 1, dir.path());
+  CHECK(before.bytes == Approx(40.0 * (2.0 * full + refused) / 3.0).epsilon(0.01));
+  CHECK(before.bytes_to_come == before.bytes);
+  for (std::uint64_t run = 0; run < 10; ++run) database.add(worker.evaluate(run), 0.1);
+  const validate::SweepEstimate later = validate::estimate_sweep(sweep, database, {}, 1, dir.path());
+  CHECK(later.bytes_to_come == Approx(0.75 * later.bytes).epsilon(1e-12));
+}
+
+TEST_CASE("A camera file that the scenario names is part of what a sweep is, and a run shows what it says") {
+  const tests::TempDir dir;
+  const auto camera = [&](const char* exposure) {
+    base::write_file(dir / "cams" / "c.toml", std::string("format = 1\nname = \"c\"\n[camera]\nexposure_s = ") +
+                                                  exposure + "\n[shutter]\nkind = \"rolling\"\n" +
+                                                  "line_readout_s = 2e-5\n");
+  };
+  std::filesystem::create_directory(dir / "cams");
+  camera("0.002");
+  const std::filesystem::path file = tests::write_sweep(dir.path(), "", tests::kTwoKeys);
+  base::write_file(dir / "scenario.toml", "camera_file = \"cams/c.toml\"\n" + tests::kSweptScenario);
+  const validate::Sweep sweep = validate::read_sweep(file);
+  { validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}); }
+  // Written in, the text says the same in a folder that has no such file.
+  const validate::RunScenario run = validate::scenario_with(sweep, {50.0, 2.0});
+  const std::string whole = render::with_camera_written_in(run.text, sweep.scenario_file);
+  CHECK(whole.find("camera_file") == std::string::npos);
+  const render::Scenario elsewhere = render::read_scenario(whole, dir / "no" / "such" / "run.toml");
+  CHECK(elsewhere.recording.exposure_s == 0.002);
+  CHECK(elsewhere.recording.shutter.rolling);
+  CHECK(elsewhere.recording.shutter.line_readout_s == run.scenario.recording.shutter.line_readout_s);
+  CHECK(elsewhere.recording.frame_rate_hz == 50.0);
+  camera("0.003");
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", validate::read_sweep(file), "1", {}),
+                    Contains("camera file"));
 }
 
 TEST_CASE("A database of another sweep, another version or no sweep at all is refused, and so is a second writer") {
