@@ -62,7 +62,17 @@ struct GapCurve {
 
 struct GapOfParameter {
   std::string quantity, against, group;
-  double z_before = 0.0, z_after = 0.0;
+  std::optional<double> z_before, z_after;  ///< none where the motions say too little of it beside the statement
+};
+
+/// 95 %, over clips (clip_interval.h).
+struct GapInterval {
+  double low = 0.0, high = 0.0;
+};
+
+struct GapIntervals {
+  std::optional<GapInterval> before, after, shrink, acceleration_before, acceleration_after;
+  std::string why_none;  ///< where none of them can be said
 };
 
 struct GapSizes {
@@ -72,6 +82,7 @@ struct GapSizes {
   std::vector<std::string> held_out;
   std::vector<double> before_by_clip, after_by_clip;
   std::optional<double> acceleration_before, acceleration_after;  ///< m/s²; none of lines, which hold no motion
+  GapIntervals interval95;
   std::vector<GapOfParameter> parameters;
 };
 

@@ -62,6 +62,7 @@ std::vector<TrackedMotion> pieces_of(const TrackedMotion& motion, std::size_t fe
 /// Every motion a clip of its own.
 void name_pieces(TrackSet& set) {
   const TrackedClip whole = set.clips.front();
+  set.pieces = true;
   set.clips.clear();
   for (TrackedMotion& motion : set.motions) {
     motion.clip = set.clips.size();

@@ -14,6 +14,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kStretches = 4;
+constexpr double kLeastKnown = 1e-4;  // of a statement's variance: below, a pull is a difference of rounding
 
 /// A motion with its own parameters projected out.
 struct Projected {
@@ -22,12 +23,24 @@ struct Projected {
   double freedom = 0.0;
 };
 
-Projected project(const FitMotion& motion) {
-  const Eigen::VectorXd scale = (motion.own.colwise().squaredNorm().transpose().array() + 1e-300).sqrt().inverse();
-  const Eigen::MatrixXd own = motion.own * scale.asDiagonal();
-  Eigen::MatrixXd normal = base::transposed_product(own, own);
+struct OwnColumns {
+  Eigen::VectorXd scale;
+  Eigen::MatrixXd scaled;
+  Eigen::MatrixXd gain;  ///< sizes of the scaled columns from positions
+};
+
+OwnColumns own_columns(const FitMotion& motion) {
+  OwnColumns own;
+  own.scale = (motion.own.colwise().squaredNorm().transpose().array() + 1e-300).sqrt().inverse();
+  own.scaled = motion.own * own.scale.asDiagonal();
+  Eigen::MatrixXd normal = base::transposed_product(own.scaled, own.scaled);
   normal.diagonal().array() += 1e-12;
-  const Eigen::MatrixXd gain = base::solve_positive(normal, own.transpose());
+  own.gain = base::solve_positive(normal, own.scaled.transpose());
+  return own;
+}
+
+Projected project(const FitMotion& motion) {
+  const auto [scale, own, gain] = own_columns(motion);
   Projected result;
   result.residual = motion.residual - base::product(own, base::product(gain, motion.residual));
   result.common = motion.global - base::product(own, base::product(gain, motion.global));
@@ -62,12 +75,11 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix) {
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
-/// Mean square of the second derivative of residuals smoothed as the analysis smooths positions.
-double acceleration_square(const TrackSet& set, std::size_t i, const Eigen::VectorXd& residual, double& count) {
+/// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions.
+void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd& residual, ClipGap& clip) {
   const TrackedMotion& data = set.motions[i];
   const double bandwidth = set.clips[data.clip].bandwidth_s;
-  double sum = 0.0;
-  if (!(bandwidth > 0.0)) return sum;
+  if (!(bandwidth > 0.0)) return;
   std::vector<double> t, r;
   const Eigen::VectorXd over_sd = coloured(data, residual);
   for (std::size_t p = 0; p < data.t_s.size(); ++p) {
@@ -75,17 +87,16 @@ double acceleration_square(const TrackSet& set, std::size_t i, const Eigen::Vect
     t.push_back(data.t_s[p]);
     r.push_back(over_sd[static_cast<Eigen::Index>(p)] * data.sd_of(p));
   }
-  if (t.size() < 8) return sum;
+  if (t.size() < 8) return;
   const core::LocalCubic cubic(t, bandwidth);
   for (std::size_t p = 0; p < t.size(); p += 3) {
     if (t[p] - t.front() < 2.0 * bandwidth || t.back() - t[p] < 2.0 * bandwidth) continue;
     const auto row = cubic.row_of_point(p);
     if (!row) continue;
     const double a = core::weighted_sums(*row, r).a_m_s2;
-    sum += a * a;
-    count += 1.0;
+    clip.acceleration_square += a * a;
+    clip.acceleration_count += 1.0;
   }
-  return sum;
 }
 
 }  // namespace
@@ -102,7 +113,7 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
   double chi2 = 0.0, freedom = 0.0, a_sum = 0.0, a_count = 0.0;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
     Normal others = all;
-    ClipGap clip{set.clips[c].name, 0.0, 0.0};
+    ClipGap clip{set.clips[c].name};
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (set.motions[i].clip != c) continue;
       others.matrix -= base::transposed_product(motions[i].common, motions[i].common);
@@ -119,13 +130,15 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
       const Eigen::VectorXd u = motions[i].residual - base::product(motions[i].common, shift);
       clip.chi2 += u.squaredNorm();
       gu += base::transposed_product(motions[i].common, u);
-      a_sum += acceleration_square(set, i, u, a_count);
+      add_accelerations(set, i, u, clip);
     }
     const Eigen::MatrixXd together = inverse(all.matrix);
     const Eigen::VectorXd taken = base::product(together, gu);
     clip.chi2 -= gu.dot(taken);
     chi2 += clip.chi2;
     freedom += clip.freedom;
+    a_sum += clip.acceleration_square;
+    a_count += clip.acceleration_count;
     gap.clips.push_back(clip);
   }
   if (freedom <= 0.0) return gap;
@@ -166,6 +179,27 @@ Eigen::MatrixXd common_covariance(const MotionFit& fit) {
   return inverse(all.matrix);
 }
 
+MotionFit at_linear_minimum(const TrackSet& set, MotionFit fit) {
+  Normal all = statements_normal(fit);
+  for (const FitMotion& motion : fit.motions) {
+    const Projected projected = project(motion);
+    all.matrix += base::transposed_product(projected.common, projected.common);
+    all.right += base::transposed_product(projected.common, projected.residual);
+  }
+  const Eigen::VectorXd shift = base::product(inverse(all.matrix), all.right);
+  fit.at.global += shift;
+  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
+    FitMotion& motion = fit.motions[i];
+    motion.residual -= base::product(motion.global, shift);
+    const auto [scale, own, gain] = own_columns(motion);
+    const Eigen::VectorXd own_shift = base::product(gain, motion.residual);
+    fit.at.own[i] += scale.cwiseProduct(own_shift);
+    motion.residual -= base::product(own, own_shift);
+    motion.plain = coloured(set.motions[i], motion.residual);
+  }
+  return fit;
+}
+
 std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit& fit) {
   const Eigen::MatrixXd covariance = common_covariance(fit);
   std::vector<StatementPull> pulls;
@@ -174,8 +208,9 @@ std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit&
     const auto g = static_cast<Eigen::Index>(s.global);
     // Residual of a datum that took part in the fit: its variance is sd² less what the fit knows.
     const double variance = s.sd * s.sd - covariance(g, g);
-    const double z = variance > 1e-6 * s.sd * s.sd ? (s.value - fit.at.global[g]) / std::sqrt(variance) : 0.0;
-    pulls.push_back({"alpha_deg", s.against, set.groups[fit.layout->globals()[s.global].index].name, z});
+    StatementPull pull{"alpha_deg", s.against, set.groups[fit.layout->globals()[s.global].index].name, {}};
+    if (variance > kLeastKnown * s.sd * s.sd) pull.z = (s.value - fit.at.global[g]) / std::sqrt(variance);
+    pulls.push_back(std::move(pull));
   }
   return pulls;
 }

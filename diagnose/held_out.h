@@ -3,7 +3,10 @@
 /// Each clip in turn is left out: the common parameters come from the other clips (and from what is stated), its own
 /// start is fitted to it, and its residuals are standardised by their predictive covariance, the position noise and
 /// what the uncertainty of the common parameters adds. The root mean square over all clips is 1 where the model is
-/// right. In the linear neighbourhood of the fit to all clips, in which leaving one out is exact.
+/// right. In the linear neighbourhood of the fit to all clips: a clip is taken out of its normal equations and one step
+/// of Newton's taken, which is exact where the model is linear in what is fitted. What is found by a search and not by
+/// steps comes from all clips: which of several waves or places it is, which frames are lost, and the shape and tau of
+/// a function without a name.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +23,8 @@ struct ClipGap {
   std::string clip;
   double chi2 = 0.0;
   double freedom = 0.0;
+  double acceleration_square = 0.0;  ///< sum of squares, (m/s²)²
+  double acceleration_count = 0.0;   ///< of so many
 };
 
 struct HeldOutGap {
@@ -39,12 +44,17 @@ TrackSet split_clip(const TrackSet& set);
 /// Covariance of the common parameters: positions and statements.
 Eigen::MatrixXd common_covariance(const MotionFit& fit);
 
-/// How far a statement lies from what everything else says, in standard deviations of the difference.
+/// The fit at the minimum of its linear neighbourhood: its point, and what that leaves of the positions (`residual`,
+/// `plain`); speeds, derivatives and cost stay as they are.
+MotionFit at_linear_minimum(const TrackSet& set, MotionFit fit);
+
+/// How far a statement lies from what everything else says, in standard deviations of the difference: z = (stated -
+/// fitted) / sqrt(sd² - C), C the fitted angle's variance. Of a fit that is at its minimum.
 struct StatementPull {
   std::string quantity;  ///< "alpha_deg"
   std::string against;   ///< "plumb", "stated"
   std::string group;
-  double z = 0.0;
+  std::optional<double> z;  ///< none where everything else knows the angle a hundred times worse than the statement
 };
 std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit& fit);
 

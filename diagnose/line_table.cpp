@@ -12,6 +12,7 @@
 #include "base/dense.h"
 #include "base/errors.h"
 #include "diagnose/alike_effects.h"
+#include "diagnose/clip_interval.h"
 #include "diagnose/effect_list.h"
 #include "diagnose/verdict_words.h"
 
@@ -257,6 +258,17 @@ double gap_of(const Solution& s, double sd_k, double sd_a) {
   return std::sqrt(sum / static_cast<double>(s.held_out.size()));
 }
 
+/// Over lines, each of which is held out by itself.
+void add_intervals(GapSizes& gap) {
+  std::vector<ClipSquares> before, after;
+  for (const double one : gap.before_by_clip) before.push_back({one * one, 1.0});
+  for (const double one : gap.after_by_clip) after.push_back({one * one, 1.0});
+  gap.interval95.why_none = why_no_interval(before.size());
+  gap.interval95.before = rms_interval(before);
+  gap.interval95.after = rms_interval(after);
+  if (gap.shrink) gap.interval95.shrink = shrink_interval(before, after);
+}
+
 struct Weighed {
   std::vector<std::size_t> terms;
   bool unnamed = false;
@@ -422,6 +434,7 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g) {
       gap.after_by_clip.push_back(
           of(diagnosis.verdict == "effect" && best != nullptr ? best->solution : all.front().solution));
     }
+    add_intervals(gap);
     for (const double incline : different(lines, &TableLine::incline_deg)) {
       double mean = 0.0, count = 0.0;
       for (const TableLine& line : lines) {

@@ -90,6 +90,7 @@ struct TrackSet {
   std::vector<TrackedMotion> motions;
   double x_mid_m = 0.0;    ///< middle of the range of x of all set-ups
   std::size_t modes = 0;   ///< shared errors of camera and plane
+  bool pieces = false;     ///< clips are pieces of a single one (driven_motions.h)
   bool pictures = false;   ///< at least one clip was filmed
   bool lossy = false;      ///< at least one has been through a codec with loss,
   bool handed_on = false;  ///< and one that makes pictures out of those before

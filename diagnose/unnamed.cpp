@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
+#include "diagnose/held_out.h"
 #include "diagnose/unnamed_members.h"
 #include "diagnose/unnamed_places.h"
 
@@ -29,7 +31,7 @@ const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families
   return likeliest;
 }
 
-MotionFit with_unnamed(const MotionFit& fit, const UnnamedFamily& family) {
+MotionFit with_unnamed(const TrackSet& set, const MotionFit& fit, const UnnamedFamily& family) {
   MotionFit with = fit;
   const Eigen::Index before = fit.at.global.size(), more = family.columns.cols();
   with.at.global.conservativeResize(before + more);
@@ -44,7 +46,7 @@ MotionFit with_unnamed(const MotionFit& fit, const UnnamedFamily& family) {
   for (Eigen::Index b = 0; b < more && std::isfinite(family.tau); ++b) {
     with.statements.push_back({static_cast<std::size_t>(before + b), 0.0, family.tau, "", false});
   }
-  return with;
+  return at_linear_minimum(set, std::move(with));
 }
 
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families) {

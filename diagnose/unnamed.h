@@ -40,9 +40,9 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
 /// The likeliest of those that say of one clip something about another; null: none. Their columns must be there.
 const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families);
 
-/// The fit with the family's bumps as further parameters, each N(0, tau²): in its linear neighbourhood, for
-/// held_out_gap(). The family must have its columns.
-MotionFit with_unnamed(const MotionFit& fit, const UnnamedFamily& family);
+/// The fit with the family's bumps as further parameters, each N(0, tau²): at the minimum of its linear neighbourhood,
+/// for held_out_gap(), statement_pulls() and what it leaves of the positions. The family must have its columns.
+MotionFit with_unnamed(const TrackSet& set, const MotionFit& fit, const UnnamedFamily& family);
 
 /// Their joint evidence: each variable as likely beforehand as another, and of one variable each family.
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families);

@@ -72,7 +72,8 @@ std::string gap_words(const Diagnosis& diagnosis) {
   }
   if (diagnosis.verdict == "unknown" && gap.shrink && gap.after < gap.before) {
     text += fmt::format(
-        "; with a free curve that all clips share, learnt from the other clips, it is {} times (1 is the floor)",
+        "; with a free curve that all clips share, its size learnt from the other clips, it is {} times (1 is the "
+        "floor)",
         times(gap.after));
   }
   return text + ".";

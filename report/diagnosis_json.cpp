@@ -1,5 +1,8 @@
 #include "report/diagnosis_json.h"
 
+#include <optional>
+#include <string>
+
 #include "report/json_numbers.h"
 
 namespace glidelab::report {
@@ -47,6 +50,36 @@ Json where_json(const diagnose::Diagnosis& diagnosis) {
   return where;
 }
 
+/// Null with its reason where there is none.
+void put_interval(Json& object, const char* key, const std::optional<diagnose::GapInterval>& interval,
+                  const std::string& why) {
+  if (interval) {
+    object[key] = {interval->low, interval->high};
+    return;
+  }
+  object[key] = nullptr;
+  object["why"][key] = why;
+}
+
+Json intervals_json(const diagnose::GapIntervals& of) {
+  const auto why = [&](const char* otherwise) { return of.why_none.empty() ? otherwise : of.why_none; };
+  Json object;
+  put_interval(object, "before", of.before, why("fewer than three clips have a gap"));
+  put_interval(object, "after", of.after, why("fewer than three clips have a gap"));
+  put_interval(object, "shrink", of.shrink, why("the gap, or that without one of the clips, is not above the floor"));
+  object["method"] = "jackknife over clips";
+  return object;
+}
+
+Json acceleration_intervals_json(const diagnose::GapIntervals& of) {
+  const std::string why =
+      of.why_none.empty() ? "fewer than three clips have accelerations that could be compared" : of.why_none;
+  Json object;
+  put_interval(object, "before", of.acceleration_before, why);
+  put_interval(object, "after", of.acceleration_after, why);
+  return object;
+}
+
 Json gap_json(const diagnose::GapSizes& gap) {
   Json object;
   put(object, "before", gap.before);
@@ -54,12 +87,14 @@ Json gap_json(const diagnose::GapSizes& gap) {
   object["floor"] = 1.0;
   put(object, "shrink", gap.shrink, "the gap is not above the floor by more than its standard error");
   put(object, "standard_error", gap.standard_error);
+  object["interval95"] = intervals_json(gap.interval95);
   object["held_out"] = gap.held_out;
   object["by_clip"] = {{"before", gap.before_by_clip}, {"after", gap.after_by_clip}};
   Json acceleration;
   const char* none = "there is no motion whose accelerations could be compared";
   put(acceleration, "before", gap.acceleration_before, none);
   put(acceleration, "after", gap.acceleration_after, none);
+  acceleration["interval95"] = acceleration_intervals_json(gap.interval95);
   object["acceleration_m_s2"] = std::move(acceleration);
   object["parameters"] = Json::array();
   for (const diagnose::GapOfParameter& parameter : gap.parameters) {
@@ -67,8 +102,9 @@ Json gap_json(const diagnose::GapSizes& gap) {
     one["quantity"] = parameter.quantity;
     one["against"] = parameter.against;
     one["group"] = parameter.group;
-    put(one, "z_before", parameter.z_before);
-    put(one, "z_after", parameter.z_after);
+    const char* unknown = "beside the statement the data say next to nothing of it";
+    put(one, "z_before", parameter.z_before, unknown);
+    put(one, "z_after", parameter.z_after, unknown);
     object["parameters"].push_back(std::move(one));
   }
   return object;

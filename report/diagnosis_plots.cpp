@@ -89,7 +89,8 @@ Plot curve_plot(const diagnose::GapCurve& curve) {
           fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
 }
 
-Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int variable) {
+Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
+  const std::vector<diagnose::ResidualCurve>& curves = diagnosis.residuals;
   PlotData before{"before", {}}, after{"after", {}};
   const std::size_t share = std::max<std::size_t>(1, curves.size() / 8);
   for (const diagnose::ResidualCurve& curve : curves) {
@@ -100,20 +101,23 @@ Plot residual_plot(const std::vector<diagnose::ResidualCurve>& curves, int varia
     }
   }
   if (before.rows.empty()) before.rows = after.rows = {{kNan, kNan}};
+  // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
   std::string script(kFrame);
   if (variable == 2) script += kFromStart;
   script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis_of(variable == 0   ? "x_m"
                                                                                           : variable == 1 ? "v_m_s"
                                                                                                           : "t_s"));
   script += fmt::format(
-      "plot $before using 1:2 with points pt 7 ps 0.2 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
-      "'{0}' title 'before', $after using 1:2 with points pt 7 ps 0.2 lc rgb '{1}' notitle, keyentry with points pt 7 "
+      "plot $before using 1:2 with points pt 7 ps 0.35 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
+      "'{0}' title 'before', $after using 1:2 with points pt 7 ps 0.15 lc rgb '{1}' notitle, keyentry with points pt 7 "
       "ps 0.8 lc rgb '{1}' title 'after'\n",
       kColors[1], kColors[0]);
   return {Drawing{script, std::vector{before, after}},
-          fmt::format("What the fit leaves of all clips, over {}", variable == 0   ? "the place"
-                                                                   : variable == 1 ? "the speed"
-                                                                                   : "the time"),
+          fmt::format("What the fit leaves of all clips, over {}{}",
+                      variable == 0   ? "the place"
+                      : variable == 1 ? "the speed"
+                                      : "the time",
+                      diagnosis.verdict == "unknown" ? "; after: with the likeliest curve without a name" : ""),
           "Residuals before and after"};
 }
 
@@ -161,7 +165,7 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
     if (plots.size() < 3) plots.push_back(curve_plot(curve));
   }
   for (const int variable : {1, 0, 2}) {
-    if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis.residuals, variable));
+    if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis, variable));
   }
   return plots;
 }

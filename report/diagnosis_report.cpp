@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "report/diagnosis_plots.h"
+#include "report/gap_text.h"
 #include "report/html.h"
 #include "report/number_text.h"
 #include "report/twin_plots.h"
@@ -70,24 +71,34 @@ std::string gap_tables(const diagnose::GapSizes& gap) {
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
     clips.row({escape(gap.held_out[c]), number_text(gap.before_by_clip[c], 3), number_text(gap.after_by_clip[c], 3)});
   }
+  const diagnose::GapIntervals& over_clips = gap.interval95;
   clips.row({"all", number_text(gap.before, 4), number_text(gap.after, 4)});
+  clips.row({"all: 95 % over clips", interval_text(over_clips.before), interval_text(over_clips.after)});
+  if (gap.acceleration_before && gap.acceleration_after) {
+    clips.row({"acceleration, all (m/s²)", number_text(*gap.acceleration_before, 3),
+               number_text(*gap.acceleration_after, 3)});
+    clips.row({"acceleration: 95 % over clips", interval_text(over_clips.acceleration_before),
+               interval_text(over_clips.acceleration_after)});
+  }
   std::string text = clips.str();
   text += fmt::format(
       "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it would be 1 "
-      "± {}. {}{}</p>\n",
+      "± {}. {} {}{}</p>\n",
       number_text(gap.standard_error, 2),
-      gap.shrink ? fmt::format("The gap shrinks by {:.1f} % of what is above the floor.", 100.0 * *gap.shrink)
+      gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of what is above the floor."
                  : std::string("It is at the floor."),
-      gap.acceleration_before && gap.acceleration_after
-          ? fmt::format(" In acceleration (measured minus model, both smoothed as the analysis smooths): {} m/s² "
-                        "before, {} m/s² after, noise included.",
-                        number_text(*gap.acceleration_before, 3), number_text(*gap.acceleration_after, 3))
-          : std::string());
+      over_clips.why_none.empty()
+          ? "The intervals say how much these numbers would differ with other clips of the same kind (jackknife: each "
+            "clip left out of the mean in turn)."
+          : escape(over_clips.why_none) + ".",
+      gap.acceleration_before ? " Accelerations are measured minus model, both smoothed as the analysis smooths, noise "
+                                "included."
+                              : "");
   if (gap.parameters.empty()) return text;
   HtmlTable angles({"inclination of", "against", "standard deviations off, before", "after"}, 2);
   for (const auto& p : gap.parameters) {
-    angles.row(
-        {escape(p.group), escape(p.against), fmt::format("{:+.1f}", p.z_before), fmt::format("{:+.1f}", p.z_after)});
+    const auto z_text = [](const std::optional<double>& z) { return z ? fmt::format("{:+.1f}", *z) : "–"; };
+    angles.row({escape(p.group), escape(p.against), z_text(p.z_before), z_text(p.z_after)});
   }
   return text + angles.str();
 }
@@ -166,7 +177,9 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
       "seen). Smooth forces and displacements without a name, over place, speed and time, and differences between "
       "clips, "
       "masses and set-ups compete with them, also beside them: where one of those explains more, the verdict is "
-      "“unknown”.</p>\n";
+      "“unknown”. For the gap each clip in turn is taken out of the fit to all clips, to first order: sizes are learnt "
+      "from the other clips. What was found by searching (which of several waves or places, which frames are lost, the "
+      "shape of a curve without a name) comes from all of them.</p>\n";
   return page(title, body);
 }
 

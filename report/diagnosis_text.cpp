@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "report/gap_text.h"
 #include "report/number_text.h"
 #include "report/text_table.h"
 
@@ -27,6 +28,25 @@ std::string wrapped(const std::string& text) {
   return lines + line + "\n";
 }
 
+std::string gap_lines(const diagnose::GapSizes& gap) {
+  const diagnose::GapIntervals& over_clips = gap.interval95;
+  std::string text;
+  if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of what is above the floor\n";
+  if (over_clips.why_none.empty()) {
+    text += fmt::format("  95 % over clips: {} before, {} after\n", interval_text(over_clips.before),
+                        interval_text(over_clips.after));
+  } else {
+    text += "  " + over_clips.why_none + "\n";
+  }
+  if (!gap.acceleration_before || !gap.acceleration_after) return text;
+  const auto acceleration = [&](double size, const std::optional<diagnose::GapInterval>& interval) {
+    return number_text(size, 3) + " m/s²" + (interval ? " (" + interval_text(interval) + ")" : "");
+  };
+  return text + fmt::format("  in acceleration {} before, {} after, noise included\n",
+                            acceleration(*gap.acceleration_before, over_clips.acceleration_before),
+                            acceleration(*gap.acceleration_after, over_clips.acceleration_after));
+}
+
 }  // namespace
 
 std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
@@ -50,6 +70,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.gap) {
     text += fmt::format("gap of held-out clips: {:.3f} before, {:.3f} after (floor 1)\n", diagnosis.gap->before,
                         diagnosis.gap->after);
+    text += gap_lines(*diagnosis.gap);
   }
   text += "\nnext: " + wrapped(diagnosis.next_experiment);
   for (const std::string& note : diagnosis.notes) text += "note: " + wrapped(note);
