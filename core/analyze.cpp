@@ -88,7 +88,10 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     }
     modes += seen.modes;
     if (seen.calibration) results.calibrations.push_back(std::move(*seen.calibration));
-    for (PlumbResult& plumb : seen.plumbs) results.plumbs.push_back(std::move(plumb));
+    for (PlumbResult& plumb : seen.plumbs) {
+      plumb.experiment = experiment.name;
+      results.plumbs.push_back(std::move(plumb));
+    }
   }
   name_uniquely(experiments, setups);
   results.clips.resize(setups.size());

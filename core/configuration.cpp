@@ -16,8 +16,6 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kSameIncline = 1e-9;  // rad: the same number written in two files
-
 struct Member {
   const ClipSetup* setup;
   const ClipResult* clip;
@@ -286,7 +284,7 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
     const auto same = [&](const std::vector<Member>& members) {
       const ClipSetup& first = *members.front().setup;
       return first.mass_kg == setups[i].mass_kg && first.group == setups[i].group &&
-             std::abs(first.incline_rad - setups[i].incline_rad) < kSameIncline;
+             std::abs(first.incline_rad - setups[i].incline_rad) < kSameIncline_rad;
     };
     const auto found = std::find_if(configurations.begin(), configurations.end(), same);
     std::vector<Member>& members = found != configurations.end() ? *found : configurations.emplace_back();

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "base/errors.h"
 #include "base/strict_toml.h"
+#include "core/experiment_groups.h"
 #include "core/folder_files.h"
 
 namespace glidelab::core {
@@ -180,46 +180,6 @@ GroupSetup read_group(const TomlTable& table, const FolderFiles& folder) {
   return group;
 }
 
-/// One group for each stated inclination among the clips that name none; "all" where that makes one group in all.
-void name_groups(std::vector<ClipSetup>& clips) {
-  std::set<double> inclinations;
-  bool some_named = false;
-  for (const ClipSetup& clip : clips) {
-    if (clip.group.empty()) {
-      inclinations.insert(clip.incline_rad);
-    } else {
-      some_named = true;
-    }
-  }
-  for (ClipSetup& clip : clips) {
-    if (!clip.group.empty()) continue;
-    clip.group = inclinations.size() == 1 && !some_named
-                     ? "all"
-                     : fmt::format("{:.6g} deg", clip.incline_rad / kRadiansPerDegree + 0.0);  // + 0.0: no "-0"
-  }
-}
-
-void check_names(const std::vector<ClipSetup>& clips, const std::vector<TomlTable>& clip_tables,
-                 const std::vector<GroupSetup>& groups, const std::vector<TomlTable>& group_tables) {
-  std::set<std::string> names;
-  std::set<std::string> known_groups;
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    known_groups.insert(clips[i].group);
-    if (clips[i].name.empty() || names.insert(clips[i].name).second) continue;
-    clip_tables[i].reject("name", fmt::format("text \"{}\" a second time", clips[i].name), "a name of its own");
-  }
-  names.clear();
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (groups[i].name.empty()) continue;
-    if (!names.insert(groups[i].name).second) {
-      group_tables[i].reject("name", fmt::format("text \"{}\" a second time", groups[i].name), "a name of its own");
-    } else if (!known_groups.contains(groups[i].name)) {
-      group_tables[i].reject("name", fmt::format("text \"{}\", of which there is no clip", groups[i].name),
-                             fmt::format("one of {}", fmt::join(known_groups, ", ")));
-    }
-  }
-}
-
 bool stated_by_all_groups(const Experiment& experiment, bool only_pictures, bool (*states)(const GroupSetup&)) {
   return std::all_of(experiment.clips.begin(), experiment.clips.end(), [&](const ClipSetup& clip) {
     if (only_pictures && clip.file.empty()) return true;
@@ -302,6 +262,7 @@ Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
   const std::vector<TomlTable> group_tables = root.tables_or_none("group");
   for (const TomlTable& table : group_tables) experiment.groups.push_back(read_group(table, folder));
   check_names(experiment.clips, clip_tables, experiment.groups, group_tables);
+  check_readings(experiment.clips, clip_tables);
 
   // A group may have its own downhill; [track] is needed where one has not.
   const auto track = root.maybe_table("track");

@@ -73,6 +73,12 @@ struct ClipSetup {
   std::string group;  ///< never empty once read: as given, else one name for each stated inclination
 };
 
+inline constexpr double kSameIncline_rad = 1e-9;  ///< stated angles that differ by less are one
+
+/// Whether two readings of one inclination are further apart than five standard deviations of both together. A clip
+/// that states no uncertainty contradicts nobody.
+bool contradicts(const ClipSetup& one, const ClipSetup& other);
+
 /// What a set-up has of its own; what it leaves out comes from [calibration], [plumb] and [track].
 struct GroupSetup {
   std::string name;

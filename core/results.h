@@ -209,7 +209,8 @@ struct CalibrationResult {
 
 struct PlumbResult {
   std::string group;
-  Quantity plumb_deg;  ///< inclination of the line of motion against the plumb line
+  Quantity plumb_deg;           ///< inclination of the line of motion against the plumb line
+  std::string experiment = {};  ///< as in ClipResult: another folder's group of that name is another set-up
 };
 
 struct AnalysisResults {

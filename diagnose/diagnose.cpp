@@ -45,17 +45,24 @@ std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
   return effects;
 }
 
-void check(const TrackSet& set) {
+/// InputError, an issue for each clip, where all of them together hold too little motion.
+void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
+  std::vector<std::size_t> of_clip(set.clips.size(), 0);
   std::size_t points = 0;
-  for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
-  if (set.motions.empty()) {
-    throw base::InputError(base::Issue{"", 0, "clips", "no clip in which anything moves freely",
-                                       "one or more clips of a glider that moves"});
+  for (const TrackedMotion& motion : set.motions) {
+    of_clip[motion.clip] += motion.t_s.size();
+    points += motion.t_s.size();
   }
-  if (points < kFewestPositions) {
-    throw base::InputError(base::Issue{"", 0, "clips", fmt::format("{} positions of free motion in all", points),
-                                       fmt::format("at least {}: fewer carry no verdict", kFewestPositions)});
+  if (points >= kFewestPositions) return;
+  std::vector<base::Issue> issues;
+  for (std::size_t c = 0; c < of_clip.size(); ++c) {
+    issues.push_back(
+        {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
+         fmt::format("clip \"{}\"", set.clips[c].name),
+         of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
+         fmt::format("at least {} in all clips together: fewer carry no verdict", kFewestPositions)});
   }
+  throw base::InputError(std::move(issues));
 }
 
 /// What a reader should know of the data before he believes the verdict.
@@ -168,7 +175,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
                            const std::vector<core::Experiment>& folders) {
   const std::vector<std::size_t> without = indices(options.without);
   TrackSet set = track_set(results, setups, true);
-  check(set);
+  check(setups, set);
   note_limits(setups, set);
   cut_driven_motions(set, kFewestPoints);
   progress("weighing explanations", 0.1);

@@ -11,7 +11,8 @@ namespace glidelab::diagnose {
 struct DiagnosedParameter {
   std::string key;  ///< with its unit, as in the list of effects
   double value = 0.0;
-  double sd = 0.0;
+  double sd = 0.0;        ///< 0: not fitted
+  std::string text = {};  ///< of what is a word (a codec's name), instead of value and sd
 };
 
 /// One of several effects that would look the same.
@@ -133,6 +134,13 @@ struct MeasuredMotion {
   std::vector<double> v_m_s, a_m_s2;  ///< smoothed, of the points that the lines rest on
 };
 
+/// What a reader must know before the verdict, in sentences (verdict_limits.h); also in the notes.
+struct VerdictLimits {
+  std::vector<std::string> driving;       ///< a drag or friction below zero
+  std::vector<std::string> contradicted;  ///< statements that the motion contradicts
+  std::string set_aside;                  ///< a large part of the positions takes no part; else empty
+};
+
 struct Diagnosis {
   std::string verdict;     ///< none, effect, unknown
   std::size_t points = 0;  ///< positions that took part
@@ -145,6 +153,7 @@ struct Diagnosis {
   std::optional<GapSizes> gap;
   std::string next_experiment;
   std::string summary;  ///< a paragraph in plain words
+  VerdictLimits limits;
   Isolability isolability;
   std::vector<ResidualCurve> residuals;
   std::vector<PictureFinding> pictures;  ///< empty for tracks

@@ -207,9 +207,15 @@ std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit&
     if (s.against.empty()) continue;
     const auto g = static_cast<Eigen::Index>(s.global);
     // Residual of a datum that took part in the fit: its variance is sd² less what the fit knows.
-    const double variance = s.sd * s.sd - covariance(g, g);
+    const double variance = s.sd * s.sd - covariance(g, g), off = s.value - fit.at.global[g];
     StatementPull pull{"alpha_deg", s.against, set.groups[fit.layout->globals()[s.global].index].name, {}};
-    if (variance > kLeastKnown * s.sd * s.sd) pull.z = (s.value - fit.at.global[g]) / std::sqrt(variance);
+    pull.stated_rad = s.value;
+    pull.stated_sd_rad = s.sd;
+    if (variance > kLeastKnown * s.sd * s.sd) {
+      pull.z = off / std::sqrt(variance);
+      pull.else_rad = s.value - off * s.sd * s.sd / variance;
+      pull.else_sd_rad = s.sd * std::sqrt(covariance(g, g) / variance);
+    }
     pulls.push_back(std::move(pull));
   }
   return pulls;

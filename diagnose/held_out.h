@@ -49,12 +49,15 @@ Eigen::MatrixXd common_covariance(const MotionFit& fit);
 MotionFit at_linear_minimum(const TrackSet& set, MotionFit fit);
 
 /// How far a statement lies from what everything else says, in standard deviations of the difference: z = (stated -
-/// fitted) / sqrt(sd² - C), C the fitted angle's variance. Of a fit that is at its minimum.
+/// fitted) / sqrt(sd² - C), C the fitted angle's variance. Everything else says what the fit does with the statement
+/// taken out again: (fitted sd² - stated C)/(sd² - C) ± sd sqrt(C/(sd² - C)). Of a fit that is at its minimum.
 struct StatementPull {
   std::string quantity;  ///< "alpha_deg"
   std::string against;   ///< "plumb", "stated"
   std::string group;
   std::optional<double> z;  ///< none where everything else knows the angle a hundred times worse than the statement
+  double stated_rad = 0.0, stated_sd_rad = 0.0;
+  double else_rad = 0.0, else_sd_rad = 0.0;  ///< where there is a z
 };
 std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit& fit);
 

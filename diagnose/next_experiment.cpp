@@ -12,6 +12,7 @@
 #include "diagnose/next_changes.h"
 #include "diagnose/next_words.h"
 #include "diagnose/verdict.h"
+#include "diagnose/verdict_words.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -228,9 +229,20 @@ std::string for_pictures(const std::vector<std::string>& ids) {
   return {};
 }
 
+/// Where only what is stated contradicts the motion, no further clip of the kind tells more.
+std::string for_statements(const Diagnosis& diagnosis) {
+  return diagnosis.limits.driving.empty()
+             ? "Measure the inclination again, with a level on the track or a plumb line in the picture: the motion "
+               "and "
+               "what is stated cannot both be right."
+             : "Look up which way is downhill, the inclinations and the masses as they are stated, then launch one "
+               "glider both ways: friction slows it whichever way it goes, an inclination does not.";
+}
+
 }  // namespace
 
 std::string next_experiment(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis) {
+  if (only_statements_fail(diagnosis)) return for_statements(diagnosis);
   if (diagnosis.verdict == "unknown") return next_for_unnamed(set, comparison.fits.front(), diagnosis);
   const Hypothesis* first = leading(set, comparison, diagnosis);
   if (first == nullptr) return "Repeat one launch of each kind: the more clips, the surer.";

@@ -32,7 +32,7 @@ double memory_log_evidence(const std::vector<FilmedClip>& clips) {
 void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   double excess = 0.0, relative = 0.0, memory = 0.0;
   std::size_t lossy = 0, lossless = 0;
-  std::string codec;
+  std::string codec, lossy_codec;
   for (const FilmedClip& clip : clips) {
     double mine = 0.0;
     const double z = block_excess(clip.record->steps, mine);
@@ -43,6 +43,7 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
     memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
     if (clip.record->lossy) ++(*clip.record->lossy ? lossy : lossless);
     if (codec.empty()) codec = clip.record->codec;
+    if (lossy_codec.empty() && clip.record->lossy.value_or(false)) lossy_codec = clip.record->codec;
   }
   const bool changes = std::any_of(evidence.findings.begin(), evidence.findings.end(), [](const PictureFinding& other) {
     return (other.id == "light_flicker" || other.id == "camera_motion") && other.log_evidence > kSeenInPictures;
@@ -54,11 +55,12 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   finding.log_evidence =
       std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks, changes ? blocks : memory_log_evidence(clips));
   finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
+  if (!lossy_codec.empty()) finding.parameters.push_back({"codec", 0.0, 0.0, lossy_codec});
   const std::string steps =
       relative > 2.0 ? fmt::format("{:.2g} times as large", 1.0 + relative)
                      : fmt::format("{:.1f} % {}", 100.0 * std::abs(relative), relative < 0.0 ? "smaller" : "larger");
   finding.words = fmt::format("{}; steps between pixels are {} at the edges of 8 x 8 blocks {} elsewhere.",
-                              lossy > 0      ? fmt::format("The file is compressed with loss ({})", codec)
+                              lossy > 0      ? fmt::format("The file is compressed with loss ({})", lossy_codec)
                               : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
                                              : std::string("What the file was compressed with is not known"),
                               steps, relative > 2.0 ? "as" : "than");

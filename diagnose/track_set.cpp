@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t kFewestPoints = 12;
 constexpr double kOutlier = 5.0;         // standard deviations off the neighbours
 constexpr double kLongestBridge = 0.08;  // s of disputed frames within a motion that are bridged
-constexpr double kSameAngle = 1e-9;
 constexpr double kLeastNoise_m = 1e-9;
 
 enum class Kind { no, free, disputed };
@@ -125,25 +124,43 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   return motion;
 }
 
+/// The plumb lines and readings of a set-up: every one once, however many clips have it.
 void add_statements(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, TrackSet& set) {
-  for (TrackGroup& group : set.groups) {
+  const auto add = [&set](std::size_t group, const InclineStatement& statement) {
+    std::vector<InclineStatement>& known = set.groups[group].statements;
+    const auto same = [&](const InclineStatement& other) {
+      return other.against == statement.against && other.sd_rad == statement.sd_rad &&
+             std::abs(other.alpha_rad - statement.alpha_rad) < core::kSameIncline_rad;
+    };
+    if (std::none_of(known.begin(), known.end(), same)) known.push_back(statement);
+  };
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& setup = setups[motion.clip];
     for (const core::PlumbResult& plumb : results.plumbs) {
-      if (plumb.group != group.name || !plumb.plumb_deg.estimate) continue;
+      if (plumb.group != setup.group || plumb.experiment != results.clips[motion.clip].experiment) continue;
+      if (!plumb.plumb_deg.estimate) continue;
       const double rad = std::numbers::pi / 180.0;
-      group.statements.push_back({plumb.plumb_deg.estimate->value * rad, plumb.plumb_deg.estimate->sd * rad, "plumb"});
+      add(motion.group, {plumb.plumb_deg.estimate->value * rad, plumb.plumb_deg.estimate->sd * rad, "plumb"});
     }
-    for (const core::ClipSetup& setup : setups) {
-      if (setup.group != group.name || !setup.incline_sd_rad || !(*setup.incline_sd_rad > 0.0)) continue;
-      group.statements.push_back({setup.incline_rad, *setup.incline_sd_rad, "stated"});
-      break;  // one reading for all clips of a group
-    }
+  }
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& setup = setups[motion.clip];
+    if (!setup.incline_sd_rad || !(*setup.incline_sd_rad > 0.0)) continue;
+    add(motion.group, {setup.incline_rad, *setup.incline_sd_rad, "stated"});
   }
 }
 
-std::size_t group_of(const core::ClipSetup& setup, TrackSet& set) {
-  for (std::size_t g = 0; g < set.groups.size(); ++g) {
-    if (set.groups[g].name == setup.group && std::abs(set.groups[g].stated_rad - setup.incline_rad) < kSameAngle)
-      return g;
+/// The set-up of a clip. Clips of one group that state different inclinations share it where their uncertainties let
+/// them and one folder says so; else they are set-ups of their own.
+std::size_t group_of(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, std::size_t clip,
+                     TrackSet& set) {
+  const core::ClipSetup& setup = setups[clip];
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& other = setups[motion.clip];
+    if (other.group != setup.group) continue;
+    const bool readings = setup.incline_sd_rad && other.incline_sd_rad && !core::contradicts(setup, other) &&
+                          results.clips[clip].experiment == results.clips[motion.clip].experiment;
+    if (readings || std::abs(other.incline_rad - setup.incline_rad) < core::kSameIncline_rad) return motion.group;
   }
   set.groups.push_back({setup.group, setup.incline_rad, {}, 0.0});
   return set.groups.size() - 1;
@@ -238,6 +255,8 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     set.pictures = set.pictures || !clip.sightings.empty();
     for (const core::MotionPoint& point : clip.motion) {
       set.disputed += point.left_out == core::LeftOut::hand || point.left_out == core::LeftOut::stop;
+      set.moving += kind_of(point, true) == Kind::free;
+      set.left_out += kind_of(point, all) == Kind::disputed;
     }
     bool any = false;
     const double excess = calibration_excess(results, clip.experiment);
@@ -245,7 +264,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
       TrackedMotion motion = motion_of(clip, run, all, camera_modes, excess);
       if (motion.t_s.size() < kFewestPoints) continue;
       motion.clip = c;
-      motion.group = group_of(setups[c], set);
+      motion.group = group_of(results, setups, c, set);
       motion.mass = mass_of(setups[c], set);
       set.modes = std::max(set.modes, motion.shared_m.size());
       set.motions.push_back(std::move(motion));

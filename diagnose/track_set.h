@@ -98,6 +98,8 @@ struct TrackSet {
   std::vector<std::string> notes;
   /// Frames that the analysis took for hand or stop and that a motion could hold.
   std::size_t disputed = 0;
+  std::size_t left_out = 0;  ///< of these, all or none
+  std::size_t moving = 0;    ///< frames of free motion and disputed ones
 };
 
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the

@@ -7,12 +7,15 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "diagnose/alike_effects.h"
+#include "diagnose/derived_parameters.h"
 #include "diagnose/gap_sizes.h"
 #include "diagnose/held_out.h"
 #include "diagnose/next_experiment.h"
 #include "diagnose/twin.h"
+#include "diagnose/verdict_limits.h"
 #include "diagnose/verdict_regions.h"
 #include "diagnose/verdict_words.h"
 
@@ -21,7 +24,6 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
 constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
-constexpr double kBelowZero = 5.0;     // standard deviations
 
 std::string joined(const std::vector<std::size_t>& effects) {
   std::string text;
@@ -52,8 +54,9 @@ std::vector<std::string> equivalents(const Comparison& comparison, const Hypothe
   return ids;
 }
 
-std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, const PictureEvidence& pictures,
-                                              const Hypothesis& hypothesis, std::size_t effect) {
+std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Comparison& comparison,
+                                              const PictureEvidence& pictures, const Hypothesis& hypothesis,
+                                              std::size_t effect) {
   std::vector<DiagnosedParameter> parameters;
   for (const PictureFinding& finding : pictures.findings) {
     if (finding.id == effect_list()[effect].id && (finding.seen || effect_list()[effect].search == Search::pictures)) {
@@ -89,6 +92,8 @@ std::vector<DiagnosedParameter> parameters_of(const Comparison& comparison, cons
       *known = tracked;
     }
   }
+  const std::vector<DiagnosedParameter> derived = derived_parameters(set, fit, effect, pictures, parameters);
+  parameters.insert(parameters.end(), derived.begin(), derived.end());
   return parameters;
 }
 
@@ -184,19 +189,6 @@ std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
   return measured;
 }
 
-/// Drag and friction take energy from a glider. A fit that has them give some says that something stated is wrong.
-void note_what_drives(const MotionFit& fit, Diagnosis& diagnosis) {
-  const Eigen::MatrixXd covariance = common_covariance(fit);
-  for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
-    const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
-    if (!(value < -kBelowZero * sd)) continue;
-    diagnosis.notes.push_back(
-        fmt::format("The fit has a {} below zero ({:.2g} ± {:.1g}{}), which would drive the glider: what is missing "
-                    "takes it there, or what is stated of the inclination, of downhill or of the masses is wrong.",
-                    g == 0 ? "drag" : "friction", value, sd, g == 0 ? " N s/m" : ""));
-  }
-}
-
 }  // namespace
 
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
@@ -228,6 +220,12 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   diagnosis.verdict = verdict_by(comparison.none, comparison.unknown);
   const Hypothesis* best = best_named(set, comparison);
   const MotionFit& nominal = comparison.fits.front();
+  diagnosis.limits = limits_of(set, nominal);
+  const bool driven = diagnosis.verdict == "none" && !diagnosis.limits.driving.empty();
+  if (driven) {  // what drives the glider has no name
+    diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
+    diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
+  }
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == "effect" && best != nullptr) {
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
@@ -235,7 +233,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
       const EffectInfo& info = effect_list()[e];
       diagnosis.effects.push_back({std::string(info.id), std::string(info.stage), std::string(info.words),
                                    comparison.effect_probability[e], equivalents(comparison, *best, e),
-                                   parameters_of(comparison, pictures, *best, e)});
+                                   parameters_of(set, comparison, pictures, *best, e)});
     }
     std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });
@@ -248,7 +246,10 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   add_ranking(set, comparison, diagnosis);
   const bool beside_named = diagnosis.verdict == "unknown" && !comparison.all.front().effects.empty();
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
-  if (diagnosis.verdict != "none") {
+  const bool wrong_way = driven && diagnosis.verdict == "unknown";  // no function of anything is known to be missing
+  if (wrong_way) {
+    diagnosis.stage = "dynamics";
+  } else if (diagnosis.verdict != "none") {
     if (diagnosis.verdict == "unknown") {
       diagnosis.stage = add_error_runs(set, comparison.frames, families, diagnosis) ? "tracking" : stage_of(families);
     }
@@ -257,7 +258,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
-  if (diagnosis.verdict == "unknown" && set.clips.size() > 1) {
+  if (diagnosis.verdict == "unknown" && !wrong_way && set.clips.size() > 1) {
     // The likeliest function without a name stands in for what is missing.
     const UnnamedFamily* family = likeliest_shared(families);
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;
@@ -267,7 +268,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     }
   }
   diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.notes);
-  note_what_drives(*fit, diagnosis);
+  if (fit != &nominal) diagnosis.limits = limits_of(set, *fit);
+  for (const auto* limits : {&diagnosis.limits.driving, &diagnosis.limits.contradicted}) {
+    diagnosis.notes.insert(diagnosis.notes.end(), limits->begin(), limits->end());
+  }
+  if (!diagnosis.limits.set_aside.empty()) diagnosis.notes.push_back(diagnosis.limits.set_aside);
   diagnosis.residuals = residuals_of(set, nominal, *gap_fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
   Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == "unknown", pictures.filming);

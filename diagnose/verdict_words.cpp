@@ -79,9 +79,29 @@ std::string gap_words(const Diagnosis& diagnosis) {
   return text + ".";
 }
 
-}  // namespace
+std::string all_of(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += sentence + " ";
+  return text;
+}
 
-std::string summary_of(const Diagnosis& diagnosis) {
+/// The usual model follows the positions to their noise, and what it says cannot be.
+std::string wrongly_stated_words(const Diagnosis& diagnosis) {
+  const std::string sure = percent(diagnosis.unknown);
+  if (!diagnosis.limits.driving.empty()) {
+    return fmt::format("{}That no clip leaves more than its noise is no sign that nothing is missing ({}).",
+                       all_of(diagnosis.limits.driving), sure);
+  }
+  return fmt::format(
+      "{}The usual model explains the motion by itself to its noise, and none of the effects that this program knows "
+      "takes an inclination so far: what is stated is wrong, or something acts as an inclination does ({}).",
+      all_of(diagnosis.limits.contradicted), sure);
+}
+
+std::string verdict_words(const Diagnosis& diagnosis) {
+  if (only_statements_fail(diagnosis)) {
+    return wrongly_stated_words(diagnosis) + gap_words(diagnosis);
+  }
   if (diagnosis.verdict == "none" && !diagnosis.ranking.empty() &&
       diagnosis.ranking.front().probability > diagnosis.none) {
     return fmt::format(
@@ -119,6 +139,28 @@ std::string summary_of(const Diagnosis& diagnosis) {
   for (const DiagnosedEffect& effect : diagnosis.effects) words.push_back(claim(effect));
   std::string text = fmt::format("The data show {}.", list_of(words));
   return text + gap_words(diagnosis);
+}
+
+}  // namespace
+
+std::string summary_of(const Diagnosis& diagnosis) {
+  const VerdictLimits& limits = diagnosis.limits;
+  std::string text = verdict_words(diagnosis);
+  if (diagnosis.verdict == "none") {
+    text = all_of(limits.contradicted) + text;
+  } else if (!only_statements_fail(diagnosis)) {
+    for (const auto* sentences : {&limits.driving, &limits.contradicted}) {
+      for (const std::string& sentence : *sentences) text += " " + sentence;
+    }
+  }
+  return limits.set_aside.empty() ? text : limits.set_aside + " " + text;
+}
+
+bool only_statements_fail(const Diagnosis& diagnosis) {
+  constexpr double kAtFloor = 5.0;  // standard errors
+  const bool explained = diagnosis.gap && diagnosis.gap->before < 1.0 + kAtFloor * diagnosis.gap->standard_error;
+  return diagnosis.verdict == "unknown" && explained &&
+         !(diagnosis.limits.driving.empty() && diagnosis.limits.contradicted.empty());
 }
 
 std::string verdict_by(double none, double unknown) {

@@ -10,6 +10,10 @@ namespace glidelab::diagnose {
 /// A paragraph for somebody who knows the experiment and no statistics.
 std::string summary_of(const Diagnosis& diagnosis);
 
+/// Whether the usual model follows the positions to their noise, and is unknown's verdict for what is stated alone: an
+/// inclination that the motion contradicts, a drag or friction below zero.
+bool only_statements_fail(const Diagnosis& diagnosis);
+
 /// "none", "effect" or "unknown", by the probabilities of nothing and of something without a name. Something is claimed
 /// only where it is three times as likely as nothing.
 std::string verdict_by(double none, double unknown);

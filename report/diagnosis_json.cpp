@@ -12,8 +12,12 @@ Json parameters_json(const std::vector<diagnose::DiagnosedParameter>& parameters
   Json object = Json::object();
   for (const diagnose::DiagnosedParameter& parameter : parameters) {
     Json value;
-    put(value, "value", parameter.value);
-    put(value, "sd", parameter.sd);
+    if (parameter.text.empty()) {
+      put(value, "value", parameter.value);
+      put(value, "sd", parameter.sd);
+    } else {
+      value["value"] = parameter.text;
+    }
     object[parameter.key] = std::move(value);
   }
   return object;

@@ -46,7 +46,8 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     std::string size, same;
     for (const auto& p : effect.parameters) {
-      size += fmt::format("{}{} = {}", size.empty() ? "" : "<br>", escape(p.key), value_and_sd_text(p.value, p.sd));
+      size += fmt::format("{}{} = {}", size.empty() ? "" : "<br>", escape(p.key),
+                          p.text.empty() ? value_and_sd_text(p.value, p.sd) : escape(p.text));
     }
     for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
     table.row({escape(effect.id), escape(effect.stage), probability_text(effect.probability), size.empty() ? "–" : size,

@@ -61,7 +61,8 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   text += text_table(rows, 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
-      text += fmt::format("{}.{} = {}\n", effect.id, parameter.key, value_and_sd_text(parameter.value, parameter.sd));
+      text += fmt::format("{}.{} = {}\n", effect.id, parameter.key,
+                          parameter.text.empty() ? value_and_sd_text(parameter.value, parameter.sd) : parameter.text);
     }
   }
   for (const diagnose::PictureFinding& finding : diagnosis.pictures) {

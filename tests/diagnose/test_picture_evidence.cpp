@@ -90,6 +90,24 @@ TEST_CASE("Exposure and line time come out of the marker's shape within their st
   CHECK(fit.line_sd_s < 2e-6);
 }
 
+TEST_CASE("compression has the name of the codec with loss that a file states, and else none", "[pictures]") {
+  std::vector<diagnose::FilmedClip> clips = filmed({0.003, 0.0, 0.0, 0.0}, 0.003, 1);
+  REQUIRE(clips.size() >= 2);
+  const auto codecs = [&clips] {
+    std::string words;
+    for (const auto& p : finding(diagnose::picture_evidence(clips), "compression").parameters) {
+      if (p.key == "codec") words += p.text;
+    }
+    return words;
+  };
+  CHECK(codecs().empty());
+  auto record = std::make_shared<core::PictureRecord>(*clips.back().record);
+  record->codec = "MJPG";
+  record->lossy = true;
+  clips.back().record = record;
+  CHECK(codecs() == "MJPG");
+}
+
 TEST_CASE("Pictures in which all is as stated show nothing", "[pictures]") {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const diagnose::PictureEvidence evidence = diagnose::picture_evidence(filmed({0.003, 0.0, 0.0, 0.0}, 0.003, seed));
