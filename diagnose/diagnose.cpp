@@ -1,6 +1,7 @@
 #include "diagnose/diagnose.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,16 +66,15 @@ void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
   throw base::InputError(std::move(issues));
 }
 
-/// What a reader should know of the data before he believes the verdict.
+void add_once(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+/// What a reader should know of the data before he believes the verdict: one note for what many set-ups have alike.
 void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
+  std::vector<std::string> free, mixed;
   for (const TrackGroup& group : set.groups) {
-    if (group.statements.empty()) {
-      set.notes.push_back(
-          fmt::format("Set-up \"{}\" has neither a plumb line nor an inclination with its uncertainty "
-                      "(incline_sd_deg): what shows in "
-                      "the inclination only (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
-                      group.name));
-    }
+    if (group.statements.empty()) add_once(fmt::format("\"{}\"", group.name), free);
     for (std::size_t a = 0; a < group.statements.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         const InclineStatement &one = group.statements[a], &two = group.statements[b];
@@ -89,11 +89,20 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   }
   for (std::size_t a = 0; a < set.groups.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      if (set.groups[a].name != set.groups[b].name) continue;
-      set.notes.push_back(
-          fmt::format("Clips of set-up \"{}\" state different inclinations; they are taken for set-ups of their own.",
-                      set.groups[a].name));
+      if (set.groups[a].name == set.groups[b].name) add_once(fmt::format("\"{}\"", set.groups[a].name), mixed);
     }
+  }
+  if (!free.empty()) {
+    set.notes.push_back(fmt::format(
+        "{} {} {} neither a plumb line nor an inclination with its uncertainty (incline_sd_deg): what shows in the "
+        "inclination only (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
+        free.size() > 1 ? "Set-ups" : "Set-up", fmt::join(free, ", "), free.size() > 1 ? "have" : "has"));
+  }
+  if (!mixed.empty()) {
+    set.notes.push_back(
+        fmt::format("Clips of set-up {} state different inclinations; they are taken for set-ups of "
+                    "their own.",
+                    fmt::join(mixed, ", ")));
   }
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];

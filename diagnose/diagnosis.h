@@ -63,7 +63,9 @@ struct GapCurve {
 
 struct GapOfParameter {
   std::string quantity, against, group;
-  std::optional<double> z_before, z_after;  ///< none where the motions say too little of it beside the statement
+  std::optional<double> z_before = {}, z_after = {};  ///< none where it cannot be said
+  /// Of a part of the data alone, against all: the usual model's fits, in the quantity's unit.
+  std::optional<DiagnosedParameter> alone = {}, together = {};
 };
 
 /// 95 %, over clips (clip_interval.h).
@@ -76,6 +78,31 @@ struct GapIntervals {
   std::string why_none;  ///< where none of them can be said
 };
 
+/// A difference with its standard deviation.
+struct GapValue {
+  double value = 0.0, sd = 0.0;
+};
+
+/// Measured less modelled acceleration over a stretch of speeds (phase_gap.h), m/s².
+struct PhaseBin {
+  double from_m_s = 0.0, to_m_s = 0.0;
+  double v_m_s = 0.0;  ///< mean over its points
+  std::size_t points = 0;
+  GapValue before, after;
+};
+
+struct PhaseGap {
+  std::optional<double> mass_kg;  ///< none: all masses together
+  std::vector<PhaseBin> bins;     ///< by rising speed
+};
+
+/// How large the gap is in one domain, over what the noise alone would make (1).
+struct GapDomain {
+  std::string domain;  ///< positions, phase_plane, parameters, picture
+  double before = 0.0;
+  std::optional<double> after = {};  ///< none where it cannot be said
+};
+
 struct GapSizes {
   double before = 0.0, after = 0.0;
   double standard_error = 0.0;  ///< of a gap at the floor
@@ -85,12 +112,15 @@ struct GapSizes {
   std::optional<double> acceleration_before, acceleration_after;  ///< m/s²; none of lines, which hold no motion
   GapIntervals interval95;
   std::vector<GapOfParameter> parameters;
+  std::vector<PhaseGap> phase_plane;  ///< all masses together, then each; empty of lines
+  std::vector<GapDomain> domains;
 };
 
-/// Residuals of one motion for the plots, in metres.
+/// Residuals of one motion for the plots, in metres, and the noise of each position.
 struct ResidualCurve {
   std::string clip;
   std::vector<double> t_s, x_m, v_m_s, before_m, after_m;
+  std::vector<double> noise_m = {};
 };
 
 /// How alike what two effects change is: the cosine of the angle between them, everything fitted projected out.

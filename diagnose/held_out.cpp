@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/dense.h"
 #include "core/local_cubic.h"
+#include "diagnose/projected_motion.h"
 #include "diagnose/thin_tracks.h"
 #include "diagnose/whitening.h"
 
@@ -15,65 +15,6 @@ namespace {
 
 constexpr double kStretches = 4;
 constexpr double kLeastKnown = 1e-4;  // of a statement's variance: below, a pull is a difference of rounding
-
-/// A motion with its own parameters projected out.
-struct Projected {
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd common;
-  double freedom = 0.0;
-};
-
-struct OwnColumns {
-  Eigen::VectorXd scale;
-  Eigen::MatrixXd scaled;
-  Eigen::MatrixXd gain;  ///< sizes of the scaled columns from positions
-};
-
-OwnColumns own_columns(const FitMotion& motion) {
-  OwnColumns own;
-  own.scale = (motion.own.colwise().squaredNorm().transpose().array() + 1e-300).sqrt().inverse();
-  own.scaled = motion.own * own.scale.asDiagonal();
-  Eigen::MatrixXd normal = base::transposed_product(own.scaled, own.scaled);
-  normal.diagonal().array() += 1e-12;
-  own.gain = base::solve_positive(normal, own.scaled.transpose());
-  return own;
-}
-
-Projected project(const FitMotion& motion) {
-  const auto [scale, own, gain] = own_columns(motion);
-  Projected result;
-  result.residual = motion.residual - base::product(own, base::product(gain, motion.residual));
-  result.common = motion.global - base::product(own, base::product(gain, motion.global));
-  double points = 0.0;
-  for (Eigen::Index p = 0; p < motion.own.rows(); ++p) points += motion.own(p, 0) != 0.0 ? 1.0 : 0.0;
-  result.freedom = std::max(0.0, points - static_cast<double>(own.cols()));
-  return result;
-}
-
-struct Normal {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd right;
-};
-
-Normal statements_normal(const MotionFit& fit) {
-  const auto n = fit.at.global.size();
-  Normal normal{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  for (const FitStatement& s : fit.statements) {
-    const auto g = static_cast<Eigen::Index>(s.global);
-    normal.matrix(g, g) += 1.0 / (s.sd * s.sd);
-    normal.right[g] += (s.value - fit.at.global[g]) / (s.sd * s.sd);
-  }
-  return normal;
-}
-
-/// Inverse of a scaled, hardly held-back matrix: directions that nothing determines become very uncertain.
-Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix) {
-  const Eigen::VectorXd scale = (matrix.diagonal().array() + 1e-30).sqrt().inverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-12;
-  const Eigen::MatrixXd inverse = base::inverse_positive(scaled);
-  return scale.asDiagonal() * inverse * scale.asDiagonal();
-}
 
 /// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions.
 void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd& residual, ClipGap& clip) {
@@ -103,25 +44,21 @@ void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd
 
 HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
   HeldOutGap gap;
-  std::vector<Projected> motions;
+  std::vector<ProjectedMotion> motions;
   for (const FitMotion& motion : fit.motions) motions.push_back(project(motion));
-  Normal all = statements_normal(fit);
-  for (const Projected& motion : motions) {
-    all.matrix += base::transposed_product(motion.common, motion.common);
-    all.right += base::transposed_product(motion.common, motion.residual);
-  }
+  CommonNormal all = statements_normal(fit);
+  for (const ProjectedMotion& motion : motions) all.add(motion);
   double chi2 = 0.0, freedom = 0.0, a_sum = 0.0, a_count = 0.0;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
-    Normal others = all;
+    CommonNormal others = all;
     ClipGap clip{set.clips[c].name};
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (set.motions[i].clip != c) continue;
-      others.matrix -= base::transposed_product(motions[i].common, motions[i].common);
-      others.right -= base::transposed_product(motions[i].common, motions[i].residual);
+      others.add(motions[i], -1.0);
       clip.freedom += motions[i].freedom;
     }
     if (clip.freedom <= 0.0) continue;
-    const Eigen::MatrixXd covariance = inverse(others.matrix);
+    const Eigen::MatrixXd covariance = inverse_normal(others.matrix);
     const Eigen::VectorXd shift = base::product(covariance, others.right);
     // u'(1 + G C G')^-1 u = u'u - (G'u)' (C^-1 + G'G)^-1 (G'u)
     Eigen::VectorXd gu = Eigen::VectorXd::Zero(shift.size());
@@ -132,7 +69,7 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
       gu += base::transposed_product(motions[i].common, u);
       add_accelerations(set, i, u, clip);
     }
-    const Eigen::MatrixXd together = inverse(all.matrix);
+    const Eigen::MatrixXd together = inverse_normal(all.matrix);
     const Eigen::VectorXd taken = base::product(together, gu);
     clip.chi2 -= gu.dot(taken);
     chi2 += clip.chi2;
@@ -171,22 +108,15 @@ TrackSet split_clip(const TrackSet& set) {
 }
 
 Eigen::MatrixXd common_covariance(const MotionFit& fit) {
-  Normal all = statements_normal(fit);
-  for (const FitMotion& motion : fit.motions) {
-    const Projected projected = project(motion);
-    all.matrix += base::transposed_product(projected.common, projected.common);
-  }
-  return inverse(all.matrix);
+  CommonNormal all = statements_normal(fit);
+  for (const FitMotion& motion : fit.motions) all.add(project(motion));
+  return inverse_normal(all.matrix);
 }
 
 MotionFit at_linear_minimum(const TrackSet& set, MotionFit fit) {
-  Normal all = statements_normal(fit);
-  for (const FitMotion& motion : fit.motions) {
-    const Projected projected = project(motion);
-    all.matrix += base::transposed_product(projected.common, projected.common);
-    all.right += base::transposed_product(projected.common, projected.residual);
-  }
-  const Eigen::VectorXd shift = base::product(inverse(all.matrix), all.right);
+  CommonNormal all = statements_normal(fit);
+  for (const FitMotion& motion : fit.motions) all.add(project(motion));
+  const Eigen::VectorXd shift = base::product(inverse_normal(all.matrix), all.right);
   fit.at.global += shift;
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     FitMotion& motion = fit.motions[i];

@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
 constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
+constexpr double kNoChance = 5e-4;     // a page says "< 0.001"
 
 std::string joined(const std::vector<std::size_t>& effects) {
   std::string text;
@@ -127,6 +128,11 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& d
     }
     diagnosis.ranking.push_back(std::move(ranked));
   }
+  // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
+  const auto rest = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                                 [](const auto& ranked) { return ranked.probability < kNoChance; });
+  std::stable_sort(rest, diagnosis.ranking.end(),
+                   [](const auto& a, const auto& b) { return a.log_evidence_gain > b.log_evidence_gain; });
 }
 
 std::string stage_of(const std::vector<UnnamedFamily>& families) {
@@ -267,7 +273,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
       gap_fit = &with;
     }
   }
-  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.notes);
+  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.verdict == "unknown", diagnosis.notes);
   if (fit != &nominal) diagnosis.limits = limits_of(set, *fit);
   for (const auto* limits : {&diagnosis.limits.driving, &diagnosis.limits.contradicted}) {
     diagnosis.notes.insert(diagnosis.notes.end(), limits->begin(), limits->end());
@@ -283,6 +289,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   diagnosis.next_experiment = next_experiment(set, comparison, diagnosis);
   diagnosis.pictures = std::move(pictures.findings);
   diagnosis.picture_curves = std::move(pictures.curves);
+  diagnosis.gap->domains = gap_domains(*diagnosis.gap, diagnosis.pictures, diagnosis.effects);
   diagnosis.summary = summary_of(diagnosis);
   return diagnosis;
 }

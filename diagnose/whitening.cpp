@@ -93,4 +93,16 @@ Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white) {
   return white;
 }
 
+Eigen::MatrixXd weights_of_white(const TrackedMotion& motion, Eigen::MatrixXd weights) {
+  Eigen::Index from = 0;
+  for (const Eigen::MatrixXd& by : motion.whitening) {
+    // (by^-1)' w: an upper triangle, which in reverse order is a lower one.
+    const Eigen::MatrixXd turned = by.transpose().reverse();
+    const Eigen::MatrixXd reversed = weights.middleRows(from, by.rows()).colwise().reverse();
+    weights.middleRows(from, by.rows()) = base::solve_lower(turned, reversed).colwise().reverse();
+    from += by.rows();
+  }
+  return weights;
+}
+
 }  // namespace glidelab::diagnose

@@ -40,4 +40,7 @@ void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz);
 Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd);
 Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white);
 
+/// Weights w' of sums over coloured noise as weights of the same sums over the white noise that it is made of.
+Eigen::MatrixXd weights_of_white(const TrackedMotion& motion, Eigen::MatrixXd weights);
+
 }  // namespace glidelab::diagnose

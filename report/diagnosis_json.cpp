@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "report/json_numbers.h"
 
@@ -84,6 +85,32 @@ Json acceleration_intervals_json(const diagnose::GapIntervals& of) {
   return object;
 }
 
+Json difference_json(const diagnose::GapValue& of) {
+  constexpr double k95 = 1.959963984540054;  // standard deviations either side
+  Json object;
+  put(object, "value", of.value);
+  put(object, "sd", of.sd);
+  object["interval95"] = {of.value - k95 * of.sd, of.value + k95 * of.sd};
+  return object;
+}
+
+Json phase_json(const diagnose::PhaseGap& gap) {
+  Json object;
+  put(object, "mass_kg", gap.mass_kg, "all masses together");
+  object["bins"] = Json::array();
+  for (const diagnose::PhaseBin& bin : gap.bins) {
+    Json one;
+    put(one, "from_m_s", bin.from_m_s);
+    put(one, "to_m_s", bin.to_m_s);
+    put(one, "v_m_s", bin.v_m_s);
+    one["points"] = bin.points;
+    one["before_m_s2"] = difference_json(bin.before);
+    one["after_m_s2"] = difference_json(bin.after);
+    object["bins"].push_back(std::move(one));
+  }
+  return object;
+}
+
 Json gap_json(const diagnose::GapSizes& gap) {
   Json object;
   put(object, "before", gap.before);
@@ -106,10 +133,24 @@ Json gap_json(const diagnose::GapSizes& gap) {
     one["quantity"] = parameter.quantity;
     one["against"] = parameter.against;
     one["group"] = parameter.group;
-    const char* unknown = "beside the statement the data say next to nothing of it";
-    put(one, "z_before", parameter.z_before, unknown);
-    put(one, "z_after", parameter.z_after, unknown);
+    put(one, "z_before", parameter.z_before, "this part of the data says next to nothing of it");
+    put(one, "z_after", parameter.z_after, "no effect is named, or this part of the data says next to nothing of it");
+    for (const auto& [key, of] : {std::pair("alone", &parameter.alone), std::pair("together", &parameter.together)}) {
+      if (!*of) continue;
+      put(one[key], "value", (*of)->value);
+      put(one[key], "sd", (*of)->sd);
+    }
     object["parameters"].push_back(std::move(one));
+  }
+  object["phase_plane"] = Json::array();
+  for (const diagnose::PhaseGap& of : gap.phase_plane) object["phase_plane"].push_back(phase_json(of));
+  object["domains"] = Json::array();
+  for (const diagnose::GapDomain& of : gap.domains) {
+    Json one;
+    one["domain"] = of.domain;
+    put(one, "before", of.before);
+    put(one, "after", of.after, "it cannot be said");
+    object["domains"].push_back(std::move(one));
   }
   return object;
 }

@@ -13,19 +13,11 @@ namespace glidelab::report {
 namespace {
 
 constexpr std::size_t kBars = 8;
+constexpr std::size_t kCurves = 3;
 constexpr std::size_t kPoints = 800;  // of a clip
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Room around the points but at the left: time begins at 0, and room there would make an axis that begins before it.
 constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
-
-/// Labels of a horizontal bar chart, the first one at the top.
-std::string labels(const std::vector<std::string>& names) {
-  std::string tics = "set ytics (";
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(names[i]), -static_cast<double>(i));
-  }
-  return tics + ") scale 0 noenhanced\n";
-}
 
 Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   std::vector<std::pair<double, std::string>> bars = {{diagnosis.none, "none"}, {diagnosis.unknown, "unknown"}};
@@ -59,8 +51,8 @@ Plot clip_gaps(const diagnose::GapSizes& gap) {
   }
   std::string script(kFrame);
   script += "set offsets 0,0,0,0\nset xlabel 'residuals of the held-out clip / noise'\n";
-  script +=
-      labels(gap.held_out) + fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
+  script += chart_labels(gap.held_out) +
+            fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
   script += most > 8.0 ? fmt::format("set logscale x\nset xrange [0.5:{}]\n", 1.5 * most)
                        : fmt::format("set xrange [0:{}]\n", 1.1 * most);
   script += fmt::format(
@@ -73,7 +65,8 @@ Plot clip_gaps(const diagnose::GapSizes& gap) {
           "Dots for each clip's gap before and after"};
 }
 
-Plot curve_plot(const diagnose::GapCurve& curve) {
+/// `alternatives` is how many curves are shown, each of which fills the gap by itself.
+Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
   PlotData data{"curve", {}};
   for (std::size_t i = 0; i < curve.at.size(); ++i) data.rows.push_back({curve.at[i], curve.size[i], curve.sd[i]});
   std::string script(kFrame);
@@ -84,8 +77,11 @@ Plot curve_plot(const diagnose::GapCurve& curve) {
       "$curve using 1:2 with lines lw 2 lc rgb '{}', 0 with lines lw 1 lc rgb '{}'\n",
       kColors[0], kColors[0], kGrey);
   return {Drawing{script, std::vector{data}},
-          fmt::format("The smooth {} over {} that would fill the gap, with two standard deviations", curve.what,
-                      axis_of(curve.variable)),
+          fmt::format("{} {} over {} that would fill the gap, with two standard deviations{}",
+                      alternatives > 1 ? "One smooth" : "The smooth", curve.what, axis_of(curve.variable),
+                      alternatives > 1
+                          ? fmt::format(": any one of these {} curves by itself, not all of them", alternatives)
+                          : std::string()),
           fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
 }
 
@@ -153,6 +149,14 @@ std::string axis_of(const std::string& variable) {
   return variable;
 }
 
+std::string chart_labels(const std::vector<std::string>& names) {
+  std::string tics = "set ytics (";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(names[i]), -static_cast<double>(i));
+  }
+  return tics + ") scale 0 noenhanced\n";
+}
+
 std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots = {probabilities(diagnosis)};
   if (diagnosis.gap && !diagnosis.gap->held_out.empty()) plots.push_back(clip_gaps(*diagnosis.gap));
@@ -161,9 +165,8 @@ std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
 
 std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots;
-  for (const diagnose::GapCurve& curve : diagnosis.curves) {
-    if (plots.size() < 3) plots.push_back(curve_plot(curve));
-  }
+  const std::size_t shown = std::min(kCurves, diagnosis.curves.size());
+  for (std::size_t c = 0; c < shown; ++c) plots.push_back(curve_plot(diagnosis.curves[c], shown));
   for (const int variable : {1, 0, 2}) {
     if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis, variable));
   }
@@ -221,7 +224,7 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
     data.rows.emplace_back();
   }
   std::string script(kFrame);
-  script += "unset key\nunset grid\nset offsets 0,0,0,0\n" + labels(isolability.ids);
+  script += "unset key\nunset grid\nset offsets 0,0,0,0\n" + chart_labels(isolability.ids);
   script += "set xtics rotate by 90 right scale 0 noenhanced (";  // upright: slanting names of sixteen effects overlap
   for (std::size_t i = 0; i < n; ++i)
     script += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(isolability.ids[i]), i);

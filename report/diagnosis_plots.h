@@ -12,6 +12,9 @@ namespace glidelab::report {
 /// What a gap lies over, for a reader: "x_m" is "place x (m)".
 std::string axis_of(const std::string& variable);
 
+/// Labels of a horizontal bar chart, the first one at the top (y = 0, the next at -1): a command of gnuplot.
+std::string chart_labels(const std::vector<std::string>& names);
+
 /// Gap of each held-out clip before and after; probability of each explanation.
 std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis);
 

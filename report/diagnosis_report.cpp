@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include "report/diagnosis_plots.h"
+#include "report/gap_plots.h"
 #include "report/gap_text.h"
+#include "report/handy_units.h"
 #include "report/html.h"
 #include "report/number_text.h"
+#include "report/quantity_names.h"
 #include "report/twin_plots.h"
 
 namespace glidelab::report {
@@ -46,8 +49,8 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     std::string size, same;
     for (const auto& p : effect.parameters) {
-      size += fmt::format("{}{} = {}", size.empty() ? "" : "<br>", escape(p.key),
-                          p.text.empty() ? value_and_sd_text(p.value, p.sd) : escape(p.text));
+      size += size.empty() ? "" : "<br>";
+      size += escape(p.text.empty() ? parameter_text(p.key, p.value, p.sd) : p.key + " = " + p.text);
     }
     for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
     table.row({escape(effect.id), escape(effect.stage), probability_text(effect.probability), size.empty() ? "–" : size,
@@ -65,6 +68,24 @@ std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
     table.row({escape(ranked.id), probability_text(ranked.probability), gain_text(ranked.log_evidence_gain)});
   }
   return table.str();
+}
+
+std::string z_text(const std::optional<double>& z) {
+  return z ? fmt::format("{:+.1f}", *z) : std::string("–");
+}
+
+std::string quantity_text(const std::optional<diagnose::DiagnosedParameter>& of) {
+  return of ? size_and_sd_text(of->value, of->sd, name_and_unit(of->key).unit) : std::string("–");
+}
+
+std::string parameter_table(const diagnose::GapSizes& gap) {
+  HtmlTable table({"parameter", "of", "against", "alone", "together", "standard deviations off, before", "after"}, 3);
+  for (const auto& p : gap.parameters) {
+    const std::string symbol = p.quantity == "k_n_s_m" ? "K" : symbol_of(p.quantity);
+    table.row({symbol, escape(p.group), escape(p.against), quantity_text(p.alone), quantity_text(p.together),
+               z_text(p.z_before), z_text(p.z_after)});
+  }
+  return table.empty() ? "" : table.str();
 }
 
 std::string gap_tables(const diagnose::GapSizes& gap) {
@@ -95,13 +116,7 @@ std::string gap_tables(const diagnose::GapSizes& gap) {
       gap.acceleration_before ? " Accelerations are measured minus model, both smoothed as the analysis smooths, noise "
                                 "included."
                               : "");
-  if (gap.parameters.empty()) return text;
-  HtmlTable angles({"inclination of", "against", "standard deviations off, before", "after"}, 2);
-  for (const auto& p : gap.parameters) {
-    const auto z_text = [](const std::optional<double>& z) { return z ? fmt::format("{:+.1f}", *z) : "–"; };
-    angles.row({escape(p.group), escape(p.against), z_text(p.z_before), z_text(p.z_after)});
-  }
-  return text + angles.str();
+  return text + parameter_table(gap);
 }
 
 /// What was looked for in the pictures, what is there first.
@@ -115,13 +130,18 @@ std::string picture_table(const diagnose::Diagnosis& diagnosis) {
   return table.str();
 }
 
+/// Of what pictures show, the unit is a parameter's key.
+std::string region_size(const diagnose::GapRegion& region) {
+  const NamedUnit of = name_and_unit(region.unit);
+  return size_text(region.size, 2, of.unit.empty() ? region.unit : of.unit);
+}
+
 std::string region_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"over", "what", "from", "to", "largest", "largest / sd"}, 2);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
     table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
                escape(region.what), number_text(region.from, 3), number_text(region.to, 3),
-               (region.lacking ? "not known" : number_text(region.size, 2) + " " + escape(region.unit)),
-               number_text(region.excess, 2)});
+               region.lacking ? "not known" : escape(region_size(region)), number_text(region.excess, 2)});
   }
   return table.empty() ? "" : table.str();
 }
@@ -153,7 +173,12 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
                       escape(diagnosis.next_experiment));
   for (const std::string& note : diagnosis.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   body += "<h2>The verdict</h2>\n" + effect_table(diagnosis) + figures(verdict_plots(diagnosis));
-  body += "<h2>Where the gap lies</h2>\n" + figures(where_plots(diagnosis)) + region_table(diagnosis);
+  const std::vector<Plot> domains = domain_plots(diagnosis);
+  if (!domains.empty()) {
+    body += "<h2>How large the gap is</h2>\n" + figures(domains) + figures(phase_gap_plots(diagnosis));
+  }
+  body += "<h2>Where the gap lies</h2>\n" + figures(where_plots(diagnosis)) + figures(residual_maps(diagnosis)) +
+          region_table(diagnosis);
   if (!twin.empty()) body += twin_section(diagnosis, twin);
   if (!diagnosis.pictures.empty()) {
     body +=

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "report/gap_text.h"
+#include "report/handy_units.h"
 #include "report/number_text.h"
 #include "report/text_table.h"
 
@@ -61,8 +62,9 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   text += text_table(rows, 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
-      text += fmt::format("{}.{} = {}\n", effect.id, parameter.key,
-                          parameter.text.empty() ? value_and_sd_text(parameter.value, parameter.sd) : parameter.text);
+      text += fmt::format("{}: {}\n", effect.id,
+                          parameter.text.empty() ? parameter_text(parameter.key, parameter.value, parameter.sd)
+                                                 : parameter.key + " = " + parameter.text);
     }
   }
   for (const diagnose::PictureFinding& finding : diagnosis.pictures) {

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <string_view>
-#include <utility>
-
 #include "report/diagnosis_plots.h"
+#include "report/handy_units.h"
 #include "report/html.h"
 #include "report/json_numbers.h"
 #include "report/number_text.h"
@@ -21,27 +18,10 @@ std::string joined(const std::vector<std::string>& ids) {
   return text.empty() ? "–" : text;
 }
 
-/// A key of a file as a person reads it: "c_kg_m" is c in kg/m.
-std::pair<std::string, std::string> name_and_unit(const std::string& key) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUnits = {{{"_kg_m", " kg/m"},
-                                                                                    {"_1_m2", " 1/m²"},
-                                                                                    {"_1_m", " 1/m"},
-                                                                                    {"_n_m", " N/m"},
-                                                                                    {"_m_s", " m/s"},
-                                                                                    {"_kg", " kg"},
-                                                                                    {"_n", " N"},
-                                                                                    {"_m", " m"},
-                                                                                    {"_s", " s"}}};
-  for (const auto& [ending, unit] : kUnits) {
-    if (key.ends_with(ending)) return {key.substr(0, key.size() - ending.size()), std::string(unit)};
-  }
-  return {key, ""};
-}
-
 std::string seen_text(const diagnose::PlannedEffect& effect) {
   if (!effect.seen) return "not seen";
   const auto [name, unit] = name_and_unit(effect.key);
-  const std::string size = number_text(effect.seen_from, 2) + unit;
+  const std::string size = size_text(effect.seen_from, 2, unit);
   if (effect.key == "v_c_m_s") return fmt::format("{} up to {}", name, size);  // the larger, the less there is
   if (effect.key == "n" || effect.key == "s") return fmt::format("{} off 1 by {}", name, size);
   return fmt::format("{} = {}", name, size);

@@ -1,0 +1,116 @@
+/// The page of a diagnosis: its gap in pictures, its sizes in handy units.
+#include "report/gap_plots.h"
+
+#include <cmath>
+
+#include "catch.h"
+#include "report/diagnosis_json.h"
+#include "report/diagnosis_plots.h"
+#include "report/diagnosis_report.h"
+#include "report/handy_units.h"
+
+using namespace glidelab;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+diagnose::Diagnosis two_masses() {
+  diagnose::Diagnosis of;
+  of.verdict = "unknown";
+  diagnose::GapSizes gap;
+  gap.before = 6.0;
+  gap.after = 1.1;
+  gap.parameters = {
+      {"alpha_deg", "stated", "slope", 1.5, 0.2},
+      {"k_n_s_m", "all clips", "0.335 kg", -3.0, {}, {{"k_n_s_m", 0.91, 0.01}}, {{"k_n_s_m", 0.94, 0.005}}}};
+  const diagnose::PhaseBin bin{-0.2, -0.1, -0.15, 40, {0.02, 0.001}, {0.0005, 0.001}};
+  gap.phase_plane = {{{}, {bin}}, {0.335, {bin}}, {0.535, {bin}}};
+  gap.domains = {{"positions", 6.0, 1.1}, {"parameters", 3.0, {}}};
+  of.gap = gap;
+  of.curves = {{"x_m", "force", "N", 40.0, {0.0, 0.1}, {0.001, 0.002}, {1e-4, 1e-4}},
+               {"t_s", "displacement", "m", 30.0, {0.0, 0.1}, {0.001, 0.002}, {1e-4, 1e-4}}};
+  of.regions = {{"x_m", 0.0, 0.1, 12.0, -0.0036, "m", "displacement", ""}};
+  of.residuals = {{"up", {0.0, 1.0}, {0.0, 0.1}, {1.0, 0.9}, {2e-5, -2e-5}, {0.0, 0.0}, {1e-5, 1e-5}}};
+  return of;
+}
+
+}  // namespace
+
+TEST_CASE("sizes come in the unit that leaves them a readable number") {
+  CHECK(report::size_text(-0.0036, 2, "m") == "-3.6 mm");
+  CHECK(report::size_text(3.067e-5, 4, "s") == "30.67 µs");
+  CHECK(report::size_text(4e-9, 2, "m") == "4 nm");
+  CHECK(report::size_text(0.36, 2, "m") == "0.36 m");
+  CHECK(report::size_text(0.0, 2, "N") == "0 N");
+  CHECK(report::size_text(0.02, 2, "N s/m") == "0.02 N s/m");  // no thousandths of what has no prefix
+  CHECK(report::size_text(0.02, 2, "") == "0.02");
+  CHECK(report::size_and_sd_text(3.0651e-5, 3.4e-7, "s") == "30.65 ± 0.34 µs");
+  CHECK(report::size_and_sd_text(0.0, 2e-3, "N") == "0.0 ± 2.0 mN");
+  CHECK(report::parameter_text("line_s", 3.0651e-5, 3.4e-7) == "line = 30.65 ± 0.34 µs");
+  CHECK(report::parameter_text("f_hz", 6.00001, 0.00013) == "f = 6.00001 ± 0.00013 Hz");
+  CHECK(report::parameter_text("e", 0.0101, 0.0012) == "e = 0.0101 ± 0.0012");
+}
+
+TEST_CASE("a cell of the residual map is a standard normal deviate of its positions together") {
+  // Four positions of one sign, one standard deviation each: 4/sqrt(4) = 2; of both signs 0; two clips, two rows.
+  diagnose::ResidualCurve up{"up",
+                             {0.0, 0.1, 0.2, 0.3},
+                             {},
+                             {},
+                             {1e-5, 1e-5, 1e-5, 1e-5},
+                             {1e-5, -1e-5, 1e-5, -1e-5},
+                             {1e-5, 1e-5, 1e-5, 1e-5}};
+  diagnose::ResidualCurve again = up;  // the clip's next motion
+  for (double& t : again.t_s) t += 0.7;
+  again.before_m = {-3e-5, -3e-5, -3e-5, -3e-5};
+  diagnose::ResidualCurve down = up;
+  down.clip = "down";
+  const auto map = report::residual_map({up, again, down}, "t_s", 2);
+  CHECK(map.clips == std::vector<std::string>{"up", "down"});
+  CHECK(map.low == 0.0);
+  CHECK(map.high == 1.0);
+  CHECK(map.before[0][0] == Approx(2.0));
+  CHECK(map.before[0][1] == Approx(-6.0));
+  CHECK(map.after[0][0] == Approx(0.0).margin(1e-12));
+  CHECK(map.before[1][0] == Approx(2.0));
+  CHECK(std::isnan(map.before[1][1]));
+}
+
+TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curves that are alternatives") {
+  const auto diagnosis = two_masses();
+  const auto domains = report::domain_plots(diagnosis);
+  REQUIRE(domains.size() == 1);
+  const auto& after = domains.front().drawing.data.at(1).rows;
+  CHECK(after.at(0).at(3) == Approx(1.1));
+  CHECK(std::isnan(after.at(1).at(3)));  // what cannot be said has no bar
+  const auto phase = report::phase_gap_plots(diagnosis);
+  REQUIRE(phase.size() == 2);
+  CHECK(phase.front().drawing.data.front().rows.front().at(2) == Approx(1.96 * 0.001).epsilon(1e-4));
+  CHECK(phase.back().drawing.data.size() == 2);
+  CHECK(has(report::where_plots(diagnosis).front().caption, "any one of these 2"));
+  diagnose::Diagnosis one = diagnosis;
+  one.curves.pop_back();
+  CHECK_FALSE(has(report::where_plots(one).front().caption, "any one"));
+  const std::string page = report::diagnosis_report("two masses", diagnosis).html;
+  CHECK(has(page, "-3.6 mm"));
+  CHECK(has(page, "How large the gap is"));
+  CHECK(has(page, "Map of the residuals by clip"));
+  diagnose::Diagnosis lines;
+  lines.gap = diagnose::GapSizes{};
+  CHECK(report::domain_plots(lines).empty());
+  CHECK(report::phase_gap_plots(lines).empty());
+  CHECK(report::residual_maps(lines).empty());
+}
+
+TEST_CASE("diagnosis.json has the gap of the phase plane with its band, of each part of the data, and of each domain") {
+  const std::string text = report::diagnosis_json(two_masses());
+  CHECK(has(text, "\"phase_plane\""));
+  CHECK(has(text, "\"interval95\""));
+  CHECK(has(text, "\"alone\""));
+  CHECK(has(text, "\"domains\""));
+  CHECK(has(text, "\"z_after\": null"));
+  CHECK_FALSE(has(text, "nan"));
+}
