@@ -94,10 +94,10 @@ Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& ce
   }
   script += fmt::format(
       "set xrange [{}:{}]\nset yrange [{}:0.5]\nset cbrange [-{}:{}]\nset palette defined (0 '#053061', 1 '#4393c3', 2 "
-      "'#f7f7f7', 3 '#d6604d', 4 '#67001f')\nset cblabel 'measured − model, over the noise'\n"
+      "'#f7f7f7', 3 '#d6604d', 4 '#67001f')\nset cblabel 'residual / noise'\n"
       "plot $cells using 1:2:3 with image pixels\n",
       map.low, map.high, 0.5 - static_cast<double>(cells.size()), kDeepest, kDeepest);
-  const int height = 110 + std::clamp(22 * static_cast<int>(cells.size()), 150, 700);
+  const int height = 110 + std::clamp(22 * static_cast<int>(cells.size()), 190, 700);
   return {Drawing{script, std::vector{data}, {520, height}},
           fmt::format("What the fit leaves of each clip, {}: a few neighbouring positions together, over what their "
                       "noise allows (white: nothing; the darkest: {:g} standard deviations or more)",
