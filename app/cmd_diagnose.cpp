@@ -50,6 +50,10 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
     std::vector<core::ClipSetup> setups;
     for (const fs::path& folder : folders) {
       const core::Experiment experiment = core::read_experiment(folder, options.outside);
+      if (experiment.lines) {
+        throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
+                                           "clips or tracks: --plan says what motions will show, and lines hold none"});
+      }
       setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     }
     return diagnose::plan_of(

@@ -13,7 +13,7 @@
 #include "diagnose/film_noise.h"
 #include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
-#include "diagnose/line_table.h"
+#include "diagnose/line_diagnosis.h"
 #include "diagnose/missing_frames.h"
 #include "diagnose/picture_evidence.h"
 #include "diagnose/speed_noise.h"
@@ -233,7 +233,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
         throw base::InputError(base::Issue{experiment.file.string(), 0, "lines",
                                            "a table of lines beside other folders", "a table of lines by itself"});
       }
-      return diagnose_lines(read_lines(*experiment.lines), experiment.gravity_m_s2);
+      return diagnose_lines(read_lines(*experiment.lines), experiment.gravity_m_s2, options.without);
     }
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     cameras.resize(setups.size(), experiment.camera);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/line_comparison.h"
+
 namespace glidelab::diagnose {
 
 struct DiagnosedParameter {
@@ -13,6 +15,7 @@ struct DiagnosedParameter {
   double value = 0.0;
   double sd = 0.0;        ///< 0: not fitted
   std::string text = {};  ///< of what is a word (a codec's name), instead of value and sd
+  std::string why = {};   ///< why the data do not tell it; its value is then no number
 };
 
 /// One of several effects that would look the same.
@@ -40,6 +43,7 @@ struct RankedExplanation {
   double log_likelihood_gain = 0.0;
   std::size_t parameters = 0;       ///< more than the nominal model has
   std::optional<double> gap_after;  ///< of held-out clips; where it was fitted in full
+  std::string left_out = {};        ///< why it was not weighed; empty where it was
 };
 
 struct GapRegion {
@@ -52,6 +56,8 @@ struct GapRegion {
   std::string clip;  ///< where it is one clip's
   /// What the usual model lacks at most, in the size's unit, where the size is far more than that: not to be believed.
   std::optional<double> lacking = {};
+  std::optional<double> size_sd = {};  ///< of a table of lines
+  int direction = 0;                   ///< sign of v of the lines it is of; 0 where it is of both, or of no lines
 };
 
 /// A function of one variable that would explain the gap, for the plots.
@@ -185,6 +191,7 @@ struct Diagnosis {
   std::string summary;  ///< a paragraph in plain words
   VerdictLimits limits;
   Isolability isolability;
+  std::optional<LineComparison> lines;  ///< where the data are a table of published lines
   std::vector<ResidualCurve> residuals;
   std::vector<PictureFinding> pictures;  ///< empty for tracks
   std::vector<PictureCurve> picture_curves;

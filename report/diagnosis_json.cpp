@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "report/json_numbers.h"
+#include "report/line_report.h"
 
 namespace glidelab::report {
 namespace {
@@ -13,11 +14,14 @@ Json parameters_json(const std::vector<diagnose::DiagnosedParameter>& parameters
   Json object = Json::object();
   for (const diagnose::DiagnosedParameter& parameter : parameters) {
     Json value;
-    if (parameter.text.empty()) {
+    if (!parameter.text.empty()) {
+      value["value"] = parameter.text;
+    } else if (parameter.why.empty()) {
       put(value, "value", parameter.value);
       put(value, "sd", parameter.sd);
     } else {
-      value["value"] = parameter.text;
+      put(value, "value", std::optional<double>(), parameter.why);
+      value["sd"] = nullptr;
     }
     object[parameter.key] = std::move(value);
   }
@@ -49,6 +53,8 @@ Json where_json(const diagnose::Diagnosis& diagnosis) {
     object["what"] = region.what;
     put(object, "size", region.size);
     object["unit"] = region.unit;
+    if (region.size_sd) put(object, "size_sd", *region.size_sd);
+    if (region.direction != 0) object["direction"] = region.direction;
     if (region.lacking) put(object, "lacking", *region.lacking);
     where["regions"].push_back(std::move(object));
   }
@@ -172,12 +178,18 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
     Json one;
     one["id"] = ranked.id;
     put(one, "probability", ranked.probability);
-    put(one, "log_evidence_gain", ranked.log_evidence_gain);
-    put(one, "log_likelihood_gain", ranked.log_likelihood_gain);
+    if (ranked.left_out.empty()) {
+      put(one, "log_evidence_gain", ranked.log_evidence_gain);
+      put(one, "log_likelihood_gain", ranked.log_likelihood_gain);
+    } else {
+      put(one, "log_evidence_gain", std::optional<double>(), ranked.left_out);
+      put(one, "log_likelihood_gain", std::optional<double>(), ranked.left_out);
+    }
     one["parameters"] = ranked.parameters;
     if (ranked.gap_after) put(one, "gap_after", *ranked.gap_after);
     document["ranking"].push_back(std::move(one));
   }
+  if (diagnosis.lines) document["lines"] = lines_json(*diagnosis.lines);
   document["where"] = where_json(diagnosis);
   document["gap"] = diagnosis.gap ? gap_json(*diagnosis.gap) : Json(nullptr);
   document["next_experiment"] = diagnosis.next_experiment;

@@ -7,6 +7,7 @@
 #include "report/gap_text.h"
 #include "report/handy_units.h"
 #include "report/html.h"
+#include "report/line_report.h"
 #include "report/number_text.h"
 #include "report/quantity_names.h"
 #include "report/twin_plots.h"
@@ -50,7 +51,7 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
     std::string size, same;
     for (const auto& p : effect.parameters) {
       size += size.empty() ? "" : "<br>";
-      size += escape(p.text.empty() ? parameter_text(p.key, p.value, p.sd) : p.key + " = " + p.text);
+      size += escape(parameter_text(p));
     }
     for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
     table.row({escape(effect.id), escape(effect.stage), probability_text(effect.probability), size.empty() ? "–" : size,
@@ -167,6 +168,7 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
 
 Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
                       const std::vector<validate::TwinMotion>& twin) {
+  if (diagnosis.lines) return line_report(title, diagnosis);
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
   body += tiles(diagnosis);
   body += fmt::format("<p>{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(diagnosis.summary),

@@ -4,6 +4,7 @@
 
 #include "report/gap_text.h"
 #include "report/handy_units.h"
+#include "report/line_report.h"
 #include "report/number_text.h"
 #include "report/text_table.h"
 
@@ -29,12 +30,12 @@ std::string wrapped(const std::string& text) {
   return lines + line + "\n";
 }
 
-std::string gap_lines(const diagnose::GapSizes& gap) {
+std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
   std::string text;
   if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of what is above the floor\n";
   if (over_clips.why_none.empty()) {
-    text += fmt::format("  95 % over clips: {} before, {} after\n", interval_text(over_clips.before),
+    text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
                         interval_text(over_clips.after));
   } else {
     text += "  " + over_clips.why_none + "\n";
@@ -57,23 +58,22 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   rows.push_back({"unknown", fmt::format("{:.3f}", diagnosis.unknown), ""});
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
     const auto& ranked = diagnosis.ranking[i];
-    rows.push_back({ranked.id, fmt::format("{:.3f}", ranked.probability), gain_text(ranked.log_evidence_gain)});
+    rows.push_back({ranked.id, fmt::format("{:.3f}", ranked.probability),
+                    ranked.left_out.empty() ? gain_text(ranked.log_evidence_gain) : "not weighed"});
   }
-  text += text_table(rows, 1) + "\n";
+  text += text_table(diagnosis.lines ? line_rows(*diagnosis.lines) : rows, diagnosis.lines ? 2 : 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
-      text += fmt::format("{}: {}\n", effect.id,
-                          parameter.text.empty() ? parameter_text(parameter.key, parameter.value, parameter.sd)
-                                                 : parameter.key + " = " + parameter.text);
+      text += fmt::format("{}: {}\n", effect.id, parameter_text(parameter));
     }
   }
   for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
     if (finding.seen) text += "pictures: " + wrapped(finding.words);
   }
   if (diagnosis.gap) {
-    text += fmt::format("gap of held-out clips: {:.3f} before, {:.3f} after (floor 1)\n", diagnosis.gap->before,
-                        diagnosis.gap->after);
-    text += gap_lines(*diagnosis.gap);
+    text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor 1)\n",
+                        diagnosis.lines ? "lines" : "clips", diagnosis.gap->before, diagnosis.gap->after);
+    text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips");
   }
   text += "\nnext: " + wrapped(diagnosis.next_experiment);
   for (const std::string& note : diagnosis.notes) text += "note: " + wrapped(note);

@@ -73,4 +73,10 @@ std::string parameter_text(std::string_view key, double value, double sd) {
   return fmt::format("{} = {}", of.name, size_and_sd_text(value, sd, of.unit));
 }
 
+std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
+  if (!parameter.text.empty()) return fmt::format("{} = {}", parameter.key, parameter.text);
+  if (!parameter.why.empty()) return fmt::format("{}: not known: {}", parameter.key, parameter.why);
+  return parameter_text(parameter.key, parameter.value, parameter.sd);
+}
+
 }  // namespace glidelab::report

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "diagnose/diagnosis.h"
+
 namespace glidelab::report {
 
 /// A key of a file as a person reads it: "c_kg_m" is c in kg/m. No unit where the key names none.
@@ -21,5 +23,7 @@ std::string size_and_sd_text(double value, double sd, std::string_view unit);
 
 /// "line = 30.67 ± 0.34 µs" for the key "line_s".
 std::string parameter_text(std::string_view key, double value, double sd);
+/// The same of a fitted one: "codec = libx264" of what is a word, "line: not known: …" of what the data do not tell.
+std::string parameter_text(const diagnose::DiagnosedParameter& parameter);
 
 }  // namespace glidelab::report

@@ -1,5 +1,5 @@
 /// A table of fitted lines, read and diagnosed: any finite numbers may stand in it.
-#include "diagnose/line_table.h"
+#include "diagnose/line_diagnosis.h"
 #include "target.h"
 
 using namespace glidelab;

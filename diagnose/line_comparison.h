@@ -1,0 +1,57 @@
+/// What is said of a table of lines beyond what is said of motions, as plain data for report/.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidelab::diagnose {
+
+struct LineSize {
+  std::string key;  ///< with its unit
+  double value = 0.0;
+  double sd = 0.0;  ///< from what the explanation leaves
+};
+
+/// One explanation of the lines.
+struct LineCandidate {
+  std::string id;     ///< "none", an effect, "a + b", "unknown", "a + unknown"
+  std::string words;  ///< of what has no name; empty for the others
+  double probability = 0.0;
+  double log_evidence_gain = 0.0;
+  double log_likelihood_gain = 0.0;
+  std::size_t terms = 0;            ///< more than the usual model has
+  std::vector<LineSize> sizes;      ///< of effects with a name
+  std::optional<double> chi2, gap;  ///< over the lines' own scatter, where that is known
+  std::string left_out;             ///< why it was not weighed; empty where it was
+};
+
+/// What the usual model leaves of one line.
+struct LineOff {
+  double mass_kg = 0.0, incline_deg = 0.0;
+  int direction = 0;
+  double k_over_m_1_s = 0.0;
+  double friction_m_s2 = 0.0;  ///< -direction times what is left of the intercept
+  double log_k = 0.0;
+};
+
+/// The friction that an explanation adds to the usual model's, over the mass.
+struct LineCurve {
+  std::string id;
+  std::vector<double> mass_kg, k_over_m_1_s, friction_m_s2;
+};
+
+struct LineComparison {
+  std::size_t lines = 0;
+  double intercept_sd_m_s2 = 0.0, slope_sd = 0.0;  ///< the lines' own scatter; 0 where nothing is repeated
+  std::size_t scatter_freedom = 0;
+  std::optional<double> chi2_before;      ///< of the usual model; where the scatter is known
+  std::vector<std::string> either_of;     ///< effects that share the evidence; empty where one stands out
+  double either_probability = 0.0;        ///< that one of them acts, or several, and nothing else
+  std::vector<LineCandidate> candidates;  ///< the likeliest first, those that were not weighed last
+  std::vector<LineOff> off;
+  std::vector<LineCurve> curves;
+};
+
+}  // namespace glidelab::diagnose

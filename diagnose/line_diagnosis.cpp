@@ -1,0 +1,268 @@
+#include "diagnose/line_diagnosis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "diagnose/alike_effects.h"
+#include "diagnose/clip_interval.h"
+#include "diagnose/effect_list.h"
+#include "diagnose/line_isolability.h"
+#include "diagnose/line_regions.h"
+#include "diagnose/line_weighing.h"
+#include "diagnose/line_words.h"
+#include "diagnose/verdict_words.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kSameEvidence = 3.0;
+constexpr double kReadAngle = 0.3;  // degrees: what a person reads off a plumb, where a table says nothing
+
+void check_names(const std::vector<std::string>& without) {
+  std::string known = "smoothing_bias";
+  for (const EffectInfo& effect : effect_list()) known += ", " + std::string(effect.id);
+  for (const std::string& id : without) {
+    const bool found = id == "smoothing_bias" || std::any_of(effect_list().begin(), effect_list().end(),
+                                                             [&](const EffectInfo& effect) { return effect.id == id; });
+    if (!found) throw base::InputError(base::Issue{"", 0, "without", fmt::format("\"{}\"", id), "one of " + known});
+  }
+}
+
+std::string id_of(const LineExplanation& explanation, const std::vector<LineTerm>& terms) {
+  std::string id;
+  for (const std::size_t t : explanation.named) id += (id.empty() ? "" : " + ") + terms[t].id;
+  if (explanation.family) id += id.empty() ? "unknown" : " + unknown";
+  return id.empty() ? "none" : id;
+}
+
+LineCandidate candidate_of(const LineExplanation& explanation, const std::vector<LineTerm>& terms,
+                           const std::vector<LineFamily>& families, const LineSolution& nominal,
+                           const OwnScatter& scatter) {
+  const LineSolution& solution = explanation.solution;
+  LineCandidate candidate{id_of(explanation, terms),
+                          explanation.family ? families[*explanation.family].words : "",
+                          explanation.probability,
+                          explanation.log_evidence,
+                          log_likelihood_gain_of(solution, nominal),
+                          static_cast<std::size_t>(solution.size.size()),
+                          {},
+                          {},
+                          {},
+                          solution.left_out};
+  for (std::size_t t = 0; t < explanation.named.size(); ++t) {
+    const auto at = static_cast<Eigen::Index>(t);
+    candidate.sizes.push_back({terms[explanation.named[t]].key, solution.size[at], solution.sd[at]});
+  }
+  if (scatter.known()) {
+    candidate.chi2 = chi_square_of(solution, scatter);
+    candidate.gap = gap_of_lines(solution, scatter);
+  }
+  return candidate;
+}
+
+/// Everything that was weighed, in the order of the explanations.
+LineComparison comparison_of(const std::vector<LineExplanation>& all, const std::vector<LineTerm>& terms,
+                             const std::vector<LineFamily>& families, const OwnScatter& scatter) {
+  LineComparison lines;
+  lines.intercept_sd_m_s2 = scatter.intercept_m_s2;
+  lines.slope_sd = scatter.slope;
+  lines.scatter_freedom = scatter.freedom;
+  for (const LineExplanation& e : all) {
+    lines.candidates.push_back(candidate_of(e, terms, families, all.front().solution, scatter));
+  }
+  return lines;
+}
+
+/// Single effects whose evidence is that of the best explanation with a name, which comes first; empty where it is a
+/// pair.
+std::vector<std::size_t> equals_of(const LineExplanation& best, const std::vector<LineExplanation>& all) {
+  if (best.named.size() != 1) return {};
+  std::vector<std::size_t> equals = best.named;
+  for (const LineExplanation& e : all) {
+    if (e.family || e.named.size() != 1 || e.named == best.named || !e.solution.left_out.empty()) continue;
+    if (e.log_evidence > best.log_evidence - kSameEvidence) equals.push_back(e.named.front());
+  }
+  return equals;
+}
+
+std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::vector<LineExplanation>& all,
+                                        const std::vector<LineTerm>& terms, const std::vector<std::size_t>& equals,
+                                        const std::vector<std::string>& without) {
+  std::vector<DiagnosedEffect> effects;
+  for (std::size_t k = 0; k < best.named.size(); ++k) {
+    const LineTerm& term = terms[best.named[k]];
+    const auto at = static_cast<Eigen::Index>(k);
+    DiagnosedEffect effect{term.id, term.stage, term.words,
+                           0.0,     {},         {{term.key, best.solution.size[at], best.solution.sd[at]}}};
+    if (term.id == "smoothing_bias") {
+      constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+      effect.parameters.push_back(
+          {"bandwidth_s", kNan, kNan,
+           "a table says neither how wide the kernel was nor which stretch each line was fitted to"});
+    }
+    for (const LineExplanation& e : all) {
+      const bool holds = std::find(e.named.begin(), e.named.end(), best.named[k]) != e.named.end();
+      if (holds && !e.family) effect.probability += e.probability;
+    }
+    bool force = term.id == "load_independent_friction";
+    for (std::size_t t = 1; t < equals.size(); ++t) {
+      effect.equivalent_to.push_back(terms[equals[t]].id);
+      force = force || terms[equals[t]].id == "load_independent_friction";
+    }
+    if (force) {
+      for (const std::string& id : alike_friction_force(without)) effect.equivalent_to.push_back(id);
+    }
+    effects.push_back(effect);
+  }
+  return effects;
+}
+
+void join_sets(const std::vector<LineTerm>& terms, const std::vector<LineExplanation>& all, Diagnosis& diagnosis) {
+  std::vector<NamedExplanation> named;
+  for (const LineExplanation& e : all) {
+    if (e.family) continue;
+    NamedExplanation& one = named.emplace_back(NamedExplanation{{}, e.probability});
+    for (const std::size_t t : e.named) one.ids.push_back(terms[t].id);
+  }
+  const auto words = [&](const std::string& id) {
+    const auto term = std::find_if(terms.begin(), terms.end(), [&](const LineTerm& t) { return t.id == id; });
+    return term != terms.end() ? term->words : std::string(effect_list()[effect_index(id)].words);
+  };
+  join_alike(named, words, diagnosis);
+}
+
+/// Over lines, each of which is held out by itself.
+void add_intervals(GapSizes& gap) {
+  std::vector<ClipSquares> before, after;
+  for (const double one : gap.before_by_clip) before.push_back({one * one, 1.0});
+  for (const double one : gap.after_by_clip) after.push_back({one * one, 1.0});
+  gap.interval95.why_none = why_no_interval(before.size());
+  gap.interval95.before = rms_interval(before);
+  gap.interval95.after = rms_interval(after);
+  if (gap.shrink) gap.interval95.shrink = shrink_interval(before, after);
+}
+
+GapSizes gap_of(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
+                const OwnScatter& scatter, std::vector<std::string>& notes) {
+  GapSizes gap;
+  gap.before = gap_of_lines(before, scatter);
+  gap.after = gap_of_lines(after, scatter);
+  gap.standard_error = std::sqrt(0.5 / static_cast<double>(lines.size()) + 0.5 / static_cast<double>(scatter.freedom));
+  if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - 1.0);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    gap.held_out.push_back(fmt::format("{:.0f} g, {} deg, v {} 0", 1000.0 * lines[i].mass_kg, lines[i].incline_deg,
+                                       lines[i].direction > 0 ? ">" : "<"));
+    gap.before_by_clip.push_back(gap_of_line(before, scatter, i));
+    gap.after_by_clip.push_back(gap_of_line(after, scatter, i));
+  }
+  add_intervals(gap);
+  for (const double incline : different(lines, &TableLine::incline_deg)) {
+    double mean = 0.0, count = 0.0;
+    for (const TableLine& line : lines) {
+      if (line.incline_deg != incline) continue;
+      mean += line.a0_m_s2;
+      count += 1.0;
+    }
+    const double degrees = std::asin(std::clamp(mean / count / g, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    const double z = (degrees - incline) / kReadAngle;
+    gap.parameters.push_back({"alpha_deg", "stated", fmt::format("{} deg", incline), z, z});
+    notes.push_back(fmt::format(
+        "Lines stated at {} degrees have a mean intercept of {:.3f} degrees; a table does not say how well the angle "
+        "was read ({} degrees are taken).",
+        incline, degrees, kReadAngle));
+  }
+  return gap;
+}
+
+double size_by_itself(const LineData& data, const std::vector<LineTerm>& terms, const std::string& id) {
+  for (const LineTerm& term : terms) {
+    if (term.id == id) return solve_lines(data, {term}).size[0];
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const std::vector<std::string>& without) {
+  check_names(without);
+  if (lines.size() < kFewestLines) throw base::InputError(too_few_lines("", lines.size()));
+  const LineData data = line_data(lines, g);
+  const std::vector<LineTerm> terms = named_terms(lines, without);
+  const std::vector<LineFamily> families = unnamed_families(lines);
+  const std::vector<LineExplanation> all = weigh_lines(data, terms, families);
+  const LineSolution& nominal = all.front().solution;
+  const OwnScatter scatter = own_scatter(lines);
+
+  Diagnosis diagnosis;
+  LineComparison table = comparison_of(all, terms, families, scatter);
+  table.lines = lines.size();
+  table.chi2_before = table.candidates.front().chi2;
+  const LineExplanation *best = nullptr, *unnamed = nullptr;
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    const LineExplanation*& leader = all[e].family ? unnamed : best;
+    if (all[e].family) diagnosis.unknown += all[e].probability;
+    if (!all[e].family && all[e].named.empty()) diagnosis.none += all[e].probability;
+    if (!all[e].family && all[e].named.empty()) continue;
+    if (leader == nullptr || all[e].probability > leader->probability) leader = &all[e];
+    if (all[e].family) continue;
+    const LineCandidate& c = table.candidates[e];
+    diagnosis.ranking.push_back(
+        {c.id, c.probability, c.log_evidence_gain, c.log_likelihood_gain, c.terms, c.gap, c.left_out});
+  }
+  const auto likelier = [](const auto& a, const auto& b) {
+    return a.left_out.empty() != b.left_out.empty() ? a.left_out.empty() : a.probability > b.probability;
+  };
+  std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), likelier);
+  std::stable_sort(table.candidates.begin(), table.candidates.end(), likelier);
+  diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
+  if (best != nullptr && best->probability > 0.0 && diagnosis.verdict != "none") {
+    const std::vector<std::size_t> equals = equals_of(*best, all);
+    for (const std::size_t t : equals) {
+      if (equals.size() > 1) table.either_of.push_back(terms[t].id);
+    }
+    for (const LineExplanation& e : all) {
+      const bool only = !e.named.empty() && std::all_of(e.named.begin(), e.named.end(), [&](std::size_t t) {
+        return std::find(equals.begin(), equals.end(), t) != equals.end();
+      });
+      if (equals.size() > 1 && only && !e.family) table.either_probability += e.probability;
+    }
+    if (diagnosis.verdict == "effect") diagnosis.effects = effects_of(*best, all, terms, equals, without);
+  }
+  join_sets(terms, all, diagnosis);
+  if (diagnosis.verdict == "effect") diagnosis.stage = diagnosis.effects.front().stage;
+  if (diagnosis.verdict == "unknown") diagnosis.stage = "dynamics";
+  if (diagnosis.verdict != "none") diagnosis.regions = line_regions(lines, data, nominal, scatter);
+  if (scatter.known()) {
+    const LineSolution& after = diagnosis.verdict == "effect"    ? best->solution
+                                : diagnosis.verdict == "unknown" ? unnamed->solution
+                                                                 : nominal;
+    diagnosis.gap = gap_of(lines, g, nominal, after, scatter, diagnosis.notes);
+    diagnosis.isolability = line_isolability(data, terms, scatter.slope, scatter.intercept_m_s2);
+  }
+  table.off = lines_off(lines, nominal);
+  for (const LineExplanation& e : all) {
+    if (e.named.size() != 1 || e.family || !e.solution.left_out.empty()) continue;
+    LineCurve curve = line_curve(lines, data, terms[e.named.front()], e.solution);
+    if (!curve.mass_kg.empty()) table.curves.push_back(std::move(curve));
+  }
+  if (different(lines, &TableLine::mass_kg).size() < 2) {
+    diagnosis.next_experiment = "Record a second mass: with one, a friction force is simply mu.";
+  } else {
+    const std::vector<LineTerm> every = named_terms(lines, {});
+    diagnosis.next_experiment = next_for_lines(lines, size_by_itself(data, every, "load_independent_friction"),
+                                               size_by_itself(data, every, "smoothing_bias"));
+  }
+  diagnosis.notes.push_back(fmt::format(
+      "A table of {} lines: their errors are not stated and are taken from their scatter; the speeds that they rest on "
+      "are not known, so that effects of the speed (quadratic_drag, power_law_drag, stribeck) cannot be weighed.",
+      lines.size()));
+  diagnosis.lines = std::move(table);
+  diagnosis.summary = line_summary(diagnosis);
+  return diagnosis;
+}
+
+}  // namespace glidelab::diagnose
