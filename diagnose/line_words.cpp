@@ -79,7 +79,8 @@ std::string chi2_words(const Diagnosis& diagnosis, const std::string& id) {
   for (const std::string& other : lines.either_of) {
     if (other == id) continue;
     if (const LineCandidate& rival = candidate(lines, other); rival.chi2) {
-      rivals += fmt::format(" or {}", base::number_text(*rival.chi2, 3));
+      const std::string other_chi2 = base::number_text(*rival.chi2, 3);
+      rivals += other_chi2 == base::number_text(*after.chi2, 3) ? " either way" : " or " + other_chi2;
     }
   }
   return fmt::format(

@@ -47,7 +47,7 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
   }
   std::string script(kFrame);
   script += fmt::format(
-      "set key outside top center vertical maxrows 3 samplen 1.6 font ',12' noenhanced\nset xlabel '{}'\n"
+      "set key font ',12' noenhanced\nset xlabel '{}'\n"
       "set ylabel 'friction left  (mm/s²)'\nset xzeroaxis lw 1 lc rgb '{}'\nplot {}\n",
       over_mass ? "1 / mass  (1/kg)" : "(K/m)²  (1/s²)", kGrey, plots);
   return {

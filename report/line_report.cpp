@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "report/diagnosis_plots.h"
 #include "report/line_plots.h"
 #include "report/number_text.h"
@@ -123,7 +125,8 @@ std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& 
     rows.push_back({name_of(candidate), sizes_text(candidate), probability_text(candidate.probability),
                     candidate.chi2 ? number_text(*candidate.chi2, 3) : "–",
                     candidate.gap ? fmt::format("{:.2f}", *candidate.gap) : "–",
-                    gain_text(candidate.log_likelihood_gain), gain_text(candidate.log_evidence_gain)});
+                    candidate.id == "none" ? "0" : gain_text(candidate.log_likelihood_gain),
+                    candidate.id == "none" ? "0" : gain_text(candidate.log_evidence_gain)});
   }
   return rows;
 }
@@ -178,6 +181,11 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   for (const std::string& note : diagnosis.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   std::vector<Plot> bars = verdict_plots(diagnosis);
   if (bars.size() > 1) {
+    constexpr std::string_view kOfClips = "residuals of the held-out clip / noise";
+    std::string& script = bars[1].drawing.script;
+    if (const std::size_t at = script.find(kOfClips); at != std::string::npos) {
+      script.replace(at, kOfClips.size(), "off the prediction by the other lines / own scatter");
+    }
     bars[1].caption = "How far each line is off the prediction by the others: 1 (grey line) is the lines' own scatter";
   }
   body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(bars);
