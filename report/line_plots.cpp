@@ -51,7 +51,7 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
       "set ylabel 'friction left  (mm/s²)'\nset xzeroaxis lw 1 lc rgb '{}'\nplot {}\n",
       over_mass ? "1 / mass  (1/kg)" : "(K/m)²  (1/s²)", kGrey, plots);
   return {
-      Drawing{script, std::move(data), {520, 380}},
+      Drawing{script, std::move(data), {520, 470}},
       fmt::format("What the usual model leaves of the intercepts, as friction, over {}: {}. Bars are the lines' own "
                   "scatter",
                   over_mass ? "1/m" : "(K/m)²",
