@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "report/diagnosis_plots.h"
+#include "report/gap_text.h"
 #include "report/line_plots.h"
 #include "report/number_text.h"
 
@@ -80,11 +81,14 @@ std::string gap_table(const diagnose::GapSizes& gap) {
     table.row({escape(gap.held_out[i]), number_text(gap.before_by_clip[i], 3), number_text(gap.after_by_clip[i], 3)});
   }
   table.row({"all", number_text(gap.before, 3), number_text(gap.after, 3)});
-  return table.str() +
-         fmt::format(
-             "<p class=\"soft\">Each line predicted by the others: root mean square of what its intercept "
-             "and its slope are off, over the lines' own scatter. At the floor it would be 1 ± {}.</p>\n",
-             number_text(gap.standard_error, 2));
+  std::string text = table.str();
+  text += fmt::format(
+      "<p class=\"soft\">Each line predicted by the others: root mean square of what its intercept and its slope are "
+      "off, "
+      "over the lines' own scatter. At the floor it would be 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
+      number_text(gap.standard_error, 2), interval_text(gap.interval95.before), interval_text(gap.interval95.after),
+      gap.shrink ? fmt::format(" It shrinks by {} of what is above the floor.", shrink_text(gap)) : std::string());
+  return text;
 }
 
 std::string candidate_table(const diagnose::LineComparison& lines) {
