@@ -50,6 +50,7 @@ TEST_CASE("sizes come in the unit that leaves them a readable number") {
   CHECK(report::size_and_sd_text(3.0651e-5, 3.4e-7, "s") == "30.65 ± 0.34 µs");
   CHECK(report::size_and_sd_text(0.0, 2e-3, "N") == "0.0 ± 2.0 mN");
   CHECK(report::parameter_text("line_s", 3.0651e-5, 3.4e-7) == "line = 30.65 ± 0.34 µs");
+  CHECK(report::parameter_text("x_mid_m.flat_s", 0.0123, 0.0012) == "x_mid.flat_s = 12.3 ± 1.2 mm");
   CHECK(report::parameter_text("f_hz", 6.00001, 0.00013) == "f = 6.00001 ± 0.00013 Hz");
   CHECK(report::parameter_text("e", 0.0101, 0.0012) == "e = 0.0101 ± 0.0012");
 }
