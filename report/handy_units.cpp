@@ -69,8 +69,9 @@ std::string size_and_sd_text(double value, double sd, std::string_view unit) {
 }
 
 std::string parameter_text(std::string_view key, double value, double sd) {
-  const NamedUnit of = name_and_unit(key);
-  return fmt::format("{} = {}", of.name, size_and_sd_text(value, sd, of.unit));
+  const std::string_view member = key.substr(std::min(key.find('.'), key.size()));
+  const NamedUnit of = name_and_unit(key.substr(0, key.size() - member.size()));
+  return fmt::format("{}{} = {}", of.name, member, size_and_sd_text(value, sd, of.unit));
 }
 
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {

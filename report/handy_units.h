@@ -21,7 +21,7 @@ std::string size_text(double value, int digits, std::string_view unit);
 /// "30.67 ± 0.34 µs", likewise; without a positive finite sd the value alone, with as many digits as value_text() has.
 std::string size_and_sd_text(double value, double sd, std::string_view unit);
 
-/// "line = 30.67 ± 0.34 µs" for the key "line_s".
+/// "line = 30.67 ± 0.34 µs" for the key "line_s"; of a set-up by itself ("x_mid_m.NAME") "x_mid.NAME = …".
 std::string parameter_text(std::string_view key, double value, double sd);
 /// The same of a fitted one: "codec = libx264" of what is a word, "line: not known: …" of what the data do not tell.
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter);
