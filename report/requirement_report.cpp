@@ -13,7 +13,6 @@
 #include "report/plot_style.h"
 #include "report/quantity_names.h"
 #include "report/text_table.h"
-#include "validate/error_measure.h"
 
 namespace glidelab::report {
 namespace {

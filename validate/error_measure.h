@@ -28,8 +28,6 @@ struct ErrorMeasure {
   std::size_t beyond = 0;  ///< of these, with an error larger than the target's value
 };
 
-inline constexpr int kResamples = 1000;
-
 /// Two errors or more (asserted).
 ErrorMeasure measure_errors(std::span<const double> errors, const Target& target);
 

@@ -26,6 +26,9 @@ inline constexpr double kClear = 4.0;
 /// Clips of a cheap camera with a compressing codec were seen to err 13 times as much as tracks (docs/sweep.md).
 inline constexpr double kClearOfClips = 20.0;
 
+/// Resamples of the runs' errors that a ± comes from (validate/error_measure.h).
+inline constexpr int kResamples = 1000;
+
 struct Target {
   enum class Measure { sd, error95, bias };  ///< sd: root mean square error
   std::string quantity;                      ///< "mu"

@@ -143,7 +143,7 @@ TEST_CASE("What a sweep refuses is one clear message with the right status") {
   }
 }
 
-TEST_CASE("A merge takes all of its files or none, and says what is not there yet; a shard writes no page") {
+TEST_CASE("A merge takes all of its files or none, and says what is not there yet, and a shard writes no page") {
   const tests::TempDir dir;
   const std::string sweep = tests::write_sweep(dir.path(), "", tests::kTwoKeys);
   const fs::path out = dir / "out";
