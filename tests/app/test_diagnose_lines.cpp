@@ -1,0 +1,64 @@
+// glidelab diagnose on a folder with a table of published lines.
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "app/run_process.h"
+#include "catch.h"
+#include "temp_dir.h"
+
+using namespace glidelab;
+using nlohmann::json;
+
+namespace {
+
+/// Six lines by equation (8), level, with a friction of 0.03 N that no load makes.
+void write_table(const std::filesystem::path& folder) {
+  std::ofstream(folder / "experiment.toml") << "format = 1\nname = \"lines\"\nlines = \"lines.csv\"\n";
+  std::ofstream table(folder / "lines.csv");
+  table << "mass_kg,incline_deg,direction,a0_m_s2,k_over_m_1_s\n";
+  double off = 1e-4;
+  for (const double mass : {0.2, 0.4, 0.8, 1.6}) {
+    for (const int direction : {-1, 1}) {
+      table << mass << ",0," << direction << "," << -direction * (0.06 + 0.03 / mass) + off << ","
+            << 0.9 / mass * (1.0 + off) << "\n";
+      off = -1.3 * off;
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("diagnose: a table of lines has its explanations in the file, with chi² before and after or why not") {
+  const tests::TempDir temp;
+  write_table(temp.path());
+  const tests::ProcessResult done =
+      tests::glidelab({"diagnose", temp.path().string(), "--no-page", "--json", "-o", (temp / "out").string(), "-q"});
+  INFO(done.err);
+  REQUIRE(done.status == 0);
+  const json diagnosis = json::parse(done.out);
+  const json& lines = diagnosis.at("lines");
+  CHECK(lines.at("count") == 8);
+  for (const json& one : lines.at("candidates")) {
+    INFO(one.dump());
+    if (one.contains("not_weighed")) continue;
+    CHECK(one.at("chi2_before").get<double>() >= one.at("chi2_after").get<double>() * (1.0 - 1e-6));
+    CHECK(one.contains("log_likelihood_gain"));
+  }
+  for (const json& ranked : diagnosis.at("ranking")) {
+    if (ranked.at("log_evidence_gain").is_null()) CHECK(ranked.at("why").contains("log_evidence_gain"));
+  }
+}
+
+TEST_CASE("diagnose: a table of lines cannot be planned, and what is left out must be an effect") {
+  const tests::TempDir temp;
+  write_table(temp.path());
+  const tests::ProcessResult planned =
+      tests::glidelab({"diagnose", "--plan", temp.path().string(), "-o", (temp / "out").string()});
+  CHECK(planned.status == 1);
+  CHECK(planned.err.find("a table of lines, expected clips or tracks") != std::string::npos);
+  const tests::ProcessResult without = tests::glidelab(
+      {"diagnose", temp.path().string(), "--without", "nonsense", "--no-page", "-o", (temp / "out").string()});
+  CHECK(without.status == 1);
+  CHECK(without.err.find("\"nonsense\"") != std::string::npos);
+}
