@@ -38,6 +38,7 @@ std::string table(const validate::Baseline& baseline) {
 }  // namespace
 
 void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file) {
+  if (!gate.write.empty()) check_own_file(gate.write, "--write-baseline", "{");
   const std::string text = base::read_file(scenario_file);
   const render::Scenario scenario = render::read_scenario(text, scenario_file, render::ScenarioChecks::values);
   std::optional<validate::Baseline> then;

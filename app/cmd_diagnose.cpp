@@ -16,6 +16,7 @@
 #include "core/experiment.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/plan.h"
+#include "diagnose/twin.h"
 #include "render/scenario.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_report.h"
@@ -96,6 +97,7 @@ void diagnose(const DiagnoseCommand& options) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   std::string title = core::read_experiment(folders.front(), options.outside).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+  if (!options.twin.empty()) check_own_file(options.twin, "--twin", diagnose::kTwinHead);
   if (!options.no_page) report::check_gnuplot();
   const fs::path out = output_folder(options.common, "diagnose", folders.front());
   check_writable(out);

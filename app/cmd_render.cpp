@@ -9,6 +9,7 @@
 #include "app/common_options.h"
 #include "app/interrupt.h"
 #include "app/progress_display.h"
+#include "base/made_files.h"
 #include "base/staged_output.h"
 #include "render/render_experiment.h"
 #include "render/scenario.h"
@@ -40,7 +41,9 @@ void render_command(const RenderCommandOptions& options) {
       scenario, staged_experiment.dir(), staged_truth.dir(),
       {.seed = seed, .jobs = options.common.jobs, .ideal = options.ideal}, display.callback());
   throw_if_interrupted();
-  // The truth first: where it stands, the folder beside it is known as one that may be replaced.
+  base::list_made_files(staged_truth.dir());
+  base::list_made_files(staged_experiment.dir());
+  check_replaceable(out, truth);  // what came there meanwhile
   staged_truth.publish_whole();
   staged_experiment.publish_whole();
   display.clear();
@@ -61,6 +64,9 @@ void add_render(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<RenderCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "render", "Film a scenario: write an experiment folder as a camera would, and the truth beside it (DIR.truth)");
+  command->footer(
+      "DIR and DIR.truth are replaced as a whole where they hold nothing but what render made there; with anything of "
+      "your own in them, or anything changed, nothing is touched and the exit status is 1.");
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();

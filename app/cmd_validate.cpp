@@ -66,6 +66,7 @@ void validate_command(const ValidateOptions& options) {
       staged.dir(), "report.html",
       report::validation_report(scenario.motion.name, result.results, result.comparison, previews, progress));
   throw_if_interrupted();
+  check_replaceable(out / "experiment", out / "experiment.truth");  // what came there meanwhile
   staged.publish_files();
   display.clear();
 

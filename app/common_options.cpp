@@ -11,8 +11,11 @@
 #include <cstdio>
 #include <limits>
 #include <thread>
+#include <vector>
 
 #include "base/errors.h"
+#include "base/made_files.h"
+#include "base/staged_output.h"
 
 namespace glidelab::app {
 namespace {
@@ -81,15 +84,28 @@ fs::path truth_beside(const fs::path& experiment) {
 }
 
 void check_replaceable(const fs::path& experiment, const fs::path& truth) {
-  const bool has_truth = fs::exists(truth / "truth.json");
-  if (holds_files(experiment) && !(has_truth && fs::exists(experiment / "experiment.toml"))) {
-    throw base::InputError(base::Issue{experiment.string(), 0, "--out", "a folder with files that render did not make",
-                                       "a new folder, an empty one, or one that render has made"});
+  for (const fs::path& folder : {experiment, truth}) {
+    if (!holds_files(folder)) continue;
+    const bool made = fs::exists(folder / base::kMadeList);
+    const std::vector<base::OwnFile> own = base::own_files(folder);
+    if (made && own.empty()) continue;
+    constexpr std::size_t kMost = 4;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(own.size(), kMost); ++i) {
+      names += fmt::format("{}{}{}", i == 0 ? "" : ", ", own[i].name.string(), own[i].changed ? " (changed)" : "");
+    }
+    if (own.size() > kMost) names += fmt::format(" and {} more", own.size() - kMost);
+    throw base::InputError(
+        base::Issue{folder.string(), 0, "--out",
+                    "a folder with files that render did not make, or that were changed since: " + names,
+                    "a new folder, an empty one, or one that holds only what render made; nothing was touched"});
   }
-  if (holds_files(truth) && !has_truth) {
-    throw base::InputError(base::Issue{truth.string(), 0, "--out", "a folder with files that render did not make",
-                                       "nothing there, or the truth of an earlier rendering"});
-  }
+}
+
+void check_own_file(const fs::path& file, const std::string& option, std::string_view head) {
+  if (!fs::exists(file) || fs::is_empty(file) || base::read_file(file).starts_with(head)) return;
+  throw base::InputError(base::Issue{file.string(), 0, option, "a file that this option did not write",
+                                     "a new name, or what it wrote before"});
 }
 
 void check_writable(const fs::path& folder) {

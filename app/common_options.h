@@ -30,9 +30,13 @@ std::filesystem::path output_folder(const CommonOptions& options, std::string_vi
 /// "name.truth" beside "name".
 std::filesystem::path truth_beside(const std::filesystem::path& experiment);
 
-/// InputError where the experiment folder or its truth exist, are not empty, and were not made by `render`: those two
-/// are replaced as a whole, and nobody's own files may go with them.
+/// InputError where the experiment folder or its truth hold anything that `render` did not make or that was changed
+/// since (base/made_files.h): those two are replaced as a whole, and nobody's own files may go with them.
 void check_replaceable(const std::filesystem::path& experiment, const std::filesystem::path& truth);
+
+/// InputError where the file `option` names exists and does not begin with `head`, as what is written there would:
+/// somebody else's file is not replaced.
+void check_own_file(const std::filesystem::path& file, const std::string& option, std::string_view head);
 
 /// EnvironmentError where the folder exists and nothing can be written into it, or where it is a mount point: results
 /// are made beside it and renamed, which works within one file system only.

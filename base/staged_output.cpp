@@ -16,6 +16,7 @@
 
 #include "base/append_file.h"
 #include "base/errors.h"
+#include "base/made_files.h"
 
 namespace glidelab::base {
 namespace fs = std::filesystem;
@@ -95,6 +96,24 @@ void swap_in(const fs::path& from, const fs::path& to) {
   fs::remove_all(old, ignored);
 }
 
+/// One name more for a file: nothing is moved, so that a kill loses nothing.
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to.parent_path());
+  if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), 0) != 0)
+    fs::copy(from, to, fs::copy_options::copy_symlinks);
+}
+
+/// What in the folder `old` is somebody's own comes into `fresh`, which takes its place.
+void keep_own_files(const fs::path& old, const fs::path& fresh) {
+  const bool known = fs::exists(old / kMadeList);
+  for (const OwnFile& own : own_files(old)) {
+    fs::path kept = fresh / own.name;
+    if (fs::exists(kept) && !known) continue;  // of a version that kept no list: the same plot, drawn anew
+    while (fs::exists(fs::symlink_status(kept))) kept += ".changed";
+    link_or_copy(old / own.name, kept);
+  }
+}
+
 }  // namespace
 
 StagedOutput::StagedOutput(fs::path final_dir)
@@ -119,7 +138,14 @@ void StagedOutput::publish_files() {
   if (error) throw_system_error(final_.string(), "output folder cannot be made", error.value());
   std::vector<fs::path> staged;  // listed first: exchanging changes the folder that is listed
   for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) staged.push_back(entry.path());
-  for (const fs::path& path : staged) swap_in(path, final_ / path.filename());
+  for (const fs::path& path : staged) {
+    const fs::path old = final_ / path.filename();
+    if (fs::is_directory(path)) {
+      list_made_files(path);
+      if (fs::is_directory(fs::symlink_status(old))) keep_own_files(old, path);
+    }
+    swap_in(path, old);
+  }
 }
 
 void StagedOutput::publish_whole() {

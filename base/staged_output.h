@@ -23,7 +23,7 @@ class StagedOutput {
   const std::filesystem::path& final_dir() const { return final_; }
 
   /// Renames the staged files into the final folder one by one (made if need be); files of these names are replaced,
-  /// other files stay. A staged sub-folder replaces the one of its name as a whole.
+  /// other files stay. A staged sub-folder replaces the one of its name; somebody's own there is kept (made_files.h).
   void publish_files();
 
   /// Renames the staging folder to the final name as a whole; an existing folder is swapped out and removed.

@@ -83,9 +83,8 @@ std::vector<TwinLack> lacks_of_forces(const TrackSet& set, const TrackModel& mod
 }
 
 std::string head(const Twin& twin, const std::vector<std::string>& assumed, const std::vector<std::string>& notes) {
-  std::string text = fmt::format(
-      "# Made by glidelab diagnose --twin: the motions as they were fitted. x counts from {:.6g} m of the data.\n",
-      twin.from_m);
+  std::string text =
+      fmt::format("{}: the motions as they were fitted. x counts from {:.6g} m of the data.\n", kTwinHead, twin.from_m);
   for (const TwinLack& lack : twin.lacks) text += fmt::format("# Not in it: {} ({}).\n", lack.what, lack.why);
   for (const std::string& what : assumed) text += fmt::format("# Assumed: {}.\n", what);
   for (const std::string& note : notes) text += fmt::format("# Note: {}.\n", note);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diagnose/diagnosis.h"
@@ -17,6 +18,9 @@
 #include "diagnose/twin_camera.h"
 
 namespace glidelab::diagnose {
+
+/// How the scenario begins.
+inline constexpr std::string_view kTwinHead = "# Made by glidelab diagnose --twin";
 
 struct Twin {
   std::string toml;

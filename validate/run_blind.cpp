@@ -43,6 +43,11 @@ void check_same_run(const BlindOptions& options, const fs::path& out) {
   if (options.pictures) wanted["pictures"] = true;
   const fs::path file = out / "run.json";
   if (!fs::exists(file)) {
+    for (const char* name : {"cases", "diagnoses", "truth"}) {  // whose parts are made anew where they are not whole
+      if (!fs::exists(out / name)) continue;
+      throw base::InputError(base::Issue{(out / name).string(), 0, "--out", "a folder that no run of blind made",
+                                         "an empty folder, or that of an earlier run (it has a run.json)"});
+    }
     base::StagedOutput staged(out);
     base::write_file(staged.dir() / "run.json", wanted.dump(2) + "\n");
     staged.publish_files();
@@ -135,6 +140,12 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
 }
 
 }  // namespace
+
+std::size_t kept_cases(const BlindOptions& options, const fs::path& out) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < options.cases; ++i) kept += fs::exists(out / "truth" / fmt::format("{:04d}.json", i));
+  return kept;
+}
 
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path& out, const Diagnoser& diagnose,
                                     const base::Progress& progress, const FilmRenderer& render) {

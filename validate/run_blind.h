@@ -38,6 +38,9 @@ struct BlindOptions {
 using Diagnoser = std::function<std::string(const std::filesystem::path& folder, const std::filesystem::path& out,
                                             const std::vector<std::string>& without)>;
 
+/// How many of the cases are whole in `out`: a run goes on behind them.
+std::size_t kept_cases(const BlindOptions& options, const std::filesystem::path& out);
+
 /// InputError for no cases, for an unknown effect, and where OUT holds another run. `render` is for pictures only.
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
                                     const Diagnoser& diagnose, const base::Progress& progress = base::no_progress,

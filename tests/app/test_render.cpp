@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/made_files.h"
 #include "base/staged_output.h"
 #include "catch.h"
 #include "core/experiment.h"
@@ -69,8 +70,41 @@ TEST_CASE("render replaces what render made, as a whole") {
   const tests::TempDir temp;
   REQUIRE(render_tiny(temp).status == 0);
   base::write_file(temp / "out/clips/stale.mkv", "stale");
+  base::list_made_files(temp / "out");  // as if an earlier scenario had had such a clip
   REQUIRE(render_tiny(temp).status == 0);
   CHECK_FALSE(fs::exists(temp / "out/clips/stale.mkv"));
+}
+
+TEST_CASE("render refuses its own folder once it holds anything of somebody's, and touches nothing") {
+  const tests::TempDir temp;
+  REQUIRE(render_tiny(temp, {"--seed", "1"}).status == 0);
+  const auto refused = [&](const std::string& name, const std::string& words) {
+    const std::string clip = base::read_file(temp / "out/clips/up.mkv");
+    const std::string before = base::read_file(temp / name);
+    const tests::ProcessResult result = render_tiny(temp, {"--seed", "2"});
+    INFO(name << ": " << result.err);
+    CHECK(result.status == 1);
+    CHECK(result.err.find(words) != std::string::npos);
+    CHECK(base::read_file(temp / name) == before);
+    CHECK(base::read_file(temp / "out/clips/up.mkv") == clip);
+    CHECK(entries(temp.path()) == 3);
+  };
+  base::write_file(temp / "out/notes.txt", "mine");
+  refused("out/notes.txt", "notes.txt");
+  fs::remove(temp / "out/notes.txt");
+  base::write_file(temp / "out/clips/own-recording.mkv", "mine");
+  refused("out/clips/own-recording.mkv", "clips/own-recording.mkv");
+  fs::remove(temp / "out/clips/own-recording.mkv");
+  base::write_file(temp / "out.truth/notes.txt", "mine");
+  refused("out.truth/notes.txt", "notes.txt");
+  fs::remove(temp / "out.truth/notes.txt");
+  CHECK(render_tiny(temp, {"--seed", "2"}).status == 0);
+  const std::string made = base::read_file(temp / "out/experiment.toml");
+  base::write_file(temp / "out/experiment.toml", made + "# my remark\n");
+  refused("out/experiment.toml", "experiment.toml (changed)");
+  base::write_file(temp / "out/experiment.toml", made);
+  fs::remove(temp / "out/plumb.png");  // what is gone cannot be lost
+  CHECK(render_tiny(temp, {"--seed", "2"}).status == 0);
 }
 
 TEST_CASE("render refuses a folder with files that it did not make, and touches none of them") {

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include "base/errors.h"
+#include "base/made_files.h"
 #include "catch.h"
 #include "temp_dir.h"
 
@@ -31,6 +32,48 @@ TEST_CASE("published files replace their namesakes and leave the others") {
   output.publish_files();
   CHECK(read_file(temp / "out/new.txt") == "new");
   CHECK(read_file(temp / "out/kept.txt") == "kept");
+}
+
+TEST_CASE("a published sub-folder replaces what was made before, and keeps what is somebody's own") {
+  const glidelab::tests::TempDir temp;
+  const auto publish = [&](std::initializer_list<const char*> names, const char* text) {
+    StagedOutput output(temp / "out");
+    fs::create_directories(output.dir() / "plots/deep");
+    for (const char* name : names) write_file(output.dir() / "plots" / name, text);
+    output.publish_files();
+  };
+  publish({"a.svg", "b.svg", "deep/c.gp"}, "first");
+  write_file(temp / "out/plots/own.txt", "mine");
+  write_file(temp / "out/plots/deep/own.txt", "mine too");
+  write_file(temp / "out/plots/deep/c.gp", "edited");
+  publish({"a.svg", "deep/c.gp"}, "second");
+  CHECK(read_file(temp / "out/plots/a.svg") == "second");
+  CHECK_FALSE(fs::exists(temp / "out/plots/b.svg"));
+  CHECK(read_file(temp / "out/plots/own.txt") == "mine");
+  CHECK(read_file(temp / "out/plots/deep/own.txt") == "mine too");
+  CHECK(read_file(temp / "out/plots/deep/c.gp") == "second");
+  CHECK(read_file(temp / "out/plots/deep/c.gp.changed") == "edited");
+  publish({"a.svg"}, "third");
+  CHECK(read_file(temp / "out/plots/own.txt") == "mine");
+  CHECK(read_file(temp / "out/plots/deep/c.gp.changed") == "edited");
+  CHECK(entries(temp.path()) == 1);
+}
+
+TEST_CASE("what was made is told from what is somebody's own, whatever its name") {
+  const glidelab::tests::TempDir temp;
+  for (const char* name : {"plain", "with space", "\"quoted\"", "line\nbreak", "\xc3\xa4"})
+    write_file(temp / name, "made");
+  CHECK(own_files(temp.path()).size() == 5);  // no list: nobody knows
+  list_made_files(temp.path());
+  CHECK(own_files(temp.path()).empty());
+  write_file(temp / "with space", "edit");  // of the same length
+  fs::create_symlink(temp / "plain", temp / "link");
+  const std::vector<OwnFile> own = own_files(temp.path());
+  REQUIRE(own.size() == 2);
+  CHECK((own[0].name == "link" && !own[0].changed));
+  CHECK((own[1].name == "with space" && own[1].changed));
+  write_file(temp / kMadeList, "something else");
+  CHECK_THROWS_AS(own_files(temp.path()), InputError);
 }
 
 TEST_CASE("a whole folder replaces the one that stood there") {

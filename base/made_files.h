@@ -1,0 +1,32 @@
+/// Which files of a folder this program made, so that it replaces these and nobody's own.
+///
+/// A folder that is replaced as a whole (an experiment that `render` made, its truth, a page's plots) holds a list of
+/// its files, each with its size and a sum over its bytes (FNV-1a, 64 bits): what is not in the list, or is not as the
+/// list says, is somebody's own. StagedOutput::publish_files takes such files on into the folder that takes its place:
+/// one that was made and changed since as NAME.changed, where there is a new NAME. The list lies in the folder, so that
+/// the two are put in place at once.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidelab::base {
+
+inline constexpr std::string_view kMadeList = ".glidelab-made";
+
+/// Writes `dir`/.glidelab-made: all that is in the folder and below now. EnvironmentError where that fails.
+void list_made_files(const std::filesystem::path& dir);
+
+/// A file or link that was not made, or was changed since.
+struct OwnFile {
+  std::filesystem::path name;  ///< relative to the folder
+  bool changed = false;        ///< made, and changed since
+};
+
+/// What in `dir` (which exists) and below is somebody's own, by name. Everything where there is no list; links always.
+/// InputError where a file cannot be read, or the list is none.
+std::vector<OwnFile> own_files(const std::filesystem::path& dir);
+
+}  // namespace glidelab::base
