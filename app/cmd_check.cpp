@@ -49,7 +49,7 @@ void check(const CheckOptions& options) {
   const fs::path out = output_folder(options.common, "check", options.folder);
   check_writable(out);
   base::StagedOutput staged(out);
-  ProgressDisplay display(options.common.quiet);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
   const core::RecordingCheck found = core::check_recording(experiment, options.common.jobs, display.callback());
   const std::string json = report::check_json(found);
   base::write_file(staged.dir() / "check.json", json);

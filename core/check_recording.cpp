@@ -12,6 +12,7 @@
 #include "core/camera_and_planes.h"
 #include "core/clip_look.h"
 #include "core/clip_to_track.h"
+#include "core/marker_smear.h"
 #include "core/median.h"
 #include "core/noise.h"
 #include "core/quantile.h"
@@ -27,6 +28,8 @@ constexpr std::size_t kPathPlaces = 200;
 constexpr int kAcross = 8, kDown = 6;  // parts of the picture
 // A step counts as a jump or a stall where the two on either side lie within an eighth of a straight line, and it is
 // clear of noise.
+constexpr double kBeyondTone = 2.0;   // times the stated exposure
+constexpr double kBeyondPlace = 0.5;  // marker diameters: less a marker may lengthen by where it is (perspective)
 constexpr double kAgree = 0.125, kJump = 1.6, kStall = 0.4, kClearOfNoise = 8.0;
 
 struct Speeds {
@@ -80,6 +83,13 @@ struct Attempt {
   std::string failure;
 };
 
+/// Closer to the picture's edge than a marker's diameter and a half, and its smear: it may have come from outside.
+bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip) {
+  const double margin_px = 3.0 * sighting.radius_px + clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
+  return std::min({sighting.u_px, sighting.v_px, clip.width_px - 1.0 - sighting.u_px,
+                   clip.height_px - 1.0 - sighting.v_px}) < margin_px;
+}
+
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const Attempt& attempt,
                      const ClipWatches& watches) {
   const TrackData& track = attempt.track;
@@ -91,7 +101,10 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   clip.notes = track.notes;
   clip.frames = track.frame_t_s.size();
   clip.seen = track.x_m.size();
-  if (!track.frame.empty()) clip.spanned = track.frame.back() - track.frame.front() + 1;
+  if (!track.frame.empty()) {
+    clip.first = track.frame.front();
+    clip.spanned = track.frame.back() - clip.first + 1;
+  }
   clip.frame_rate_hz = track.frame_rate_hz;
   if (track.x_m.size() >= kFewestTrackPoints) clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
   const Speeds speeds = speeds_of(track);
@@ -121,6 +134,16 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   clip.marker_expected_px = experiment.marker->diameter_m * speeds.px_per_m;
   const CameraSettings& camera = *experiment.camera;
   if (camera.exposure_s) clip.blur_px = speeds.px_s * *camera.exposure_s;
+  if (const auto smear = marker_smear(track.sightings, attempt.fits, camera.frame_rate_hz)) {
+    const double blur_px = speeds.px_s * smear->exposure_s;
+    const bool longer = !camera.exposure_s || smear->exposure_s > kBeyondTone * *camera.exposure_s;
+    if (longer && blur_px > kBeyondPlace * clip.marker_px) {
+      clip.measured_exposure_s = smear->exposure_s;
+      clip.measured_blur_px = blur_px;
+    }
+  }
+  clip.entered = at_edge(track.sightings.front(), clip);
+  clip.left = at_edge(track.sightings.back(), clip);
   clip.longest_blur_px = speeds.px_s / camera.frame_rate_hz;
   count_odd_steps(track.sightings, clip.centre_sd_px, clip);
   const std::size_t every = track.sightings.size() / kPathPlaces + 1;

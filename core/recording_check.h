@@ -43,6 +43,9 @@ struct ClipCheck {
   std::size_t frames = 0;   ///< or rows of the file
   std::size_t seen = 0;     ///< frames with the marker
   std::size_t spanned = 0;  ///< frames from the first sighting to the last
+  std::size_t first = 0;    ///< frame of the first sighting, counted from 0
+  bool entered = false;     ///< the first sighting is at the picture's edge
+  bool left = false;        ///< the last one is
   int width_px = 0, height_px = 0;
   double frame_rate_hz = 0.0;  ///< as stated; of a track, the median
   std::optional<double> container_rate_hz;
@@ -63,7 +66,11 @@ struct ClipCheck {
   double top_speed_m_s = 0.0;
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, by the stated exposure
-  double longest_blur_px = 0.0;   ///< by an exposure as long as a frame
+  /// By how the marker lengthens with its speed (marker_smear.h), and the smear at the top speed that goes with it;
+  /// only where it is above twice the stated exposure (less may be the camera's tone curve), or none is stated, and the
+  /// smear above half the marker's diameter (less may be perspective: a clip's speed goes with the place).
+  std::optional<double> measured_exposure_s, measured_blur_px;
+  double longest_blur_px = 0.0;  ///< by an exposure as long as a frame
   std::optional<double> position_noise_m;
   double inside_pattern = 1.0;   ///< share of the sightings within the outline of all corners seen
   std::vector<PixelPlace> path;  ///< at most 200 places

@@ -15,7 +15,8 @@ constexpr double kFinePlanePx = 0.05, kPlaneRatio = 3.0, kWorstPlanePx = 1.0;
 constexpr double kCovered = 0.5, kInside = 0.95;
 constexpr double kLeastTiltDeg = 20.0;
 constexpr std::size_t kFewestSightings = 20, kEnoughSightings = 60;
-constexpr double kMostlySeen = 0.95, kHalfSeen = 0.5;
+constexpr double kMostlySeen = 0.95, kPartlySeen = 2.0 / 3.0;
+constexpr std::size_t kFewUnseen = 3;  // frames at a clip's start or end
 constexpr double kFineMarkerPx = 6.0, kWorstMarkerPx = 3.0, kSizeAgrees = 0.15;
 constexpr double kFineContrast = 0.15, kFineSignal = 20.0, kWorstSignal = 5.0;
 constexpr double kAtTheTop = 0.985, kTooDark = 0.25, kTooBright = 0.05;
@@ -26,6 +27,10 @@ constexpr double kDrift = 0.75;                               // frames
 
 std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+std::string times(std::size_t count) {
+  return count == 1 ? "once" : fmt::format("{} times", count);
 }
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -121,16 +126,16 @@ void judge_times(const Experiment& experiment, const ClipCheck& clip, Notebook& 
     const double share = static_cast<double>(clip.jumps) / static_cast<double>(std::max<std::size_t>(clip.seen, 1));
     book.add(
         share > kWorstMissing ? Severity::unusable : Severity::change,
-        fmt::format("the marker jumps {} times by about two frames' way: frames are missing", clip.jumps),
+        fmt::format("the marker jumps {} by about two frames' way: frames are missing", times(clip.jumps)),
         "record to a faster disk or in a smaller format, and say time = \"container\" if the file has true stamps");
   }
   if (clip.repeated + clip.stalls > 0) {
     const double share = static_cast<double>(clip.repeated) / frames;
     book.add(share > kWorstRepeated ? Severity::unusable : Severity::change,
              clip.stalls > 0
-                 ? fmt::format("the marker stands still for a frame {} times in mid-motion, and {} frames are "
+                 ? fmt::format("the marker stands still for a frame {} in mid-motion, and {} of {} frames are "
                                "the very picture before them: frames came twice",
-                               clip.stalls, clip.repeated)
+                               times(clip.stalls), clip.repeated, clip.frames)
                  : fmt::format("{} of {} frames are the very picture before them", clip.repeated, clip.frames),
              "export the clip at the rate at which it was filmed; no converter may add frames");
   }
@@ -164,7 +169,31 @@ void judge_light(const ClipCheck& clip, Notebook& book) {
   }
 }
 
-void judge_marker(const ClipCheck& clip, Notebook& book) {
+bool size_disagrees(const ClipCheck& clip) {
+  return clip.marker_expected_px > 0.0 && std::abs(std::log(clip.marker_px / clip.marker_expected_px)) > kSizeAgrees;
+}
+
+/// A marker that is smeared away where the glider is fastest is missing at a clip's start or end.
+void judge_ends(const ClipCheck& clip, Notebook& book) {
+  const std::size_t before = clip.first, after = clip.frames - clip.first - clip.spanned;
+  const auto judge = [&](std::size_t unseen, bool edge, const std::string& found) {
+    if (unseen <= kFewUnseen) return;
+    const double share = static_cast<double>(unseen) / static_cast<double>(clip.frames);
+    book.add(edge                        ? Severity::note
+             : share > 1.0 - kPartlySeen ? Severity::unusable
+                                         : Severity::change,
+             found,
+             edge
+                 ? ""
+                 : "it is not at the picture's edge there: where the glider is fast, shorten the exposure and use more "
+                   "light; else cut the clip where the hand lets go");
+  };
+  judge(before, clip.entered, fmt::format("the marker is first seen in frame {} of {}", clip.first + 1, clip.frames));
+  judge(after, clip.left,
+        fmt::format("the marker is last seen in frame {} of {}", clip.first + clip.spanned, clip.frames));
+}
+
+void judge_marker(const ClipCheck& clip, bool scaled, Notebook& book) {
   const double share = static_cast<double>(clip.seen) / static_cast<double>(std::max<std::size_t>(clip.spanned, 1));
   if (clip.seen < kEnoughSightings) {
     book.add(clip.seen < kFewestSightings ? Severity::unusable : Severity::change,
@@ -172,24 +201,35 @@ void judge_marker(const ClipCheck& clip, Notebook& book) {
              "film at a higher rate, or let the glider run a longer way in the picture");
   }
   if (share < kMostlySeen) {
-    book.add(share < kHalfSeen ? Severity::unusable : Severity::change,
+    book.add(share < kPartlySeen ? Severity::unusable : Severity::change,
              fmt::format("the marker is seen in {} of the {} frames between its first and its last", clip.seen,
                          clip.spanned),
              "nothing may hide it; more contrast, less blur");
   }
+  judge_ends(clip, book);
   if (clip.marker_px < kFineMarkerPx) {
     book.add(clip.marker_px < kWorstMarkerPx ? Severity::unusable : Severity::change,
              fmt::format("the marker is {:.2g} px wide", clip.marker_px), "move closer or use a bigger one");
   }
-  if (clip.marker_expected_px > 0.0 && std::abs(std::log(clip.marker_px / clip.marker_expected_px)) > kSizeAgrees) {
-    book.add(Severity::change,
-             fmt::format("the marker is {:.3g} px wide, and diameter_m makes it {:.3g} px", clip.marker_px,
-                         clip.marker_expected_px),
-             "measure diameter_m and square_m again: where they disagree one length is wrong, and all speeds with it");
+  if (size_disagrees(clip)) {
+    book.add(
+        Severity::change,
+        fmt::format("the marker is {:.3g} px wide, and diameter_m makes it {:.3g} px", clip.marker_px,
+                    clip.marker_expected_px),
+        fmt::format("measure diameter_m and {} again: where they disagree one length is wrong, and all speeds with it",
+                    scaled ? "the two points of [scale]" : "square_m"));
   }
-  const double blur_px = clip.blur_px.value_or(clip.longest_blur_px);
+  if (clip.measured_exposure_s) {
+    book.add(
+        Severity::change,
+        fmt::format("the marker gets longer with its speed as by an exposure of {:.2g} ms{}",
+                    1e3 * *clip.measured_exposure_s, clip.blur_px ? "; exposure_s says less than half of that" : ""),
+        "read the exposure off the camera, and shorten it");
+  }
+  const double blur_px = std::max(clip.measured_blur_px.value_or(0.0),
+                                  clip.blur_px.value_or(clip.measured_blur_px ? 0.0 : clip.longest_blur_px));
   if (blur_px > kFineBlur * clip.marker_px) {
-    const bool stated = clip.blur_px.has_value();
+    const bool stated = clip.blur_px.has_value() || clip.measured_blur_px.has_value();
     book.add(stated && blur_px > kWorstBlur * clip.marker_px ? Severity::unusable : Severity::change,
              fmt::format("at its highest speed, {:.3g} m/s, the marker is smeared by {}{:.3g} px; it is {:.3g} px wide",
                          clip.top_speed_m_s, stated ? "" : "up to ", blur_px, clip.marker_px),
@@ -211,14 +251,18 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook bo
     return;
   }
   if (clip.pictures) {
-    judge_marker(clip, book);
+    judge_marker(clip, experiment.scale.has_value(), book);
     judge_light(clip, book);
     judge_times(experiment, clip, book);
   } else if (clip.seen < kEnoughSightings) {
     book.add(clip.seen < kFewestSightings ? Severity::unusable : Severity::change,
              fmt::format("the track has {} points", clip.seen), "record at a higher rate");
   }
-  for (const std::string& note : clip.notes) book.add(Severity::note, note);
+  for (const std::string& note : clip.notes) {
+    const bool said = note.find("the very picture before them") != std::string::npos ||
+                      (note.starts_with("the marker looks ") && size_disagrees(clip));  // above, with advice
+    if (!said) book.add(Severity::note, note);
+  }
 }
 
 }  // namespace

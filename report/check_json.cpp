@@ -46,6 +46,7 @@ Json clip_json(const core::ClipCheck& clip) {
   json["notes"] = clip.notes;
   if (!clip.pictures) return json;
   json["spanned"] = clip.spanned;
+  json["first_seen"] = clip.first;
   json["picture_px"] = {clip.width_px, clip.height_px};
   put(json, "container_rate_hz", clip.container_rate_hz, "a folder of frames, or a file that does not say");
   json["repeated_frames"] = clip.repeated;
@@ -65,6 +66,10 @@ Json clip_json(const core::ClipCheck& clip) {
   put(json, "top_speed_px_s", clip.top_speed_px_s);
   put(json, "blur_px", clip.blur_px, "exposure_s is not stated");
   put(json, "longest_blur_px", clip.longest_blur_px);
+  if (clip.measured_exposure_s) {
+    json["measured_exposure_s"] = *clip.measured_exposure_s;
+    json["measured_blur_px"] = *clip.measured_blur_px;
+  }
   put(json, "inside_pattern", clip.inside_pattern);
   return json;
 }

@@ -30,6 +30,11 @@ std::string verdict_of(const core::RecordingCheck& check) {
                       : fmt::format("Usable; {} thing{} would make it better", changes, changes == 1 ? "" : "s");
 }
 
+bool wants_change(const core::RecordingCheck& check) {
+  return std::any_of(check.findings.begin(), check.findings.end(),
+                     [](const core::Finding& finding) { return finding.severity != core::Severity::note; });
+}
+
 std::string word_of(core::Severity severity) {
   switch (severity) {
     case core::Severity::note:
@@ -199,7 +204,11 @@ Page check_report(const core::RecordingCheck& check, const std::vector<core::Pre
   Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">A look at the recording before any analysis.</p>\n"
       "<p class=\"note\"><b class=\"{}\">{}.</b></p>\n",
-      escape(check.name), check.usable ? "good" : "bad", verdict_of(check));
+      escape(check.name),
+      !check.usable         ? "bad"
+      : wants_change(check) ? "soft"
+                            : "good",
+      verdict_of(check));
   body += findings_section(check) + pattern_section(check) + clips_section(check, previews);
   return page("Check of " + check.name, body);
 }

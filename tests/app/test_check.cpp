@@ -18,13 +18,13 @@ namespace {
 
 /// 300 px a metre; a marker of 12 px that starts with 1.2 m/s, 360 px/s.
 std::string scenario(const std::string& camera = "exposure_s = 0.001", const std::string& more = "",
-                     double rate_hz = 100.0) {
+                     double rate_hz = 100.0, const tests::Launch& launch = {"up", 0.2, -1.2, 1.0}) {
   return fmt::format(
              "format = 1\nname = \"to check\"\nseed = 5\n[camera]\nwidth_px = 480\nheight_px = 360\nframe_rate_hz = "
              "{}\nfocal_px = [720.0, 720.0]\nposition_m = [0.0, 0.1, 2.4]\n{}\n[calibration]\ninner_corners = [7, "
              "4]\nsquare_m = 0.08\nviews = 9\n[marker]\ndiameter_m = 0.04\n{}\n",
              rate_hz, camera, more) +
-         tests::one_glider(4.0, 2.768, 0.0071, {{"up", 0.2, -1.2, 1.0}});
+         tests::one_glider(4.0, 2.768, 0.0071, {launch});
 }
 
 struct Recording {
@@ -159,4 +159,31 @@ TEST_CASE("a marker that is not there is a finding of its clip, and names from f
   const std::string page = base::read_file(recording.temp / "out/report.html");
   CHECK(page.find("<script>") == std::string::npos);
   CHECK(page.find("&lt;script&gt;alert(1)&lt;x&gt;") != std::string::npos);
+}
+
+TEST_CASE("an exposure that is stated too short shows in how the marker lengthens") {
+  const tests::Launch fast = {"up", 0.6, -2.4, 0.6};
+  const Recording recording(scenario("exposure_s = 0.0098", "", 100.0, fast));
+  recording.replace("exposure_s = 0.0098", "exposure_s = 0.001");
+  const json check = recording.check(0);
+  INFO(check.dump(1));
+  CHECK(finds(check, "change", "exposure_s says less than half of that"));
+  CHECK(finds(check, "change", "the marker is smeared by"));
+  // 6 px of smear on 12 px of marker. The moments' disc, a little larger than the marker, cuts some of it off, and the
+  // marker looks shorter by up to 1 - cos(16 degrees), 4 %, where it is seen aslant: 8 % of a variance of 9 px², beside
+  // 3 px² by the smear, so that the exposure may be off by 12 %.
+  CHECK(std::abs(check.at("clips").at(0).at("measured_exposure_s").get<double>() / 0.0098 - 1.0) < 0.12);
+  // A marker that is smeared as stated is nothing to talk about.
+  CHECK_FALSE(Recording(scenario("exposure_s = 0.001", "", 100.0, fast))
+                  .check(0)
+                  .at("clips")
+                  .at(0)
+                  .contains("measured_exposure_s"));
+}
+
+TEST_CASE("check says how long each stage took where it is asked to") {
+  const Recording recording(scenario());
+  const tests::ProcessResult result = tests::glidelab({"check", "r", "-v", "-o", "out"}, recording.temp.path());
+  INFO(result.err);
+  CHECK(result.err.find("calibration: took ") != std::string::npos);
 }

@@ -5,6 +5,7 @@
 
 #include "base/staged_output.h"
 #include "catch.h"
+#include "core/marker_smear.h"
 #include "small_clip.h"
 #include "temp_dir.h"
 
@@ -88,4 +89,93 @@ TEST_CASE("a clip that cannot be read is a finding of its own and leaves the oth
   CHECK(check.clips[1].seen == 60);
   CHECK(check.clips[1].contrast.has_value());
   CHECK_FALSE(check.usable);
+}
+
+namespace {
+
+/// A clip of 264 frames with nothing wrong but that the marker is seen in [first, first + spanned) only.
+core::ClipCheck seen_in(std::size_t first, std::size_t spanned) {
+  core::ClipCheck clip;
+  clip.name = "clip";
+  clip.frames = 264;
+  clip.first = first;
+  clip.seen = clip.spanned = spanned;
+  clip.frame_rate_hz = kRate;
+  clip.marker_px = clip.marker_expected_px = 12.0;
+  clip.bright_level = 0.8;
+  clip.contrast = 0.5;
+  return clip;
+}
+
+std::vector<core::Finding> findings(const core::ClipCheck& clip) {
+  core::RecordingCheck check;
+  check.clips = {clip};
+  return core::findings_of(experiment_of({"clip.mkv"}), check);
+}
+
+}  // namespace
+
+TEST_CASE("a marker that is not seen at a clip's start or end is a finding, worse the longer, less at the edge") {
+  CHECK(findings(seen_in(0, 264)).empty());
+  CHECK(findings(seen_in(3, 258)).empty());
+  const auto late = findings(seen_in(52, 212));
+  REQUIRE(late.size() == 1);
+  CHECK(late[0].severity == core::Severity::change);
+  CHECK(late[0].found == "the marker is first seen in frame 53 of 264");
+  const auto lost = findings(seen_in(0, 200));
+  REQUIRE(lost.size() == 1);
+  CHECK(lost[0].found == "the marker is last seen in frame 200 of 264");
+  CHECK(findings(seen_in(100, 164)).at(0).severity == core::Severity::unusable);
+  core::ClipCheck entered = seen_in(52, 212);
+  entered.entered = true;
+  CHECK(findings(entered).at(0).severity == core::Severity::note);
+  core::ClipCheck half = seen_in(0, 264);
+  half.seen = 135;  // 51 %
+  CHECK(findings(half).at(0).severity == core::Severity::unusable);
+}
+
+TEST_CASE("what is found is said once, and in the words of the folder that it is about") {
+  core::ClipCheck clip = seen_in(0, 264);
+  clip.jumps = 1;
+  clip.repeated = 20;
+  clip.marker_px = 16.0;
+  clip.notes = {"20 of 264 frames are the very picture before them once more: duplicates",
+                "the marker looks 33 % larger than its diameter says", "something else"};
+  std::size_t notes = 0, once = 0, scale = 0, square = 0;
+  for (const core::Finding& finding : findings(clip)) {
+    notes += finding.severity == core::Severity::note;
+    once += finding.found.find("jumps once by") != std::string::npos;
+    scale += finding.advice.find("[scale]") != std::string::npos;
+    square += finding.advice.find("square_m") != std::string::npos;
+  }
+  CHECK(notes == 1);
+  CHECK(once == 1);
+  CHECK(scale == 1);
+  CHECK(square == 0);
+}
+
+TEST_CASE("the exposure comes from how much longer than high the marker gets: L^2 / 12, in any direction") {
+  constexpr double kExposure = 0.006, kRadius = 6.0;
+  for (const double angle : {0.0, 0.7, 2.0}) {
+    std::vector<core::MarkerSighting> sightings;
+    std::vector<core::MarkerFit> fits;
+    double way_px = 0.0;
+    for (std::size_t k = 0; k < 60; ++k) {
+      const double speed_px_s = 600.0 - 8.0 * static_cast<double>(k);
+      const double along = kRadius * kRadius / 4.0 + std::pow(speed_px_s * kExposure, 2) / 12.0;
+      const double across = kRadius * kRadius / 4.0, c = std::cos(angle), s = std::sin(angle);
+      sightings.push_back({k, way_px * c, way_px * s, 0.01, kRadius});
+      fits.emplace_back().moments = {c * c * along + s * s * across, c * s * (along - across),
+                                     s * s * along + c * c * across};
+      // A place changes by the mean of two frames' speeds, so that the central difference is a frame's own.
+      way_px += (speed_px_s - 4.0) / kRate;
+    }
+    const auto smear = core::marker_smear(sightings, fits, kRate);
+    REQUIRE(smear.has_value());
+    CHECK(std::abs(smear->exposure_s / kExposure - 1.0) < 1e-9);
+    for (core::MarkerFit& fit : fits) fit.moments = {9.0, 0.0, 9.0};
+    CHECK_FALSE(core::marker_smear(sightings, fits, kRate).has_value());
+    fits.pop_back();
+    CHECK_FALSE(core::marker_smear(sightings, fits, kRate).has_value());
+  }
 }
