@@ -101,14 +101,17 @@ struct Window {
   double from_v;
   double to_v;
   std::string script;
+  bool has_limit;  ///< a line crosses a = 0 within it, on its own side of v = 0
 };
 
 Window detail_window(const core::AnalysisResults& results, const PhaseGroup& group, double v_max) {
   const double half = kDetail * v_max;
   double low = 0.0;
   double high = 0.0;  // a = 0, the equilibrium, is always in view
+  bool has_limit = false;
   for (const std::size_t c : group.configurations) {
     for (const core::LineFit& line : results.configurations[c].lines) {
+      has_limit = has_limit || line_at(line, 0.0) * line_at(line, line.direction * half) < 0.0;
       for (const double v : {0.0, line.direction * half}) {
         low = std::min(low, line_at(line, v));
         high = std::max(high, line_at(line, v));
@@ -120,7 +123,7 @@ Window detail_window(const core::AnalysisResults& results, const PhaseGroup& gro
     const double margin = 0.08 * (high - low);
     script += fmt::format("set yrange [{:.6g}:{:.6g}]\n", low - margin, high + margin);
   }
-  return {-half, half, script};
+  return {-half, half, script, has_limit};
 }
 
 /// Points and lines of all configurations in one diagram.
@@ -213,8 +216,8 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
   const std::string detail = diagram(results, group, all, window.from_v, window.to_v, 0.3, data);
   script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + detail;
   plots.push_back({Drawing{script, data},
-                   "Near v = 0: the gap between the lines is twice the Coulomb friction, their crossing of a = 0 the "
-                   "limit velocity",
+                   std::string("Near v = 0: the gap between the lines is twice the Coulomb friction") +
+                       (window.has_limit ? ", their crossing of a = 0 the limit velocity" : ""),
                    "Detail of the phase diagram near v = 0"});
   plots.push_back(residual_plot(results, group, all));
   return plots;
