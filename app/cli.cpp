@@ -13,11 +13,14 @@
 #include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "app/commands.h"
+#include "app/common_options.h"
+#include "app/completion.h"
 #include "app/interrupt.h"
 #include "app/program_texts.h"
 #include "base/errors.h"
@@ -33,10 +36,12 @@ constexpr int kEnvironmentFailed = 3;
 constexpr int kNotMet = 4;
 constexpr int kInterrupted = 130;  // as a shell says it of SIGINT
 
-/// Colours are for people: on a terminal, and where NO_COLOR (no-color.org) is not set.
+/// Colours are for people: on a terminal that has some, and where NO_COLOR (no-color.org) is not set.
 bool in_colour() {
   const char* const refused = ::getenv("NO_COLOR");
-  return ::isatty(STDERR_FILENO) == 1 && (refused == nullptr || *refused == '\0');
+  const char* const terminal = ::getenv("TERM");
+  return ::isatty(STDERR_FILENO) == 1 && (refused == nullptr || *refused == '\0') &&
+         (terminal == nullptr || std::string_view(terminal) != "dumb");
 }
 
 /// One line of standard error for each line of the message.
@@ -56,6 +61,8 @@ int run_command(const Command& command) {
   try {
     command();
     return kDone;
+  } catch (const InterruptedKeeping& interrupt) {
+    return fail(kInterrupted, interrupt.what());
   } catch (const base::Interrupted&) {
     return fail(kInterrupted, "interrupted; nothing was written");
   } catch (const std::exception&) {
@@ -85,37 +92,60 @@ int run_command(const Command& command) {
   }
 }
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
-  const std::string nearest = base::nearest_word(word, known);
-  return nearest.empty() ? "" : fmt::format("did you mean \"{}\"? ", nearest);
+/// An option's value that is none of its words, with the word that was meant; empty where there is none.
+std::string misspelt_value(const CLI::App& command, const std::vector<std::string>& arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::size_t equals = arguments[i].find('=');
+    const std::string name = arguments[i].substr(0, equals);
+    const CLI::Option* const option = name.starts_with("--") ? command.get_option_no_throw(name) : nullptr;
+    const std::vector<std::string> words = option == nullptr ? std::vector<std::string>() : words_of(*option);
+    if (words.empty() || (equals == std::string::npos && i + 1 == arguments.size())) continue;
+    const std::string value = equals == std::string::npos ? arguments[i + 1] : arguments[i].substr(equals + 1);
+    if (std::find(words.begin(), words.end(), value) != words.end()) continue;
+    return fmt::format("{}: found \"{}\", expected one of {}{}", name, value, fmt::join(words, ", "),
+                       base::did_you_mean(value, words));
+  }
+  return {};
 }
 
 /// CLI11 says of a misspelt command that one is missing, of a misspelt option that it was not expected; this says which
-/// word it was and which was meant. Empty where it is neither.
-std::string misspelt(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2) return {};
+/// word it was and which was meant. Empty where it is none of these, nor an option's value.
+std::string misspelt(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.empty()) return {};
+  const std::string& first = arguments.front();
   std::vector<std::string> names;
-  const CLI::App* chosen = argv[1][0] == '-' ? &app : nullptr;
+  const CLI::App* chosen = first.starts_with("-") ? &app : nullptr;
   for (const CLI::App* command : app.get_subcommands({})) {
     names.push_back(command->get_name());
-    if (command->get_name() == argv[1]) chosen = command;
+    if (command->get_name() == first) chosen = command;
   }
   if (chosen == nullptr) {
-    return fmt::format("unknown command \"{}\"; {}the commands are {}", argv[1], did_you_mean(argv[1], names),
+    const std::string meant = base::did_you_mean(first, names);
+    return fmt::format("unknown command \"{}\"{}{} the commands are {}", first, meant, meant.empty() ? ";" : "",
                        fmt::join(names, ", "));
   }
   std::vector<std::string> options;
   for (const CLI::Option* option : chosen->get_options()) {
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
   }
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = std::string(argv[i]).substr(0, std::string_view(argv[i]).find('='));
+  for (const std::string& argument : arguments) {
+    const std::string word = argument.substr(0, argument.find('='));
     if (word == "--") break;
     if (!word.starts_with("--") || std::find(options.begin(), options.end(), word) != options.end()) continue;
-    return fmt::format("unknown option \"{}\"; {}glidelab {}--help lists them", word, did_you_mean(word, options),
+    const std::string meant = base::did_you_mean(word, options);
+    return fmt::format("unknown option \"{}\"{}{} glidelab {}--help lists them", word, meant, meant.empty() ? ";" : "",
                        chosen == &app ? "" : chosen->get_name() + " ");
   }
-  return {};
+  return misspelt_value(*chosen, arguments);
+}
+
+/// "help COMMAND" is "COMMAND --help", and "help" alone "--help".
+std::vector<std::string> words_given(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  words.emplace_back("--help");
+  return words;
 }
 
 /// OpenCV and FFmpeg write their own remarks about files to standard error; ours name the file and what is wrong.
@@ -135,8 +165,9 @@ int run(int argc, char** argv) {
       "glidelab");
   app.set_help_flag("-h,--help", "Show this help");
   app.set_version_flag("--version", version_text(), "Show the version, and the libraries it was built with");
-  const auto print_and_leave = [](const std::string& text) {
-    fmt::print("{}", text);
+  std::string text;  // in place of a command's result
+  const auto print_and_leave = [&](const std::string& wanted) {
+    text = wanted;
     throw CLI::Success();
   };
   app.add_flag_callback(
@@ -147,7 +178,7 @@ int run(int argc, char** argv) {
       ->type_name("SHELL")
       ->check(CLI::IsMember({"bash", "zsh"}));
   app.require_subcommand(1);
-  app.footer("glidelab COMMAND --help shows the options of a command.");
+  app.footer("glidelab COMMAND --help, or glidelab help COMMAND, shows the options of a command.");
   Command command;
   add_simulate(app, command);
   add_render(app, command);
@@ -164,17 +195,30 @@ int run(int argc, char** argv) {
   add_pattern(app, command);
   add_check(app, command);
   add_explore(app, command);
+  const std::vector<std::string> words = words_given(argc, argv);
+  if (words.empty()) {
+    fmt::print(stderr, "{}", app.help());
+    return kWrongCommandLine;
+  }
+  catch_interrupts();
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    const std::vector<CLI::App*> commands = app.get_subcommands({});
+    const bool is_command = std::any_of(commands.begin(), commands.end(),
+                                        [&](const CLI::App* one) { return one->get_name() == words.front(); });
+    if (!words.front().starts_with("-") && !is_command) {
+      return fail(kWrongCommandLine, misspelt(app, words));  // help COMMAND
+    }
+    std::ostringstream shown;
+    app.exit(help_or_version, shown, shown);
+    return run_command([&] { print_result(text + shown.str()); });
   } catch (const CLI::ParseError& error) {
-    const std::string unknown = misspelt(app, argc, argv);
+    const std::string unknown = misspelt(app, words);
     fail(kWrongCommandLine, unknown.empty() ? error.what() : unknown);
     fmt::print(stderr, "Run glidelab --help for the commands, glidelab COMMAND --help for the options of one.\n");
     return kWrongCommandLine;
   }
-  catch_interrupts();
   return run_command(command);
 }
 

@@ -31,7 +31,7 @@ std::string diagnose_apart(const fs::path& folder, const fs::path& out, const st
   if (!without.empty()) arguments.emplace_back("--without");
   arguments.insert(arguments.end(), without.begin(), without.end());
   const fs::path log = out / "log.txt";
-  const std::string how = base::how_it_failed(base::run_program("/proc/self/exe", arguments, log));
+  const std::string how = base::how_it_failed(base::run_program("/proc/self/exe", arguments, log, {}, {}, interrupted));
   throw_if_interrupted();
   const std::string said = base::read_file(log);
   fs::remove(log);
@@ -42,7 +42,8 @@ std::string diagnose_apart(const fs::path& folder, const fs::path& out, const st
 std::string render_apart(const fs::path& scenario, const fs::path& folder) {
   const fs::path log = folder.parent_path() / "log.txt";
   const std::string how = base::how_it_failed(base::run_program(
-      "/proc/self/exe", {"render", scenario.string(), "-o", folder.string(), "--jobs", "1", "--quiet"}, log));
+      "/proc/self/exe", {"render", scenario.string(), "-o", folder.string(), "--jobs", "1", "--quiet"}, log, {}, {},
+      interrupted));
   throw_if_interrupted();
   return how.empty() ? "" : fmt::format("{}: {}", how, base::read_file(log));
 }
@@ -58,7 +59,12 @@ void blind(const BlindCommand& options) {
   report::BlindRun run;
   run.seed = wanted.seed;
   run.pictures = wanted.pictures;
-  run.outcomes = validate::run_blind(wanted, out, diagnose_apart, display.callback(), render_apart);
+  keep_on_interrupt(
+      [&] { run.outcomes = validate::run_blind(wanted, out, diagnose_apart, display.callback(), render_apart); },
+      [&] {
+        return fmt::format("{} of {} cases are kept in {}; the same command goes on with the rest",
+                           validate::kept_cases(wanted, out), wanted.cases, out.string());
+      });
   run.score = validate::score_blind(run.outcomes);
   const std::string json = report::blind_json(run);
   base::StagedOutput staged(out);

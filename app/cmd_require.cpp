@@ -50,6 +50,7 @@ void require_command(const RequireOptions& options) {
                     "threads, and more for what keeps those that miss it",
                     size.close, size.points, size.recordings, size.seconds / 60.0, options.common.jobs));
   };
+  how.watch = throw_if_interrupted;
   const validate::Requirement requirement = validate::find_requirement(sweep, how, display.callback());
   const std::string json = report::requirement_json(requirement);
   base::write_file(staged.dir() / "require.json", json);

@@ -103,6 +103,11 @@ void finish(const SweepOptions& options, const validate::Sweep& sweep, validate:
   if (page) say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 
+/// For work whose progress nobody wants to see.
+void only_interrupts(std::string_view, double) {
+  throw_if_interrupted();
+}
+
 void say_size(const SweepOptions& options, const validate::SweepEstimate& estimate) {
   say(options.common, fmt::format("{} runs, {} of them to do: about {} on {} threads, {} of disk in the end ({} free)",
                                   estimate.runs, estimate.missing, duration_text(estimate.seconds), options.common.jobs,
@@ -122,7 +127,7 @@ void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const va
                                    shard);
   fs::path disk = fs::absolute(out);
   while (!fs::exists(disk) && disk.has_relative_path()) disk = disk.parent_path();
-  say_size(options, validate::estimate_sweep(sweep, database, shard, options.common.jobs, disk));
+  say_size(options, validate::estimate_sweep(sweep, database, shard, options.common.jobs, disk, only_interrupts));
 }
 
 /// Where nothing was there before, a merge that fails leaves nothing.
@@ -138,6 +143,34 @@ void merge(const SweepOptions& options, const validate::Sweep& sweep, const fs::
     if (!was_there) fs::remove(file, ignored);
     throw;
   }
+}
+
+/// What is missing, and the page.
+void fill(const SweepOptions& options, const validate::Sweep& sweep, const validate::Shard& shard,
+          validate::SweepDatabase& database, const fs::path& out, const base::Progress& progress,
+          ProgressDisplay& display) {
+  if (options.merge.empty()) {
+    const validate::SweepEstimate estimate =
+        validate::estimate_sweep(sweep, database, shard, options.common.jobs, out, only_interrupts);
+    say_size(options, estimate);
+    if (estimate.missing > 0 && estimate.bytes_to_come > estimate.free_bytes) {
+      throw base::EnvironmentError(fmt::format("{}: what is missing of the sweep needs about {}, and {} are free",
+                                               out.string(), bytes_text(estimate.bytes_to_come),
+                                               bytes_text(estimate.free_bytes)));
+    }
+    display.count("runs", estimate.missing);
+    const validate::SweepOutcome outcome = validate::run_sweep(sweep, database, shard, options.common.jobs, progress);
+    display.clear();
+    if (outcome.done > 0) {
+      say(options.common, fmt::format("{} runs in {}: {:.3g} runs/s", outcome.done, duration_text(outcome.wall_s),
+                                      static_cast<double>(outcome.done) / outcome.wall_s));
+    }
+  } else if (database.runs() < validate::run_count(sweep)) {
+    display.clear();
+    say(options.common, fmt::format("not complete: {} of {} runs are missing; the sweep without --merge does them",
+                                    validate::run_count(sweep) - database.runs(), validate::run_count(sweep)));
+  }
+  finish(options, sweep, database, out, progress, display);
 }
 
 void sweep_command(const SweepOptions& options) {
@@ -161,27 +194,12 @@ void sweep_command(const SweepOptions& options) {
     merge(options, sweep, out);
   }
   validate::SweepDatabase database(out / database_name(shard), sweep, GLIDELAB_VERSION, shard);
-  if (options.merge.empty()) {
-    const validate::SweepEstimate estimate = validate::estimate_sweep(sweep, database, shard, options.common.jobs, out);
-    say_size(options, estimate);
-    if (estimate.missing > 0 && estimate.bytes_to_come > estimate.free_bytes) {
-      throw base::EnvironmentError(fmt::format("{}: what is missing of the sweep needs about {}, and {} are free",
-                                               out.string(), bytes_text(estimate.bytes_to_come),
-                                               bytes_text(estimate.free_bytes)));
-    }
-    display.count("runs", estimate.missing);
-    const validate::SweepOutcome outcome = validate::run_sweep(sweep, database, shard, options.common.jobs, progress);
-    display.clear();
-    if (outcome.done > 0) {
-      say(options.common, fmt::format("{} runs in {}: {:.3g} runs/s", outcome.done, duration_text(outcome.wall_s),
-                                      static_cast<double>(outcome.done) / outcome.wall_s));
-    }
-  } else if (database.runs() < validate::run_count(sweep)) {
-    display.clear();
-    say(options.common, fmt::format("not complete: {} of {} runs are missing; the sweep without --merge does them",
-                                    validate::run_count(sweep) - database.runs(), validate::run_count(sweep)));
-  }
-  finish(options, sweep, database, out, progress, display);
+  keep_on_interrupt([&] { fill(options, sweep, shard, database, out, progress, display); },
+                    [&] {
+                      return fmt::format("{} of {} runs are kept in {}; the same command goes on with the rest",
+                                         database.runs(), validate::run_count(sweep, shard),
+                                         (out / database_name(shard)).string());
+                    });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <atomic>
+#include <exception>
 
 #include "base/errors.h"
 
@@ -39,6 +40,15 @@ bool interrupted() {
 
 void throw_if_interrupted() {
   if (flag) throw base::Interrupted();
+}
+
+void keep_on_interrupt(const std::function<void()>& work, const std::function<std::string()>& kept) {
+  try {
+    work();
+  } catch (const std::exception&) {
+    if (!interrupted()) throw;  // what an interrupt tears down on its way is not the error to report
+    throw InterruptedKeeping(kept());
+  }
 }
 
 }  // namespace glidelab::app

@@ -1,6 +1,12 @@
 /// SIGINT, SIGTERM and SIGHUP set a flag; the work looks at it and ends by itself, cleaning up behind it.
 #pragma once
 
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "base/errors.h"
+
 namespace glidelab::app {
 
 /// From now on those signals set the flag. Writing beyond a size limit or to a closed pipe becomes an error that the
@@ -9,7 +15,20 @@ void catch_interrupts();
 
 bool interrupted();
 
+/// An interrupt of work that keeps what it has finished; what() says what that is.
+class InterruptedKeeping : public base::Interrupted {
+ public:
+  explicit InterruptedKeeping(std::string kept) : kept_("interrupted; " + std::move(kept)) {}
+  const char* what() const noexcept override { return kept_.c_str(); }
+
+ private:
+  std::string kept_;
+};
+
 /// Throws base::Interrupted where the flag is set.
 void throw_if_interrupted();
+
+/// `work`, which keeps what it has finished: InterruptedKeeping where an interrupt ends it, with what `kept` says.
+void keep_on_interrupt(const std::function<void()>& work, const std::function<std::string()>& kept);
 
 }  // namespace glidelab::app

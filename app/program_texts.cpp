@@ -48,81 +48,6 @@ std::string options_of(const CLI::App& app) {
   return text;
 }
 
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return names;
-}
-
-std::string bash_script(const CLI::App& app) {
-  std::string commands, cases;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    commands += (commands.empty() ? "" : " ") + command->get_name();
-    cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), fmt::join(option_names(*command), " "));
-  }
-  return fmt::format(R"(# bash completion for glidelab
-_glidelab() {{
-  local current="${{COMP_WORDS[COMP_CWORD]}}" words=""
-  if [ "$COMP_CWORD" -eq 1 ]; then
-    COMPREPLY=($(compgen -W "{} {}" -- "$current"))
-    return
-  fi
-  case "${{COMP_WORDS[1]}}" in
-{}  esac
-  if [[ "$current" == -* ]]; then
-    COMPREPLY=($(compgen -W "$words" -- "$current"))
-  else
-    compopt -o filenames 2>/dev/null
-    local IFS=$'\n'
-    COMPREPLY=($(compgen -f -- "$current"))
-  fi
-}}
-complete -F _glidelab glidelab
-)",
-                     commands, fmt::join(option_names(app), " "), cases);
-}
-
-/// The first line of what is said of an option, between single quotes and brackets.
-std::string between_brackets(const std::string& text) {
-  const std::string line = text.substr(0, text.find('\n'));
-  return replaced(replaced(replaced(line, "'", "'\\''"), "[", "("), "]", ")");
-}
-
-std::string zsh_script(const CLI::App& app) {
-  std::string commands, cases;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    commands += fmt::format("    '{}:{}'\n", command->get_name(), between_brackets(command->get_description()));
-    cases += fmt::format("    {})\n      _arguments", command->get_name());
-    for (const CLI::Option* option : command->get_options()) {
-      const std::string value =
-          option->get_expected_max() > 0 ? fmt::format(":{}:_files", option->get_type_name()) : "";
-      for (const std::string& name : option->get_lnames()) {
-        cases += fmt::format(" \\\n        '--{}[{}]{}'", name, between_brackets(option->get_description()), value);
-      }
-    }
-    cases += " \\\n        '*:file:_files'\n      ;;\n";
-  }
-  return fmt::format(R"(#compdef glidelab
-# zsh completion for glidelab
-local -a commands
-if (( CURRENT == 2 )); then
-  commands=(
-{}  )
-  _describe 'command' commands
-else
-  local command=${{words[2]}}
-  shift words
-  (( CURRENT-- ))
-  case $command in
-{}  esac
-fi
-)",
-                     commands, cases);
-}
-
 }  // namespace
 
 std::string version_text() {
@@ -147,10 +72,6 @@ std::string man_page(const CLI::App& app) {
       ".TP\n.B 3\nthe environment failed: disk full, codec missing\n"
       ".TP\n.B 4\nwhat was asked to hold does not: a baseline, a target\n.TP\n.B 130\ninterrupted\n";
   return text;
-}
-
-std::string completion_script(const CLI::App& app, const std::string& shell) {
-  return shell == "zsh" ? zsh_script(app) : bash_script(app);
 }
 
 }  // namespace glidelab::app

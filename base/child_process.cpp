@@ -8,8 +8,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <iterator>
+#include <thread>
 
 #include "base/errors.h"
 
@@ -23,10 +26,30 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return list;
 }
 
+/// The child's status. Once `stop` says so its group is asked to end, and is ended where it does not.
+int waited_for(pid_t child, const std::string& program, const std::function<bool()>& stop) {
+  constexpr auto kLook = std::chrono::milliseconds(20);
+  constexpr int kPatience = 25;  // looks
+  int status = 0, asked = 0;
+  while (true) {
+    const pid_t ended = ::waitpid(child, &status, stop ? WNOHANG : 0);
+    if (ended == child) return status;
+    if (ended < 0 && errno != EINTR) {
+      throw EnvironmentError(fmt::format("{}: waiting for it: {}", program, std::strerror(errno)));
+    }
+    if (!stop) continue;
+    if (stop()) {
+      if (asked == 0) ::kill(-child, SIGTERM);
+      if (asked++ == kPatience) ::kill(-child, SIGKILL);
+    }
+    std::this_thread::sleep_for(kLook);
+  }
+}
+
 }  // namespace
 
 int run_program(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
-                std::vector<std::string> environment, const std::string& hint) {
+                std::vector<std::string> environment, const std::string& hint, const std::function<bool()>& stop) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -45,11 +68,7 @@ int run_program(const std::string& program, std::vector<std::string> arguments, 
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0)
     throw EnvironmentError(fmt::format("{} cannot be started: {}{}", program, std::strerror(error), hint));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw EnvironmentError(fmt::format("{}: waiting for it: {}", program, std::strerror(errno)));
-  }
-  return status;
+  return waited_for(child, program, stop);
 }
 
 std::string how_it_failed(int status) {

@@ -38,4 +38,9 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return nearest == nullptr ? std::string() : *nearest;
 }
 
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_word(word, known);
+  return nearest.empty() ? std::string() : "; did you mean \"" + nearest + "\"?";
+}
+
 }  // namespace glidelab::base

@@ -11,4 +11,7 @@ namespace glidelab::base {
 /// more than a third of the word's letters.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
+/// "; did you mean \"up\"?", or nothing where no known word is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+
 }  // namespace glidelab::base

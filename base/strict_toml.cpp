@@ -203,7 +203,9 @@ std::string TomlTable::word(std::string_view key, const std::vector<std::string>
   if (found == nullptr && !otherwise.empty()) return std::string(otherwise);
   const auto* value = found == nullptr ? nullptr : found->as_string();
   if (value != nullptr && std::find(allowed.begin(), allowed.end(), value->get()) != allowed.end()) return value->get();
-  node_->reject(key, found, fmt::format("one of \"{}\"", fmt::join(allowed, "\", \"")));
+  node_->reject(key, found,
+                fmt::format("one of \"{}\"{}", fmt::join(allowed, "\", \""),
+                            value == nullptr ? "" : did_you_mean(value->get(), allowed)));
   return allowed.front();
 }
 

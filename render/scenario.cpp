@@ -134,6 +134,14 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
   }
 }
 
+/// A file of the other sort is said to be one, not taken apart key by key. It is read apart: asking for a key makes it
+/// a known one.
+void refuse_sweep(std::string_view text, const std::filesystem::path& path) {
+  const base::TomlFile file = base::TomlFile::parse(text, path.string());
+  if (file.root().has("configuration") || !file.root().has("scenario") || !file.root().has("vary")) return;
+  throw base::InputError(base::Issue{path.string(), 0, "", "a sweep", "a scenario; sweep and require take a sweep"});
+}
+
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path) {
@@ -143,6 +151,7 @@ Scenario read_scenario(const std::filesystem::path& path) {
 Scenario read_scenario(std::string_view text, const std::filesystem::path& path, ScenarioChecks checks) {
   base::TomlFile file = base::TomlFile::parse(text, path.string());
   const TomlTable root = file.root();
+  refuse_sweep(text, path);
   Scenario scenario;
   if (const auto camera = root.maybe_text("camera_file")) {
     scenario.camera_name = take_camera_file(path.parent_path() / *camera, file, text).name;

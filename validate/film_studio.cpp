@@ -16,13 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 
 core::Experiment rendered(const render::Scenario& scenario, const fs::path& folder,
-                          const render::RenderOptions& options) {
+                          const render::RenderOptions& options, const base::Progress& progress) {
   const fs::path pictures = folder / "e", truth = folder / "t";
   fs::create_directories(pictures);
   fs::remove_all(pictures / "clips");
   fs::remove_all(truth);
   fs::create_directory(truth);
-  render::render_experiment(scenario, pictures, truth, options);
+  render::render_experiment(scenario, pictures, truth, options, progress);
   core::Experiment experiment = core::read_experiment(pictures, core::OutsideFiles::refused);
   experiment.plumb.reset();  // tracks have no use for it
   for (core::GroupSetup& group : experiment.groups) group.plumb.reset();
@@ -32,10 +32,10 @@ core::Experiment rendered(const render::Scenario& scenario, const fs::path& fold
 }  // namespace
 
 FilmStudio::FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
-                       std::shared_ptr<const render::Stage> stage)
-    : folder_("run"), stage_(std::move(stage)) {
+                       std::shared_ptr<const render::Stage> stage, base::Progress progress)
+    : folder_("run"), progress_(std::move(progress)), stage_(std::move(stage)) {
   const core::Experiment experiment =
-      rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = false});
+      rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = false}, progress_);
   const core::CalibrationSetup& setup = *experiment.calibration;
   pattern_.boards = core::find_board_views(core::pattern_files(experiment), setup.inner_corners, jobs);
   pattern_.calibration = core::calibrate_any_lens(pattern_.boards, setup.square_m);
@@ -44,20 +44,21 @@ FilmStudio::FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int
 MadeTracks FilmStudio::film(const render::Scenario& scenario, std::uint64_t seed, int jobs) {
   const bool lossy = render::lossy(scenario.codec);
   const core::Experiment experiment =
-      rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = lossy, .stills = false});
+      rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = lossy, .stills = false},
+               progress_);
   core::FrameOpener open = core::open_frames;
   if (!lossy) {
-    if (!stage_) stage_ = render::set_stage(scenario, jobs);
+    if (!stage_) stage_ = render::set_stage(scenario, jobs, [this] { progress_("stage", 0.0); });
     open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, stage_), seed, canvases_);
   }
   MadeTracks made = make_tracks(scenario, seed);
   made.setups = experiment.clips;
-  made.tracks = core::tracks_of(experiment, jobs, base::no_progress, open, false, &pattern_).tracks;
+  made.tracks = core::tracks_of(experiment, jobs, progress_, open, false, &pattern_).tracks;
   return made;
 }
 
-MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs) {
-  return FilmStudio(scenario, seed, jobs).film(scenario, seed, jobs);
+MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs, const base::Progress& progress) {
+  return FilmStudio(scenario, seed, jobs, nullptr, progress).film(scenario, seed, jobs);
 }
 
 }  // namespace glidelab::validate

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "base/progress.h"
 #include "base/temporary_folder.h"
 #include "core/camera_and_planes.h"
 #include "render/clip_set.h"
@@ -20,9 +21,9 @@ namespace glidelab::validate {
 class FilmStudio {
  public:
   /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio before the same scene
-  /// may be given.
+  /// may be given. `progress` is called with every picture and, in film(), every few frames, from any thread.
   FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
-             std::shared_ptr<const render::Stage> stage = nullptr);
+             std::shared_ptr<const render::Stage> stage = nullptr, base::Progress progress = base::no_progress);
 
   /// The scenario's clips with the noise of this seed, tracked, with the truth of the scenario. A lossy codec's clips
   /// are written and read back. The truth's positions count from the track's reference point, the tracks' from the
@@ -34,12 +35,14 @@ class FilmStudio {
 
  private:
   base::TemporaryFolder folder_;
+  base::Progress progress_;
   std::shared_ptr<const render::Stage> stage_;
   std::shared_ptr<CanvasPool> canvases_ = std::make_shared<CanvasPool>();
   core::SeenPattern pattern_;
 };
 
 /// One recording with a calibration of its own.
-MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs);
+MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs,
+                       const base::Progress& progress = base::no_progress);
 
 }  // namespace glidelab::validate

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "base/nearest_word.h"
 #include "base/parallel.h"
 #include "render/camera_file.h"
 #include "render/clip_set.h"
@@ -153,7 +154,7 @@ ConfirmationSize size_of(const std::vector<Trial>& trials, const RequirementOpti
   size.recordings = size.close * options.runs;
   if (least == nullptr) return size;
   const auto start = std::chrono::steady_clock::now();
-  film_tracks(least->setting->scenario, 1, 1);
+  film_tracks(least->setting->scenario, 1, 1, [&](std::string_view, double) { options.watch(); });
   const double one_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   size.seconds = one_s * all / pixels_of(least->setting->scenario) * static_cast<double>(options.runs) /
                  std::min<double>(std::max(1, options.jobs), static_cast<double>(options.runs));
@@ -202,11 +203,15 @@ Target parse_target(const std::string& text) {
   std::istringstream number(equals == std::string::npos ? "" : text.substr(equals + 1));
   const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
   const bool known = std::find(quantities.begin(), quantities.end(), target.quantity) != quantities.end();
-  if (!read || !known || !(target.value > 0.0) || (measure != "sd" && measure != "error95" && measure != "bias")) {
-    throw base::InputError(base::Issue{"", 0, "--target", fmt::format("\"{}\"", text),
-                                       fmt::format("QUANTITY=VALUE, or QUANTITY:sd|error95|bias=VALUE, with one of {} "
-                                                   "and a number above 0",
-                                                   fmt::join(quantities, ", "))});
+  const std::vector<std::string> measures = {"sd", "error95", "bias"};
+  const bool known_measure = std::find(measures.begin(), measures.end(), measure) != measures.end();
+  if (!read || !known || !(target.value > 0.0) || !known_measure) {
+    throw base::InputError(base::Issue{
+        "", 0, "--target", fmt::format("\"{}\"", text),
+        fmt::format("QUANTITY=VALUE, or QUANTITY:sd|error95|bias=VALUE, with one of {} "
+                    "and a number above 0{}{}",
+                    fmt::join(quantities, ", "), known ? "" : base::did_you_mean(target.quantity, quantities),
+                    known_measure ? "" : base::did_you_mean(measure, measures))});
   }
   target.measure = measure == "sd"     ? Target::Measure::sd
                    : measure == "bias" ? Target::Measure::bias

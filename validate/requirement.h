@@ -57,6 +57,8 @@ struct RequirementOptions {
   int jobs = 1;
   std::function<void(const ConfirmationSize&)> before_rendering = {};
   std::function<void()> before_run = {};  ///< called before each; may throw to stop
+  /// Called often while a recording is made, from any thread; may throw to stop.
+  std::function<void()> watch = [] {};
 };
 
 /// One target at one point; in the target's unit and measure.

@@ -71,7 +71,10 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
   const std::uint64_t seed = seed_of(sweep_, point_ * options_.runs + run);
   if (confirm == Confirm::clips) {
     std::unique_ptr<FilmStudio>& studio = studios_[run];
-    if (!studio) studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_);
+    if (!studio) {
+      studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_,
+                                            [this](std::string_view, double) { options_.watch(); });
+    }
     return studio->film(setting.scenario, seed, 1);
   }
   // Clips of one scenario have about one noise: their root mean square.
@@ -85,7 +88,7 @@ Verdict RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector
   for (TargetResult& result : results) result.found.reset();
   // A studio whose clips go through a file draws what stands still with each of them.
   if (confirm == Confirm::clips && !stage_ && !render::lossy(setting.scenario.codec)) {
-    stage_ = render::set_stage(setting.scenario, options_.jobs);
+    stage_ = render::set_stage(setting.scenario, options_.jobs, options_.watch);
   }
   std::vector<std::vector<QuantityComparison>> of_runs(options_.runs);
   base::for_each_parallel(options_.runs, options_.jobs, [&](std::size_t run) {

@@ -1,6 +1,7 @@
 #include "validate/run_sweep.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -51,22 +52,23 @@ class MissingRuns {
   std::vector<std::uint64_t> there_;
 };
 
-std::uint64_t runs_of(const Sweep& sweep, const Shard& shard) {
+}  // namespace
+
+std::uint64_t run_count(const Sweep& sweep, const Shard& shard) {
   const std::uint64_t all = run_count(sweep);
   return all < shard.index ? 0 : (all - shard.index) / shard.count + 1;
 }
 
-}  // namespace
-
-RunCost cost_of_runs(const Sweep& sweep, const Shard& shard, std::uint64_t runs, int jobs) {
-  const std::uint64_t there = runs_of(sweep, shard);
+RunCost cost_of_runs(const Sweep& sweep, const Shard& shard, std::uint64_t runs, int jobs,
+                     const base::Progress& progress) {
+  const std::uint64_t there = run_count(sweep, shard);
   const std::uint64_t samples = std::min<std::uint64_t>(there, runs >= 100 ? 5 : runs >= 30 ? 3 : 1);
   std::vector<RunCost> costs(samples);
   base::for_each_parallel(samples, jobs, [&](std::size_t i) {
     const Clock::time_point start = Clock::now();
     // The middle of the i-th of equal parts; runs are at most 2^53, and 2 samples + 1 at most 11.
     const std::uint64_t of_shard = there * (2 * i + 1) / (2 * samples);
-    const RunRecord record = RunWorker(sweep).evaluate(shard.index - 1 + shard.count * of_shard);
+    const RunRecord record = RunWorker(sweep, progress).evaluate(shard.index - 1 + shard.count * of_shard);
     costs[i] = {seconds_since(start), bytes_of(record)};
   });
   RunCost mean;
@@ -78,13 +80,13 @@ RunCost cost_of_runs(const Sweep& sweep, const Shard& shard, std::uint64_t runs,
 }
 
 SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs,
-                             const std::filesystem::path& disk) {
+                             const std::filesystem::path& disk, const base::Progress& progress) {
   SweepEstimate estimate;
-  estimate.runs = runs_of(sweep, shard);
+  estimate.runs = run_count(sweep, shard);
   estimate.missing = estimate.runs - std::min(estimate.runs, database.runs());
   estimate.free_bytes = static_cast<double>(std::filesystem::space(disk).available);
   if (estimate.missing == 0) return estimate;
-  const RunCost cost = cost_of_runs(sweep, shard, estimate.missing, jobs);
+  const RunCost cost = cost_of_runs(sweep, shard, estimate.missing, jobs, progress);
   estimate.seconds = cost.seconds * static_cast<double>(estimate.missing) / std::max(1, jobs);
   estimate.bytes = cost.bytes * static_cast<double>(estimate.runs);
   estimate.bytes_to_come = cost.bytes * static_cast<double>(estimate.missing);
@@ -94,13 +96,15 @@ SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const 
 SweepOutcome run_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs,
                        const base::Progress& progress) {
   const Clock::time_point start = Clock::now();
-  const std::uint64_t missing = runs_of(sweep, shard) - std::min(runs_of(sweep, shard), database.runs());
+  const std::uint64_t missing = run_count(sweep, shard) - std::min(run_count(sweep, shard), database.runs());
   MissingRuns runs(database, shard, run_count(sweep));
   SweepOutcome outcome;
   std::mutex mutex;  // of the database, the list of runs and the outcome
+  std::atomic<double> fraction_done = 0.0;
   progress("runs", 0.0);
   base::for_each_parallel(static_cast<std::size_t>(std::max(1, jobs)), jobs, [&](std::size_t) {
-    RunWorker worker(sweep);
+    // A recording takes long enough that somebody may want to stop within it.
+    RunWorker worker(sweep, [&](std::string_view, double) { progress("runs", fraction_done); });
     while (true) {
       std::optional<std::uint64_t> run;
       {
@@ -116,7 +120,8 @@ SweepOutcome run_sweep(const Sweep& sweep, SweepDatabase& database, const Shard&
         const std::lock_guard lock(mutex);
         database.add(record, wall_s);
         ++outcome.done;
-        fraction = static_cast<double>(outcome.done) / static_cast<double>(std::max<std::uint64_t>(1, missing));
+        fraction_done = fraction =
+            static_cast<double>(outcome.done) / static_cast<double>(std::max<std::uint64_t>(1, missing));
       }
       progress("runs", fraction);
     }

@@ -28,11 +28,15 @@ struct RunCost {
 
 /// Means over runs that lie evenly over the shard's part of the design: 5 where `runs` are 100 or more, 3 from 30 on,
 /// else 1, for what they cost is thrown away.
-RunCost cost_of_runs(const Sweep& sweep, const Shard& shard, std::uint64_t runs, int jobs);
+RunCost cost_of_runs(const Sweep& sweep, const Shard& shard, std::uint64_t runs, int jobs,
+                     const base::Progress& progress = base::no_progress);
+
+/// Of the whole sweep or a part of it.
+std::uint64_t run_count(const Sweep& sweep, const Shard& shard);
 
 /// `disk`: a folder on the disk whose free space is asked for.
 SweepEstimate estimate_sweep(const Sweep& sweep, SweepDatabase& database, const Shard& shard, int jobs,
-                             const std::filesystem::path& disk);
+                             const std::filesystem::path& disk, const base::Progress& progress = base::no_progress);
 
 struct SweepOutcome {
   std::uint64_t done = 0;    ///< runs of this call

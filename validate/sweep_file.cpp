@@ -181,6 +181,14 @@ void try_values(const Sweep& sweep) {
   }
 }
 
+/// As of a scenario a sweep (render/scenario.cpp): read apart, because asking for a key makes it a known one.
+void refuse_scenario(const std::string& text, const std::filesystem::path& path) {
+  const base::TomlFile file = base::TomlFile::parse(text, path.string());
+  if (!file.root().has("configuration") || file.root().has("scenario") || file.root().has("vary")) return;
+  throw base::InputError(base::Issue{path.string(), 0, "", "a scenario",
+                                     "a sweep: scenario = \"FILE\" and tables [[vary]] (docs/sweep.md)"});
+}
+
 }  // namespace
 
 std::string Analysis::name() const {
@@ -193,6 +201,7 @@ Sweep read_sweep(const std::filesystem::path& path) {
   sweep.file = path;
   sweep.text = base::read_file(path);
   const base::TomlFile file = base::TomlFile::parse(sweep.text, path.string());
+  refuse_scenario(sweep.text, path);
   const TomlTable root = file.root();
   root.integer("format", 1, 1);
   sweep.name = root.text("name");

@@ -94,7 +94,7 @@ void RunWorker::fill(RunRecord& record) {
   MadeTracks made;
   std::vector<LeastSd> least;
   if (sweep_.level == Level::clips) {
-    made = film_tracks(run.scenario, record.seed, 1);
+    made = film_tracks(run.scenario, record.seed, 1, progress_);
   } else {
     const MadeTracks clean = tracks_for(record, run.text, run.scenario);
     made = with_noise(clean, run.noise_m, record.seed);

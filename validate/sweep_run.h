@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "core/phase_diagram.h"
 #include "validate/made_tracks.h"
 #include "validate/sweep.h"
@@ -49,7 +50,9 @@ struct RunRecord {
 /// it.
 class RunWorker {
  public:
-  explicit RunWorker(const Sweep& sweep) : sweep_(sweep) {}
+  /// `progress` is called often while a recording is made; an exception from it comes out.
+  explicit RunWorker(const Sweep& sweep, base::Progress progress = base::no_progress)
+      : sweep_(sweep), progress_(std::move(progress)) {}
   /// InputError and NumericalError of a run are its outcome; EnvironmentError comes out.
   RunRecord evaluate(std::uint64_t run);
 
@@ -58,6 +61,7 @@ class RunWorker {
   MadeTracks tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
 
   const Sweep& sweep_;
+  base::Progress progress_;
   // The motion of replicates of one point is the same, but for a clock that errs at random.
   std::string made_of_;
   MadeTracks made_;

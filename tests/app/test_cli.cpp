@@ -63,7 +63,6 @@ TEST_CASE("the version is printed and nothing else is done") {
 
 TEST_CASE("a wrong command line is status 2, one message, and nothing on standard output") {
   const std::vector<std::vector<std::string>> wrong = {
-      {},
       {"blind", "x.toml"},
       {"--no-such-option"},
       {"analyze"},
@@ -171,4 +170,107 @@ TEST_CASE("with --verbose each stage's time is said, and --quiet with it is a co
   CHECK(result.status == 0);
   static const std::regex kTook(R"(simulating: took [0-9]+\.[0-9]{2} s)");
   CHECK(std::regex_search(result.err, kTook));
+}
+
+TEST_CASE("without a word the help is shown, and help takes a command's name") {
+  const std::string help = tests::glidelab({"--help"}).out;
+  const tests::ProcessResult bare = tests::glidelab({});
+  CHECK(bare.status == 2);
+  CHECK(bare.out.empty());
+  CHECK(bare.err == help);
+  CHECK(tests::glidelab({"help"}).out == help);
+  CHECK(tests::glidelab({"help", "render"}).out == tests::glidelab({"render", "--help"}).out);
+  const tests::ProcessResult unknown = tests::glidelab({"help", "rendr"});
+  CHECK(unknown.status == 2);
+  CHECK(unknown.err.find("unknown command \"rendr\"; did you mean \"render\"?") != std::string::npos);
+}
+
+TEST_CASE("a misspelt value of an option is answered with the one that was meant") {
+  const tests::ProcessResult estimator = tests::glidelab({"analyze", "folder", "--estimator", "trajectry"});
+  CHECK(estimator.status == 2);
+  CHECK(estimator.err.find("--estimator: found \"trajectry\", expected one of phase-diagram, phase-diagram-gls, "
+                           "trajectory; did you mean \"trajectory\"?") != std::string::npos);
+  CHECK(tests::glidelab({"pattern", "--paper=a5"}).err.find("did you mean \"a4\"?") != std::string::npos);
+  const tests::ProcessResult target = tests::glidelab({"require", "x.toml", "--target", "mue=0.001"});
+  CHECK(target.status == 1);
+  CHECK(target.err.find("did you mean \"mu\"?") != std::string::npos);
+  const tests::TempDir temp;
+  std::string scenario = tests::tiny_scenario();
+  const std::size_t at = scenario.find("launched = \"up\"");
+  REQUIRE(at != std::string::npos);
+  base::write_file(temp / "s.toml", scenario.replace(at, 15, "launched = \"upp\""));
+  CHECK(tests::glidelab({"simulate", "s.toml"}, temp.path()).err.find("did you mean \"up\"?") != std::string::npos);
+}
+
+TEST_CASE("a terminal without colours gets none") {
+  if (tests::run({"script", "--version"}).status != 0) {
+    WARN("skipped: no script(1) to make a terminal");
+    return;
+  }
+  const auto said = [](const std::string& settings) {
+    const std::string command = settings + " '" + tests::kBinary + "' simulate nothing.toml";
+    return tests::run({"script", "-qec", command, "/dev/null"}).out;
+  };
+  CHECK(said("env -u NO_COLOR TERM=xterm").find("\033[") != std::string::npos);
+  CHECK(said("env -u NO_COLOR TERM=dumb").find("\033[") == std::string::npos);
+}
+
+TEST_CASE("bash completes the words of an option, nothing for a number, and files where a file is wanted") {
+  const tests::TempDir temp;
+  base::write_file(temp / "glidelab", tests::glidelab({"--completion", "bash"}).out);
+  base::write_file(temp / "s.toml", "");
+  base::write_file(temp / "ask.sh",
+                   "source ./glidelab\n"
+                   "ask() { COMP_WORDS=(\"$@\") COMP_CWORD=$(($# - 1)); _glidelab; echo \"${COMPREPLY[*]}\"; }\n"
+                   "ask glidelab analyze x --estimator traj\n"
+                   "ask glidelab analyze x --estimator = traj\n"
+                   "ask glidelab pattern --paper ''\n"
+                   "ask glidelab require x --confirm c\n"
+                   "ask glidelab --completion ''\n"
+                   "ask glidelab analyze x --jobs ''\n"
+                   "ask glidelab render s\n"
+                   "ask glidelab validate x --baseline s\n"
+                   "ask glidelab help rend\n"
+                   "ask glidelab analyze -q\n");
+  const tests::ProcessResult result = tests::run({"bash", "ask.sh"}, temp.path());
+  INFO(result.err);
+  CHECK(result.out == "trajectory\ntrajectory\na4 a3 letter\nclips\nbash zsh\n\ns.toml\ns.toml\nrender\n-q\n");
+}
+
+TEST_CASE("zsh takes the completion at a terminal: the words of an option, and no error for a number") {
+  if (tests::run({"zsh", "--version"}).status != 0) {
+    WARN("skipped: no zsh");
+    return;
+  }
+  const tests::TempDir temp;
+  base::write_file(temp / "_glidelab", tests::glidelab({"--completion", "zsh"}).out);
+  // A shell at a terminal of its own completes; Ctrl-X Ctrl-A shows the line as it then is. 30 s at the most.
+  base::write_file(temp / "ask.zsh", R"(zmodload zsh/zpty
+zpty shell "TERM=dumb zsh -f -i"
+ask() {
+  zpty -w -n shell "$1"$'\t\C-x\C-a'
+  zpty -r shell out '*<END>*'
+  print -r -- "$out"
+}
+zpty -w shell 'PS1=; fpath=($PWD $fpath); autoload -Uz compinit; compinit -u -D; show() { print -r "<LINE:$BUFFER><END>"; BUFFER=; }; zle -N show; bindkey "^X^A" show; unsetopt beep; print LO""ADED'
+zpty -r shell out '*LOADED*'
+ask 'glidelab analyze x --estimator traj'
+ask 'glidelab analyze x --jobs '
+ask 'glidelab require x --confirm cl'
+ask 'glidelab rend'
+ask 'glidelab --completion ba'
+ask 'glidelab pattern --pap'
+)");
+  const tests::ProcessResult result = tests::run({"timeout", "30", "zsh", "-f", "ask.zsh"}, temp.path());
+  INFO(result.out << result.err);
+  CHECK(result.status == 0);
+  for (const char* line : {"<LINE:glidelab analyze x --estimator trajectory >", "<LINE:glidelab analyze x --jobs >",
+                           "<LINE:glidelab require x --confirm clips >", "<LINE:glidelab render >",
+                           "<LINE:glidelab --completion bash >", "<LINE:glidelab pattern --paper"}) {
+    INFO(line);
+    CHECK(result.out.find(line) != std::string::npos);
+  }
+  for (const char* error : {"command not found", "bad pattern", "parse error"}) {
+    CHECK(result.out.find(error) == std::string::npos);
+  }
 }

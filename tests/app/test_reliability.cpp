@@ -290,3 +290,45 @@ TEST_CASE("killed at random instants, analyze and diagnose leave whole files, an
   }
   CHECK(names_in(temp.path()) == std::vector<std::string>{"analyze", "diagnose", "made"});
 }
+
+TEST_CASE("help, version, manual page and completion on a full standard output are errors of the environment") {
+  if (!fs::exists("/dev/full")) {
+    WARN("skipped: no /dev/full");
+    return;
+  }
+  for (const char* wanted :
+       {"--man", "--help", "--version", "--completion bash", "--completion zsh", "render --help", "help render"}) {
+    const tests::ProcessResult result =
+        tests::run({"sh", "-c", std::string("\"$0\" ") + wanted + " > /dev/full", tests::kBinary});
+    INFO(wanted << ": " << result.err);
+    CHECK(result.status == 3);
+    CHECK(says(result, "standard output: cannot be written: No space left"));
+  }
+}
+
+TEST_CASE("blind touches no cases that it did not make") {
+  const tests::TempDir temp;
+  fs::create_directories(temp / "out/cases/0000");
+  base::write_file(temp / "out/cases/0000/own.txt", "mine");
+  const tests::ProcessResult result = tests::glidelab({"blind", "--cases", "1", "-q", "-o", temp / "out"});
+  INFO(result.err);
+  CHECK(result.status == 1);
+  CHECK(says(result, "a folder that no run of blind made"));
+  CHECK(base::read_file(temp / "out/cases/0000/own.txt") == "mine");
+}
+
+TEST_CASE("a file that an option names is replaced only where that option wrote it") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  tests::write_tiny_scenario(temp / "own.toml");
+  const std::string own = base::read_file(temp / "own.toml");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"diagnose", "made", "-q", "--twin", "own.toml"},
+        {"validate", "own.toml", "-q", "--runs", "10", "--write-baseline", "own.toml"}}) {
+    const tests::ProcessResult result = tests::glidelab(command, temp.path());
+    INFO(result.err);
+    CHECK(result.status == 1);
+    CHECK(says(result, "a file that this option did not write"));
+    CHECK(base::read_file(temp / "own.toml") == own);
+  }
+}

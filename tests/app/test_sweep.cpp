@@ -172,3 +172,36 @@ TEST_CASE("The size is said before a sweep starts, and a run's whole scenario ca
   CHECK(shown.out.find("frame_rate_hz = 80") != std::string::npos);
   CHECK(tests::glidelab({"simulate", dir / "run17.toml", "-o", dir / "simulated"}).status == 0);
 }
+
+TEST_CASE("An interrupted sweep says how many runs are kept, and the next one has as many less to do") {
+  const tests::TempDir dir;
+  const std::string sweep = tests::write_sweep(dir.path(), "replicates = 2000", tests::kTwoKeys);
+  tests::Process process({tests::kBinary, "sweep", sweep, "-q", "-o", dir / "out"});
+  for (int tries = 0; tries < 500 && runs_in(dir / "out/sweep.sqlite") == 0; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  process.send(SIGINT);
+  const tests::ProcessResult result = process.wait();
+  INFO(result.err);
+  CHECK(result.status == 130);
+  const std::int64_t kept = runs_in(dir / "out/sweep.sqlite");
+  CHECK(kept > 0);
+  CHECK(kept < 12000);
+  CHECK(result.err.find(fmt::format("interrupted; {} of 12000 runs are kept in ", kept)) != std::string::npos);
+}
+
+TEST_CASE("A scenario in place of a sweep, and a sweep in place of a scenario, are called what they are") {
+  const tests::TempDir dir;
+  const std::string sweep = tests::write_sweep(dir.path(), "replicates = 3", tests::kTwoKeys);
+  for (const char* command : {"simulate", "render", "validate"}) {
+    const tests::ProcessResult result = tests::glidelab({command, sweep, "-o", dir / "out"});
+    CHECK(result.status == 1);
+    CHECK(result.err == fmt::format("glidelab: error: {}: found a sweep, expected a scenario; sweep and require take a "
+                                    "sweep\n",
+                                    sweep));
+  }
+  const tests::ProcessResult result = tests::glidelab({"sweep", dir / "scenario.toml", "-o", dir / "out"});
+  CHECK(result.status == 1);
+  CHECK(result.err.find("scenario.toml: found a scenario, expected a sweep") != std::string::npos);
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+}

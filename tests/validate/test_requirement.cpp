@@ -221,3 +221,22 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   CHECK(gain("rolling shutter") < gain("codec"));
   CHECK(gain("lens, calibration and tracking") > 1.0);
 }
+
+TEST_CASE("Whoever wants to stop while a recording is made waits for a picture or some frames, not for its end") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml",
+                   tests::kSweptScenario + "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n");
+  const render::Scenario scenario = render::read_scenario(dir / "s.toml");
+  int calls = 0;
+  struct Stopped {};
+  validate::film_tracks(scenario, 1, 1, [&](std::string_view, double) { ++calls; });
+  CHECK(calls >= 8 + 73 / 10);  // 7 views of the pattern and the empty track, and one in ten of the clip's 73 frames
+  for (const int last : {3, calls - 2}) {
+    int before = 0;
+    const auto stop = [&](std::string_view, double) {
+      if (++before == last) throw Stopped{};
+    };
+    CHECK_THROWS_AS(validate::film_tracks(scenario, 1, 1, stop), Stopped);
+    CHECK(before == last);
+  }
+}

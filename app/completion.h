@@ -1,0 +1,17 @@
+/// Completion for shells, from the commands and options as CLI11 holds them.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+#include <vector>
+
+namespace glidelab::app {
+
+/// The words of which the option takes one; none where it takes something else.
+std::vector<std::string> words_of(const CLI::Option& option);
+
+/// A script that completes commands, options, their words and files: for "bash" (to be sourced, or put among
+/// bash-completion/completions) or "zsh" (a file _glidelab on its fpath).
+std::string completion_script(const CLI::App& app, const std::string& shell);
+
+}  // namespace glidelab::app
