@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 
@@ -13,10 +14,11 @@ namespace {
 
 constexpr std::string_view kStyle = R"css(
 :root { color-scheme: light dark; --ink: #1c2126; --soft: #5a6570; --paper: #ffffff; --line: #d7dde3; --tint: #f3f6f8;
+        --veil: rgba(90, 125, 150, 0.08); --edge: rgba(28, 33, 38, 0.3);
         --accent: #005a8f; --good: #1c6e3d; --bad: #a8321a; }
 @media (prefers-color-scheme: dark) {
   :root { --ink: #e6e9ec; --soft: #a3adb7; --paper: #15191d; --line: #39424b; --tint: #1f252b; --accent: #79bdec;
-          --good: #7fd29c; --bad: #ff9d85; }
+          --veil: rgba(160, 190, 215, 0.08); --edge: rgba(200, 215, 230, 0.35); --good: #7fd29c; --bad: #ff9d85; }
 }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); line-height: 1.5;
@@ -29,14 +31,19 @@ p, li { max-width: 78ch; overflow-wrap: anywhere; }
 .soft, figcaption { color: var(--soft); font-size: 0.92rem; }
 a { color: var(--accent); }
 code { overflow-wrap: anywhere; }
-.scroll { overflow-x: auto; margin: 0.6rem 0; }
+/* Where a table is cut there is a shadow: the paper that hides it scrolls with the table, the shadow does not. */
+.scroll { overflow-x: auto; margin: 0.6rem 0; background:
+  linear-gradient(to right, var(--paper) 40%, transparent) left / 2.5rem 100% no-repeat local,
+  linear-gradient(to left, var(--paper) 40%, transparent) right / 2.5rem 100% no-repeat local,
+  linear-gradient(to right, var(--edge), transparent) left / 0.9rem 100% no-repeat scroll,
+  linear-gradient(to left, var(--edge), transparent) right / 0.9rem 100% no-repeat scroll; }
 table { border-collapse: collapse; font-size: 0.94rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.3rem 0.75rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
-th { background: var(--tint); font-weight: 600; vertical-align: bottom; }
-td:first-child { min-width: 13ch; }  /* a name with a hyphen stays on one line; its padding is in this width */
+th { background: var(--veil); font-weight: 600; vertical-align: bottom; }
+table.name td:first-child { min-width: 13ch; }
 table.names td:first-child { min-width: 24ch; }  /* long names: few lines, and the table scrolls */
 td.n, th.n { text-align: right; }
-td.n { white-space: nowrap; }
+td.n, td.s { white-space: nowrap; }
 tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }
 td.why { white-space: normal; color: var(--soft); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 0.6rem; margin: 1rem 0; padding: 0; }
@@ -52,20 +59,38 @@ figcaption { padding: 0.4rem 0.7rem 0.5rem; }
 nav ul { columns: 16rem; padding-left: 1.2rem; }
 .note { border-left: 4px solid var(--accent); background: var(--tint); padding: 0.5rem 0.9rem; margin: 0.8rem 0; }
 .good { color: var(--good); } .bad { color: var(--bad); }
+/* Plots are drawn on white paper; their hues stay, photographs and videos are as they are. */
+@media screen and (prefers-color-scheme: dark) {
+  figure img[src^="data:image/svg"] { filter: invert(0.9) hue-rotate(180deg); }
+}
 @media (max-width: 600px) { th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } main { padding: 0.8rem 0.8rem 2rem; } }
 @media print {
   :root { color-scheme: light; --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --tint: #f4f4f4;
-          --accent: #000000; --good: #000000; --bad: #000000; }
+          --veil: #f4f4f4; --accent: #000000; --good: #000000; --bad: #000000; }
   body { font-size: 10.5pt; }
   table { font-size: 8pt; }
   th, td { padding: 0.2rem 0.4rem; }
   figure, tr, .tile { break-inside: avoid; }
   h2, h3 { break-after: avoid; }
-  video, nav { display: none; }
-  .scroll { overflow: visible; }
+  figure:has(video), nav { display: none; }
+  .scroll { overflow: visible; background: none; }
   .figures, .figures.large { grid-template-columns: repeat(2, 1fr); }
 }
 )css";
+
+constexpr std::size_t kShort = 13;  // characters that stay on one line
+constexpr std::size_t kLong = 24;
+
+/// How many characters of HTML are seen: no tags, an entity is one, UTF-8's further bytes none.
+std::size_t seen_length(std::string_view html) {
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < html.size(); ++i) {
+    const char end = html[i] == '<' ? '>' : html[i] == '&' ? ';' : '\0';
+    if (end != '>' && (static_cast<unsigned char>(html[i]) & 0xC0u) != 0x80u) ++length;
+    if (end != '\0') i = std::min(html.find(end, i), html.size() - 1);
+  }
+  return length;
+}
 
 }  // namespace
 
@@ -120,10 +145,12 @@ HtmlTable::HtmlTable(std::vector<std::string> header, std::size_t first_number)
 
 void HtmlTable::row(const std::vector<std::string>& cells) {
   assert(cells.size() == header_.size());
-  longest_name_ = std::max(longest_name_, cells.front().size());
+  longest_name_ = std::max(longest_name_, seen_length(cells.front()));
   rows_ += "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    rows_ += fmt::format("<td{}>{}</td>", i >= first_number_ ? " class=\"n\"" : "", cells[i]);
+    const bool kept = cells[i].find_first_of(" -") != std::string::npos && seen_length(cells[i]) <= kShort;
+    const char* kind = i >= first_number_ ? " class=\"n\"" : kept ? " class=\"s\"" : "";
+    rows_ += fmt::format("<td{}>{}</td>", kind, cells[i]);
   }
   rows_ += "</tr>\n";
 }
@@ -133,9 +160,8 @@ void HtmlTable::heading(const std::string& cell) {
 }
 
 std::string HtmlTable::str() const {
-  constexpr std::size_t kLong = 24;  // bytes
-  std::string text =
-      fmt::format("<div class=\"scroll\"><table{}><thead><tr>", longest_name_ > kLong ? " class=\"names\"" : "");
+  const char* kind = longest_name_ > kLong ? " class=\"names\"" : longest_name_ > kShort ? " class=\"name\"" : "";
+  std::string text = fmt::format("<div class=\"scroll\"><table{}><thead><tr>", kind);
   for (std::size_t i = 0; i < header_.size(); ++i) {
     text += fmt::format("<th{}>{}</th>", i >= first_number_ ? " class=\"n\"" : "", header_[i]);
   }

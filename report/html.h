@@ -23,7 +23,8 @@ std::string base64(std::string_view bytes);
 /// "data:image/svg+xml;base64,…"
 std::string data_uri(std::string_view media_type, std::string_view bytes);
 
-/// A table whose cells are HTML (escape texts first). Columns from `first_number` on are aligned as numbers.
+/// A table whose cells are HTML (escape texts first). Columns from `first_number` on are aligned as numbers. Cells of
+/// up to 13 characters stay on one line; where the first column has longer names it is wide enough for them.
 class HtmlTable {
  public:
   explicit HtmlTable(std::vector<std::string> header, std::size_t first_number = 1);
@@ -36,7 +37,7 @@ class HtmlTable {
 
  private:
   std::size_t first_number_;
-  std::size_t longest_name_ = 0;  ///< of the first column, in bytes
+  std::size_t longest_name_ = 0;  ///< of the first column, in characters that are seen
   std::vector<std::string> header_;
   std::string rows_;
 };

@@ -12,12 +12,15 @@ TEST_CASE("text cannot become markup") {
         "&lt;script&gt;alert(&#39;x&#39;) &amp; &quot;y&quot;&lt;/script&gt;");
 }
 
-TEST_CASE("a table of long names gives them a wide column, one of short names does not") {
+TEST_CASE("a table of long names gives them a wide column, one of short names or of links does not") {
   report::HtmlTable cameras({"camera", "price (EUR)"}), clips({"clip", "frames"});
   cameras.row({"Raspberry Pi camera v1 (OV5647), 640x480 at 90 fps", "8"});
   clips.row({"view-00.png", "264"});
   CHECK(cameras.str().find("<table class=\"names\">") != std::string::npos);
   CHECK(clips.str().find("<table>") != std::string::npos);
+  report::HtmlTable links({"clip", "frames"});
+  links.row({"<a href=\"#a-very-long-place\">m1 &amp; µ</a>", "264"});
+  CHECK(links.str().find("<table>") != std::string::npos);  // what is not seen takes no room
 }
 
 TEST_CASE("base64 gives RFC 4648's test vectors") {
