@@ -3,14 +3,17 @@
 namespace glidelab::report {
 
 const std::string_view kExplorerMotion = R"js(
-// An orbit is [tau, u, way, slope] four arrays. Between two points u and way are cubics with the slopes that are known.
-function hermite(y0, y1, d0, d1, h, s) {
-  const a = s * s * (3 - 2 * s), b = s * (1 - s) * (1 - s), c = s * s * (s - 1);
-  return y0 * (1 - a) + y1 * a + h * (d0 * b + d1 * c);
+// An orbit is [tau, u, way, slope, bend], five arrays. Between two points u is the polynomial of fifth order in s (0 to 1)
+// with the values, slopes and bends that are known at both; a way is its integral.
+function polynomial(orbit, i) {  // h, and u = c[0] + c[1] s + ... + c[5] s^5
+  const [t, u, , slope, bend] = orbit, h = t[i + 1] - t[i];
+  const d = u[i + 1] - u[i], p = h * slope[i], q = h * slope[i + 1], b = h * h * bend[i] / 2, e = h * h * bend[i + 1] / 2;
+  return { h, c: [u[i], p, b, 10 * d - 6 * p - 4 * q - 3 * b + e, -15 * d + 8 * p + 7 * q + 3 * b - 2 * e,
+                  6 * d - 3 * p - 3 * q - b + e] };
 }
-function hermiteSlope(y0, y1, d0, d1, h, s) {
-  return 6 * s * (1 - s) * (y1 - y0) / h + d0 * (1 - s) * (1 - 3 * s) + d1 * s * (3 * s - 2);
-}
+const valueOf = ({ c }, s) => c.reduceRight((sum, k) => k + s * sum, 0);
+const slopeOf = ({ h, c }, s) => c.reduceRight((sum, k, i) => i ? i * k + s * sum : sum, 0) / h;
+const integralOf = ({ h, c }, s) => h * s * c.reduceRight((sum, k, i) => k / (i + 1) + s * sum, 0);
 function piece(column, value) {  // the last i with column[i] not beyond value, in the column's own direction
   const up = column[column.length - 1] >= column[0];
   let low = 0, high = column.length - 2;
@@ -20,43 +23,46 @@ function piece(column, value) {  // the last i with column[i] not beyond value, 
   }
   return low;
 }
-function at(orbit, tau) {  // {u, way, slope}
-  const [t, u, way, slope] = orbit, last = t.length - 1;
-  if (tau >= t[last]) return { u: u[last], way: way[last] + u[last] * (tau - t[last]), slope: slope[last] };
-  const i = piece(t, tau), h = t[i + 1] - t[i], s = (tau - t[i]) / h;
-  return { u: hermite(u[i], u[i + 1], slope[i], slope[i + 1], h, s),
-           way: hermite(way[i], way[i + 1], u[i], u[i + 1], h, s),
-           slope: hermiteSlope(u[i], u[i + 1], slope[i], slope[i + 1], h, s) };
+function at(orbit, tau) {  // {u, slope, and where in the orbit that is: the point before it, and the way from there}
+  const [t, u, , slope] = orbit, last = t.length - 1;
+  if (tau >= t[last]) return { u: u[last], slope: slope[last], i: last, way: u[last] * (tau - t[last]) };
+  const i = piece(t, tau), p = polynomial(orbit, i), s = (tau - t[i]) / p.h;
+  return { u: valueOf(p, s), slope: slopeOf(p, s), i, way: integralOf(p, s) };
+}
+// The way between two places. Within one piece it is not taken from the way of the whole orbit, in which it would drown.
+function wayBetween(orbit, from, to) {
+  return (from.i === to.i ? 0 : orbit[2][to.i] - orbit[2][from.i]) + (to.way - from.way);
 }
 function tauOf(orbit, value) {  // where u is this value
-  const [t, u, , slope] = orbit, last = t.length - 1, up = u[last] >= u[0];
+  const [t, u] = orbit, last = t.length - 1, up = u[last] >= u[0];
   if (up ? value <= u[0] : value >= u[0]) return t[0];
   if (up ? value >= u[last] : value <= u[last]) return t[last];
-  const i = piece(u, value), h = t[i + 1] - t[i];
+  const i = piece(u, value), p = polynomial(orbit, i);
   let low = 0, high = 1;
-  for (let k = 0; k < 50; k++) {
-    const s = (low + high) / 2, y = hermite(u[i], u[i + 1], slope[i], slope[i + 1], h, s);
-    if ((y < value) === up) low = s; else high = s;
+  for (let k = 0; k < 60; k++) {
+    const s = (low + high) / 2;
+    if ((valueOf(p, s) < value) === up) low = s; else high = s;
   }
-  return t[i] + h * (low + high) / 2;
+  return t[i] + p.h * (low + high) / 2;
 }
 
 // One side of v = 0: the speed w from w0 on, with the drive B against the drag k w^n.
 function side(law, k, B, w0) {
   const n = k > 0 ? law.n : 0, orbits = k > 0 ? law : DATA.laws[DATA.laws.length - 1];
   let W, T, orbit;
-  if (B === 0 || (n > 0 && w0 > DATA.fastest * Math.pow(Math.abs(B) / k, 1 / n))) {
+  if (B === 0) {
     W = w0 || 1; T = n > 0 ? Math.pow(W, 1 - n) / k : 1; orbit = orbits.free;
   } else {
     W = n > 0 ? Math.pow(Math.abs(B) / k, 1 / n) : 1; T = W / Math.abs(B);
     orbit = B < 0 ? orbits.braking : n > 0 && w0 > W ? orbits.falling : orbits.rising;
   }
+  if (w0 / W > Math.max(1, orbit[1][0], orbit[1][orbit[1].length - 1])) throw new RangeError('faster than the orbits were solved for');
   const start = tauOf(orbit, w0 / W), from = at(orbit, start);
   const stop = orbit === orbits.braking ? (orbit[0][orbit[0].length - 1] - start) * T : Infinity;
   return { stop, limit: B > 0 && n > 0 ? W : null,
            at(t) {
              const p = at(orbit, start + t / T);
-             return { w: W * p.u, way: W * T * (p.way - from.way), a: W / T * p.slope };
+             return { w: W * p.u, way: W * T * wayBetween(orbit, from, p), a: W / T * p.slope };
            } };
 }
 

@@ -196,7 +196,7 @@ for (const button of document.querySelectorAll('[data-case]')) button.onclick = 
 window.addEventListener('resize', draw);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
 const off = measured();
-$('measured').textContent = `Every curve comes from the program's own solver: four orbits a law, scaled, and interpolated by cubics between kept points. At ${off.points} instants of ${off.motions} motions that the solver made as they are, this page is off by at most ${(off.x * 1e3).toPrecision(2)} mm, ${(off.v * 1e3).toPrecision(2)} mm/s and ${(off.a * 1e3).toPrecision(2)} mm/s².`;
+$('measured').textContent = `Every curve comes from the program's own solver: four orbits a law, scaled, and interpolated by polynomials of fifth order between kept points. At ${off.points} instants of ${off.motions} motions that the solver made as they are, every corner of the sliders among them, the largest found that this page is off is ${(off.x * 1e3).toPrecision(2)} mm, ${(off.v * 1e3).toPrecision(2)} mm/s and ${(off.a * 1e3).toPrecision(2)} mm/s².`;
 document.documentElement.dataset.offX = off.x; document.documentElement.dataset.offV = off.v; document.documentElement.dataset.offA = off.a;
 change();
 )js";

@@ -1,5 +1,6 @@
 #include "validate/phase_explorer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "catch.h"
@@ -17,6 +18,8 @@ TEST_CASE("the explorer's orbits are those of u' = 1 - u^n, -1 - u^n and -u^n") 
         const double drag = law.exponent == 0.0 ? 0.0 : std::pow(point.u, law.exponent);
         // Where it comes to rest, u is 0 by the solver's event to 1e-9; elsewhere the slope is the law of this u.
         CHECK(std::abs(point.slope - (drive - drag)) <= 1e-12 * (1.0 + drag));
+        const double bend = law.exponent == 0.0 ? 0.0 : -law.exponent * std::pow(point.u, law.exponent - 1.0);
+        CHECK(std::abs(point.bend - bend * point.slope) <= 1e-12 * (1.0 + std::abs(bend * point.slope)));
       }
     };
     follows(law.rising, 1.0);
@@ -38,4 +41,20 @@ TEST_CASE("the explorer's viscous orbits are exponentials, the quadratic ones hy
   // From u0 to rest: ln(1 + u0) with a linear drag, atan(u0) with a quadratic one.
   CHECK(std::abs(explorer.laws[0].braking.back().tau - std::log1p(validate::kFastest)) < 1e-9);
   CHECK(std::abs(explorer.laws[2].braking.back().tau - std::atan(validate::kFastest)) < 1e-9);
+}
+
+TEST_CASE("the explorer's ways to rest keep their digits where the orbit began a million times farther off") {
+  const validate::PhaseExplorer explorer = validate::explore_phases();
+  // From u to rest: u - ln(1 + u) with a linear drag, ln(1 + u²) / 2 with a quadratic one. A page scales them by 2e4 m
+  // where k is small, and u is then a hundredth: 1e-10 of the way is 1e-10 m. The instant of rest is known to 1e-13
+  // or so of an orbit's unit of time, and at u the way to it to as much of u.
+  const auto agrees = [](double found, double expected, double u) {
+    CHECK(std::abs(found - expected) <= 1e-10 * std::abs(expected) + 1e-12 * std::min(u, 1.0));
+  };
+  for (const validate::OrbitPoint& point : explorer.laws[0].braking) {
+    agrees(point.way, -(point.u - std::log1p(point.u)), point.u);
+  }
+  for (const validate::OrbitPoint& point : explorer.laws[2].braking) {
+    agrees(point.way, -0.5 * std::log1p(point.u * point.u), point.u);
+  }
 }
