@@ -257,6 +257,25 @@ std::vector<std::string> TomlTable::texts_or_none(std::string_view key) const {
   return {};
 }
 
+std::vector<std::pair<std::string, TomlScalar>> TomlTable::scalars() const {
+  std::vector<std::pair<std::string, TomlScalar>> all;
+  for (const std::string& key : keys()) {
+    const toml::node* found = node_->find(key);
+    if (found->is_table()) {
+      for (auto& [inner, value] : table(key).scalars()) all.emplace_back(key + "." + inner, std::move(value));
+    } else if (const auto* text = found->as_string()) {
+      all.emplace_back(key, text->get());
+    } else if (const auto* flag = found->as_boolean()) {
+      all.emplace_back(key, flag->get());
+    } else if (const std::optional<double> number = as_number(*found); number && std::isfinite(*number)) {
+      all.emplace_back(key, *number);
+    } else {
+      node_->reject(key, found, "a finite number, a text, true or false");
+    }
+  }
+  return all;
+}
+
 std::optional<TomlTable> TomlTable::maybe_table(std::string_view key) const {
   const toml::node* found = node_->find(key);
   if (found == nullptr) return std::nullopt;

@@ -15,7 +15,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "base/toml_set.h"
 
 namespace glidelab::base {
 
@@ -64,6 +67,9 @@ class TomlTable {
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range = {}) const;
   std::optional<std::vector<double>> maybe_numbers(std::string_view key, std::size_t count, Range range = {}) const;
   std::vector<std::string> texts_or_none(std::string_view key) const;
+  /// All numbers, switches and texts of this table and those within it, by their path from here ("shutter.kind",
+  /// written as one quoted key or as keys with a dot between). Anything else, an array or a date, is recorded as wrong.
+  std::vector<std::pair<std::string, TomlScalar>> scalars() const;
 
   TomlTable table(std::string_view key) const;  ///< required
   std::optional<TomlTable> maybe_table(std::string_view key) const;

@@ -85,7 +85,11 @@ class Setter {
   }
 
   void put(toml::table& table, const std::string& key) const {
-    std::visit([&](const auto& value) { insert(table, key, value); }, assignment_.value);
+    if (assignment_.value) {
+      std::visit([&](const auto& value) { insert(table, key, value); }, *assignment_.value);
+    } else {
+      table.erase(key);
+    }
   }
   static void insert(toml::table& table, const std::string& key, double value) {
     if (is_whole(value)) {
@@ -99,8 +103,9 @@ class Setter {
     table.insert_or_assign(key, value);
   }
   void put(toml::array& array, std::size_t index) const {
+    if (!assignment_.value) fail("an element of an array", "a key: an array keeps its elements");
     const auto replace = [&](const auto& value) { array.replace(array.begin() + static_cast<long>(index), value); };
-    std::visit(replace, assignment_.value);
+    std::visit(replace, *assignment_.value);
   }
 
   static bool is_whole(double value) {
@@ -139,6 +144,7 @@ class Setter {
         return 1;
       }
       toml::node* inner = table.get(step.key);
+      if (inner == nullptr && !assignment_.value) return 1;  // what is to be taken out is not there
       if (inner == nullptr) inner = &table.insert(step.key, toml::table{}).first->second;
       if (inner->is_array()) {
         fail(fmt::format("\"{}\", of which there are {}", step.key, inner->as_array()->size()),

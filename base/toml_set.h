@@ -9,6 +9,7 @@
 /// (strict_toml.h), not here.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -20,7 +21,7 @@ using TomlScalar = std::variant<double, bool, std::string>;
 
 struct TomlAssignment {
   std::string path;
-  TomlScalar value;
+  std::optional<TomlScalar> value;  ///< nothing: the key is taken out, wherever it stands
 };
 
 /// "0.001", "true", "\"global\"": a whole number has no decimal point, so that it serves for integers as well.

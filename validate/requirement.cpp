@@ -29,7 +29,9 @@ std::string name_of(const Sweep& sweep, const std::vector<base::TomlScalar>& val
   std::string name = scenario.camera_name;
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
     if (sweep.axes[i].keys == std::vector<std::string>{"camera_file"}) continue;
-    name += fmt::format("{}{} = {}", name.empty() ? "" : ", ", sweep.axes[i].name, base::toml_text(values[i]));
+    if (!name.empty()) name += ", ";
+    name += sweep.axes[i].choices.empty() ? fmt::format("{} = {}", sweep.axes[i].name, base::toml_text(values[i]))
+                                          : std::get<std::string>(values[i]);
   }
   return name;
 }

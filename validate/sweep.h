@@ -38,13 +38,24 @@ struct AxisSource {
   double from = 0.0, to = 0.0;
   std::size_t count = 0;
   double mean = 0.0, sd = 0.0;
+  bool whole = false;  ///< of ranges and uniform draws: their whole numbers only
   bool drawn() const { return kind >= Kind::uniform; }
+};
+
+/// Keys that belong together, as a shutter and its line time. Of the keys that an axis' choices name, those that the
+/// chosen one does not name are not in the scenario.
+struct Choice {
+  std::string label;  ///< its value in the database
+  std::vector<base::TomlAssignment> keys;
+  int line = 0;  ///< of the sweep's file
 };
 
 struct Axis {
   std::string name;               ///< its column in the database
   std::vector<std::string> keys;  ///< dotted paths in the scenario, all with one value; or "tracks.noise_m"
   AxisSource source;
+  std::vector<Choice> choices = {};  ///< then `keys` has those of all of them, and `source` lists the labels
+  int line = 0;                      ///< of the sweep's file, where the keys stand
 };
 
 /// One way to analyse a run's clips.
@@ -78,7 +89,8 @@ struct Sweep {
 };
 
 /// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,
-/// a value that the scenario refuses (each value of each axis is tried, the others at their first ones).
+/// a value that the scenario refuses (each value of each axis is tried, the others at their first ones), with the line
+/// of the sweep's file that the key stands on.
 Sweep read_sweep(const std::filesystem::path& path);
 
 }  // namespace glidelab::validate

@@ -167,7 +167,7 @@ SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std
     database_.run(run_table(sweep));
     SqlStatement column = database_.prepare("INSERT INTO \"schema\" VALUES ('run', ?1, ?2, ?3)");
     for (const Axis& axis : sweep.axes) {
-      column.bind(1, axis.name).bind(2, unit_of_key(axis.keys.front()));
+      column.bind(1, axis.name).bind(2, axis.choices.empty() ? unit_of_key(axis.keys.front()) : "");
       column.bind(3, fmt::format("varied: {}", fmt::join(axis.keys, ", "))).run();
     }
     SqlStatement entry = database_.prepare("INSERT INTO sweep VALUES (?1, ?2)");

@@ -82,8 +82,10 @@ std::vector<base::TomlScalar> all_values(const AxisSource& source) {
       values.push_back(source.to);  // to the last bit
     } else {
       const double part = source.count == 1 ? 0.0 : static_cast<double>(i) / static_cast<double>(source.count - 1);
-      values.push_back(source.kind == AxisSource::Kind::linear ? source.from + (source.to - source.from) * part
-                                                               : source.from * std::pow(source.to / source.from, part));
+      const double value = source.kind == AxisSource::Kind::linear
+                               ? source.from + (source.to - source.from) * part
+                               : source.from * std::pow(source.to / source.from, part);
+      values.push_back(source.whole ? std::round(value) : value);
     }
   }
   return values;
@@ -96,10 +98,13 @@ base::TomlScalar value_at(const AxisSource& source, double u) {
       return source.values.at(static_cast<std::size_t>(u * static_cast<double>(source.values.size())));
     case Kind::linear:
     case Kind::uniform:
-      return source.from + (source.to - source.from) * u;
+      return source.whole ? source.from + std::floor((source.to - source.from + 1.0) * u)
+                          : source.from + (source.to - source.from) * u;
     case Kind::logarithmic:
-    case Kind::log_uniform:
-      return source.from * std::pow(source.to / source.from, u);
+    case Kind::log_uniform: {
+      const double value = source.from * std::pow(source.to / source.from, u);
+      return source.whole ? std::round(value) : value;
+    }
     case Kind::normal:
       return source.mean + source.sd * normal_quantile(std::max(u, 0x1p-54));
     case Kind::log_normal:

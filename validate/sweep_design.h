@@ -23,7 +23,8 @@ std::vector<base::TomlScalar> values_of(const Sweep& sweep, std::uint64_t run);
 /// Of the noise of a run: a function of the sweep's seed and the run's number.
 std::uint64_t seed_of(const Sweep& sweep, std::uint64_t run);
 
-/// The value at a quantile u of [0, 1): of a drawn axis by its distribution, else as the hypercube places it.
+/// The value at a quantile u of [0, 1): of a drawn axis by its distribution, else as the hypercube places it. Of whole
+/// numbers each has the same part of [0, 1) with equal steps or a uniform draw; with equal ratios the nearest is taken.
 base::TomlScalar value_at(const AxisSource& source, double u);
 
 /// All values of an axis of a factorial design.

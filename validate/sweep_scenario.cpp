@@ -41,6 +41,30 @@ render::Scenario read(const Sweep& sweep, const std::string& text, const std::st
   }
 }
 
+/// What an axis puts in; of a choice, without the keys that only other choices have.
+std::vector<base::TomlAssignment> assignments_of(const Axis& axis, const base::TomlScalar& value) {
+  std::vector<base::TomlAssignment> assignments;
+  const auto chosen = std::find_if(axis.choices.begin(), axis.choices.end(),
+                                   [&](const Choice& choice) { return choice.label == std::get<std::string>(value); });
+  for (const std::string& key : axis.keys) {
+    base::TomlAssignment assignment{key, value};
+    if (chosen != axis.choices.end()) {
+      const auto own = std::find_if(chosen->keys.begin(), chosen->keys.end(),
+                                    [&](const base::TomlAssignment& of) { return of.path == key; });
+      assignment.value = own == chosen->keys.end() ? std::nullopt : own->value;
+    }
+    assignments.push_back(std::move(assignment));
+  }
+  return assignments;
+}
+
+double noise_of(const Sweep& sweep, const Axis& axis, const base::TomlScalar& value) {
+  const double* const noise_m = std::get_if<double>(&value);
+  if (noise_m != nullptr && *noise_m >= 0.0) return *noise_m;
+  throw base::InputError(
+      base::Issue{sweep.file.string(), axis.line, kNoiseKey, base::toml_text(value), base::at_least(0.0).describe()});
+}
+
 }  // namespace
 
 RunScenario scenario_with(const Sweep& sweep, const std::vector<base::TomlScalar>& values) {
@@ -51,17 +75,13 @@ RunScenario scenario_with(const Sweep& sweep, const std::vector<base::TomlScalar
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
     const Axis& axis = sweep.axes[i];
     shown_as += fmt::format("{} {} = {}", i == 0 ? " with" : ",", axis.name, base::toml_text(values[i]));
-    for (const std::string& key : axis.keys) {
-      if (key == kNoiseKey) {
-        run.noise_m = std::holds_alternative<double>(values[i]) ? std::get<double>(values[i]) : -1.0;
-        if (!(run.noise_m >= 0.0)) {
-          throw base::InputError(
-              base::Issue{sweep.file.string(), 0, key, base::toml_text(values[i]), base::at_least(0.0).describe()});
-        }
+    for (base::TomlAssignment& assignment : assignments_of(axis, values[i])) {
+      if (assignment.path == kNoiseKey) {
+        if (assignment.value) run.noise_m = noise_of(sweep, axis, *assignment.value);
         continue;
       }
-      if (key == "camera_file") check_camera_is_free(sweep);
-      assignments.push_back({key, values[i]});
+      if (assignment.path == "camera_file") check_camera_is_free(sweep);
+      assignments.push_back(std::move(assignment));
     }
   }
   run.text = base::with_values(sweep.scenario_text, shown_as, assignments);

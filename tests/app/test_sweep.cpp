@@ -78,6 +78,7 @@ TEST_CASE("A sweep that is killed at random instants and continued ends as one t
     if (now > before && now < 360) ++in_the_middle;
     before = now;
   }
+  CHECK(kills == 50);  // else the sweep was at its end before: too few runs for this machine
   CHECK(in_the_middle >= 3);
   const tests::ProcessResult rest = tests::glidelab({"sweep", sweep, "-q", "-o", dir / "killed"});
   CHECK(rest.status == 0);

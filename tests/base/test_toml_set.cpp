@@ -86,3 +86,19 @@ TEST_CASE("A path that leads nowhere is an error that names it") {
   CHECK_THAT(message("camera.rate[1]"), Contains("no array"));
   CHECK_THAT(message("camera.\"a'b"), Contains("a path as"));
 }
+
+TEST_CASE("A key without a value is taken out wherever it stands, and is no mistake where it does not") {
+  const std::string text = with_values(kText, "t.toml",
+                                       {{"camera.rate", std::nullopt},
+                                        {"group[*].force[law=viscous].k", std::nullopt},
+                                        {"camera.shutter", std::nullopt},
+                                        {"light.on", std::nullopt}});
+  const base::TomlFile file = base::TomlFile::parse(text, "t.toml");
+  const base::TomlTable root = file.root();
+  CHECK_FALSE(root.table("camera").has("rate"));
+  CHECK(root.table("camera").has("place"));
+  CHECK_FALSE(root.has("light"));
+  for (const base::TomlTable& group : root.tables("group")) CHECK_FALSE(group.tables("force")[0].has("k"));
+  CHECK(root.tables("group")[0].tables("force")[1].has("mu"));
+  CHECK_THROWS_AS(with_values(kText, "t.toml", {{"camera.place[2]", std::nullopt}}), base::InputError);
+}

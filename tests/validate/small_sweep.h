@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <string>
 
+#include "base/errors.h"
 #include "base/staged_output.h"
 #include "one_glider.h"
+#include "temp_dir.h"
+#include "validate/sweep.h"
 
 namespace glidelab::tests {
 
@@ -27,6 +30,19 @@ inline std::filesystem::path write_sweep(const std::filesystem::path& folder, co
                    "format = 1\nname = \"small\"\nscenario = \"scenario.toml\"\n" + head + "\n" + more);
   return folder / "sweep.toml";
 }
+
+/// What is said of a wrong sweep; "no error" where nothing is.
+inline std::string refusal_of_sweep(const std::string& head, const std::string& more) {
+  const TempDir dir;
+  try {
+    validate::read_sweep(write_sweep(dir.path(), head, more));
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+inline const std::string kNoise = "[tracks]\nnoise_m = 1e-5\n";
 
 inline constexpr const char* kTwoKeys = R"(
 [tracks]

@@ -35,17 +35,7 @@ std::string contents(const std::filesystem::path& file) {
   return text;
 }
 
-std::string message(const std::string& head, const std::string& more) {
-  const tests::TempDir dir;
-  try {
-    validate::read_sweep(tests::write_sweep(dir.path(), head, more));
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-const std::string kNoise = "[tracks]\nnoise_m = 1e-5\n";
+using tests::kNoise;
 
 }  // namespace
 
@@ -156,26 +146,27 @@ values = [0.001, 0.015]
 }
 
 TEST_CASE("What is wrong with a sweep is said before the first run, by its key") {
-  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"camera.frame_rate\"\nvalues = [30]\n"),
-             Contains("camera.frame_rate") && Contains("did you mean \"frame_rate_hz\""));
-  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [30, -1]\n"),
-             Contains("camera.frame_rate_hz = -1"));
-  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\nrange = { from = 2, to = 2, count = 3 }\n"),
+  CHECK_THAT(tests::refusal_of_sweep("", kNoise + "[[vary]]\nkey = \"camera.frame_rate\"\nvalues = [30]\n"),
+             Contains("sweep.toml:8: camera.frame_rate: ") && Contains("did you mean \"frame_rate_hz\""));
+  CHECK_THAT(tests::refusal_of_sweep("", kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [30, -1]\n"),
+             Contains("sweep.toml:8: camera.frame_rate_hz: found -1") && Contains("camera.frame_rate_hz = -1"));
+  CHECK_THAT(tests::refusal_of_sweep("", kNoise + "[[vary]]\nkey = \"x\"\nrange = { from = 2, to = 2, count = 3 }\n"),
              Contains("an empty range"));
-  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\nvalues = []\n"), Contains("an empty list"));
-  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\n"), Contains("exactly one of values"));
-  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"x\"\nlog_range = { from = 0, to = 2, count = 3 }\n"),
-             Contains("log_range.from"));
-  CHECK_THAT(message("", ""), Contains("tracks"));
-  CHECK_THAT(message("estimators = [\"magic\"]", kNoise), Contains("magic"));
-  CHECK_THAT(message("samples = 3", kNoise), Contains("samples"));
-  CHECK_THAT(message("level = \"clips\"", kNoise), Contains("tracks"));
-  CHECK_THAT(message("level = \"clips\"", "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n"),
+  CHECK_THAT(tests::refusal_of_sweep("", kNoise + "[[vary]]\nkey = \"x\"\nvalues = []\n"), Contains("an empty list"));
+  CHECK_THAT(tests::refusal_of_sweep("", kNoise + "[[vary]]\nkey = \"x\"\n"), Contains("exactly one of values"));
+  CHECK_THAT(
+      tests::refusal_of_sweep("", kNoise + "[[vary]]\nkey = \"x\"\nlog_range = { from = 0, to = 2, count = 3 }\n"),
+      Contains("log_range.from"));
+  CHECK_THAT(tests::refusal_of_sweep("", ""), Contains("tracks"));
+  CHECK_THAT(tests::refusal_of_sweep("estimators = [\"magic\"]", kNoise), Contains("magic"));
+  CHECK_THAT(tests::refusal_of_sweep("samples = 3", kNoise), Contains("samples"));
+  CHECK_THAT(tests::refusal_of_sweep("level = \"clips\"", kNoise), Contains("tracks"));
+  CHECK_THAT(tests::refusal_of_sweep("level = \"clips\"", "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n"),
              Contains("tracks.noise_m"));
-  CHECK_THAT(message("", kNoise + "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"
-                                  "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"),
+  CHECK_THAT(tests::refusal_of_sweep("", kNoise + "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"
+                                                  "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"),
              Contains("twice"));
-  CHECK_THAT(message("colour = 3", kNoise), Contains("colour"));
+  CHECK_THAT(tests::refusal_of_sweep("colour = 3", kNoise), Contains("colour"));
 }
 
 TEST_CASE("Every column of every table has a row in the schema") {

@@ -1,6 +1,7 @@
 #include "validate/sweep_design.h"
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/errors.h"
@@ -84,6 +85,18 @@ TEST_CASE("The first 64 points of a shifted Sobol sequence are a net: one in eac
     }
     CHECK(boxes.size() == 64);
   }
+}
+
+TEST_CASE("Whole numbers of a range with equal steps come equally often, the ends too") {
+  validate::Sweep sweep;
+  sweep.design = validate::Design::latin_hypercube;
+  sweep.samples = 400;
+  AxisSource source = range(Kind::linear, 3.0, 6.0);
+  source.whole = true;
+  sweep.axes = {axis(source, "n")};
+  std::map<double, int> times;
+  for (std::uint64_t point = 0; point < 400; ++point) ++times[number(validate::values_of(sweep, point)[0])];
+  CHECK(times == std::map<double, int>{{3.0, 100}, {4.0, 100}, {5.0, 100}, {6.0, 100}});  // 100 strata each
 }
 
 TEST_CASE("Draws have the moments of their distribution and differ between runs of one point") {
