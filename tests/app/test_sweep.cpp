@@ -52,7 +52,7 @@ std::int64_t runs_in(const fs::path& file) {
 TEST_CASE("A sweep that is killed at random instants and continued ends as one that was not", "[slow]") {
   const tests::TempDir dir;
   const std::string sweep =
-      tests::write_sweep(dir.path(), "replicates = 60\nestimators = [\"phase-diagram\"]", tests::kTwoKeys);
+      tests::write_sweep(dir.path(), "replicates = 600\nestimators = [\"phase-diagram\"]", tests::kTwoKeys);
   const tests::ProcessResult whole = tests::glidelab({"sweep", sweep, "-q", "-o", dir / "whole"});
   REQUIRE(whole.status == 0);
   std::mt19937 random(3);
@@ -75,14 +75,14 @@ TEST_CASE("A sweep that is killed at random instants and continued ends as one t
     ++kills;
     const std::int64_t now = runs_in(database);
     CHECK(now >= before);  // nothing that was finished is lost
-    if (now > before && now < 360) ++in_the_middle;
+    if (now > before && now < 3600) ++in_the_middle;
     before = now;
   }
   CHECK(kills == 50);  // else the sweep was at its end before: too few runs for this machine
   CHECK(in_the_middle >= 3);
   const tests::ProcessResult rest = tests::glidelab({"sweep", sweep, "-q", "-o", dir / "killed"});
   CHECK(rest.status == 0);
-  CHECK(runs_in(database) == 360);
+  CHECK(runs_in(database) == 3600);
   CHECK(contents(database) == contents(dir / "whole" / "sweep.sqlite"));
   CHECK(rest.out == whole.out);
 }
