@@ -81,8 +81,9 @@ function motion(p) {
   if (v === 0) parts.push(rests ? { t, x, s: 0 } : { t, x, s: Math.sign(A), side: side(law, p.k, Math.abs(A) - F, 0) });
   const stop = parts.length > 1 ? parts[1].t : p.v0 === 0 ? 0 : null;
   const limitSign = A < 0 ? -1 : 1;
-  const limit = Math.abs(A) > F ? side(law, p.k, Math.abs(A) - F, 0).limit : 0;
-  return { A, F, rests, stop, limit: limit === null ? null : limitSign * limit,
+  // Where a falls through 0: nowhere on the level without drag and friction, where every speed lasts.
+  const balance = !rests ? side(law, p.k, Math.abs(A) - F, 0).limit : F > 0 || (p.k > 0 && law.n > 0) ? 0 : null;
+  return { A, F, rests, stop, limit: balance === null ? null : limitSign * balance,
            at(time) {
              const part = parts.length > 1 && time >= parts[1].t ? parts[1] : parts[0];
              if (part.s === 0) return { x: part.x, v: 0, a: 0 };

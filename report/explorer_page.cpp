@@ -46,6 +46,7 @@ Page explorer_page(const validate::PhaseExplorer& explorer) {
   std::string body(kExplorerBody);
   body += "<script>\n'use strict';\n" + data_of(explorer);
   body += kExplorerMotion;
+  body += kExplorerWords;
   body += kExplorerView;
   return page("Friction in the phase plane", body + "</script>\n");
 }

@@ -2,74 +2,10 @@
 
 namespace glidelab::report {
 
-const std::string_view kExplorerBody = R"html(<style>
-:root { --first: #0072b2; --second: #d55e00; --third: #00795b; }
-@media (prefers-color-scheme: dark) { :root { --first: #6cb8ea; --second: #ff9a57; --third: #4fd0a8; } }
-#explorer { display: grid; grid-template-columns: minmax(260px, 320px) minmax(0, 1fr); gap: 1rem; align-items: start; }
-#controls label { display: block; margin: .55rem 0 0; }
-#controls .line { display: flex; justify-content: space-between; gap: .5rem; }
-#controls output { font-variant-numeric: tabular-nums; font-weight: 600; }
-#controls input[type=range] { width: 100%; margin: .1rem 0 0; accent-color: var(--accent); }
-#controls select, #controls button { font: inherit; padding: .2rem .6rem; color: inherit; background: var(--tint);
-  border: 1px solid var(--line); border-radius: 6px; }
-#controls select { width: 100%; }
-#controls button { cursor: pointer; margin: .25rem .25rem 0 0; }
-#controls :focus-visible { outline: 3px solid var(--accent); outline-offset: 2px; }
-#plots { display: grid; grid-template-columns: 1fr 1fr; gap: .8rem; }
-#plots figure { max-width: none; background: var(--paper); }
-#plots .wide { grid-column: 1 / -1; }
-#plots canvas { display: block; width: 100%; }
-#readout { font-variant-numeric: tabular-nums; min-height: 3em; }
-@media (max-width: 860px) { #explorer { grid-template-columns: minmax(0, 1fr); } }
-@media (max-width: 620px) { #plots { grid-template-columns: minmax(0, 1fr); } }
-@media print { #controls button, #controls input { display: none; } }
-</style>
-<h1>Friction in the phase plane</h1>
-<p>A glider on a track, x positive downhill: m dv/dt = m g sin α − drag(v) − sign(v) μ m g cos α. Choose the law, its strength, the
-slope and the push; the point runs along x(t), v(t) and a(v) together. On the keyboard: Tab to a slider, then the arrow keys.</p>
-<div id="explorer">
-<form id="controls" onsubmit="return false">
-<label>Drag<select id="law"><option value="0">viscous: K v</option><option value="1">C v |v|^½ (power 3/2)</option>
-<option value="2">quadratic: C v |v|</option><option value="3">none</option></select></label>
-<label><span class="line"><span id="dragname">K/m (1/s)</span><output id="o-k"></output></span>
-<input type="range" id="k" min="0" max="5" step="0.01" value="2.77"></label>
-<label><span class="line"><span>friction μ</span><output id="o-mu"></output></span>
-<input type="range" id="mu" min="0" max="0.03" step="0.0001" value="0.0071"></label>
-<label><span class="line"><span>inclination α (°)</span><output id="o-alpha"></output></span>
-<input type="range" id="alpha" min="-4" max="8" step="0.1" value="4.3"></label>
-<label><span class="line"><span>start v₀ (m/s)</span><output id="o-v0"></output></span>
-<input type="range" id="v0" min="-2" max="2" step="0.01" value="-1.2"></label>
-<label><span class="line"><span>time t (s)</span><output id="o-t"></output></span>
-<input type="range" id="t" min="0" max="5" step="0.01" value="1"></label>
-<p><button type="button" id="play">Play</button></p>
-<p class="soft">Cases of the paper:<br>
-<button type="button" data-case="0,2.88,0,0,1.2">level, viscous</button>
-<button type="button" data-case="0,2.77,0,4.3,0">slope, viscous</button>
-<button type="button" data-case="3,0,0.03,0,0.8">level, Coulomb</button>
-<button type="button" data-case="3,0,0.03,4,-1.4">slope, Coulomb</button>
-<button type="button" data-case="0,2.88,0.0075,0,-1.2">level, both</button>
-<button type="button" data-case="0,2.77,0.0071,4.3,-1.2">slope, both</button>
-<button type="button" data-case="0,1,0.03,1.5,-1.2">up, and it stays</button></p>
-</form>
-<div id="plots">
-<figure class="wide"><canvas id="track" data-height="110" role="img" aria-label="the glider on its track"></canvas></figure>
-<figure><canvas id="av" data-height="300" role="img" aria-label="acceleration over velocity"></canvas><figcaption>a(v): thin, all
-that the law allows; thick, this motion. Dot on the axis: equilibrium.</figcaption></figure>
-<figure><canvas id="vt" data-height="300" role="img" aria-label="velocity over time"></canvas><figcaption>v(t), dashed: the
-limit</figcaption></figure>
-<figure class="wide"><canvas id="xt" data-height="220" role="img" aria-label="position over time"></canvas><figcaption>x(t),
-downhill upwards</figcaption></figure>
-<p id="readout" class="note wide" aria-live="polite"></p>
-</div>
-</div>
-<p class="soft" id="measured"></p>
-)html";
-
 const std::string_view kExplorerView = R"js(
 const $ = id => document.getElementById(id), names = ['k', 'mu', 'alpha', 'v0', 't'], END = 5, POINTS = 500;
 const digits = { k: 2, mu: 4, alpha: 1, v0: 2, t: 2 };
 const units = ['K/m (1/s)', 'C/m (1/√(m·s))', 'C/m (1/m)', 'no drag'];
-const minus = text => text.replace('-', '\u2212'), show = (x, n) => minus(x.toFixed(n));
 let current, playing = 0;
 
 function read() {
@@ -77,38 +13,39 @@ function read() {
   for (const name of names) p[name] = +$(name).value;
   return p;
 }
-function ticks(low, high) {
-  const raw = (high - low) / 7, power = Math.pow(10, Math.floor(Math.log10(raw)));
+function ticks(low, high, most) {
+  const raw = (high - low) / Math.max(2, Math.min(8, most)), power = Math.pow(10, Math.floor(Math.log10(raw)));
   const step = [1, 2, 5, 10].find(m => m * power >= raw * 0.999) * power, list = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) list.push(i * step);
   return { list, decimals: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
 function sheet(id) {
-  const canvas = $(id), ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = +canvas.dataset.height;
-  canvas.style.height = height + 'px'; canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio);
+  const canvas = $(id), ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+  canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio);
   const c = canvas.getContext('2d'); c.scale(ratio, ratio);
   const css = getComputedStyle(document.documentElement), color = name => css.getPropertyValue('--' + name).trim();
-  c.font = '13px system-ui, "DejaVu Sans", sans-serif';
-  return { c, width, height, color };
+  const em = 0.85 * parseFloat(css.fontSize);
+  c.font = em + 'px system-ui, "DejaVu Sans", sans-serif';
+  return { c, width, height, color, em };
 }
 function frame(id, xs, ys, xname, yname) {
-  const s = sheet(id), { c } = s, left = 58, right = 14, top = 24, bottom = 40;
+  const s = sheet(id), { c, em } = s, left = 4.1 * em, right = em, top = 1.9 * em, bottom = 2.9 * em;
   const span = list => { let a = Math.min(...list), b = Math.max(...list); if (b - a < 1e-6) { a -= 0.5; b += 0.5; } const pad = 0.06 * (b - a); return [a - pad, b + pad]; };
   const X = span(xs), Y = span(ys);
   s.px = x => left + (s.width - left - right) * (x - X[0]) / (X[1] - X[0]);
   s.py = y => s.height - bottom - (s.height - top - bottom) * (y - Y[0]) / (Y[1] - Y[0]);
   c.lineWidth = 1; c.fillStyle = s.color('soft');
-  const tx = ticks(...X), ty = ticks(...Y);
+  const tx = ticks(...X, (s.width - left - right) / (4 * em)), ty = ticks(...Y, (s.height - top - bottom) / (1.9 * em));
   c.textAlign = 'center'; c.textBaseline = 'top';
-  for (const x of tx.list) { c.strokeStyle = s.color('line'); c.beginPath(); c.moveTo(s.px(x), top); c.lineTo(s.px(x), s.height - bottom); c.stroke(); c.fillText(show(x, tx.decimals), s.px(x), s.height - bottom + 5); }
+  for (const x of tx.list) { c.strokeStyle = s.color('line'); c.beginPath(); c.moveTo(s.px(x), top); c.lineTo(s.px(x), s.height - bottom); c.stroke(); c.fillText(show(x, tx.decimals), s.px(x), s.height - bottom + 0.3 * em); }
   c.textAlign = 'right'; c.textBaseline = 'middle';
-  for (const y of ty.list) { c.strokeStyle = s.color('line'); c.beginPath(); c.moveTo(left, s.py(y)); c.lineTo(s.width - right, s.py(y)); c.stroke(); c.fillText(show(y, ty.decimals), left - 6, s.py(y)); }
+  for (const y of ty.list) { c.strokeStyle = s.color('line'); c.beginPath(); c.moveTo(left, s.py(y)); c.lineTo(s.width - right, s.py(y)); c.stroke(); c.fillText(show(y, ty.decimals), left - 0.45 * em, s.py(y)); }
   c.strokeStyle = s.color('soft');
   if (X[0] < 0 && X[1] > 0) { c.beginPath(); c.moveTo(s.px(0), top); c.lineTo(s.px(0), s.height - bottom); c.stroke(); }
   if (Y[0] < 0 && Y[1] > 0) { c.beginPath(); c.moveTo(left, s.py(0)); c.lineTo(s.width - right, s.py(0)); c.stroke(); }
   c.fillStyle = s.color('ink'); c.textBaseline = 'alphabetic';
-  c.textAlign = 'right'; c.fillText(xname, s.width - right, s.height - 6);
-  c.textAlign = 'left'; c.fillText(yname, 6, 15);
+  c.textAlign = 'right'; c.fillText(xname, s.width - right, s.height - 0.4 * em);
+  c.textAlign = 'left'; c.fillText(yname, 0.4 * em, 1.2 * em);
   return s;
 }
 function curve(s, points, color, width, dash) {
@@ -158,19 +95,19 @@ function draw() {
   s = frame('xt', [0, END], points.map(q => q.x), 't (s)', 'x (m)');
   curve(s, at(q => q.t, q => q.x), s.color('first'), 3); dot(s, p.t, here.x, s.color('third'), 7);
   track(here, points, p);
-  const rest = m.stop === null ? '' : m.rests ? `It comes to rest at t = ${show(m.stop, 3)} s and stays: the slope pulls with ${show(Math.abs(m.A), 3)} m/s², friction holds up to ${show(m.F, 3)} m/s². ` : m.stop > 0 ? `It turns at t = ${show(m.stop, 3)} s, where a jumps by 2 μ g cos α = ${show(2 * m.F, 3)} m/s². ` : '';
-  const tends = m.limit === null ? 'Without a drag there is no limit: a is constant. ' : m.limit === 0 ? 'The equilibrium is rest. ' : `It tends to v = ${show(m.limit, 4)} m/s, where drag, friction and slope balance. `;
-  $('readout').textContent = `t = ${show(p.t, 2)} s: x = ${show(here.x, 3)} m, v = ${show(here.v, 3)} m/s, a = ${show(here.a, 3)} m/s². ` + rest + tends;
+  $('readout').textContent = `t = ${show(p.t, 2)} s: x = ${show(here.x, 3)} m, v = ${show(here.v, 3)} m/s, a = ${show(here.a, 3)} m/s². ` + fateWords(p, m);
 }
 function track(here, points, p) {
-  const s = sheet('track'), { c, width, height } = s, xs = points.map(q => q.x), low = Math.min(...xs, 0), high = Math.max(...xs, 0.01);
-  const px = x => 50 + (width - 100) * (x - low) / (high - low);
-  c.save(); c.translate(width / 2, height / 2 + 8); c.rotate(p.alpha * Math.PI / 180 * Math.min(1, 360 / width)); c.translate(-width / 2, 0);
-  c.fillStyle = s.color('line'); c.fillRect(14, 10, width - 28, 6);
-  c.fillStyle = s.color('soft'); c.textAlign = 'center'; c.fillText('0', px(0), 32);
-  c.fillStyle = s.color('first'); c.fillRect(px(here.x) - 26, -12, 52, 20);
-  c.fillStyle = s.color('paper'); c.beginPath(); c.arc(px(here.x), -2, 6, 0, 7); c.fill();
-  if (Math.abs(here.v) > 1e-4) { const d = Math.sign(here.v), l = 12 + 30 * Math.min(1, Math.abs(here.v)); c.strokeStyle = s.color('third'); c.fillStyle = s.color('third'); c.lineWidth = 3; c.beginPath(); c.moveTo(px(here.x), -24); c.lineTo(px(here.x) + d * l, -24); c.stroke(); c.beginPath(); c.moveTo(px(here.x) + d * (l + 8), -24); c.lineTo(px(here.x) + d * l, -29); c.lineTo(px(here.x) + d * l, -19); c.fill(); }
+  const s = sheet('track'), { c, width, height, em } = s, xs = points.map(q => q.x), low = Math.min(...xs, 0), high = Math.max(...xs, 0.01);
+  const px = x => 4 * em + (width - 8 * em) * (x - low) / (high - low);
+  // The true slope where that fits.
+  const most = Math.atan((height / 2 - 2.4 * em) / (width / 2 - 2 * em)), slope = p.alpha * Math.PI / 180;
+  c.save(); c.translate(width / 2, height / 2 + em); c.rotate(Math.sign(slope) * Math.min(Math.abs(slope), most)); c.translate(-width / 2, 0);
+  c.fillStyle = s.color('line'); c.fillRect(em, 0.5 * em, width - 2 * em, 0.4 * em);
+  c.fillStyle = s.color('soft'); c.textAlign = 'center'; c.fillText('0', px(0), 2 * em);
+  c.fillStyle = s.color('first'); c.fillRect(px(here.x) - 1.8 * em, -em, 3.6 * em, 1.4 * em);
+  c.fillStyle = s.color('paper'); c.beginPath(); c.arc(px(here.x), -0.3 * em, 0.4 * em, 0, 7); c.fill();
+  if (Math.abs(here.v) > 1e-4) { const d = Math.sign(here.v), l = (1 + 2.2 * Math.min(1, Math.abs(here.v))) * em, y = -1.6 * em; c.strokeStyle = s.color('third'); c.fillStyle = s.color('third'); c.lineWidth = 0.2 * em; c.beginPath(); c.moveTo(px(here.x), y); c.lineTo(px(here.x) + d * l, y); c.stroke(); c.beginPath(); c.moveTo(px(here.x) + d * (l + 0.6 * em), y); c.lineTo(px(here.x) + d * l, y - 0.4 * em); c.lineTo(px(here.x) + d * l, y + 0.4 * em); c.fill(); }
   c.restore();
 }
 function change() { prepare(); draw(); }

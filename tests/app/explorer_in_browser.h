@@ -37,9 +37,9 @@ inline std::optional<OpenedPage> open_page(const std::filesystem::path& page, in
 }
 
 inline std::optional<OpenedPage> open_with(const std::filesystem::path& folder, const std::string& page,
-                                           const std::string& script) {
+                                           const std::string& script, int width_px = 1280, int height_px = 720) {
   base::write_file(folder / "asked.html", page + "<script>\n" + script + "\n</script>\n");
-  return open_page(folder / "asked.html");
+  return open_page(folder / "asked.html", width_px, height_px);
 }
 
 }  // namespace glidelab::tests

@@ -115,3 +115,72 @@ for (const q of ['x', 'v', 'a']) document.documentElement.dataset['worst' + q] =
     CHECK(std::stod(opened->data.at(name)) < allowed);
   }
 }
+
+TEST_CASE("the explorer says what becomes of a motion: held, stopped, ever slower, on for ever, or to its limit") {
+  const tests::TempDir temp;
+  // Law (0 viscous, 2 quadratic, 3 none), k, mu, alpha, v0: what is said, what is not, and whether there is one
+  // equilibrium.
+  struct Case {
+    const char *p, *said, *unsaid;
+    bool equilibrium;
+  };
+  const std::vector<Case> cases = {
+      {"3,0,0,0,-2", "goes on for ever", "rest", false},
+      {"0,0,0,0,-2", "goes on for ever", "rest", false},  // a viscous drag of nothing
+      {"0,0,0,0,0", "at rest, and nothing drives it", "comes to rest", false},
+      {"2,1,0,0,1", "tends to rest", "comes to rest", true},
+      {"0,1,0,0,0", "at rest, and nothing drives it", "tends", true},
+      {"0,1,0.01,0,0", "at rest and stays: nothing pulls it", "comes to rest", true},
+      {"0,1,0.03,1,0", "at rest and stays: the slope pulls", "comes to rest", true},
+      {"3,0,0.01,0,0.5", "comes to rest at t = 5.099 s", "for ever", true},       // v0 / (mu g)
+      {"3,0,0,2,-1", "It turns at t = 2.922 s. Without a drag", "jumps", false},  // v0 / (g sin alpha)
+      {"0,2,0,0.5,0", "tends to v = 0.0428 m/s", "turns", true}};                 // g sin(alpha) / k
+  std::string script = "const said = [], dots = [];\nfor (const [law, k, mu, alpha, v0] of [";
+  for (const Case& c : cases) script += fmt::format("[{}],", c.p);
+  script += R"js(]) {
+  $('law').value = law; $('k').value = k; $('mu').value = mu; $('alpha').value = alpha; $('v0').value = v0;
+  change(); said.push($('readout').textContent); dots.push(current.m.limit === null ? 0 : 1);
+}
+document.documentElement.dataset.said = said.join('|'); document.documentElement.dataset.dots = dots.join('');
+)js";
+  const auto opened = tests::open_with(temp.path(), page_html(), script);
+  if (!opened) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  std::string all = opened->data.at("said");
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const std::string said = all.substr(0, all.find('|'));
+    all.erase(0, std::min(all.size(), said.size() + 1));
+    INFO(cases[i].p << ": " << said);
+    CHECK(said.find(cases[i].said) != std::string::npos);
+    CHECK(said.find(cases[i].unsaid) == std::string::npos);
+    CHECK((opened->data.at("dots").at(i) == '1') == cases[i].equilibrium);
+  }
+}
+
+TEST_CASE("in class the explorer's three plots and its time are seen at once, and on a telephone one above the other") {
+  const tests::TempDir temp;
+  const std::string script = R"js(
+const boxes = ['xt', 'vt', 'av', 'timebar'].map(id => $(id).getBoundingClientRect());
+document.documentElement.dataset.seen = boxes.filter(b => b.top >= 0 && b.bottom <= innerHeight && b.right <= innerWidth).length;
+document.documentElement.dataset.rows = new Set(boxes.slice(0, 3).map(b => b.top)).size;
+document.documentElement.dataset.wide = document.documentElement.scrollWidth - innerWidth;
+document.documentElement.dataset.time = boxes[3].bottom - innerHeight;
+)js";
+  for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}}) {
+    const auto opened = tests::open_with(temp.path(), page_html(), script, width, height);
+    if (!opened) {
+      WARN("skipped: no chromium program");
+      return;
+    }
+    INFO(width << " x " << height);
+    CHECK(opened->data.at("seen") == "4");
+    CHECK(opened->data.at("rows") == "1");
+  }
+  const auto narrow = tests::open_with(temp.path(), page_html(), script, 500, 900);
+  REQUIRE(narrow);
+  CHECK(narrow->data.at("rows") == "3");
+  CHECK(std::stod(narrow->data.at("wide")) <= 0.0);
+  CHECK(std::abs(std::stod(narrow->data.at("time"))) < 1.0);  // at the window's foot, though the plots go on below
+}
