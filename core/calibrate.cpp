@@ -173,7 +173,7 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
   for (const Term& term : terms) {
     if ((flags & term.fixing) == 0) kept.insert(kept.begin(), term.name);
   }
-  fit.model = fmt::format("distortion: {} (chi^2 of each term tested, and what it takes to be kept: {})",
+  fit.model = fmt::format("distortion: {} (χ² of each term tested, and what it takes to be kept: {})",
                           kept.empty() ? "none" : fmt::format("{}", fmt::join(kept, ", ")), fmt::join(tests, "; "));
   return fit;
 }

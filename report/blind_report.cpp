@@ -118,7 +118,7 @@ Json outcome_json(const validate::BlindOutcome& outcome) {
 }
 
 Plot reliability_plot(const validate::BlindScore& score) {
-  PlotData data{"bins", {}};
+  PlotData data{"bins", {}, {"probability stated", "share right", "95 % from", "95 % to"}};
   for (const validate::ReliabilityBin& bin : score.reliability) {
     if (bin.right.of == 0) continue;
     using Binomial = boost::math::binomial_distribution<>;
@@ -148,7 +148,7 @@ Plot methods_plot(const validate::BlindScore& score) {
       "set xtics ('none' 1, 'moderate' 2, 'strong' 3, 'two' 4, 'outside' 5)\nplot ";
   for (std::size_t m = 0; m < score.methods.size(); ++m) {
     const auto& method = score.methods[m];
-    PlotData rows{fmt::format("m{}", m), {}};
+    PlotData rows{fmt::format("m{}", m), {}, {"kind of case (place)", fmt::format("right by {} (%)", method.name)}};
     const std::vector<BlindShare> shares = {method.none, of(method.single, "moderate"), of(method.single, "strong"),
                                             method.pair, method.outside};
     for (std::size_t s = 0; s < shares.size(); ++s) {

@@ -18,7 +18,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Rows of (mean, variance, 2 sd) of the levels in the fit, or of the others; never empty, which gnuplot does not like.
 PlotData points_of(const core::CameraMeasurement& camera, const char* name, bool used) {
-  PlotData data{name, {}};
+  PlotData data{name, {}, {"mean above dark (DN)", "variance (DN²)", "two standard deviations (DN²)"}};
   for (const core::TransferPoint& point : camera.curve) {
     if (point.used == used) data.rows.push_back({point.mean_dn, point.variance_dn2, 2.0 * point.sd_dn2});
   }
@@ -28,7 +28,7 @@ PlotData points_of(const core::CameraMeasurement& camera, const char* name, bool
 
 /// Beside which levels the line was fitted, and on to saturation.
 PlotData line_of(const core::CameraMeasurement& camera) {
-  PlotData data{"line", {}};
+  PlotData data{"line", {}, {"mean above dark (DN)", "variance (DN²)"}};
   if (camera.gain_dn_per_e.value && camera.intercept_dn2) {
     for (const double mean_dn : {0.0, camera.saturation_dn}) {
       data.rows.push_back({mean_dn, *camera.intercept_dn2 + *camera.gain_dn_per_e.value * mean_dn});
@@ -67,7 +67,7 @@ Plot transfer_plot(const core::CameraMeasurement& camera) {
 
 /// Where levels were made by exposures: what the mean does over them.
 std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
-  PlotData data{"levels", {}};
+  PlotData data{"levels", {}, {"exposure (ms)", "mean above dark (DN)"}};
   for (const core::TransferPoint& point : camera.curve) {
     if (point.exposure_s) data.rows.push_back({*point.exposure_s * 1e3, point.picture_dn});
   }

@@ -60,7 +60,7 @@ std::string findings_section(const core::RecordingCheck& check) {
 }
 
 PlotData places(const std::string& name, const std::vector<core::PixelPlace>& from) {
-  PlotData data{name, {}};
+  PlotData data{name, {}, {"u (px)", "v (px)"}};
   for (const core::PixelPlace& place : from) data.rows.push_back({place.u_px, place.v_px});
   return data;
 }

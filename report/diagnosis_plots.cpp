@@ -24,7 +24,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   for (const auto& ranked : diagnosis.ranking) bars.emplace_back(ranked.probability, ranked.id);
   std::stable_sort(bars.begin(), bars.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   if (bars.size() > kBars) bars.resize(kBars);
-  PlotData data{"bars", {}};
+  PlotData data{"bars", {}, {"row", "probability"}};
   std::string script(kFrame);
   script += "unset key\nunset ytics\nset border 1\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
@@ -43,7 +43,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
 }
 
 Plot clip_gaps(const diagnose::GapSizes& gap) {
-  PlotData data{"gaps", {}};
+  PlotData data{"gaps", {}, {"row", "gap before / noise", "gap after / noise"}};
   double most = 2.0;
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
     data.rows.push_back({-static_cast<double>(c), gap.before_by_clip[c], gap.after_by_clip[c]});
@@ -67,7 +67,10 @@ Plot clip_gaps(const diagnose::GapSizes& gap) {
 
 /// `alternatives` is how many curves are shown, each of which fills the gap by itself.
 Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
-  PlotData data{"curve", {}};
+  PlotData data{"curve",
+                {},
+                {axis_of(curve.variable), fmt::format("{} ({})", curve.what, curve.unit),
+                 fmt::format("standard deviation ({})", curve.unit)}};
   for (std::size_t i = 0; i < curve.at.size(); ++i) data.rows.push_back({curve.at[i], curve.size[i], curve.sd[i]});
   std::string script(kFrame);
   script += fmt::format("unset key\nset xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), curve.what,
@@ -87,7 +90,9 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
 
 Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
   const std::vector<diagnose::ResidualCurve>& curves = diagnosis.residuals;
-  PlotData before{"before", {}}, after{"after", {}};
+  const std::string axis = axis_of(variable == 0 ? "x_m" : variable == 1 ? "v_m_s" : "t_s");
+  PlotData before{"before", {}, {axis, "measured - model before (mm)"}};
+  PlotData after{"after", {}, {axis, "measured - model after (mm)"}};
   const std::size_t share = std::max<std::size_t>(1, curves.size() / 8);
   for (const diagnose::ResidualCurve& curve : curves) {
     const auto& at = variable == 0 ? curve.x_m : variable == 1 ? curve.v_m_s : curve.t_s;
@@ -100,9 +105,7 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
   // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
   std::string script(kFrame);
   if (variable == 2) script += kFromStart;
-  script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis_of(variable == 0   ? "x_m"
-                                                                                          : variable == 1 ? "v_m_s"
-                                                                                                          : "t_s"));
+  script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis);
   script += fmt::format(
       "plot $before using 1:2 with points pt 7 ps 0.35 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
       "'{0}' title 'before', $after using 1:2 with points pt 7 ps 0.15 lc rgb '{1}' notitle, keyentry with points pt 7 "
@@ -118,7 +121,10 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
 }
 
 Plot lengthening_plot(const diagnose::PictureCurve& curve) {
-  PlotData data{"seen", {}};
+  PlotData data{"seen",
+                {},
+                {"speed in the picture (px/s)", "lengthening (px²)", "standard deviation (px²)",
+                 "as by the exposure found (px²)", "as by the one stated (px²)"}};
   for (std::size_t p = 0; p < curve.at.size(); ++p) {
     data.rows.push_back(
         {curve.at[p], curve.value[p], curve.sd[p], curve.fitted[p], curve.expected.empty() ? kNan : curve.expected[p]});
@@ -175,7 +181,8 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
 
 std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots;
-  PlotData light{"light", {}}, across{"across", {}}, down{"down", {}};
+  PlotData light{"light", {}, {"t (s)", "brightness, change (%)"}};
+  PlotData across{"across", {}, {"t (s)", "to the right (px)"}}, down{"down", {}, {"t (s)", "downwards (px)"}};
   for (const diagnose::PictureCurve& curve : diagnosis.picture_curves) {
     if (curve.what == "lengthening") {
       plots.push_back(lengthening_plot(curve));
@@ -216,7 +223,7 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
 std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
   if (isolability.ids.size() < 2) return {};
   const std::size_t n = isolability.ids.size();
-  PlotData data{"cells", {}};
+  PlotData data{"cells", {}, {"effect (column)", "effect (row)", "likeness (cosine)"}};
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t b = 0; b < n; ++b) {
       data.rows.push_back({static_cast<double>(b), -static_cast<double>(a), isolability.cosine[a][b]});

@@ -35,7 +35,10 @@ std::vector<double> bar(double left, double value, double middle, double half) {
 }
 
 Plot phase_plot(const diagnose::PhaseGap& gap) {
-  PlotData data{"bins", {}};
+  PlotData data{"bins",
+                {},
+                {"v (m/s)", "a measured - modelled before (m/s²)", "half of its 95 % interval (m/s²)", "after (m/s²)",
+                 "half of its 95 % interval (m/s²)"}};
   for (const diagnose::PhaseBin& bin : gap.bins) {
     data.rows.push_back({bin.v_m_s, bin.before.value, k95 * bin.before.sd, bin.after.value, k95 * bin.after.sd});
   }
@@ -60,7 +63,10 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps) {
   std::string script(kFrame), curves;
   for (const diagnose::PhaseGap& gap : gaps) {
     if (!gap.mass_kg) continue;
-    PlotData of{fmt::format("mass{}", data.size() + 1), {}};
+    PlotData of{fmt::format("mass{}", data.size() + 1),
+                {},
+                {"v (m/s)", fmt::format("a measured - modelled of {:g} kg (m/s²)", *gap.mass_kg),
+                 "half of its 95 % interval (m/s²)"}};
     for (const diagnose::PhaseBin& bin : gap.bins) {
       of.rows.push_back({bin.v_m_s, bin.before.value, k95 * bin.before.sd});
     }
@@ -77,7 +83,7 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps) {
 
 Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& cells, const std::string& variable,
               const char* when) {
-  PlotData data{"cells", {}};
+  PlotData data{"cells", {}, {axis_of(variable), "clip (row)", "residual / noise"}};
   const double width = (map.high - map.low) / static_cast<double>(cells.front().size());
   for (std::size_t r = 0; r < cells.size(); ++r) {
     for (std::size_t c = 0; c < cells[r].size(); ++c) {
@@ -117,7 +123,8 @@ std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis) {
     names.push_back(domain_name(domain.domain));
   }
   const double left = most > kWide ? kLogFrom : 0.0;
-  PlotData before{"before", {}}, after{"after", {}};
+  const std::vector<std::string> columns = {"middle of the bar (gap / noise)", "row", "from", "to", "low", "high"};
+  PlotData before{"before", {}, columns}, after{"after", {}, columns};
   for (std::size_t d = 0; d < domains.size(); ++d) {
     const double middle = -static_cast<double>(d);
     before.rows.push_back(bar(left, domains[d].before, middle + 0.19, 0.17));

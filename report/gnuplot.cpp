@@ -42,12 +42,31 @@ void check_status(int status, const fs::path& log) {
   if (!how.empty()) throw base::EnvironmentError(fmt::format("gnuplot {}: {}", how, base::read_file(log)));
 }
 
-/// Blocks of rows two blank lines apart, as gnuplot counts them; what would look like such a gap within a block is
-/// closed.
+/// "v  (m/s)" of `set xlabel 'v  (m/s)'`; "" where the script names no such axis.
+std::string axis_label(const std::string& script, const char* axis) {
+  const std::string command = fmt::format("set {}label '", axis);
+  const std::size_t found = script.find(command);
+  if (found == std::string::npos) return {};
+  const std::size_t from = found + command.size();
+  return script.substr(from, script.find('\'', from) - from);
+}
+
+/// What the axes show, then blocks of rows two blank lines apart, as gnuplot counts them; what would look like such a
+/// gap within a block is closed.
 std::string csv_of(const Drawing& drawing) {
   std::string text;
+  for (const char* axis : {"x", "y"}) {
+    const std::string label = axis_label(drawing.script, axis);
+    if (!label.empty()) text += fmt::format("# {} axis: {}\n", axis, label);
+  }
+  bool first = true;
   for (const PlotData& data : drawing.data) {
-    text += fmt::format("{}# {}\n", text.empty() ? "" : "\n\n", data.name);
+    text += fmt::format("{}# {}\n", first ? "" : "\n\n", data.name);
+    std::string columns = fmt::format("{}", fmt::join(data.columns, ","));
+    std::replace_if(
+        columns.begin(), columns.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    if (!columns.empty()) text += fmt::format("# {}\n", columns);
+    first = false;
     bool gap = false, any = false;
     for (const std::vector<double>& row : data.rows) {
       if (row.empty()) {

@@ -20,7 +20,8 @@ struct DrawnPlot {
   std::string svg;
   std::string pdf;     ///< without the date at which it was drawn
   std::string script;  ///< NAME.gp
-  std::string csv;     ///< the blocks of data, each under its name in a comment, two blank lines apart
+  std::string csv;     ///< what the axes show and the blocks of data, each under its name and its columns' in comments,
+                       ///< two blank lines apart
 };
 
 /// Draws the plots; names[i] is that of plots[i]'s files. EnvironmentError where gnuplot is missing or fails (with its

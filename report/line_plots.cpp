@@ -19,10 +19,11 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
   const auto across = [&](double mass_kg, double k_over_m_1_s) {
     return over_mass ? 1.0 / mass_kg : k_over_m_1_s * k_over_m_1_s;
   };
+  const char* const across_name = over_mass ? "1 / mass (1/kg)" : "(K/m)² (1/s²)";
   std::vector<PlotData> data;
   std::string plots;
   for (const diagnose::LineCurve& curve : lines.curves) {
-    PlotData block{fmt::format("curve{}", data.size()), {}};
+    PlotData block{fmt::format("curve{}", data.size()), {}, {across_name, "friction left (mm/s²)"}};
     for (std::size_t i = 0; i < curve.mass_kg.size(); ++i) {
       block.rows.push_back({across(curve.mass_kg[i], curve.k_over_m_1_s[i]), kMilli * curve.friction_m_s2[i]});
     }
@@ -39,6 +40,7 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
   std::size_t n = 0;
   for (auto& [key, group] : groups) {
     group.name = fmt::format("lines{}", n);
+    group.columns = {across_name, "friction left (mm/s²)", "standard deviation (mm/s²)"};
     plots += fmt::format("{}${} using 1:2:3 with yerrorbars pt {} ps 0.9 lc rgb '{}' title {}",
                          plots.empty() ? "" : ", ", group.name, key.second > 0 ? 7 : 6, color(2 + n / 2),
                          gnuplot_quoted(fmt::format("{:.3g}°, v {} 0", key.first, key.second > 0 ? ">" : "<")));

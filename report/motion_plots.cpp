@@ -10,6 +10,7 @@
 
 #include "report/decimate.h"
 #include "report/gnuplot.h"
+#include "report/handy_units.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
@@ -42,10 +43,14 @@ double deviation(const core::MotionPoint& point, Variable variable) {
   }
 }
 
+const char* axis_of(Variable variable) {
+  return variable == Variable::x ? "x  (m)" : variable == Variable::v ? "v  (m/s)" : "a  (m/s²)";
+}
+
 /// The smoothed points that are used (or not), as lines that break where the other kind stands between: t, y, sd.
 PlotData smoothed_lines(const core::ClipResult& clip, Variable variable, bool used, std::string name) {
   const std::vector<core::MotionPoint>& motion = clip.motion;
-  PlotData data{std::move(name), {}};
+  PlotData data{std::move(name), {}, {"t (s)", axis_of(variable), "its standard deviation"}};
   const auto belongs = [&](std::size_t i) {
     return motion[i].smoothed && (motion[i].left_out == core::LeftOut::used) == used;
   };
@@ -74,7 +79,7 @@ PlotData smoothed_lines(const core::ClipResult& clip, Variable variable, bool us
 
 /// Positions of frames that have no smoothed value.
 PlotData bare_positions(const core::ClipResult& clip) {
-  PlotData data{"bare", {}};
+  PlotData data{"bare", {}, {"t (s)", axis_of(Variable::x)}};
   std::vector<std::size_t> bare;
   for (std::size_t i = 0; i < clip.motion.size(); ++i) {
     if (!clip.motion[i].smoothed && clip.motion[i].measured_m) bare.push_back(i);
@@ -111,8 +116,20 @@ std::optional<std::pair<double, double>> used_range(const core::ClipResult& clip
   return std::pair(low - margin, high + margin);
 }
 
+/// A band that is thinner than its line is told in words.
+std::string largest_deviation(const core::ClipResult& clip, Variable variable) {
+  double largest = 0.0;
+  for (const core::MotionPoint& point : clip.motion) {
+    if (point.smoothed && point.left_out == core::LeftOut::used)
+      largest = std::max(largest, deviation(point, variable));
+  }
+  if (!(largest > 0.0) || !std::isfinite(largest)) return {};
+  const char* const unit = variable == Variable::x ? "m" : variable == Variable::v ? "m/s" : "m/s²";
+  return fmt::format(" (at most {})", size_text(2.0 * largest, 2, unit));
+}
+
 Plot motion_plot(const core::ClipResult& clip, Variable variable) {
-  const char* const axis = variable == Variable::x ? "x  (m)" : variable == Variable::v ? "v  (m/s)" : "a  (m/s²)";
+  const char* const axis = axis_of(variable);
   std::string script(kFrame);
   script += shading(clip);
   script += fmt::format("set xlabel 't  (s)'\nset ylabel '{}'\nunset key\n", axis);
@@ -127,18 +144,17 @@ Plot motion_plot(const core::ClipResult& clip, Variable variable) {
   if (variable == Variable::x) {
     data.push_back(bare_positions(clip));
     script += fmt::format("$bare using 1:2 with points pt 7 ps 0.25 lc rgb '{}', ", kGrey);
-  } else {
-    script += fmt::format(
-        "$used using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25, ",
-        kColors[0]);
   }
+  script += fmt::format(
+      "$used using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25, ",
+      kColors[0]);
   script += fmt::format("$unused using 1:2 with lines lw 1.5 lc rgb '{}', $used using 1:2 with lines lw 2 lc rgb '{}'",
                         kGrey, kColors[0]);
   const char* const name = variable == Variable::x ? "Position" : variable == Variable::v ? "Velocity" : "Acceleration";
   Plot plot;
   plot.drawing = {script, data};
   plot.caption =
-      variable == Variable::x ? "Position x(t)" : fmt::format("{} {}(t), with two standard deviations", name, axis[0]);
+      fmt::format("{} {}(t), with two standard deviations{}", name, axis[0], largest_deviation(clip, variable));
   plot.description = fmt::format("{} of clip {} over time", name, clip.name);
   return plot;
 }

@@ -15,11 +15,16 @@ namespace {
 
 constexpr std::size_t kPointsOfAll = 1500;  // in one diagram; more only makes the page heavy
 constexpr double kDetail = 0.15;            // of the largest speed: the part that figures 7 and 9 show
+constexpr std::size_t kBars = 12;           // of one configuration; on every point they would hide each other
+constexpr int kSteps = 24;                  // along a line, whose band is a hyperbola
+constexpr double k95 = 1.959963984540054;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct PhasePoint {
   double v_m_s;
   double a_m_s2;
   double residual_m_s2;  ///< NaN where there is no line of this direction
+  double half95_m_s2;    ///< of a, by the noise of the positions
 };
 
 /// The points of one configuration, thinned out by whoever draws them.
@@ -52,9 +57,8 @@ std::vector<Cloud> clouds(const core::AnalysisResults& results, const PhaseGroup
         if (point.force_n != 0.0) force_applied = true;
         const double a = point.a_m_s2 - point.force_n / configuration.mass_kg;
         const core::LineFit* line = line_of(configuration, point.v_m_s);
-        const double residual =
-            line == nullptr ? std::numeric_limits<double>::quiet_NaN() : a - line_at(*line, point.v_m_s);
-        cloud.points.push_back({point.v_m_s, a, residual});
+        const double residual = line == nullptr ? kNan : a - line_at(*line, point.v_m_s);
+        cloud.points.push_back({point.v_m_s, a, residual, k95 * point.sd_a_m_s2});
       }
     }
     all.push_back(std::move(cloud));
@@ -68,30 +72,33 @@ std::string data_name(const char* kind, std::size_t configuration) {
 
 /// gnuplot counts the rows of a block that is empty as an error; one row of NaN draws nothing.
 PlotData never_empty(PlotData data) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  if (data.rows.empty()) data.rows.push_back({kNan, kNan, kNan});
+  if (data.rows.empty()) data.rows.push_back(std::vector<double>(data.columns.size(), kNan));
   return data;
 }
 
-PlotData thinned(const Cloud& cloud, std::size_t most, double from_v, double to_v) {
-  PlotData data{data_name("points", cloud.configuration), {}};
+PlotData thinned(const Cloud& cloud, const char* kind, std::size_t most, double from_v, double to_v) {
+  PlotData data{data_name(kind, cloud.configuration),
+                {},
+                {"v (m/s)", "a (m/s²)", "residual of the line (m/s²)", "half of the 95 % interval of a (m/s²)"}};
   std::vector<PhasePoint> inside;
   for (const PhasePoint& point : cloud.points) {
     if (point.v_m_s >= from_v && point.v_m_s <= to_v) inside.push_back(point);
   }
   for (const std::size_t i : every_nth(inside.size(), most)) {
-    data.rows.push_back({inside[i].v_m_s, inside[i].a_m_s2, inside[i].residual_m_s2});
+    data.rows.push_back({inside[i].v_m_s, inside[i].a_m_s2, inside[i].residual_m_s2, inside[i].half95_m_s2});
   }
   return never_empty(std::move(data));
 }
 
-/// Each line from v = 0 to where its points end.
+/// Each line with its band from v = 0 to where its points end.
 PlotData fitted_lines(const core::ConfigurationResult& configuration, std::size_t index) {
-  PlotData data{data_name("lines", index), {}};
+  PlotData data{data_name("lines", index), {}, {"v (m/s)", "a (m/s²)", "half of the line's 95 % interval (m/s²)"}};
   for (const core::LineFit& line : configuration.lines) {
     const double far = std::abs(line.from_v_m_s) > std::abs(line.to_v_m_s) ? line.from_v_m_s : line.to_v_m_s;
-    data.rows.push_back({0.0, line_at(line, 0.0)});
-    data.rows.push_back({far, line_at(line, far)});
+    for (int i = 0; i <= kSteps; ++i) {
+      const double v = far * static_cast<double>(i) / kSteps;
+      data.rows.push_back({v, line_at(line, v), line_half95_m_s2(line, v)});
+    }
     data.rows.emplace_back();
   }
   return never_empty(std::move(data));
@@ -126,23 +133,32 @@ Window detail_window(const core::AnalysisResults& results, const PhaseGroup& gro
   return {-half, half, script, has_limit};
 }
 
-/// Points and lines of all configurations in one diagram.
+/// Points with some bars, lines and their bands: of a, or of what the lines leave of it.
 std::string diagram(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all,
-                    double from_v, double to_v, double point_size, std::vector<PlotData>& data) {
-  std::string points;
-  std::string lines;
+                    double from_v, double to_v, bool residuals, std::vector<PlotData>& data) {
+  std::string bands, points, lines;
   std::size_t n = 0;
   for (const Cloud& cloud : all) {
-    data.push_back(thinned(cloud, kPointsOfAll / all.size(), from_v, to_v));
+    const std::string own = color(n++);
+    data.push_back(thinned(cloud, "points", kPointsOfAll / all.size(), from_v, to_v));
+    data.push_back(thinned(cloud, "bars", kBars, from_v, to_v));
     data.push_back(fitted_lines(results.configurations[cloud.configuration], cloud.configuration));
-    points += fmt::format("{}${} using 1:2 with points pt 7 ps {} lc rgb '{}' notitle", n == 0 ? "" : ", ",
-                          data_name("points", cloud.configuration), point_size, color(n));
-    lines +=
-        fmt::format(", ${} using 1:2 with lines lw 1.6 lc rgb '{}' title {}", data_name("lines", cloud.configuration),
-                    color(n), gnuplot_quoted(configuration_label(results, group, cloud.configuration)));
-    ++n;
+    const std::string line = data_name("lines", cloud.configuration);
+    bands += fmt::format(
+        "${0} using 1:({1}-$3):({1}+$3) with filledcurves fillcolor rgb '{2}' fillstyle transparent solid 0.2 "
+        "notitle, ",
+        line, residuals ? "0" : "$2", own);
+    // Strokes and not error bars, around whose points gnuplot leaves white.
+    points += fmt::format(
+        "${0} using 1:{2} with points pt 7 ps 0.3 lc rgb '{3}' notitle, ${1} using 1:(${2}-$4):(0):(2*$4) with vectors "
+        "nohead lw 1.2 lc rgb '{3}' notitle, ",
+        data_name("points", cloud.configuration), data_name("bars", cloud.configuration), residuals ? 3 : 2, own);
+    const std::string label = gnuplot_quoted(configuration_label(results, group, cloud.configuration));
+    lines += (n > 1 ? ", " : "") +
+             (residuals ? fmt::format("keyentry with points pt 7 ps 0.8 lc rgb '{}' title {}", own, label)
+                        : fmt::format("${} using 1:2 with lines lw 1.6 lc rgb '{}' title {}", line, own, label));
   }
-  return "plot " + points + lines + "\n";
+  return "plot " + bands + points + lines + "\n";
 }
 
 std::string axes(const char* y) {
@@ -153,24 +169,44 @@ std::string axes(const char* y) {
       y);
 }
 
+/// The range of the points and the lines: the band of a line that is hardly known runs out of it.
+std::string range_of(const std::vector<PlotData>& data, bool residuals) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const PlotData& block : data) {
+    const bool lines = block.name.starts_with("lines");
+    if (lines && residuals) continue;
+    for (const std::vector<double>& row : block.rows) {
+      const std::size_t column = residuals ? 2 : 1;
+      if (row.size() <= column || !std::isfinite(row[column])) continue;
+      low = std::min(low, row[column]);
+      high = std::max(high, row[column]);
+    }
+  }
+  if (!(high > low)) return {};
+  const double margin = 0.08 * (high - low);
+  return fmt::format("set yrange [{:.6g}:{:.6g}]\n", low - margin, high + margin);
+}
+
 Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all) {
   std::vector<PlotData> data;
-  std::string script = std::string(kFrame) + axes("residual  (m/s²)") + "plot ";
-  std::size_t n = 0;
-  for (const Cloud& cloud : all) {
-    data.push_back(thinned(cloud, kPointsOfAll / all.size(), -HUGE_VAL, HUGE_VAL));
-    script += fmt::format(
-        "{0}${1} using 1:3 with points pt 7 ps 0.3 lc rgb '{2}' notitle, keyentry with points pt 7 ps 0.8 lc rgb '{2}' "
-        "title {3}",
-        n == 0 ? "" : ", ", data_name("points", cloud.configuration), color(n),
-        gnuplot_quoted(configuration_label(results, group, cloud.configuration)));
-    ++n;
-  }
-  return {Drawing{script, data}, "Residuals of the lines: what a(v) leaves unexplained",
-          "Residuals of the fitted lines over v"};
+  const std::string plot = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, true, data);
+  const std::string script = std::string(kFrame) + axes("residual  (m/s²)") + range_of(data, true) + plot;
+  return {
+      Drawing{script, data},
+      "Residuals of the lines: what a(v) leaves unexplained. Bands: 95 % of each line; bars: 95 % of some points by "
+      "their noise",
+      "Residuals of the fitted lines over v"};
 }
 
 }  // namespace
+
+double line_half95_m_s2(const core::LineFit& line, double v_m_s) {
+  const double var_k = line.k_over_m_1_s.sd * line.k_over_m_1_s.sd, var_a0 = line.a0_m_s2.sd * line.a0_m_s2.sd;
+  if (!(var_a0 > 0.0)) return 0.0;
+  const double quantile = (line.a0_m_s2.high95 - line.a0_m_s2.value) / line.a0_m_s2.sd;  // that of both coefficients
+  const double variance = var_a0 - 2.0 * v_m_s * line.covariance + v_m_s * v_m_s * var_k;
+  return quantile * std::sqrt(std::max(0.0, variance));  // below 0 by rounding only
+}
 
 std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results) {
   std::vector<PhaseGroup> groups;
@@ -207,14 +243,16 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
   const char* const y = force_applied ? "a − F/m  (m/s²)" : "a  (m/s²)";
 
   std::vector<PlotData> data;
-  std::string script = std::string(kFrame) + axes(y) + diagram(results, group, all, -HUGE_VAL, HUGE_VAL, 0.3, data);
+  std::string plot = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, false, data);
+  std::string script = std::string(kFrame) + axes(y) + range_of(data, false) + plot;
   std::vector<Plot> plots = {{Drawing{script, data},
-                              "Phase diagram: points as measured and smoothed, lines fitted for v < 0 and v > 0",
+                              "Phase diagram: points as measured and smoothed, lines fitted for v < 0 and v > 0, with "
+                              "their 95 % bands; bars: 95 % of some points by their noise",
                               "Acceleration over velocity with fitted lines"}};
   const Window window = detail_window(results, group, v_max);
   data.clear();
-  const std::string detail = diagram(results, group, all, window.from_v, window.to_v, 0.3, data);
-  script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + detail;
+  plot = diagram(results, group, all, window.from_v, window.to_v, false, data);
+  script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + plot;
   plots.push_back({Drawing{script, data},
                    std::string("Near v = 0: the gap between the lines is twice the Coulomb friction") +
                        (window.has_limit ? ", their crossing of a = 0 the limit velocity" : ""),

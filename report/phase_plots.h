@@ -21,7 +21,12 @@ std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results);
 std::string configuration_label(const core::AnalysisResults& results, const PhaseGroup& group,
                                 std::size_t configuration);
 
-/// The diagram, its detail near v = 0, and the residuals of the lines; none where no point is used. Where a known force
+/// Half of the 95 % interval of a line at v, in m/s²: t sqrt(var(a0) - 2 v cov(K/m, a0) + v² var(K/m)), with the t of
+/// the line's own intervals; 0 of a line without errors.
+double line_half95_m_s2(const core::LineFit& line, double v_m_s);
+
+/// The diagram, its detail near v = 0, and the residuals of the lines, each with the lines' 95 % bands and the bars of
+/// some points; none where no point is used. Where a known force
 /// was applied, a - F/m stands for a.
 std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group);
 

@@ -144,7 +144,9 @@ std::optional<PixelLocking> pixel_locking(const std::vector<PhasePoint>& points)
 std::vector<Plot> pixel_phase_plot(const std::vector<PhasePoint>& points, bool from_truth) {
   const auto locking = pixel_locking(points);
   if (!locking) return {};
-  PlotData cloud{"cloud", {}}, means{"means", {}};
+  const char* const error = from_truth ? "measured - true (px)" : "measured - smoothed (px)";
+  PlotData cloud{"cloud", {}, {"centre within its pixel (px)", error}};
+  PlotData means{"means", {}, {"centre within its pixel (px)", error, "standard deviation of the mean (px)"}};
   for (const std::size_t i : every_nth(points.size(), kCloud)) {
     cloud.rows.push_back({points[i].phase_px, points[i].error_px});
   }

@@ -10,6 +10,7 @@ namespace glidelab::report {
 struct PlotData {
   std::string name;
   std::vector<std::vector<double>> rows;  ///< an empty row stands for a blank line, which breaks a line as well
+  std::vector<std::string> columns = {};  ///< what each holds, with its unit: "v (m/s)"; for who reads the file
 };
 
 /// Size in points of the plot's own coordinates; a page scales it.

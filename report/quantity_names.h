@@ -14,7 +14,7 @@ struct QuantityName {
 };
 
 inline constexpr std::array<QuantityName, 4> kQuantities = {
-    {{"k_over_m_1_s", "K/m", "1/s"}, {"mu", "µ", ""}, {"alpha_deg", "α", "°"}, {"v_lim_m_s", "v_lim", "m/s"}}};
+    {{"k_over_m_1_s", "K/m", "1/s"}, {"mu", "µ", ""}, {"alpha_deg", "α", "°"}, {"v_lim_m_s", "limit velocity", "m/s"}}};
 
 inline std::string symbol_of(std::string_view key) {
   for (const QuantityName& name : kQuantities) {

@@ -36,7 +36,8 @@ void never_empty(PlotData& data) {
 }  // namespace
 
 std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
-  PlotData rest{"data", {}}, noise{"twin", {}}, data{"data", {}}, twin{"twin", {}};
+  PlotData rest{"data", {}}, noise{"twin", {}};
+  PlotData data{"data", {}, {"v (m/s)", "a of the data (m/s²)"}}, twin{"twin", {}, {"v (m/s)", "a of the twin (m/s²)"}};
   std::size_t count = 0;
   for (const validate::TwinMotion& motion : motions) count += motion.t_s.size();
   const std::size_t step = 1 + count / kPoints;
@@ -46,6 +47,9 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
   }
   const bool micrometres = largest_m < 2e-4;
   const double scale = micrometres ? 1e6 : 1e3;
+  const char* const unit = micrometres ? "µm" : "mm";
+  rest.columns = {"t (s)", fmt::format("data - twin ({})", unit)};
+  noise.columns = {"t (s)", fmt::format("noise of the twin ({})", unit)};
   for (const validate::TwinMotion& motion : motions) {
     add(motion.t_s, motion.rest_m, scale, step, rest);
     add(motion.t_s, motion.noise_m, scale, step, noise);
@@ -55,8 +59,7 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
   for (PlotData* one : {&rest, &noise, &data, &twin}) never_empty(*one);
   return {
       {Drawing{std::string(kFrame) + "set offsets 0, graph 0.02, graph 0.06, graph 0.06\nset xlabel 'time t (s)'\n" +
-                   fmt::format("set ylabel 'position  ({})'\n", micrometres ? "µm" : "mm") +
-                   points("data − twin", "noise of the twin"),
+                   fmt::format("set ylabel 'position  ({})'\n", unit) + points("data − twin", "noise of the twin"),
                std::vector{rest, noise}},
        "What the measured positions of all clips lie off the twin's: as much as noise alone, where nothing is missing",
        "Measured positions less those of the twin over time, beside noise"},

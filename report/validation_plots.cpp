@@ -16,6 +16,7 @@ namespace glidelab::report {
 namespace {
 
 constexpr std::size_t kRestitutionPoints = 2000;
+constexpr std::size_t kMostNamed = kColors.size();  // clips of which each has a colour of its own
 
 /// One row a quantity, one colour a kind of quantity, filled for the lines' values and open for the whole motion's;
 /// the page's reader looks for points beyond the band of ±2.
@@ -33,6 +34,8 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
     if (!by_quantity.contains(kind)) {
       order.push_back(kind);
       by_quantity[kind].name = fmt::format("q{}", order.size());
+      by_quantity[kind].columns = {fmt::format("error of {} / standard deviation", symbol_of(quantity.quantity)),
+                                   "row"};
       open[kind] = whole_motion;
     }
     const auto [place, added] =
@@ -73,25 +76,34 @@ std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
   const bool micrometres = restitution.max_m < 2e-4;
   const double scale = micrometres ? 1e6 : 1e3;
   std::vector<PlotData> data;
+  const char* const unit = micrometres ? "µm" : "mm";
+  const bool named = results.clips.size() <= kMostNamed;
   std::string script(kFrame);
-  script += fmt::format("set xlabel 'true x  (m)'\nset ylabel 'measured − true  ({})'\nunset key\nplot ",
-                        micrometres ? "µm" : "mm");
+  script += fmt::format("set xlabel 'true x  (m)'\nset ylabel 'measured − true  ({})'\n{}plot ", unit,
+                        named ? "set key noenhanced\n" : "unset key\n");
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     std::vector<const validate::RestitutionPoint*> own;
     for (const validate::RestitutionPoint& point : restitution.points) {
       if (point.clip == c) own.push_back(&point);
     }
     if (own.empty()) continue;
-    PlotData block{fmt::format("clip{}", c), {}};
+    PlotData block{fmt::format("clip{}", c),
+                   {},
+                   {"true x (m)", fmt::format("measured - true of {} ({})", results.clips[c].name, unit)}};
     for (const std::size_t i :
          every_nth(own.size(), std::max<std::size_t>(50, kRestitutionPoints / results.clips.size()))) {
       block.rows.push_back({own[i]->x_m, own[i]->error_m * scale});
     }
-    script += fmt::format("{}${} using 1:2 with points pt 7 ps 0.25 lc rgb '{}'", data.empty() ? "" : ", ", block.name,
-                          color(c));
+    script += fmt::format("{}${} using 1:2 with points pt 7 ps 0.25 lc rgb '{}' notitle", data.empty() ? "" : ", ",
+                          block.name, color(c));
+    if (named) {
+      script += fmt::format(", keyentry with points pt 7 ps 0.8 lc rgb '{}' title {}", color(c),
+                            gnuplot_quoted(results.clips[c].name));
+    }
     data.push_back(std::move(block));
   }
-  return {{Drawing{script, data}, "Error of the measured position over the field, one colour a clip",
+  return {{Drawing{script, data},
+           fmt::format("Error of the measured position over the field, one colour a clip{}", named ? "" : ", in turn"),
            "Restitution error over the true position"}};
 }
 

@@ -55,6 +55,20 @@ TEST_CASE("a plot of data is an SVG and a PDF of the size that was asked for") {
   CHECK(plot.csv == "# points\n0,1\n1,2\n\n2,NaN\n");
 }
 
+TEST_CASE("the numbers beside a plot say what its axes show and what each column holds, and are drawn as without") {
+  const std::string script =
+      "set xlabel 'v  (m/s)'\nset ylabel 'a  (m/s²)'\nplot $first using 1:2 with lines, $last using 1:2";
+  const std::vector<report::PlotData> bare = {{"first", {{0.0, 1.0}, {1.0, 2.0}}}, {"last", {{2.0, 3.0}}}};
+  std::vector<report::PlotData> named = bare;
+  named[0].columns = {"v (m/s)", "a (m/s²)"};
+  named[1].columns = {"v (m/s)", "of a\nclip"};  // a name from a file stays within its line
+  const report::DrawnPlot plot = drawn({script, named});
+  CHECK(plot.csv ==
+        "# x axis: v  (m/s)\n# y axis: a  (m/s²)\n# first\n# v (m/s),a (m/s²)\n0,1\n1,2\n\n\n# last\n"
+        "# v (m/s),of a clip\n2,3\n");
+  CHECK(plot.svg == drawn({script, bare}).svg);
+}
+
 TEST_CASE("blocks of data are found whatever blank lines stand in them") {
   // A block with blank lines at its ends and doubled ones would shift those behind it, as gnuplot counts blocks by
   // them.
