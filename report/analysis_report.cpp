@@ -26,8 +26,8 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
       "<div class=\"tile\"><b>{}</b><span>{}</span></div></div>\n",
       results.configurations.size(), results.clips.size(), frames, detected,
       pictures ? "with the marker found" : "positions");
-  body += recovered_section(results);
   body += meaning_of(results);
+  body += recovered_section(results);
   body += phase_section(results);
   body += details_sections(results, previews, progress);
   return page(title, body);

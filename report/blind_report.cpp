@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 
+#include "report/blind_targets.h"
 #include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/json_numbers.h"
@@ -17,11 +18,6 @@ namespace {
 
 using validate::BlindShare;
 
-std::string percent(const BlindShare& share) {
-  if (share.of == 0) return "–";
-  return fmt::format("{:.0f} % ({} of {})", 100.0 * share.share(), share.yes, share.of);
-}
-
 std::string percent_only(const BlindShare& share) {
   return share.of == 0 ? "–" : fmt::format("{:.0f} %", 100.0 * share.share());
 }
@@ -29,47 +25,6 @@ std::string percent_only(const BlindShare& share) {
 BlindShare of(const std::map<std::string, BlindShare>& shares, const std::string& key) {
   const auto found = shares.find(key);
   return found == shares.end() ? BlindShare{} : found->second;
-}
-
-BlindShare all_of(const std::map<std::string, BlindShare>& shares) {
-  BlindShare sum;
-  for (const auto& [key, share] : shares) {
-    sum.of += share.of;
-    sum.yes += share.yes;
-  }
-  return sum;
-}
-
-struct Target {
-  std::string what;
-  BlindShare share;
-  double wanted = 0.0;
-  bool at_most = false;
-};
-
-std::vector<Target> targets_of(const validate::BlindScore& score) {
-  const auto& single = score.methods.front().single;
-  return {{"one strong effect: named first", of(single, "strong"), 0.95, false},
-          {"one moderate effect: named first", of(single, "moderate"), 0.80, false},
-          {"one effect, moderate or strong: among those named",
-           {of(score.in_set, "strong").of + of(score.in_set, "moderate").of,
-            of(score.in_set, "strong").yes + of(score.in_set, "moderate").yes},
-           0.97,
-           false},
-          {"nothing: another verdict than none", score.false_alarm, 0.05, true},
-          {"outside the library, strong: unknown", of(score.recognised, "strong"), 0.85, false},
-          {"outside the library, all: unknown", all_of(score.recognised), 0.85, false},
-          {"outside the library: a name with probability over 0.8", score.wrong_name, 0.03, true},
-          {"two effects: both named", score.methods.front().pair, 0.75, false},
-          {"gap shrinks by 0.95 or more of what the true effect's own fit reaches", score.shrunk, 0.95, false}};
-}
-
-bool met(const Target& target) {
-  return target.at_most ? target.share.share() <= target.wanted : target.share.share() >= target.wanted;
-}
-
-std::string target_text(const Target& target) {
-  return fmt::format("{} {:.0f} %", target.at_most ? "at most" : "at least", 100.0 * target.wanted);
 }
 
 std::string said_text(const validate::ConfusionRow& row) {
@@ -205,11 +160,11 @@ std::string blind_json(const BlindRun& run) {
   document["cases"] = run.outcomes.size();
   document["failed"] = score.failed;
   document["targets"] = Json::array();
-  for (const Target& target : targets_of(score)) {
+  for (const BlindTarget& target : blind_targets(score)) {
     Json one = share_json(target.share);
     one["what"] = target.what;
     one[target.at_most ? "at_most" : "at_least"] = target.wanted;
-    if (target.share.of > 0) one["met"] = met(target);
+    if (target.share.of > 0) one["met"] = is_met(target);
     document["targets"].push_back(std::move(one));
   }
   put(document, "expected_calibration_error", score.calibration_error);
@@ -246,11 +201,11 @@ std::string blind_text(const BlindRun& run) {
   const validate::BlindScore& score = run.score;
   std::vector<std::vector<std::string>> rows = {
       {"of " + std::to_string(run.outcomes.size()) + " blind cases", "found", "wanted"}};
-  for (const Target& target : targets_of(score))
-    rows.push_back({target.what, percent(target.share), target_text(target)});
+  for (const BlindTarget& target : blind_targets(score))
+    rows.push_back({target.what, blind_percent(target.share), wanted_text(target)});
   rows.push_back({"expected calibration error", number_text(score.calibration_error, 2), "below 0.05"});
   for (const auto& [word, share] : score.left_out)
-    rows.push_back({"true effect left out of the list: " + word, percent(share), ""});
+    rows.push_back({"true effect left out of the list: " + word, blind_percent(share), ""});
   std::string text = text_table(rows, 1) + "\n";
   rows = {{"right", "none", "weak", "moderate", "strong", "two", "outside"}};
   for (const auto& method : score.methods) {
@@ -273,14 +228,15 @@ Page blind_page(const BlindRun& run) {
       "model with the diagnosis; each was diagnosed by another process that was given the experiment folder "
       "only.</p>\n",
       run.outcomes.size(), run.pictures ? ", rendered as clips" : " of tracks", run.seed);
+  body += blind_meaning(score);
   HtmlTable targets({"what", "found", "wanted"});
-  for (const Target& target : targets_of(score)) {
-    const std::string how = target.share.of == 0 ? "" : met(target) ? ": met" : ": missed";
-    targets.row({escape(target.what), percent(target.share), target_text(target) + how});
+  for (const BlindTarget& target : blind_targets(score)) {
+    const std::string how = target.share.of == 0 ? "" : is_met(target) ? ": met" : ": missed";
+    targets.row({escape(target.what), blind_percent(target.share), wanted_text(target) + how});
   }
   targets.row({"expected calibration error", number_text(score.calibration_error, 2),
-               score.calibration_error < 0.05 ? "below 0.05: met" : "below 0.05: missed"});
-  body += targets.str();
+               score.calibration_error < kWantedCalibration ? "below 0.05: met" : "below 0.05: missed"});
+  body += "<h2>Found and wanted</h2>\n" + targets.str();
   if (score.failed > 0) {
     body += fmt::format("<p class=\"note\">{} cases could not be diagnosed; they count as wrong.</p>\n", score.failed);
   }
@@ -288,7 +244,7 @@ Page blind_page(const BlindRun& run) {
   body += "<h2>Beside simpler ways of deciding</h2>\n" + methods_table(score);
   if (!score.left_out.empty()) {
     HtmlTable left({"verdict with the true effect taken from the list", "cases"});
-    for (const auto& [word, share] : score.left_out) left.row({escape(word), percent(share)});
+    for (const auto& [word, share] : score.left_out) left.row({escape(word), blind_percent(share)});
     body += "<h2>Leave one effect out</h2>\n" + left.str();
   }
   HtmlTable confusion({"truth", "named first (times)"}, 2);

@@ -35,8 +35,16 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     }
   }
   if (c.mu.estimate) {
-    text += fmt::format("{}Coulomb friction is µ = {}", text.empty() ? "" : "; ",
-                        value_and_sd_text(c.mu.estimate->value, c.mu.estimate->sd));
+    const double mu = c.mu.estimate->value, sd = c.mu.estimate->sd;
+    const std::string size = value_and_sd_text(mu, sd);
+    text += text.empty() ? "" : "; ";
+    if (mu > kBelowZero * sd) {
+      text += "Coulomb friction is µ = " + size;
+    } else if (mu < -kBelowZero * sd) {
+      text += fmt::format("µ comes out as {}, below zero", size);
+    } else {
+      text += fmt::format("no Coulomb friction can be told from zero (µ = {})", size);
+    }
   }
   if (c.v_lim_m_s.estimate) {
     text += fmt::format("{}its limit velocity is {} m/s", text.empty() ? "" : "; ",
@@ -44,6 +52,23 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
   }
   if (text.empty()) text = "the data determine neither drag nor friction; the table says why";
   return fmt::format("<li><b>{}:</b> {}.</li>\n", escape(configuration_name(results, c)), text);
+}
+
+/// The numbers alone, of a law that does not fit.
+std::string numbers_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
+  std::string text;
+  const auto add = [&](const core::Quantity& quantity, const QuantityName& name) {
+    if (!quantity.estimate) return;
+    const std::string unit =
+        name.unit.empty() || name.unit == "°" ? std::string(name.unit) : fmt::format(" {}", name.unit);
+    text += fmt::format("{}{} = {}{}", text.empty() ? "" : ", ", name.symbol,
+                        value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), unit);
+  };
+  add(c.k_over_m_1_s, kQuantities[0]);
+  add(c.mu, kQuantities[1]);
+  add(c.v_lim_m_s, kQuantities[3]);
+  if (text.empty()) return {};
+  return fmt::format("<li>{}: {}</li>\n", escape(configuration_name(results, c)), text);
 }
 
 /// The K of each mass, where it is the same for all within its errors, says that the drag does not depend on the load.
@@ -126,12 +151,25 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
 }
 
 std::string meaning_of(const core::AnalysisResults& results) {
-  std::string text = "<h2 id=\"meaning\">What this means</h2>\n<ul>\n";
-  for (const core::ConfigurationResult& configuration : results.configurations)
-    text += sentence_of(results, configuration);
-  text += "</ul>\n" + damping_sentence(results);
-  for (const std::string& doubt : doubts_about(results))
-    text += fmt::format("<p class=\"note\">{}</p>\n", escape(doubt));
+  std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
+  const std::vector<std::string> doubts = doubts_about(results);
+  if (doubts.empty()) {
+    text += "<ul>\n";
+    for (const core::ConfigurationResult& c : results.configurations) text += sentence_of(results, c);
+    text += "</ul>\n" + damping_sentence(results);
+  } else {
+    text += fmt::format("<p class=\"note\"><b>{}</b></p>\n<ul>\n", escape(doubts.back()));
+    for (std::size_t i = 0; i + 1 < doubts.size(); ++i) text += fmt::format("<li>{}</li>\n", escape(doubts[i]));
+    std::string numbers;
+    for (const core::ConfigurationResult& c : results.configurations) numbers += numbers_of(results, c);
+    text += "</ul>\n";
+    if (!numbers.empty()) {
+      text +=
+          "<p>What a fit of that law gives all the same, which need not be a property of the track or the glider:</p>"
+          "\n<ul class=\"soft\">\n" +
+          numbers + "</ul>\n";
+    }
+  }
   double worst = 1.0;
   for (const core::ConfigurationResult& configuration : results.configurations) {
     for (const core::LineFit& line : configuration.lines) worst = std::min(worst, line.r2);

@@ -9,7 +9,8 @@
 
 namespace glidelab::report {
 
-/// On the friction that was found: how large, how well a straight line describes it, what is not determined. HTML.
+/// On the friction that was found: how large, how well a straight line describes it, what is not determined. Where the
+/// law is in doubt that comes first, and the numbers are called no more than what a fit gives. HTML.
 std::string meaning_of(const core::AnalysisResults& results);
 
 /// What of the numbers the assumed law cannot mean, and what to do next: drag or friction below zero, points that lie
