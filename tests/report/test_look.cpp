@@ -51,7 +51,7 @@ bool says(const std::string& dom, const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("on a dark page plots are dark and photographs as they are; on a light one nothing is changed") {
+TEST_CASE("on a dark page plots are dark and photographs as they are, and a light one changes nothing") {
   const tests::TempDir temp;
   base::write_file(temp / "page.html", page_with("const filter = (e) => getComputedStyle(e).filter;\n"
                                                  "said.photo = filter(document.getElementById('photo'));\n"
