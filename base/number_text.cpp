@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace glidelab::base {
@@ -58,9 +59,18 @@ std::string error_text(double error, double sd) {
 }
 
 std::string gain_text(double gain) {
-  constexpr double kWithoutDecimals = 1e6;
+  constexpr double kDecimalsBelow = 1e3, kDigitsBelow = 1e6;
   if (!std::isfinite(gain)) return number_text(gain);
-  return std::abs(gain) < kWithoutDecimals ? fmt::format("{:+.1f}", gain) : fmt::format("{:+.3e}", gain);
+  if (std::abs(gain) < kDecimalsBelow) return fmt::format("{:+.1f}", gain);
+  if (std::abs(gain) < kDigitsBelow) return fmt::format("{:+.0f}", gain);
+  constexpr std::array<const char*, 10> kRaised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const std::string text = fmt::format("{:+.3e}", gain);
+  const std::size_t power = text.find('e');
+  std::string raised;
+  for (const char digit : std::to_string(std::stoi(text.substr(power + 1)))) {
+    raised += kRaised[static_cast<std::size_t>(digit - '0')];
+  }
+  return text.substr(0, power) + "·10" + raised;
 }
 
 std::string r2_text(double r2) {

@@ -22,7 +22,8 @@ std::string value_and_sd_text(double value, double sd);
 /// An error with its sign and the decimals of the sd: "+0.0031".
 std::string error_text(double error, double sd);
 
-/// A gain in log likelihood or evidence, with its sign: "+3.2", "-0.4", from a million on "+1.395e+12".
+/// A gain in log likelihood or evidence, with its sign: "+3.2", "-0.4", from a thousand on "+139521", from a million on
+/// "+1.395·10¹²".
 std::string gain_text(double gain);
 
 /// R² with enough decimals to tell it from 1: "0.99993".

@@ -6,13 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "report/effect_names.h"
 #include "report/gnuplot.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
 
-constexpr std::size_t kBars = 8;
+constexpr std::size_t kBars = 8, kFewestBars = 3;
+constexpr double kNoBar = 5e-4;        // a probability that is no bar to be seen
+constexpr std::size_t kLongName = 66;  // characters that a plot of bars has room for in its usual size of text
 constexpr std::size_t kCurves = 3;
 constexpr std::size_t kPoints = 800;  // of a clip
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -24,13 +27,15 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   for (const auto& ranked : diagnosis.ranking) bars.emplace_back(ranked.probability, ranked.id);
   std::stable_sort(bars.begin(), bars.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   if (bars.size() > kBars) bars.resize(kBars);
+  while (bars.size() > kFewestBars && bars.back().first < kNoBar) bars.pop_back();
   PlotData data{"bars", {}, {"row", "probability"}};
   std::string script(kFrame);
   script += "unset key\nunset ytics\nset border 1\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
     // The name stands above its bar: beside it, three effects in one name would leave the bars no room.
-    script +=
-        fmt::format("set label {} at 0, {} left\n", gnuplot_quoted(bars[i].second), 0.26 - static_cast<double>(i));
+    const std::string name = effect_name(bars[i].second);
+    script += fmt::format("set label {} at 0, {} left{}\n", gnuplot_quoted(name), 0.26 - static_cast<double>(i),
+                          name.size() > kLongName ? " font ',11'" : "");
     data.rows.push_back({-static_cast<double>(i), bars[i].first});
   }
   script += fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(bars.size()) + 0.5);
@@ -231,14 +236,14 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
     data.rows.emplace_back();
   }
   std::string script(kFrame);
-  script += "unset key\nunset grid\nset offsets 0,0,0,0\n" + chart_labels(isolability.ids);
+  script += "unset key\nunset grid\nset offsets 0,0,0,0\n" + chart_labels(effect_names(isolability.ids));
   script += "set xtics rotate by 90 right scale 0 noenhanced (";  // upright: slanting names of sixteen effects overlap
   for (std::size_t i = 0; i < n; ++i)
-    script += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(isolability.ids[i]), i);
+    script += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(effect_name(isolability.ids[i])), i);
   script += fmt::format(
       ")\nset xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
       "'#9ecae1', "
-      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.37\n"
+      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.40\n"
       "plot $cells using 1:2:3 with image pixels\n",
       static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {

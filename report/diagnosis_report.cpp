@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/diagnosis_plots.h"
+#include "report/effect_names.h"
 #include "report/gap_plots.h"
 #include "report/gap_text.h"
 #include "report/handy_units.h"
@@ -30,8 +33,9 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == "effect") {
     for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
       std::string names;
-      for (const diagnose::AlikeEffect& one : effect.alike) names += (names.empty() ? "one of " : ", ") + one.id;
-      text += tile(probability_text(effect.joint_probability), names.empty() ? effect.id : names);
+      for (const diagnose::AlikeEffect& one : effect.alike)
+        names += (names.empty() ? "one of: " : ", ") + effect_name(one.id);
+      text += tile(probability_text(effect.joint_probability), names.empty() ? effect_name(effect.id) : names);
     }
   } else {
     text += tile(diagnosis.verdict, "verdict");
@@ -53,20 +57,28 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
       size += size.empty() ? "" : "<br>";
       size += escape(parameter_text(p));
     }
-    for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
-    table.row({escape(effect.id), escape(effect.stage), probability_text(effect.probability), size.empty() ? "–" : size,
-               same.empty() ? "–" : same, same.empty() ? "–" : probability_text(effect.joint_probability)});
+    for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + effect_html(id);
+    table.row({effect_html(effect.id), escape(effect.stage), probability_text(effect.probability),
+               size.empty() ? "–" : size, same.empty() ? "–" : same,
+               same.empty() ? "–" : probability_text(effect.joint_probability)});
   }
   return table.empty() ? "" : table.str();
 }
 
 std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"explanation", "probability", "log evidence against nothing"});
-  table.row({"none", probability_text(diagnosis.none), "0"});
-  table.row({"unknown", probability_text(diagnosis.unknown), "–"});
+  HtmlTable table({"explanation", "probability", "ln of the evidence over nothing", "over the likeliest here"});
+  double likeliest = 0.0;  // huge gains that print alike are told apart by how far they are below the largest
+  for (const auto& ranked : diagnosis.ranking) {
+    if (ranked.left_out.empty()) likeliest = std::max(likeliest, ranked.log_evidence_gain);
+  }
+  table.row({effect_html("none"), probability_text(diagnosis.none), "0", gain_text(0.0 - likeliest)});
+  table.row({effect_html("unknown"), probability_text(diagnosis.unknown), "–", "–"});
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
     const auto& ranked = diagnosis.ranking[i];
-    table.row({escape(ranked.id), probability_text(ranked.probability), gain_text(ranked.log_evidence_gain)});
+    const bool weighed = ranked.left_out.empty();
+    table.row({effect_html(ranked.id), probability_text(ranked.probability),
+               weighed ? gain_text(ranked.log_evidence_gain) : "not weighed",
+               weighed ? gain_text(ranked.log_evidence_gain - likeliest) : "–"});
   }
   return table.str();
 }
@@ -125,7 +137,7 @@ std::string picture_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"looked for", "seen", "what the pictures show"}, 3);
   for (const bool seen : {true, false}) {
     for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
-      if (finding.seen == seen) table.row({escape(finding.id), seen ? "yes" : "no", escape(finding.words)});
+      if (finding.seen == seen) table.row({effect_html(finding.id), seen ? "yes" : "no", escape(finding.words)});
     }
   }
   return table.str();
@@ -159,7 +171,7 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
     if (effect.id != "rolling_shutter" && effect.id != "camera_motion") continue;
     text += fmt::format(
         "<p class=\"note\">{} acts in the twin's pictures only: here the data lie off by what it does.</p>\n",
-        escape(effect.id));
+        effect_html(effect.id));
   }
   return text + figures(twin_plots(twin));
 }

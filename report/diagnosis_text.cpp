@@ -53,7 +53,7 @@ std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
 
 std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   std::string text = fmt::format("verdict: {}\n\n{}\n", diagnosis.verdict, wrapped(diagnosis.summary));
-  std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "log evidence"}};
+  std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "ln evidence"}};
   rows.push_back({"none", fmt::format("{:.3f}", diagnosis.none), "0"});
   rows.push_back({"unknown", fmt::format("{:.3f}", diagnosis.unknown), ""});
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {

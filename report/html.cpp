@@ -44,6 +44,7 @@ table.name td:first-child { min-width: 13ch; }
 table.names td:first-child { min-width: 24ch; }  /* long names: few lines, and the table scrolls */
 td.n, th.n { text-align: right; }
 td.n, td.s { white-space: nowrap; }
+td.t { min-width: 22ch; }
 tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }
 td.why { white-space: normal; color: var(--soft); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 0.6rem; margin: 1rem 0; padding: 0; }
@@ -149,7 +150,8 @@ void HtmlTable::row(const std::vector<std::string>& cells) {
   rows_ += "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const bool kept = cells[i].find_first_of(" -") != std::string::npos && seen_length(cells[i]) <= kShort;
-    const char* kind = i >= first_number_ ? " class=\"n\"" : kept ? " class=\"s\"" : "";
+    const bool prose = i > 0 && seen_length(cells[i]) > kLong;
+    const char* kind = i >= first_number_ ? " class=\"n\"" : kept ? " class=\"s\"" : prose ? " class=\"t\"" : "";
     rows_ += fmt::format("<td{}>{}</td>", kind, cells[i]);
   }
   rows_ += "</tr>\n";

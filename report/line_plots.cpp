@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "report/effect_names.h"
 #include "report/gnuplot.h"
 #include "report/plot_style.h"
 
@@ -28,7 +29,7 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
       block.rows.push_back({across(curve.mass_kg[i], curve.k_over_m_1_s[i]), kMilli * curve.friction_m_s2[i]});
     }
     plots += fmt::format("{}${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", plots.empty() ? "" : ", ",
-                         block.name, data.size() + 1, color(data.size()), gnuplot_quoted(curve.id));
+                         block.name, data.size() + 1, color(data.size()), gnuplot_quoted(effect_name(curve.id)));
     data.push_back(std::move(block));
   }
   std::map<std::pair<double, int>, PlotData> groups;

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "report/diagnosis_plots.h"
+#include "report/effect_names.h"
 #include "report/gap_text.h"
 #include "report/line_plots.h"
 #include "report/number_text.h"
@@ -34,9 +35,11 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict != "effect") {
     text += tile(diagnosis.verdict, "verdict");
   } else if (!lines.either_of.empty()) {
-    text += tile(probability_text(lines.either_probability), "either of: " + joined(lines.either_of, ", "));
+    text +=
+        tile(probability_text(lines.either_probability), "either of: " + joined(effect_names(lines.either_of), ", "));
   } else {
-    for (const auto& effect : diagnosis.effects) text += tile(probability_text(effect.probability), effect.id);
+    for (const auto& effect : diagnosis.effects)
+      text += tile(probability_text(effect.probability), effect_name(effect.id));
   }
   text += tile(probability_text(diagnosis.none), "nothing is missing") +
           tile(probability_text(diagnosis.unknown), "something without a name");
@@ -96,14 +99,14 @@ std::string candidate_table(const diagnose::LineComparison& lines) {
   HtmlTable table(rows.front(), 2);
   for (std::size_t r = 1; r < rows.size(); ++r) {
     std::vector<std::string> cells;
-    for (const std::string& cell : rows[r]) cells.push_back(escape(cell));
+    for (const std::string& cell : rows[r]) cells.push_back(cells.empty() ? effect_html(cell) : escape(cell));
     table.row(cells);
   }
   std::string text = table.str();
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
     if (candidate.left_out.empty() || !candidate.words.empty()) continue;
-    text +=
-        fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", escape(candidate.id), escape(candidate.left_out));
+    text += fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", effect_html(candidate.id),
+                        escape(candidate.left_out));
   }
   return text;
 }
@@ -121,7 +124,7 @@ constexpr const char* kMethod =
 
 std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& lines) {
   std::vector<std::vector<std::string>> rows = {
-      {"explanation", "size", "probability", "chi²", "gap", "log likelihood", "log evidence"}};
+      {"explanation", "size", "probability", "chi²", "gap", "ln likelihood", "ln evidence"}};
   std::size_t unnamed = 0;
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
     if (!candidate.left_out.empty()) continue;

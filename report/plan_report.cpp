@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "report/diagnosis_plots.h"
+#include "report/effect_names.h"
 #include "report/handy_units.h"
 #include "report/html.h"
 #include "report/json_numbers.h"
@@ -99,7 +100,8 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
   HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    table.row({escape(effect.id), escape(effect.words), escape(seen_text(effect)), escape(joined(effect.alike))});
+    table.row({effect_html(effect.id), escape(effect.words), escape(seen_text(effect)),
+               escape(joined(effect_names(effect.alike)))});
   }
   body +=
       table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);

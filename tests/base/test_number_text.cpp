@@ -48,10 +48,12 @@ TEST_CASE("R² is never rounded up to 1") {
   CHECK(r2_text(0.5) == "0.50000");
 }
 
-TEST_CASE("a gain has its sign and one decimal, a huge one a power of ten") {
+TEST_CASE("a gain has its sign, one decimal below a thousand and a raised power of ten from a million on") {
   CHECK(gain_text(3.24) == "+3.2");
   CHECK(gain_text(-0.44) == "-0.4");
-  CHECK(gain_text(139520.6) == "+139520.6");
-  CHECK(gain_text(-1.3954e12) == "-1.395e+12");
+  CHECK(gain_text(999.94) == "+999.9");
+  CHECK(gain_text(139520.6) == "+139521");
+  CHECK(gain_text(-1.3954e12) == "-1.395·10¹²");
+  CHECK(gain_text(53249876.54321) == "+5.325·10⁷");
   CHECK(gain_text(std::nan("")) == "–");
 }

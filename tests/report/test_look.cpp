@@ -81,7 +81,8 @@ TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one l
                              "const range = document.createRange();\n"
                              "range.selectNodeContents(wide.querySelectorAll('td')[1]);\n"
                              "said.lines = range.getClientRects().length;\n"
-                             "said.spare = narrow.querySelector('td').clientWidth < 60;\n"));
+                             "said.spare = narrow.querySelector('td').clientWidth < 60;\n"
+                             "said.prose = wide.querySelectorAll('td')[2].clientWidth > 180;\n"));
   const auto dom =
       browser(temp.path(), {"--window-size=500,900", "--dump-dom", "file://" + (temp / "page.html").string()});
   if (!dom) {
@@ -92,6 +93,7 @@ TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one l
   CHECK(says(*dom, "page=\"true\""));
   CHECK(says(*dom, "shadow=\"true\""));
   CHECK(says(*dom, "lines=\"1\""));
+  CHECK(says(*dom, "prose=\"true\""));  // 22ch
   CHECK(says(*dom, "spare=\"true\""));  // 13ch are some 125 pixels
 }
 

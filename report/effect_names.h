@@ -1,0 +1,21 @@
+/// What effects are called for people, beside the ids that stand in files and options: one table, after the effects'
+/// own descriptions.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidelab::report {
+
+/// "drag by the speed squared + rolling shutter" of "quadratic_drag + rolling_shutter"; "none" and "unknown" are told
+/// in words too. What is the id of no effect (a cause without a name, in words already) stays as it is.
+std::string effect_name(std::string_view ids);
+
+/// effect_name() of each.
+std::vector<std::string> effect_names(const std::vector<std::string>& ids);
+
+/// The name, and the ids small beside it where it is another. HTML.
+std::string effect_html(std::string_view ids);
+
+}  // namespace glidelab::report
