@@ -34,12 +34,20 @@ install_missing() {
   [ "${#missing[@]}" -eq 0 ] || apt_install "${missing[@]}" || exit 3
 }
 
-# install_optional LIST…: says so where they cannot be had, and goes on.
+# install_optional LIST…: says so where they cannot be had, and goes on. One that apt does not have keeps no other out.
 install_optional() {
-  local missing
+  local missing package
   mapfile -t missing < <(missing_of "$@")
-  [ "${#missing[@]}" -eq 0 ] || apt_install "${missing[@]}" ||
+  [ "${#missing[@]}" -eq 0 ] || apt_install "${missing[@]}" || {
+    for package in "${missing[@]}"; do apt_install "$package" || true; done
+    mapfile -t missing < <(missing_of "$@")
     say "Not installed, so that tests which need them will be skipped: ${missing[*]}"
+  }
+}
+
+# skipped_in LOG: what tests of ctest's log say that they were skipped for, each once.
+skipped_in() {
+  grep -ho 'skipped: .*' "$1" | sort -u || true
 }
 
 # build PRESET [TARGET…]: configures and builds in build/PRESET.

@@ -204,7 +204,7 @@ TEST_CASE("a misspelt value of an option is answered with the one that was meant
 
 TEST_CASE("a terminal without colours gets none") {
   if (tests::run({"script", "--version"}).status != 0) {
-    WARN("skipped: no script(1) to make a terminal");
+    WARN("skipped: no script program");
     return;
   }
   const auto said = [](const std::string& settings) {
@@ -239,7 +239,7 @@ TEST_CASE("bash completes the words of an option, nothing for a number, and file
 
 TEST_CASE("zsh takes the completion at a terminal: the words of an option, and no error for a number") {
   if (tests::run({"zsh", "--version"}).status != 0) {
-    WARN("skipped: no zsh");
+    WARN("skipped: no zsh program");
     return;
   }
   const tests::TempDir temp;

@@ -129,6 +129,44 @@ TEST_CASE("no test's name holds a semicolon, at which CMake would cut it in two 
   CHECK(names > 100);
 }
 
+TEST_CASE("every program that a test is skipped without is in a package that tools/test installs") {
+  // Debian's package of each; script is of bsdutils, which every Debian has.
+  const std::map<std::string, std::string> package_of = {{"chromium", "chromium"},
+                                                         {"doxygen", "doxygen"},
+                                                         {"ffmpeg", "ffmpeg"},
+                                                         {"zsh", "zsh"},
+                                                         {"script", ""},
+                                                         {"pdftoppm", "poppler-utils"},
+                                                         {"pdftotext", "poppler-utils"},
+                                                         {"dpkg-deb", ""},
+                                                         {"cpack", "cmake"},
+                                                         {"dpkg-shlibdeps", "dpkg-dev"},
+                                                         {"file", "file"}};
+  std::string lists = "\n";
+  for (const char* list : {"packages.txt", "packages-test.txt", "packages-optional.txt"}) {
+    lists += base::read_file(fs::path(tests::kSourceDir) / "tools" / list) + "\n";
+  }
+  static const std::regex kSkipped(R"re(skipped: no ([^ "']+) program)re");
+  std::set<std::string> seen;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(tests::kSourceDir) / "tests")) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".cpp" && extension != ".txt" && extension != ".sh") continue;
+    const std::string text = base::read_file(entry.path());
+    for (auto match = std::sregex_iterator(text.begin(), text.end(), kSkipped); match != std::sregex_iterator();
+         ++match) {
+      const std::string program = (*match)[1];
+      if (program == "([^") continue;  // this very expression
+      INFO(entry.path().string() << ": " << program);
+      REQUIRE(package_of.contains(program));
+      const std::string& package = package_of.at(program);
+      CHECK((package.empty() || lists.find("\n" + package + "\n") != std::string::npos));
+      seen.insert(program);
+    }
+  }
+  CHECK(seen.contains("chromium"));
+  CHECK(seen.contains("doxygen"));
+}
+
 TEST_CASE("an include that the table does not allow is found") {
   const auto one = [](const char* path, const char* text) { return violations({{path, text}}); };
   CHECK(one("core/a.cpp", "#include \"sim/simulate.h\"\n") ==
