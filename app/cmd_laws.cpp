@@ -14,6 +14,7 @@
 #include "base/staged_output.h"
 #include "report/gnuplot.h"
 #include "report/laws_report.h"
+#include "validate/law_film.h"
 #include "validate/law_study.h"
 
 namespace glidelab::app {
@@ -52,8 +53,16 @@ void laws(const LawsOptions& options) {
   ProgressDisplay display(options.common.quiet, options.common.verbose);
   std::vector<validate::LawStudy> studies;
   for (const fs::path& file : files) studies.push_back(validate::study_law(file));
+  validate::LawFilmOptions filming;
+  filming.jobs = options.common.jobs;
+  std::vector<validate::LawFilm> films;
+  for (const fs::path& file : files) {
+    display.callback()("filming", static_cast<double>(films.size()) / static_cast<double>(files.size()));
+    films.push_back(validate::film_law(file, filming));
+    throw_if_interrupted();
+  }
   base::StagedOutput staged(out);
-  report::write_page(staged.dir(), "laws.html", report::laws_report(studies, display.callback()));
+  report::write_page(staged.dir(), "laws.html", report::laws_report(studies, films, display.callback()));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
@@ -66,7 +75,7 @@ void laws(const LawsOptions& options) {
 void add_laws(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<LawsOptions>();
   CLI::App* command =
-      app.add_subcommand("laws", "Make one page of laws of friction: animation, x(t) and a(v) with its equilibrium");
+      app.add_subcommand("laws", "Make one page of laws of friction: a film, x(t) and a(v) with its equilibrium");
   command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders with some (scenarios/laws)")
       ->type_name("PATH")
       ->required();

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "report/gnuplot.h"
 #include "report/html.h"
+#include "report/laws_motion.h"
 #include "report/number_text.h"
 #include "report/plot_style.h"
 
@@ -41,7 +43,7 @@ Plot phase_plot(const LawStudy& study) {
   std::string script = std::string(kFrame) +
                        "set key font ',11' maxrows 4 width -3\nset xlabel 'v (m/s)'\nset ylabel 'a (m/s²)'\n"
                        "set xzeroaxis lt 1 lc rgb '#777777'\nset yzeroaxis lt 1 lc rgb '#777777'\nplot ";
-  bool first = true;
+  bool first = true, stable_named = false, unstable_named = false;
   const auto add = [&](PlotData block, const std::string& how) {
     if (block.rows.empty()) return;
     script += fmt::format("{}${} using 1:2 {}", first ? "" : ", ", block.name, how);
@@ -66,147 +68,60 @@ Plot phase_plot(const LawStudy& study) {
       add(std::move(path), fmt::format("with lines lw 2.4 dt {} lc rgb '{}' title {}", m % 2 == 0 ? 1 : 2, color(m),
                                        gnuplot_quoted(motion.clip)));
     }
-    if (curve.equilibrium_m_s) {
-      add({fmt::format("rest{}", c), {{*curve.equilibrium_m_s, 0.0}}},
-          fmt::format("with points pt 7 ps 1 lc rgb '#000000' {}", c == 0 ? "title 'equilibrium'" : "notitle"));
+    for (const bool stable : {true, false}) {
+      PlotData points{fmt::format("{}{}", stable ? "stable" : "unstable", c), {}};
+      for (const validate::Equilibrium& at : curve.equilibria) {
+        if (at.stable == stable) points.rows.push_back({at.v_m_s, 0.0});
+      }
+      bool& named = stable ? stable_named : unstable_named;
+      const std::string title = named ? "notitle" : stable ? "title 'equilibrium'" : "title 'unstable equilibrium'";
+      named = named || !points.rows.empty();
+      add(std::move(points), fmt::format("with points pt {} ps 1.1 lw 1.6 lc rgb '#000000' {}", stable ? 7 : 6, title));
     }
   }
-  return {Drawing{script, data}, "Acceleration over velocity; the dot is where the motion tends to",
+  return {Drawing{script, data}, "Acceleration over velocity; dots are where motions tend to, circles where they part",
           "a(v) of " + study.name};
 }
-
-std::string numbers(const std::vector<double>& values) {
-  std::string text = "[";
-  for (std::size_t i = 0; i < values.size(); ++i) text += fmt::format("{}{:.5g}", i == 0 ? "" : ",", values[i]);
-  return text + "]";
-}
-
-/// The motions as the page's script reads them. Their names stand beside it as text of the page, so that no text of a
-/// file is in the script.
-std::string animation(const LawStudy& study) {
-  std::string data = fmt::format("{{\"rate\":{},\"motions\":[", validate::kFramesPerSecond);
-  for (std::size_t i = 0; i < study.motions.size(); ++i) {
-    const LawMotion& motion = study.motions[i];
-    double incline_deg = 0.0;
-    for (const LawCurve& curve : study.curves) {
-      if (std::find(curve.motions.begin(), curve.motions.end(), i) != curve.motions.end())
-        incline_deg = curve.incline_deg;
-    }
-    data += fmt::format("{}{{\"color\":\"{}\",\"incline\":{:.5g},\"x\":{},\"v\":{},\"a\":{}}}", i == 0 ? "" : ",",
-                        color(i), incline_deg, numbers(motion.x_m), numbers(motion.v_m_s), numbers(motion.a_m_s2));
-  }
-  std::string names;
-  for (const LawMotion& motion : study.motions) names += fmt::format("<li>{}</li>", escape(motion.clip));
-  return fmt::format(
-      "<figure class=\"law\"><canvas role=\"img\" aria-label=\"Gliders of {} on "
-      "their tracks\"></canvas><figcaption><button type=\"button\">Play</button> <span>the gliders on their "
-      "tracks (downhill to the right), and their points in a(v)</span><ul hidden>{}</ul></figcaption>"
-      "<script type=\"application/json\">{}]}}</script></figure>\n",
-      escape(study.name), names, data);
-}
-
-constexpr std::string_view kScript =
-    R"js(<style>figure.law{max-width:none} figure.law canvas{display:block;width:100%;background:#fff}
-figure.law button{font:inherit;padding:.15rem .8rem;cursor:pointer}</style>
-<script>
-for (const figure of document.querySelectorAll('figure.law')) {
-  const data = JSON.parse(figure.querySelector('script').textContent), motions = data.motions;
-  const names = [...figure.querySelectorAll('li')].map(item => item.textContent);
-  const canvas = figure.querySelector('canvas'), button = figure.querySelector('button'), c = canvas.getContext('2d');
-  const all = key => motions.flatMap(m => m[key]);
-  const span = (values, zero) => { let lo = Math.min(...values, ...zero), hi = Math.max(...values, ...zero), pad = (hi - lo || 1) * 0.08; return [lo - pad, hi + pad]; };
-  const X = span(all('x'), []), V = span(all('v'), [0]), A = span(all('a'), [0]);
-  const longest = Math.max(...motions.map(m => m.x.length)), row = 64, tracks = row * motions.length + 44, H = tracks + 270;
-  let W = 0, now = Math.floor(longest / 3);
-  const px = x => 24 + (W - 48) * (x - X[0]) / (X[1] - X[0]);
-  const pv = v => 52 + (W - 76) * (v - V[0]) / (V[1] - V[0]);
-  const pa = a => H - 34 - (H - tracks - 70) * (a - A[0]) / (A[1] - A[0]);
-  // Round values between the ends, `most` or fewer.
-  function ticks(range, most) {
-    const least = (range[1] - range[0]) / most, power = 10 ** Math.floor(Math.log10(least));
-    const step = power * [1, 2, 5, 10].find(d => d * power >= least), values = [];
-    for (let i = Math.ceil(range[0] / step); i * step <= range[1]; i++) values.push(i * step);
-    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    return values.map(value => [value, value.toFixed(digits).replace('-', '\u2212')]);
-  }
-  function text(words, x, y, align) { c.textAlign = align; c.fillText(words, x, y); }
-  function line(x0, y0, x1, y1, ink) { c.strokeStyle = ink; c.lineWidth = 1; c.beginPath(); c.moveTo(x0, y0); c.lineTo(x1, y1); c.stroke(); }
-  function draw(k) {
-    now = k;
-    c.clearRect(0, 0, W, H);
-    c.font = '13px sans-serif';
-    motions.forEach((m, i) => {
-      const y = row * i + 46, tilt = Math.max(-0.03, Math.min(0.03, m.incline * Math.PI / 180)), j = Math.min(k, m.x.length - 1);
-      c.fillStyle = '#333'; text(names[i], 24, row * i + 18, 'left');
-      c.save(); c.translate(W / 2, y); c.rotate(tilt);
-      c.fillStyle = '#c3cad1'; c.fillRect(16 - W / 2, 7, W - 32, 4);
-      c.fillStyle = m.color; c.fillRect(px(m.x[j]) - W / 2 - 18, -8, 36, 15);
-      c.fillStyle = '#fff'; c.strokeStyle = '#333'; c.beginPath(); c.arc(px(m.x[j]) - W / 2, -1, 4.5, 0, 7); c.fill(); c.stroke();
-      c.restore();
-    });
-    const few = Math.max(3, Math.floor(W / 110));
-    c.fillStyle = '#333';
-    for (const [x, words] of ticks(X, few)) { line(px(x), tracks - 34, px(x), tracks - 28, '#777'); text(words, px(x), tracks - 14, 'center'); }
-    text('x (m)', W - 8, tracks + 2, 'right'); text('t = ' + (Math.min(k, longest - 1) / data.rate).toFixed(2) + ' s', 24, tracks + 2, 'left');
-    for (const [v, words] of ticks(V, few)) { line(pv(v), pa(A[0]), pv(v), pa(A[1]), '#ddd'); text(words, pv(v), H - 14, 'center'); }
-    for (const [a, words] of ticks(A, 6)) { line(pv(V[0]), pa(a), pv(V[1]), pa(a), '#ddd'); text(words, pv(V[0]) - 6, pa(a) + 4, 'right'); }
-    line(pv(V[0]), pa(0), pv(V[1]), pa(0), '#777'); line(pv(0), pa(A[0]), pv(0), pa(A[1]), '#777');
-    text('v (m/s)', W - 8, H - 30, 'right'); text('a (m/s²)', pv(V[0]) + 6, pa(A[1]) - 6, 'left');
-    motions.forEach(m => {
-      const j = Math.min(k, m.x.length - 1);
-      c.strokeStyle = m.color; c.lineWidth = 2.5; c.beginPath();
-      for (let i = 0; i <= j; i++) {
-        const jump = i == 0 || (m.v[i] * m.v[i - 1] <= 0 && m.v[i - 1] != 0);
-        if (jump) c.moveTo(pv(m.v[i]), pa(m.a[i])); else c.lineTo(pv(m.v[i]), pa(m.a[i]));
-      }
-      c.stroke();
-      c.fillStyle = m.color; c.beginPath(); c.arc(pv(m.v[j]), pa(m.a[j]), 5.5, 0, 7); c.fill();
-    });
-  }
-  // As many pixels as the screen has, so that words keep their size on a telephone.
-  function fit() {
-    const ratio = window.devicePixelRatio || 1;
-    W = canvas.clientWidth;
-    canvas.style.height = H + 'px'; canvas.width = Math.round(W * ratio); canvas.height = Math.round(H * ratio);
-    c.setTransform(ratio, 0, 0, ratio, 0, 0);
-    draw(now);
-  }
-  let start = 0;
-  function step(time) {
-    if (!start) return;
-    const k = Math.floor((time - start) / 1000 * data.rate);
-    draw(k);
-    if (k < longest) requestAnimationFrame(step); else { start = 0; button.textContent = 'Play'; }
-  }
-  button.onclick = () => {
-    if (start) { start = 0; button.textContent = 'Play'; return; }
-    button.textContent = 'Stop'; start = performance.now(); requestAnimationFrame(step);
-  };
-  window.addEventListener('resize', fit);
-  fit();
-}
-</script>
-)js";
 
 std::string equilibrium_text(const LawStudy& study) {
   std::string text;
   for (const LawCurve& curve : study.curves) {
+    std::string ends;
+    for (const validate::Equilibrium& at : curve.equilibria) {
+      const std::string v = number_text(at.v_m_s, 4) + " m/s";
+      const std::string end = at.v_m_s != 0.0 ? (at.stable ? "tends to v_lim = " : "unstable at ") + v
+                              : !at.stable    ? "may rest, but does not come back to it"
+                              : at.stops      ? "comes to rest"
+                                              : "tends to rest";
+      ends += (ends.empty() ? "" : ", ") + end;
+    }
     text += fmt::format("{}{} ({:.3g}°): {}", text.empty() ? "" : "; ", escape(curve.configuration), curve.incline_deg,
-                        !curve.equilibrium_m_s ? "tends to no speed"
-                        : *curve.equilibrium_m_s == 0.0
-                            ? "comes to rest"
-                            : fmt::format("v_lim = {} m/s", number_text(*curve.equilibrium_m_s, 4)));
+                        ends.empty() ? "tends to no speed" : ends);
   }
   return text;
 }
 
 }  // namespace
 
-Page laws_report(const std::vector<LawStudy>& studies, const base::Progress& progress) {
+Page laws_report(const std::vector<LawStudy>& studies, const std::vector<validate::LawFilm>& films,
+                 const base::Progress& progress) {
+  if (films.size() != studies.size()) throw std::logic_error("not a film for each law");
   Html body =
       "<h1>Laws of friction in a(v)</h1>\n<p>How a glider moves under each law: launched up or down, let go from rest, "
-      "or "
-      "started above its limit. Every point is the program's own solution of the equation of motion.</p>\n<nav><ul>";
+      "or started above its limit. Every point is the program's own solution of the equation of motion; the films are "
+      "drawn by its renderer.</p>\n"
+      "<h2 id=\"meaning\">What this means</h2>\n<p>x(t) shows where a glider goes, a(v) which law moves it: "
+      "there every motion of one glider on one slope runs on the same curve, wherever it starts. A straight line "
+      "is linear viscous friction, a curved one another drag, a jump at v = 0 Coulomb friction. Where the curve falls "
+      "through a = 0 the glider tends to that speed, from both sides (dot); where it rises through it, the glider "
+      "leaves "
+      "that speed (circle). A viscous or quadratic drag alone never quite stops a glider; friction that does not "
+      "vanish "
+      "at v = 0 does.";
+  if (std::ranges::any_of(studies, [](const LawStudy& study) { return study.x_apart_m.has_value(); })) {
+    body += " A pair with almost the same x(t) shows why one should look at a(v).";
+  }
+  body += "</p>\n<nav><ul>";
   for (std::size_t i = 0; i < studies.size(); ++i) {
     body += fmt::format("<li><a href=\"#law{}\">{}</a></li>", i, escape(studies[i].name));
   }
@@ -222,9 +137,9 @@ Page laws_report(const std::vector<LawStudy>& studies, const base::Progress& pro
           "m/s².</p>\n",
           number_text(*study.x_apart_m * 1e3, 2), number_text(*study.a_apart_m_s2, 2));
     }
-    body += figures({position_plot(study), phase_plot(study)}) + animation(study);
+    body += figures({position_plot(study), phase_plot(study)}) + film_figure(study, films[i]);
   }
-  return page("Laws of friction", body + std::string(kScript));
+  return page("Laws of friction", body + std::string(kFilmScript));
 }
 
 }  // namespace glidelab::report

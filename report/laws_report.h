@@ -1,4 +1,4 @@
-/// The page of `laws`: each case with an animation, x(t), and a(v) with its equilibrium.
+/// The page of `laws`: each case with a film, x(t), and a(v) with its equilibrium.
 #pragma once
 
 #include <string>
@@ -6,11 +6,14 @@
 
 #include "base/progress.h"
 #include "report/html.h"
+#include "validate/law_film.h"
 #include "validate/law_study.h"
 
 namespace glidelab::report {
 
-/// One page that needs nothing but itself. EnvironmentError where gnuplot fails.
-Page laws_report(const std::vector<validate::LawStudy>& studies, const base::Progress& progress = base::no_progress);
+/// One page that needs nothing but itself. EnvironmentError where gnuplot fails; std::logic_error where there is not
+/// one film a study.
+Page laws_report(const std::vector<validate::LawStudy>& studies, const std::vector<validate::LawFilm>& films,
+                 const base::Progress& progress = base::no_progress);
 
 }  // namespace glidelab::report

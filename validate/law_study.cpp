@@ -49,6 +49,7 @@ LawCurve curve_of(const sim::ConfigurationSetup& configuration, double lowest, d
   LawCurve curve;
   curve.configuration = configuration.name;
   curve.incline_deg = configuration.body.incline_rad * 180.0 / std::numbers::pi;
+  if (const auto v_lim = sim::limit_speed_m_s(configuration.body)) highest = std::max(highest, 1.05 * *v_lim);
   // Denser near v = 0, where the laws differ.
   for (int i = 0; i <= kPoints; ++i) {
     const double part = static_cast<double>(i) / kPoints, dense = part * part;
@@ -62,11 +63,7 @@ LawCurve curve_of(const sim::ConfigurationSetup& configuration, double lowest, d
       curve.down_a_m_s2.push_back(acceleration(configuration.body, highest * dense, 1));
     }
   }
-  if (const auto v_lim = sim::limit_speed_m_s(configuration.body)) {
-    curve.equilibrium_m_s = v_lim;
-  } else if (sim::mode_at_rest(configuration.body) == sim::Mode::stick) {
-    curve.equilibrium_m_s = 0.0;
-  }
+  curve.equilibria = equilibria(configuration.body, lowest, highest);
   return curve;
 }
 

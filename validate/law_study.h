@@ -1,13 +1,15 @@
 /// The cases by which friction is taught: motions of a scenario, and the curve a(v) on which each of them runs.
 ///
-/// a(v) = (m g sin(alpha) + forces(v, sign v)) / m for v < 0 and v > 0 (the paper's figures 1 to 3); where the curve
-/// falls through zero is the equilibrium, and at v = 0 the glider stays if what holds it is more than what drives it.
+/// a(v) = (m g sin(alpha) + forces(v, sign v)) / m for v < 0 and v > 0 (the paper's figures 1 to 3), with its
+/// equilibria (validate/equilibria.h).
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "validate/equilibria.h"
 
 namespace glidelab::validate {
 
@@ -21,8 +23,8 @@ struct LawCurve {
   std::string configuration;
   double incline_deg = 0.0;
   std::vector<double> up_v_m_s, up_a_m_s2;      ///< v from the lowest of the motions to 0
-  std::vector<double> down_v_m_s, down_a_m_s2;  ///< v from 0 to the highest
-  std::optional<double> equilibrium_m_s;        ///< v_lim, or 0 where the glider comes to rest
+  std::vector<double> down_v_m_s, down_a_m_s2;  ///< v from 0 to the highest, or to v_lim if that is more
+  std::vector<Equilibrium> equilibria;          ///< on that piece of the curve, v rising
   std::vector<std::size_t> motions;             ///< on this curve
 };
 

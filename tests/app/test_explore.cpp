@@ -5,7 +5,7 @@
 
 #include "base/staged_output.h"
 #include "catch.h"
-#include "explorer_in_browser.h"
+#include "opened_page.h"
 #include "report/explorer_page.h"
 #include "run_process.h"
 #include "sim/closed_forms.h"

@@ -1,4 +1,6 @@
 /// The pages of require, coverage and laws: units, digits and names as a reader meets them.
+#include <algorithm>
+
 #include "catch.h"
 #include "report/coverage_report.h"
 #include "report/html.h"
@@ -110,12 +112,35 @@ TEST_CASE("coverage names what scatters farther than it states, and the naive li
   CHECK_FALSE(has(report::coverage_page("webcam", coverage).html, "scatter more than"));
 }
 
-TEST_CASE("the animation of laws has every motion's name as text, which steers nothing") {
+TEST_CASE("the films of laws have every motion's name as text, which steers nothing") {
   validate::LawStudy study;
   study.name = "viscous";
-  study.curves = {{"level", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, 0.0, {0}}};
+  study.curves = {{"level", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0}}, {0}}};
   study.motions = {{"</script><b>up", "level", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
-  const std::string page = report::laws_report({study}).html;
-  CHECK(has(page, "<li>&lt;/script&gt;&lt;b&gt;up</li>"));
+  validate::LawFilm film;
+  film.mp4 = "film";
+  film.frames = 26;
+  film.frame_rate_hz = 25.0;
+  const std::string page = report::laws_report({study}, {film}).html;
+  CHECK(has(page, "&lt;/script&gt;&lt;b&gt;up</li>"));
   CHECK_FALSE(has(page, "</script><b>up"));
+  CHECK(has(page, "src=\"data:video/mp4;base64,ZmlsbQ==\""));
+  CHECK(has(page, "1.0 s, in real time"));
+}
+
+TEST_CASE("the page of laws tells coming to rest from tending to it, and marks what is unstable as such") {
+  validate::LawStudy study;
+  study.name = "three";
+  study.curves = {{"viscous", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0, true, false}}, {}},
+                  {"coulomb", 0.0, {}, {}, {0.0, 1.0}, {-0.1, -0.1}, {{0.0, true, true}}, {}},
+                  {"stribeck", 2.0, {}, {}, {0.0, 1.0}, {-0.2, -0.1}, {{0.1805, false}, {0.4874, true}}, {}}};
+  study.motions = {{"down", "viscous", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
+  const report::Page page = report::laws_report({study}, {validate::LawFilm{}});
+  CHECK(has(page.html,
+            "viscous (0°): tends to rest; coulomb (0°): comes to rest; "
+            "stribeck (2°): unstable at 0.1805 m/s, tends to v_lim = 0.4874 m/s"));
+  const auto script = std::ranges::find_if(
+      page.files, [](const auto& file) { return file.first.ends_with(".gp") && has(file.first, "a-v"); });
+  REQUIRE(script != page.files.end());
+  CHECK(has(script->second, "title 'unstable equilibrium'"));
 }

@@ -1,4 +1,4 @@
-/// The explorer's page with more script at its end, opened in a browser without a window.
+/// A page, with more script at its end where that is wanted, opened in a browser without a window.
 #pragma once
 
 #include <fmt/format.h>
