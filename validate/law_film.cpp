@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <span>
 
 #include "base/staged_output.h"
 #include "base/temporary_folder.h"
 #include "render/clip_set.h"
 #include "render/ideal_frames.h"
 #include "render/scene.h"
+#include "sim/simulate.h"
 
 namespace glidelab::validate {
 namespace {
