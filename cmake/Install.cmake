@@ -22,7 +22,7 @@ install(FILES ${texts}/glidelab.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-c
 install(FILES ${texts}/_glidelab DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/glidelab)
 install(FILES README.md CHANGELOG.md CONVENTIONS.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/glidelab)
 foreach(room base sim core render diagnose validate report)

@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# usage: build_deb.sh BUILD-FOLDER SOURCE-FOLDER
+# Packs the build as a Debian package, reads what dpkg says of it, and runs the program from where it was unpacked.
+set -euo pipefail
+build=$1
+source=$2
+for program in cpack dpkg-deb dpkg-shlibdeps file; do
+  command -v "$program" > /dev/null || { echo "skipped: no $program program"; exit 77; }
+done
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "$*"; exit 1; }
+
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/packed" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+packages=("$work"/packed/*.deb)
+[ "${#packages[@]}" -eq 1 ] || fail "not one package: ${packages[*]}"
+deb=${packages[0]}
+
+# What apt reads: the build's own version, this machine's architecture, what the program is linked to and what it runs.
+version=$(sed -n 's/^set(CPACK_PACKAGE_VERSION "\(.*\)")/\1/p' "$build/CPackConfig.cmake")
+architecture=$(dpkg --print-architecture)
+field() { dpkg-deb --field "$deb" "$1"; }
+[ "$(field Package) $(field Version) $(field Architecture)" = "glidelab $version $architecture" ] ||
+  fail "the package says it is $(field Package) $(field Version) $(field Architecture)"
+[ "$(basename "$deb")" = "glidelab_${version}_$architecture.deb" ] || fail "named $(basename "$deb")"
+for needed in gnuplot libopencv-core libsundials libosmesa libc6; do
+  field Depends | grep -q "$needed" || fail "does not depend on $needed: $(field Depends)"
+done
+
+# Nothing that is not root's, that others may write, or that lies outside /usr.
+dpkg-deb --contents "$deb" > "$work/contents"
+awk '$2 != "root/root" || substr($1, 9, 1) == "w" && substr($1, 1, 1) != "l" || $6 !~ /^\.\/(usr\/.*)?$/' "$work/contents" > "$work/bad"
+[ ! -s "$work/bad" ] || { cat "$work/bad"; exit 1; }
+
+dpkg-deb --extract "$deb" "$work/root"
+usr=$work/root/usr
+for name in bin/glidelab share/man/man1/glidelab.1.gz share/bash-completion/completions/glidelab \
+            share/zsh/vendor-completions/_glidelab share/glidelab/scenarios/tutorial.toml share/doc/glidelab/README.md; do
+  [ -s "$usr/$name" ] || fail "not in the package: $name"
+done
+diff -r "$source/scenarios" "$usr/share/glidelab/scenarios" || fail "the scenarios are not those of the source"
+
+# Every file that a page of the documentation points to or shows lies where it says.
+while read -r page; do
+  while read -r target; do
+    [ -e "$(dirname "$page")/$target" ] || fail "${page#"$usr"/} points to $target, which is not in the package"
+  done < <(grep -o '](\([^)]*\))' "$page" | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*:' | grep . || true)
+done < <(find "$usr/share/doc/glidelab" -name '*.md')
+
+# From elsewhere, with nothing of the source or the build in sight.
+cd "$work"
+program=$usr/bin/glidelab
+"$program" --version > said
+grep -q "^glidelab $version" said || { cat said; fail "its --version is not $version"; }
+"$program" pattern -q -o sheets
+[ "$(head -c 5 sheets/chessboard.pdf)" = "%PDF-" ] || fail "no chessboard"
+"$program" simulate "$usr/share/glidelab/scenarios/tutorial.toml" -q -o simulated
+ls simulated/trajectory-*.csv > /dev/null
+gunzip -c "$usr/share/man/man1/glidelab.1.gz" | grep -q '^\.TH GLIDELAB 1' || fail "no manual page"
+completed=$(bash -c 'source "$1"; COMP_WORDS=(glidelab simul) COMP_CWORD=1; _glidelab; echo "${COMPREPLY[*]}"' - \
+            "$usr/share/bash-completion/completions/glidelab")
+[ "$completed" = simulate ] || fail "bash completes simul to $completed"
