@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "version_of_build.h"
@@ -40,6 +41,33 @@ std::string option_head(const CLI::Option& option) {
   return head;
 }
 
+/// What README's three readers are told to run; a test holds the two together.
+struct Example {
+  std::string_view reader;
+  std::vector<std::string_view> commands;
+};
+
+std::string examples() {
+  static const std::vector<Example> kExamples = {
+      {"I plan an experiment:",
+       {"glidelab require scenarios/studies/cameras.toml --target mu=0.0001 -o cameras",
+        "glidelab sweep scenarios/studies/one-camera.toml -o bandwidth",
+        "glidelab validate scenarios/rehearsals/raspberry-90.toml -o raspberry",
+        "glidelab diagnose --plan scenarios/rehearsals/raspberry-90.toml --noise-m 1.5e-5 -o plan"}},
+      {"I have recorded clips:",
+       {"glidelab pattern -o sheets", "glidelab new my-track", "glidelab check my-track", "glidelab analyze my-track",
+        "glidelab diagnose my-track"}},
+      {"I teach:", {"glidelab explore -o class", "glidelab laws scenarios/laws -o laws"}}};
+  std::string text =
+      ".SH EXAMPLES\nThe scenarios lie in the source's folder, and of what is installed in share/glidelab/scenarios.\n";
+  for (const Example& example : kExamples) {
+    text += fmt::format(".PP\n{}\n.PP\n.nf\n.RS 4\n", example.reader);
+    for (const std::string_view command : example.commands) text += roff(std::string(command)) + "\n";
+    text += ".RE\n.fi\n";
+  }
+  return text;
+}
+
 std::string options_of(const CLI::App& app) {
   std::string text;
   for (const CLI::Option* option : app.get_options()) {
@@ -66,6 +94,7 @@ std::string man_page(const CLI::App& app) {
     text += options_of(*command);
     if (!command->get_footer().empty()) text += ".PP\n" + roff(command->get_footer()) + "\n";
   }
+  text += examples();
   text +=
       ".SH EXIT STATUS\n"
       ".TP\n.B 0\ndone\n.TP\n.B 1\nthe input is wrong\n.TP\n.B 2\na wrong command line\n"

@@ -1,6 +1,7 @@
 /// What every command has in common: help, version, and the exit status of a wrong command line.
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "base/staged_output.h"
 #include "catch.h"
@@ -114,6 +115,41 @@ TEST_CASE("an input that is not there is status 1 and names the file, whatever t
     CHECK(result.err.find(name) != std::string::npos);
     CHECK(result.out.empty());
     CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
+  }
+}
+
+TEST_CASE("the manual page's examples are README's, of files that exist and options that the commands take") {
+  const auto lines_of = [](const std::string& text, const std::string& from, const std::string& to, bool roff) {
+    std::vector<std::string> found;
+    const std::size_t begin = text.find(from), end = text.find(to);
+    REQUIRE(begin < end);
+    REQUIRE(end != std::string::npos);
+    std::istringstream lines(text.substr(begin, end - begin));
+    for (std::string line; std::getline(lines, line);) {
+      if (roff) line = std::regex_replace(line, std::regex(R"(\\-)"), "-");
+      if (!line.starts_with(roff ? "glidelab " : "    glidelab ")) continue;
+      line = std::regex_replace(line, std::regex(R"(^ +| *#.*$)"), "");
+      found.push_back(line);
+    }
+    return found;
+  };
+  const std::filesystem::path source(tests::kSourceDir);
+  const std::vector<std::string> shown =
+      lines_of(tests::glidelab({"--man"}).out, ".SH EXAMPLES", ".SH EXIT STATUS", true);
+  CHECK(shown ==
+        lines_of(base::read_file(source / "README.md"), "## I plan an experiment", "## What to expect", false));
+  CHECK(shown.size() > 10);
+  for (const std::string& line : shown) {
+    std::istringstream words(line);
+    std::string word, command;
+    words >> word >> command;
+    const std::string help = tests::glidelab({command, "--help"}).out;
+    INFO(line);
+    CHECK_FALSE(help.empty());
+    while (words >> word) {
+      if (word.starts_with("-")) CHECK(help.find(word) != std::string::npos);
+      if (word.starts_with("scenarios/")) CHECK(std::filesystem::exists(source / word));
+    }
   }
 }
 
