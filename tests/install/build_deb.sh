@@ -4,9 +4,12 @@
 set -euo pipefail
 build=$1
 source=$2
-for program in cpack dpkg-deb dpkg-shlibdeps file; do
-  command -v "$program" > /dev/null || { echo "skipped: no $program program"; exit 77; }
-done
+has() { command -v "$1" > /dev/null; }
+skip() { echo "$1"; exit 77; }
+has cpack || skip "skipped: no cpack program"
+has dpkg-deb || skip "skipped: no dpkg-deb program"
+has dpkg-shlibdeps || skip "skipped: no dpkg-shlibdeps program"
+has file || skip "skipped: no file program"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "$*"; exit 1; }
