@@ -17,6 +17,7 @@ namespace {
 constexpr double kDistance = 3.0;      // m, of the camera
 constexpr double kBesideGlider = 0.1;  // m, that is seen beyond the outermost glider's middle
 constexpr double kAboveTrack = 0.06;   // m, above and below the line of motion: the glider, and the bar under it
+constexpr int kLeastHalf = 8;          // px of a row's height, where motions go so far that gliders are dots
 constexpr double kWhite =
     400.0;                     // code of white, so that the wall is of a middle grey; what is brighter than 255 is 255
 constexpr double kCrf = 26.0;  // of H.264; the picture stands still but for the gliders
@@ -41,7 +42,7 @@ render::Scenario before_camera(render::Scenario scenario, double farthest_m, int
   const double half_m = farthest_m * std::sin(steepest) + kAboveTrack;
   render::Camera camera;
   camera.width_px = width_px;
-  camera.height_px = 2 * static_cast<int>(std::ceil(focal_px * half_m / kDistance));
+  camera.height_px = 2 * std::max(kLeastHalf, static_cast<int>(std::ceil(focal_px * half_m / kDistance)));
   camera.focal_px = {focal_px, focal_px};
   camera.center_px = {0.5 * (camera.width_px - 1), 0.5 * (camera.height_px - 1)};
   camera.X_WC = render::look_at({0.0, 0.0, kDistance}, {0.0, 0.0, 0.0}, 0.0);
