@@ -145,6 +145,16 @@ std::string without_date(std::string pdf) {
   return pdf;
 }
 
+/// Quantities' Greek letters by their names, which file names can have.
+std::string spelt_out(std::string text) {
+  for (const auto& [letter, name] : {std::pair("µ", "mu"), std::pair("α", "alpha")}) {
+    for (std::size_t at = text.find(letter); at != std::string::npos; at = text.find(letter)) {
+      text.replace(at, std::string_view(letter).size(), name);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string gnuplot_quoted(std::string_view text) {
@@ -164,7 +174,7 @@ std::vector<std::string> plot_file_names(std::span<const Plot> plots) {
   std::vector<std::string> names;
   for (const Plot& plot : plots) {
     std::string name = fmt::format("{:02}-", names.size() + 1);
-    for (const char c : plot.description) {
+    for (const char c : spelt_out(plot.description)) {
       const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 0x80;
       if (plain) name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
       if (!plain && name.back() != '-') name += '-';

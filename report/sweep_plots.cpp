@@ -87,9 +87,10 @@ std::string error_axis(const std::vector<PlotData>& data) {
 }
 
 /// Columns: position, rms, sd, least sd, bias, two standard errors of it, coverage, two standard errors of it.
-std::vector<PlotData> data_of(const AxisSummary& axis, std::string_view quantity, std::vector<std::string>& titles) {
+std::vector<PlotData> data_of(const std::vector<Series>& all, std::string_view quantity,
+                              std::vector<std::string>& titles) {
   std::vector<PlotData> data;
-  for (const Series& series : axis.series) {
+  for (const Series& series : all) {
     if (series.quantity != quantity) continue;
     PlotData block{fmt::format("series{}", data.size()), {}};
     for (const validate::GroupStatistics& group : series.groups) {
@@ -108,53 +109,130 @@ std::vector<PlotData> data_of(const AxisSummary& axis, std::string_view quantity
   return data;
 }
 
-}  // namespace
+/// Where the lines of many rules stand in one plot, these by their rule alone, as the caption says.
+bool shorten(std::vector<std::string>& titles) {
+  constexpr std::size_t kMany = 5;
+  constexpr std::string_view kLines = "phase-diagram ";
+  if (titles.size() < kMany) return false;
+  bool any = false;
+  for (std::string& title : titles) {
+    if (!title.starts_with(kLines)) continue;
+    title.erase(0, kLines.size());
+    any = true;
+  }
+  return any;
+}
 
-std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity) {
+/// One axis' plots of one quantity: the legend, what is common to them, and how high they are.
+struct Frame {
+  std::vector<PlotData> data;
   std::vector<std::string> titles;
-  const std::vector<PlotData> data = data_of(axis, quantity, titles);
-  if (data.empty()) return {};
-  const std::string symbol = symbol_of(quantity), unit = unit_of(quantity);
-  std::string frame = std::string(kFrame) + "set key font ',11' maxcols 2 samplen 1\n" + x_axis(axis);
-  if (!axis.words && axis.logarithmic) frame += tics_of_values(data);
-  std::string errors = frame + fmt::format(
-                                   "set ylabel {}\nset logscale y\nset format y '%g'\nset offsets 0,0,0,0\n"
-                                   "{}plot ",
-                                   gnuplot_quoted(with_unit("error of " + symbol, unit)), error_axis(data));
-  std::string bias = frame + fmt::format("set ylabel {}\nset xzeroaxis lt 1 lc rgb '#555555'\nplot ",
-                                         gnuplot_quoted(with_unit("mean error of " + symbol, unit)));
-  std::string coverage = frame +
-                         "set ylabel 'coverage (%)'\nset offsets graph 0.02, graph 0.02, 0, 0\nset yrange [0:102]\n"
-                         "plot 95 with lines dt 3 lc rgb '#555555' title 'nominal'";
-  const std::string line = axis.words ? "points" : "linespoints";
+  std::string script;
+  std::string line;  ///< how values are joined
+  std::string note;  ///< for the caption
+  PlotSize size;
+};
+
+Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::string_view quantity) {
+  Frame frame;
+  frame.data = data_of(all, quantity, frame.titles);
+  if (frame.data.empty()) return frame;
+  if (shorten(frame.titles)) frame.note = "; what is named by a rule or h alone are lines of the phase diagram";
+  // gnuplot makes the legend's columns as wide as its longest text: some 7.5 points a letter at this size, and its
+  // sample.
+  std::size_t longest = std::string_view("stated sd (dashed)").size();
+  for (const std::string& title : frame.titles) longest = std::max(longest, title.size());
+  constexpr int kWidth = 480, kRow = 17, kEdge = 14;  // points
+  const int columns = std::max(1, static_cast<int>((kWidth - 20) / (7.5 * static_cast<double>(longest) + 50.0)));
+  const int rows = (static_cast<int>(frame.titles.size()) + 2 + columns - 1) / columns;
+  frame.size = {kWidth, (axis.words ? 400 : 290) + kRow * rows + kEdge};
+  frame.script = std::string(kFrame) + fmt::format("set key font ',11' maxcols {} samplen 1\n", columns) + x_axis(axis);
+  // gnuplot takes no room for a legend of many rows: it is left here.
+  frame.script += fmt::format("set tmargin at screen {:.4f}\n",
+                              1.0 - static_cast<double>(kRow * rows + kEdge) / static_cast<double>(frame.size.height));
+  if (!axis.words && axis.logarithmic) frame.script += tics_of_values(frame.data);
+  frame.line = axis.words ? "points" : "linespoints";
+  return frame;
+}
+
+/// Where colours come again: squares in place of discs.
+int shape_of(std::size_t i) {
+  return i < kColors.size() ? 7 : 5;
+}
+
+/// `of`: of which configuration; empty of all.
+Plot error_plot(const AxisSummary& axis, const std::vector<Series>& all, std::string_view quantity,
+                const std::string& of) {
+  const Frame frame = frame_of(axis, all, quantity);
+  const std::string symbol = symbol_of(quantity);
+  std::string script =
+      frame.script + fmt::format(
+                         "set ylabel {}\nset logscale y\nset format y '%g'\nset offsets 0,0,0,0\n"
+                         "{}plot ",
+                         gnuplot_quoted(with_unit("error of " + symbol, unit_of(quantity))), error_axis(frame.data));
   bool bound = false;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const std::string ink = color(i), title = gnuplot_quoted(titles[i]), comma = i == 0 ? "" : ", ";
-    const int shape = i < kColors.size() ? 7 : 5;  // where colours come again: squares in place of discs
-    errors += fmt::format(
+  for (std::size_t i = 0; i < frame.data.size(); ++i) {
+    script += fmt::format(
         "{0}${1} using 1:2 with {2} pt {6} ps 0.5 lw 1.6 lc rgb '{3}' title {4}, "
         "${1} using 1:3 with {2} pt 6 ps 0.5 dt 2 lc rgb '{3}' {5}",
-        comma, data[i].name, line, ink, title, i == 0 ? "title 'stated sd (dashed)'" : "notitle", shape);
-    bias += fmt::format(
-        "{0}${1} using 1:5 with {2} pt {5} ps 0.5 lc rgb '{3}' title {4}, "
-        "${1} using 1:5:6 with yerrorbars pt {5} ps 0.3 lc rgb '{3}' notitle",
-        comma, data[i].name, line, ink, title, shape);
-    coverage += fmt::format(", ${0} using 1:7:8 with yerrorbars pt {3} ps 0.5 lc rgb '{1}' title {2}", data[i].name,
-                            ink, title, shape);
-    for (const auto& row : data[i].rows) bound = bound || std::isfinite(row[3]);
+        i == 0 ? "" : ", ", frame.data[i].name, frame.line, color(i), gnuplot_quoted(frame.titles[i]),
+        i == 0 ? "title 'stated sd (dashed)'" : "notitle", shape_of(i));
+    for (const auto& row : frame.data[i].rows) bound = bound || std::isfinite(row[3]);
   }
   if (bound) {
-    errors += fmt::format(", ${} using 1:4 with {} pt 2 ps 0.6 dt 3 lc rgb '#000000' title 'least possible sd'",
-                          data[0].name, line);
+    script += fmt::format(", ${} using 1:4 with {} pt 2 ps 0.6 dt 3 lc rgb '#000000' title 'least possible sd'",
+                          frame.data[0].name, frame.line);
   }
-  const int legend = 14 * static_cast<int>((data.size() + 2) / 2);
-  const PlotSize size{480, (axis.words ? 420 : 310) + legend};
-  const std::string over = fmt::format("{} over {}", symbol, axis.name);
-  return {{Drawing{errors, data, size}, "Root mean square error (solid) and stated standard deviation (dashed)",
-           "Error and standard deviation of " + over},
-          {Drawing{bias, data, size}, "Mean error with two standard errors", "Bias of " + over},
-          {Drawing{coverage, data, size}, "Coverage of the stated intervals, with two standard errors",
-           "Coverage of " + over}};
+  const std::string only = of.empty() ? "" : ", " + of;
+  return {Drawing{script, frame.data, frame.size},
+          "Root mean square error (solid) and stated standard deviation (dashed)" + only + frame.note,
+          fmt::format("Error and standard deviation of {} over {}{}", symbol, axis.name, only)};
+}
+
+Plot bias_plot(const AxisSummary& axis, const Frame& frame, std::string_view quantity) {
+  const std::string symbol = symbol_of(quantity);
+  std::string script =
+      frame.script + fmt::format("set ylabel {}\nset xzeroaxis lt 1 lc rgb '#555555'\nplot ",
+                                 gnuplot_quoted(with_unit("mean error of " + symbol, unit_of(quantity))));
+  for (std::size_t i = 0; i < frame.data.size(); ++i) {
+    script += fmt::format(
+        "{0}${1} using 1:5 with {2} pt {5} ps 0.5 lc rgb '{3}' title {4}, "
+        "${1} using 1:5:6 with yerrorbars pt {5} ps 0.3 lc rgb '{3}' notitle",
+        i == 0 ? "" : ", ", frame.data[i].name, frame.line, color(i), gnuplot_quoted(frame.titles[i]), shape_of(i));
+  }
+  return {Drawing{script, frame.data, frame.size}, "Mean error with two standard errors" + frame.note,
+          fmt::format("Bias of {} over {}", symbol, axis.name)};
+}
+
+Plot coverage_plot(const AxisSummary& axis, const Frame& frame, std::string_view quantity) {
+  std::string script = frame.script +
+                       "set ylabel 'coverage (%)'\nset offsets graph 0.02, graph 0.02, 0, 0\nset yrange [0:102]\n"
+                       "plot 95 with lines dt 3 lc rgb '#555555' title 'nominal'";
+  for (std::size_t i = 0; i < frame.data.size(); ++i) {
+    script += fmt::format(", ${0} using 1:7:8 with yerrorbars pt {3} ps 0.5 lc rgb '{1}' title {2}", frame.data[i].name,
+                          color(i), gnuplot_quoted(frame.titles[i]), shape_of(i));
+  }
+  return {Drawing{script, frame.data, frame.size},
+          "Coverage of the stated intervals, with two standard errors" + frame.note,
+          fmt::format("Coverage of {} over {}", symbol_of(quantity), axis.name)};
+}
+
+}  // namespace
+
+std::vector<Plot> sweep_plots(const AxisSummary& axis, std::string_view quantity,
+                              std::span<const validate::ConfigurationSummary> configurations) {
+  const Frame frame = frame_of(axis, axis.series, quantity);
+  if (frame.data.empty()) return {};
+  std::vector<Plot> plots;
+  for (std::size_t c = 0; c < axis.of_configurations.size(); ++c) {
+    std::vector<std::string> titles;
+    if (data_of(axis.of_configurations[c], quantity, titles).empty()) continue;
+    plots.push_back(error_plot(axis, axis.of_configurations[c], quantity, configurations[c].name));
+  }
+  if (plots.empty()) plots.push_back(error_plot(axis, axis.series, quantity, {}));
+  plots.push_back(bias_plot(axis, frame, quantity));
+  plots.push_back(coverage_plot(axis, frame, quantity));
+  return plots;
 }
 
 }  // namespace glidelab::report

@@ -1,6 +1,7 @@
 /// Plots of a sweep: of one quantity over one varied key.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -9,8 +10,9 @@
 
 namespace glidelab::report {
 
-/// Three plots: rms error with stated sd and bound; bias with its standard error; coverage. Empty where no run has an
-/// answer.
-std::vector<Plot> sweep_plots(const validate::AxisSummary& axis, std::string_view quantity);
+/// Rms error with stated sd and bound, of each configuration where the axis has them apart (`configurations` of the
+/// same summary), else of all; bias with its standard error; coverage. Empty where no run has an answer.
+std::vector<Plot> sweep_plots(const validate::AxisSummary& axis, std::string_view quantity,
+                              std::span<const validate::ConfigurationSummary> configurations = {});
 
 }  // namespace glidelab::report

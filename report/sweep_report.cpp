@@ -6,9 +6,11 @@
 
 #include "report/html.h"
 #include "report/json_numbers.h"
+#include "report/mass_study_report.h"
 #include "report/number_text.h"
 #include "report/quantity_names.h"
 #include "report/sweep_advice.h"
+#include "report/sweep_meaning.h"
 #include "report/sweep_plots.h"
 #include "report/text_table.h"
 
@@ -32,15 +34,31 @@ std::string name_of(const std::string& quantity) {
   return symbol_of(quantity) + (unit.empty() ? "" : fmt::format(" ({})", unit));
 }
 
-std::string overall_table(const SweepSummary& summary) {
-  HtmlTable table({"quantity", "estimator", "answers", "mean error", "rms error", "stated sd", "least sd", "coverage"},
-                  2);
-  for (const validate::Series& series : summary.overall) {
+void add_rows(HtmlTable& table, const std::vector<validate::Series>& overall) {
+  for (const validate::Series& series : overall) {
     std::vector<std::string> row = {escape(name_of(series.quantity)), escape(series.estimator)};
     for (std::string& cell : cells_of(series.groups.front().statistics)) row.push_back(std::move(cell));
     table.row(row);
   }
+}
+
+const std::vector<std::string> kHeader = {"quantity",  "estimator", "answers",  "mean error",
+                                          "rms error", "stated sd", "least sd", "coverage"};
+
+std::string overall_table(const SweepSummary& summary) {
+  HtmlTable table(kHeader, 2);
+  add_rows(table, summary.overall);
   return table.str();
+}
+
+std::string configuration_table(const SweepSummary& summary) {
+  if (summary.configurations.empty()) return {};
+  HtmlTable table(kHeader, 2);
+  for (const validate::ConfigurationSummary& of : summary.configurations) {
+    table.heading(escape(of.name));
+    add_rows(table, of.overall);
+  }
+  return "<h2 id=\"configurations\">Each configuration</h2>\n" + table.str();
 }
 
 std::string acceleration_table(const SweepSummary& summary) {
@@ -94,20 +112,21 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       number_text(summary.cpu_s, 3));
   for (const std::string& failure : summary.failures)
     body += fmt::format("<p class=\"note\">{}</p>\n", escape(failure));
+  body += sweep_meaning(summary) + mass_study_section(summary.masses);
   body += "<h2>All runs</h2>\n" + overall_table(summary);
   body +=
       "<p class=\"soft\">Stated sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares "
       "over "
       "the "
       "runs; coverage is the part of the stated 95 % intervals that hold the truth.</p>\n";
-  body += sweep_advice(summary);
+  body += sweep_advice(summary) + configuration_table(summary);
   body += acceleration_table(summary);
   double done = 0.0;
   for (const validate::AxisSummary& axis : summary.axes) {
     body += fmt::format("<h2>Over {}</h2>\n", escape(axis.name));
     for (const QuantityName& quantity : kQuantities) {
       progress("drawing", done++ / static_cast<double>(summary.axes.size() * kQuantities.size()));
-      const std::vector<Plot> plots = sweep_plots(axis, quantity.key);
+      const std::vector<Plot> plots = sweep_plots(axis, quantity.key, summary.configurations);
       if (plots.empty()) continue;
       body += fmt::format("<h3>{}</h3>\n", escape(name_of(std::string(quantity.key)))) + figures(plots);
     }
@@ -142,6 +161,16 @@ std::string sweep_json(const SweepSummary& summary) {
     object["quantity"] = series.quantity;
     object["estimator"] = series.estimator;
     document["overall"].push_back(std::move(object));
+  }
+  document["configurations"] = Json::array();
+  for (const validate::ConfigurationSummary& of : summary.configurations) {
+    for (const validate::Series& series : of.overall) {
+      Json object = statistics_json(series.groups.front().statistics);
+      object["configuration"] = of.name;
+      object["quantity"] = series.quantity;
+      object["estimator"] = series.estimator;
+      document["configurations"].push_back(std::move(object));
+    }
   }
   document["accelerations"] = Json::array();
   for (const validate::AccelerationError& of : summary.accelerations) {

@@ -69,6 +69,15 @@ struct Analysis {
   std::string name() const;                 ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
 };
 
+/// What was published of a quantity that falls with mass: mu of the lightest and the heaviest glider on one track, and
+/// the least R² of the lines that it is from.
+struct PublishedFall {
+  std::string configuration;
+  double mu_lightest = 0.0, mu_heaviest = 0.0;
+  double r2 = 0.0;
+  std::string source;
+};
+
 struct Sweep {
   std::filesystem::path file;
   std::string text;  ///< of the file
@@ -84,6 +93,7 @@ struct Sweep {
   std::optional<double> field_m;  ///< width of the plane that the picture shall show: sets the camera's distance
   std::vector<Axis> axes;
   std::vector<Analysis> analyses;
+  std::vector<PublishedFall> published_falls = {};  ///< to lay beside (validate/mass_study.h)
   /// Texts of the cameras that occur (the scenario's own, or those of an axis), as part of what the sweep is.
   std::vector<std::string> camera_files;
 };

@@ -119,6 +119,15 @@ Sweep read_sweep(const std::filesystem::path& path) {
     sweep.axes.push_back(read_axis(table, sweep.design, path.parent_path()));
   }
   check_names(root, sweep);
+  for (const TomlTable& table : root.tables_or_none("published_fall")) {
+    sweep.published_falls.push_back({table.text("configuration"), table.number("mu_lightest"),
+                                     table.number("mu_heaviest"), table.number("r2", base::between_open(0.0, 1.0)),
+                                     table.text("source")});
+    const PublishedFall& fall = sweep.published_falls.back();
+    if (fall.mu_heaviest >= fall.mu_lightest) {
+      table.reject("mu_heaviest", fmt::format("{}", fall.mu_heaviest), "less than mu_lightest");
+    }
+  }
   const bool noise_varies = check_noise(root, sweep);
   if (const auto tracks = root.maybe_table("tracks")) {
     sweep.noise_m = tracks->number("noise_m", base::at_least(0.0));

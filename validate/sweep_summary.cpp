@@ -58,15 +58,17 @@ double middle_of_bin(const Grouping& grouping, double bin) {
                               : grouping.from + (grouping.to - grouping.from) * part;
 }
 
-/// The groups come in rising order of the expression.
-std::vector<Series> series_of(Database& database, const Grouping& grouping, std::vector<std::string>& words) {
-  SqlStatement select = database.prepare(
-      fmt::format("SELECT s.quantity, s.estimator, {} AS g, count(*), count(s.value), avg(s.value - s.truth), "
-                  "avg((s.value - s.truth) * (s.value - s.truth)), avg(s.sd * s.sd), avg(s.least_sd * s.least_sd), "
-                  "avg(CASE WHEN s.low95 IS NULL THEN NULL ELSE s.truth >= s.low95 AND s.truth <= s.high95 END) "
-                  "FROM result s JOIN run r ON r.run = s.run WHERE s.truth IS NOT NULL "
-                  "GROUP BY s.quantity, s.estimator, g ORDER BY s.quantity, s.estimator, g",
-                  grouping.expression));
+/// The groups come in rising order of the expression. Of all configurations, where none is named.
+std::vector<Series> series_of(Database& database, const Grouping& grouping, std::vector<std::string>& words,
+                              const std::string& configuration = {}) {
+  SqlStatement select = database.prepare(fmt::format(
+      "SELECT s.quantity, s.estimator, {} AS g, count(*), count(s.value), avg(s.value - s.truth), "
+      "avg((s.value - s.truth) * (s.value - s.truth)), avg(s.sd * s.sd), avg(s.least_sd * s.least_sd), "
+      "avg(CASE WHEN s.low95 IS NULL THEN NULL ELSE s.truth >= s.low95 AND s.truth <= s.high95 END) "
+      "FROM result s JOIN run r ON r.run = s.run WHERE s.truth IS NOT NULL AND (?1 = '' OR s.configuration = ?1) "
+      "GROUP BY s.quantity, s.estimator, g ORDER BY s.quantity, s.estimator, g",
+      grouping.expression));
+  select.bind(1, std::string_view(configuration));
   std::vector<Series> all;
   while (select.step()) {
     const std::string quantity = select.text(0), estimator = select.text(1);
@@ -157,6 +159,10 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
   summary.cpu_s = timing.number(0);
   std::vector<std::string> no_words;
   summary.overall = series_of(database, {}, no_words);
+  SqlStatement names = database.prepare("SELECT DISTINCT configuration FROM result ORDER BY configuration");
+  while (names.step()) summary.configurations.push_back({names.text(0), {}});
+  if (summary.configurations.size() == 1) summary.configurations.clear();
+  for (ConfigurationSummary& of : summary.configurations) of.overall = series_of(database, {}, no_words, of.name);
   for (const Axis& axis : sweep.axes) {
     const Grouping grouping = grouping_of(axis, database);
     AxisSummary of_axis;
@@ -164,12 +170,18 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
     of_axis.words = grouping.words;
     of_axis.logarithmic = grouping.logarithmic;
     of_axis.series = series_of(database, grouping, of_axis.labels);
+    if (summary.configurations.size() <= kMostSplit) {
+      for (const ConfigurationSummary& of : summary.configurations) {
+        of_axis.of_configurations.push_back(series_of(database, grouping, of_axis.labels, of.name));
+      }
+    }
     SqlStatement unit = database.prepare("SELECT unit FROM \"schema\" WHERE \"table\" = 'run' AND \"column\" = ?1");
     unit.bind(1, std::string_view(axis.name));
     if (unit.step()) of_axis.unit = unit.text(0);
     summary.axes.push_back(std::move(of_axis));
   }
   summary.accelerations = accelerations_of(database);
+  summary.masses = study_masses(sweep, database);
   return summary;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "validate/mass_study.h"
 #include "validate/sweep.h"
 #include "validate/sweep_database.h"
 
@@ -36,7 +37,8 @@ struct Series {
   std::vector<GroupStatistics> groups;
 };
 
-/// Over the values of one axis, all others mixed.
+/// Over the values of one axis, all others mixed. Plots by configuration are readable of this many.
+inline constexpr std::size_t kMostSplit = 4;
 struct AxisSummary {
   std::string name;
   std::string unit;
@@ -44,6 +46,14 @@ struct AxisSummary {
   bool logarithmic = false;         ///< better plotted so
   std::vector<std::string> labels;  ///< of words
   std::vector<Series> series;
+  /// As SweepSummary::configurations has them, where there are at most kMostSplit; else empty.
+  std::vector<std::vector<Series>> of_configurations = {};
+};
+
+/// One configuration of the scenario: the same over its runs alone.
+struct ConfigurationSummary {
+  std::string name;
+  std::vector<Series> overall;  ///< each of one group
 };
 
 /// How far from the truth one method's a(t) is: root mean squares over a clip's points that count, clip by clip beside
@@ -58,11 +68,13 @@ struct AccelerationError {
 struct SweepSummary {
   std::string name;
   std::uint64_t runs = 0, planned = 0, failed = 0;
-  std::vector<std::string> failures;  ///< the commonest reasons, with how often
-  double cpu_s = 0.0;                 ///< wall time of all runs on their threads
-  std::vector<Series> overall;        ///< each of one group
+  std::vector<std::string> failures;                 ///< the commonest reasons, with how often
+  double cpu_s = 0.0;                                ///< wall time of all runs on their threads
+  std::vector<Series> overall;                       ///< each of one group
+  std::vector<ConfigurationSummary> configurations;  ///< by their names; empty where the scenario has one
   std::vector<AxisSummary> axes;
   std::vector<AccelerationError> accelerations;
+  MassStudy masses;
 };
 
 SweepSummary summarize(const Sweep& sweep, Database& database);

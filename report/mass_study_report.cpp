@@ -1,0 +1,80 @@
+#include "report/mass_study_report.h"
+
+#include <fmt/format.h>
+
+#include "report/html.h"
+#include "report/number_text.h"
+
+namespace glidelab::report {
+namespace {
+
+using base::r2_text;
+using validate::FallAnswer;
+using validate::MassRow;
+
+std::string fall_text(double fall, double se) {
+  return se > 0.0 ? value_and_sd_text(fall, se) : number_text(fall, 2);
+}
+
+std::string answer_text(const FallAnswer& answer) {
+  const double published = answer.published.mu_lightest - answer.published.mu_heaviest;
+  const MassRow& widest = answer.widest;
+  std::string text =
+      fmt::format("<p><b>{}{}:</b> {} has a fall of µ from {} to {}, by {}. ", escape(answer.published.configuration),
+                  answer.others.empty() ? "" : ", " + escape(answer.others), escape(answer.published.source),
+                  number_text(answer.published.mu_lightest, 4), number_text(answer.published.mu_heaviest, 4),
+                  number_text(published, 2));
+  if (answer.whole) {
+    text += fmt::format("Smoothing alone makes all of it with h = {} s, and its lines then have R² = {}. ",
+                        number_text(answer.whole->bandwidth_s, 2), r2_text(answer.whole->r2));
+  } else {
+    text += fmt::format("No bandwidth that was run makes that: h = {} s makes {}, with R² = {}. ",
+                        number_text(widest.bandwidth_s, 2), fall_text(widest.fall(), widest.fall_se()),
+                        r2_text(widest.r2()));
+  }
+  if (answer.at_r2) {
+    text += fmt::format("With the published R² of {} it can make {}, {:.0f} % of the fall, at h = {} s.",
+                        r2_text(answer.published.r2), fall_text(answer.at_r2->fall, answer.at_r2->fall_se),
+                        100.0 * answer.at_r2->fall / published, number_text(answer.at_r2->bandwidth_s, 2));
+  } else {
+    text += fmt::format("No bandwidth that was run has the published R² of {}: {}.", r2_text(answer.published.r2),
+                        widest.r2() < answer.published.r2 ? "all of these lines are worse" : "all are better");
+  }
+  return text + "</p>\n";
+}
+
+}  // namespace
+
+std::string mass_study_section(const validate::MassStudy& study) {
+  if (study.rows.empty()) return {};
+  std::string html = "<h2 id=\"masses\">Does µ fall with mass, or does smoothing make it?</h2>\n";
+  for (const FallAnswer& answer : study.answers) html += answer_text(answer);
+  std::vector<std::string> header = {"bandwidth h (s)"};
+  for (const validate::MassPoint& point : study.rows.front().masses) {
+    header.push_back(fmt::format("µ of {} kg", number_text(point.mass_kg, 4)));
+  }
+  header.insert(header.end(), {"its fall", "least R²"});
+  HtmlTable table(header, 1);
+  std::string before;
+  for (const MassRow& row : study.rows) {
+    if (row.masses.size() + 3 != header.size()) continue;  // a mass without an answer at this bandwidth
+    const std::string of = fmt::format("{}{}: true µ {} for every mass", row.configuration,
+                                       row.others.empty() ? "" : ", " + row.others, number_text(row.truth, 4));
+    if (of != before) table.heading(escape(of));
+    before = of;
+    std::vector<std::string> cells = {number_text(row.bandwidth_s, 4)};
+    for (const validate::MassPoint& point : row.masses) {
+      cells.push_back(point.se > 0.0 ? value_and_sd_text(point.mu, point.se) : number_text(point.mu, 4));
+    }
+    cells.insert(cells.end(), {fall_text(row.fall(), row.fall_se()), r2_text(row.r2())});
+    table.row(cells);
+  }
+  return html + table.str() +
+         "<p class=\"soft\">Lines through every smoothed point, kernels over ends and reversals included. The fall is "
+         "µ of the lightest glider less that of the heaviest; ± is one standard error over the runs, and missing where "
+         "the positions are exact, for then nothing is chance. R² is the least of a run's lines, the mean over its "
+         "runs. Between two bandwidths that were run the fall and the logarithm of 1 - R² are taken to lie on "
+         "straight lines.</p>\n";
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,16 @@
+/// What a sweep comes to, in a short paragraph at the head of its page.
+#pragma once
+
+#include <string>
+
+#include "validate/sweep_summary.h"
+
+namespace glidelab::report {
+
+/// HTML. Who has the least rms error of each quantity (of those that answer in kAnswers of the most often answered
+/// runs, sweep_advice.h), how it changes along each key and from one configuration to the other, and whose 95 %
+/// intervals do not hold the truth as often: by more than three binomial standard errors. Empty where no run has an
+/// answer.
+std::string sweep_meaning(const validate::SweepSummary& summary);
+
+}  // namespace glidelab::report
