@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <vector>
 
-#include "report/gnuplot.h"
+#include "report/coverage_plots.h"
 #include "report/html.h"
 #include "report/json_numbers.h"
 #include "report/number_text.h"
-#include "report/plot_style.h"
 #include "report/quantity_names.h"
 #include "report/text_table.h"
 
 namespace glidelab::report {
 namespace {
 
+constexpr auto estimator_name = coverage_estimator_name;
 constexpr double kAstray = 2.0;  // scatter over stated sd; chance alone moves the ratio of 200 values by a tenth
 
 std::string with_unit(const validate::CoverageRow& row) {
@@ -23,12 +23,9 @@ std::string with_unit(const validate::CoverageRow& row) {
   return std::string(symbol_of(row.quantity)) + (unit.empty() ? "" : fmt::format(" ({})", unit));
 }
 
-std::string estimator_name(const std::string& estimator) {
-  if (estimator == "trajectory") return "fit of the whole motion";
-  if (estimator == "phase-diagram-gls") return "generalised lines";
-  if (estimator == "phase-diagram") return "lines of the phase diagram";
-  if (estimator == "naive-lines") return "naive lines (for contrast)";
-  return estimator;
+/// "95 %", "99.5 %".
+std::string level_text(double level) {
+  return number_text(100.0 * level, 4) + " %";
 }
 
 std::vector<std::string> cells_of(const validate::CoverageRow& row) {
@@ -44,38 +41,39 @@ std::vector<std::string> cells_of(const validate::CoverageRow& row) {
           fmt::format("{}", row.determined)};
 }
 
-/// Coverage of every row with its binomial interval, a line at 95 %.
-Plot coverage_plot(const validate::Coverage& coverage) {
-  std::string tics, script(kFrame);
-  std::vector<PlotData> data;
-  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
-  for (std::size_t e = 0; e < estimators.size(); ++e) data.push_back({fmt::format("e{}", e), {}});
-  double row_number = 0.0, lowest = 90.0;
+/// What is marked fails the test (too_narrow, too_wide).
+std::string level_table(const validate::Coverage& coverage) {
+  std::vector<std::string> header = {"quantity"};
+  for (const double level : coverage.levels) header.push_back(level_text(level));
+  HtmlTable table(header);
+  std::vector<validate::CoverageFailure> failures = validate::too_narrow(coverage);
+  for (validate::CoverageFailure& one : validate::too_wide(coverage)) failures.push_back(std::move(one));
+  std::string before;
   for (const validate::CoverageRow& row : coverage.rows) {
-    if (row.determined == 0) continue;
-    row_number += 1.0;
-    const auto place =
-        static_cast<std::size_t>(std::find(estimators.begin(), estimators.end(), row.estimator) - estimators.begin());
-    if (place == estimators.size()) continue;
-    lowest = std::min(lowest, 100.0 * row.low95 - 2.0);
-    data[place].rows.push_back({100.0 * row.coverage, row_number, 100.0 * row.low95, 100.0 * row.high95});
-    tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ",
-                        gnuplot_quoted(fmt::format("{}  {}", row.configuration, symbol_of(row.quantity))), row_number);
+    const std::string of = fmt::format("{}: {}", escape(row.configuration), escape(estimator_name(row.estimator)));
+    if (of != before) table.heading(of);
+    before = of;
+    std::vector<std::string> cells = {escape(symbol_of(row.quantity))};
+    for (std::size_t i = 0; i < coverage.levels.size(); ++i) {
+      if (i >= row.levels.size()) {
+        cells.emplace_back("–");
+        continue;
+      }
+      const validate::LevelCount& at = row.levels[i];
+      const bool fails = std::any_of(failures.begin(), failures.end(), [&](const validate::CoverageFailure& one) {
+        return one.at.level == at.level && one.row.configuration == row.configuration &&
+               one.row.estimator == row.estimator && one.row.quantity == row.quantity;
+      });
+      cells.push_back(fmt::format("{0}{1:.1f} % (p {2}){3}", fails ? "<b class=\"bad\">" : "", 100.0 * at.coverage,
+                                  at.p_value < 1e-4 ? "< 0.0001" : number_text(at.p_value, 2), fails ? "</b>" : ""));
+    }
+    table.row(cells);
   }
-  script += fmt::format(
-      "unset offsets\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
-      "set xlabel 'intervals of 95 % that hold the truth  (%)'\nset key outside top center horizontal maxcols 1\n"
-      "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
-      lowest, row_number + 0.7, tics);
-  for (std::size_t e = 0; e < estimators.size(); ++e) {
-    if (data[e].rows.empty()) continue;
-    script += fmt::format("{}${} using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}' title {}",
-                          script.ends_with("plot ") ? "" : ", ", data[e].name, color(e),
-                          gnuplot_quoted(estimator_name(estimators[e])));
-  }
-  const int height = 190 + 18 * std::max(10, static_cast<int>(row_number));
-  return {Drawing{script, data, {560, height}}, "Coverage of the stated intervals, with its own 95 % interval",
-          "Coverage of each quantity by each estimator"};
+  return "<h2 id=\"levels\">Every level</h2>\n" + table.str() +
+         "<p class=\"soft\">Part of the intervals of each level that hold the truth, and the probability of a count as "
+         "far from it by chance (exact binomial test, two-sided). Marked: below 1 % over the number of all intervals "
+         "and levels but the naive ones (Bonferroni). An interval of another level than 95 % is the stated one with "
+         "its arms in proportion to the quantiles of Student's t.</p>\n";
 }
 
 /// "20 µm", or "12 to 20 µm".
@@ -86,11 +84,21 @@ std::string noise_text(const validate::Coverage& coverage) {
   return from == to ? from + " µm" : fmt::format("{} to {} µm", from, to);
 }
 
-std::string list_of(const std::vector<validate::CoverageRow>& rows) {
+/// "µ of m1 by the generalised lines (41.0 % of 50 %, 88.0 % of 95 %)": the levels of a row stand together.
+std::string list_of(const std::vector<validate::CoverageFailure>& failures) {
   std::string text;
-  for (const validate::CoverageRow& row : rows) {
-    text += fmt::format("{}{} of {} by the {} ({:.1f} %)", text.empty() ? "" : ", ", escape(symbol_of(row.quantity)),
-                        escape(row.configuration), escape(estimator_name(row.estimator)), 100.0 * row.coverage);
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    const validate::CoverageRow& row = failures[i].row;
+    const bool again = i > 0 && failures[i - 1].row.configuration == row.configuration &&
+                       failures[i - 1].row.estimator == row.estimator && failures[i - 1].row.quantity == row.quantity;
+    if (again) {
+      text.pop_back();
+    } else {
+      text += fmt::format("{}{} of {} by the {} (", i == 0 ? "" : ", ", escape(symbol_of(row.quantity)),
+                          escape(row.configuration), escape(estimator_name(row.estimator)));
+    }
+    text += fmt::format("{}{:.1f} % where they say {})", again ? ", " : "", 100.0 * failures[i].at.coverage,
+                        level_text(failures[i].at.level));
   }
   return text;
 }
@@ -126,8 +134,17 @@ std::string astray_list(const std::vector<validate::CoverageRow>& rows) {
 }
 
 std::string meaning(const validate::Coverage& coverage) {
-  const std::vector<validate::CoverageRow> narrow = validate::too_narrow(coverage), wide = validate::too_wide(coverage);
+  const auto narrow = validate::too_narrow(coverage), wide = validate::too_wide(coverage);
   std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
+  const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
+    return row.determined > 0 && row.estimator != "naive-lines";
+  });
+  if (!any) {
+    return text +
+           "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m, µ and "
+           "v_lim are true of viscous and Coulomb friction only; under another law the inclination α alone has a true "
+           "value, and these motions do not determine it.</p>\n";
+  }
   if (narrow.empty()) {
     text +=
         "<p>The intervals of every estimator but the naive one hold the truth as often as they say, as far as this "
@@ -166,6 +183,7 @@ std::string coverage_json(const validate::Coverage& coverage) {
   }
   document["noise_sd_of_clips_m"] = coverage.noise_sd_m;
   document["noise_from"] = coverage.camera_noise ? "camera" : "given";
+  document["levels"] = coverage.levels;
   document["quantities"] = Json::array();
   for (const validate::CoverageRow& row : coverage.rows) {
     Json object{{"configuration", row.configuration}, {"estimator", row.estimator}, {"quantity", row.quantity}};
@@ -179,6 +197,14 @@ std::string coverage_json(const validate::Coverage& coverage) {
       put(object, "coverage", row.coverage);
       object["coverage_interval95"] = {row.low95, row.high95};
       put(object, "p_value", row.p_value);
+      object["levels"] = Json::array();
+      for (const validate::LevelCount& at : row.levels) {
+        object["levels"].push_back({{"level", at.level},
+                                    {"covered", at.covered},
+                                    {"coverage", at.coverage},
+                                    {"coverage_interval95", {at.low95, at.high95}},
+                                    {"p_value", at.p_value}});
+      }
     }
     put(object, "cramer_rao_sd", row.cramer_rao_sd, "the motion does not determine it, or the law is not equation (8)");
     put(object, "efficiency", row.efficiency, "no bound, or no value");
@@ -200,7 +226,16 @@ std::string coverage_text(const validate::Coverage& coverage) {
     for (std::string& cell : cells_of(row)) cells.push_back(std::move(cell));
     rows.push_back(std::move(cells));
   }
-  return text_table(rows, 3);
+  std::vector<std::vector<std::string>> levels = {{"configuration", "estimator", "quantity"}};
+  for (const double level : coverage.levels) levels.front().push_back(fmt::format("of {}", level_text(level)));
+  for (std::size_t i = 0; i < coverage.rows.size(); ++i) {
+    const validate::CoverageRow& row = coverage.rows[i];
+    levels.push_back({rows[i + 1][0], rows[i + 1][1], symbol_of(row.quantity)});
+    for (std::size_t k = 0; k < coverage.levels.size(); ++k) {
+      levels.back().push_back(k < row.levels.size() ? fmt::format("{:.1f} %", 100.0 * row.levels[k].coverage) : "–");
+    }
+  }
+  return text_table(rows, 3) + (coverage.levels.empty() ? std::string() : fmt::format("\n{}", text_table(levels, 3)));
 }
 
 Page coverage_page(const std::string& title, const validate::Coverage& coverage) {
@@ -211,7 +246,10 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
       escape(title), coverage.replicates, noise_text(coverage),
       coverage.camera_noise ? " (the least that the camera, the light and the marker allow)" : "");
   body += meaning(coverage);
-  body += figures({coverage_plot(coverage)});
+  const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(),
+                               [](const validate::CoverageRow& row) { return row.determined > 0; });
+  if (any) body += figures({coverage_plot(coverage), reliability_plot(coverage)});
+  if (!coverage.levels.empty()) body += level_table(coverage);
   HtmlTable table({"quantity", "truth", "bias", "sd", "stated sd", "least sd", "efficiency", "coverage", "values"});
   std::string configuration, estimator;
   for (const validate::CoverageRow& row : coverage.rows) {

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "base/errors.h"
 #include "base/parallel.h"
+#include "core/estimate.h"
 #include "core/line_fit.h"
+#include "core/quantile.h"
 #include "diagnose/trajectory_results.h"
 #include "validate/binomial.h"
 #include "validate/camera_noise.h"
@@ -86,13 +90,31 @@ std::vector<std::size_t> places_of(const Truth& truth, const core::AnalysisResul
   return places;
 }
 
-void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t place, CoverageRow& row) {
+LevelCount counted(double level, std::size_t covered, std::size_t n) {
+  LevelCount count{level, covered, static_cast<double>(covered) / static_cast<double>(n)};
+  const ProportionInterval interval = proportion_interval(covered, n, kLevel);
+  count.low95 = interval.low;
+  count.high95 = interval.high;
+  count.p_value = binomial_p_value(covered, n, level);
+  return count;
+}
+
+bool holds(const core::Estimate& estimate, double truth, double level) {
+  const double ratio = level == kLevel ? 1.0 : arm_ratio(level, 0.5 * (estimate.high95 - estimate.low95), estimate.sd);
+  return estimate.value - ratio * (estimate.value - estimate.low95) <= truth &&
+         truth <= estimate.value + ratio * (estimate.high95 - estimate.value);
+}
+
+void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t place, const std::vector<double>& levels,
+               CoverageRow& row) {
   double sum = 0.0, squares = 0.0, stated = 0.0;
+  std::vector<std::size_t> covered(levels.size());
   for (const std::vector<Outcome>& replicate : outcomes) {
     const std::optional<core::Estimate>& estimate = replicate[place];
     if (!estimate) continue;
     ++row.determined;
     if (estimate->low95 <= row.truth && row.truth <= estimate->high95) ++row.covered;
+    for (std::size_t i = 0; i < levels.size(); ++i) covered[i] += holds(*estimate, row.truth, levels[i]) ? 1 : 0;
     const double error = estimate->value - row.truth;
     sum += error;
     squares += error * error;
@@ -104,10 +126,11 @@ void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t pl
   row.sd = row.determined > 1 ? std::sqrt(std::max(0.0, squares - n * row.bias * row.bias) / (n - 1.0)) : 0.0;
   row.stated_sd = std::sqrt(stated / n);
   row.coverage = static_cast<double>(row.covered) / n;
-  const ProportionInterval interval = proportion_interval(row.covered, row.determined, kLevel);
-  row.low95 = interval.low;
-  row.high95 = interval.high;
-  row.p_value = binomial_p_value(row.covered, row.determined, kLevel);
+  const LevelCount at95 = counted(kLevel, row.covered, row.determined);
+  row.low95 = at95.low95;
+  row.high95 = at95.high95;
+  row.p_value = at95.p_value;
+  for (std::size_t i = 0; i < levels.size(); ++i) row.levels.push_back(counted(levels[i], covered[i], row.determined));
   const double mean_square = row.sd * row.sd + row.bias * row.bias;
   if (row.cramer_rao_sd && mean_square > 0.0) row.efficiency = *row.cramer_rao_sd * *row.cramer_rao_sd / mean_square;
 }
@@ -122,6 +145,15 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   }
   if (options.replicates == 0) {
     throw base::InputError(base::Issue{"", 0, "replicates", "0", "a whole number above 0"});
+  }
+  for (std::size_t i = 0; i < options.levels.size(); ++i) {
+    const double level = options.levels[i];
+    if (!(level > 0.0 && level < 1.0)) {
+      throw base::InputError(base::Issue{"", 0, "level", fmt::format("{}", level), "a number above 0 and below 1"});
+    }
+    if (std::count(options.levels.begin(), options.levels.end(), level) > 1) {
+      throw base::InputError(base::Issue{"", 0, "level", fmt::format("{} twice", level), "each level once"});
+    }
   }
   const MadeTracks clean = make_tracks(with_other_clock(scenario, options.seed), options.seed);
   const std::vector<double> noise_sd_m = options.noise_sd_m
@@ -153,7 +185,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
     }
     progress("replicates", static_cast<double>(++done) / static_cast<double>(options.replicates));
   });
-  Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, {}};
+  Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, options.levels, {}};
   for (std::size_t c = 0; c < configurations; ++c) {
     for (std::size_t e = 0; e < estimators.size(); ++e) {
       for (int which = 0; which < 4; ++which) {
@@ -165,7 +197,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
         row.quantity = kNames[which];
         row.truth = *truth;
         row.cramer_rao_sd = bound_of(with_clock(bounds[c], clean.truth.configurations[c]), which);
-        summarise(outcomes, (e * configurations + c) * 4 + static_cast<std::size_t>(which), row);
+        summarise(outcomes, (e * configurations + c) * 4 + static_cast<std::size_t>(which), options.levels, row);
         coverage.rows.push_back(std::move(row));
       }
     }
@@ -173,27 +205,58 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   return coverage;
 }
 
+CoverageBand band_of(double level, std::size_t n) {
+  // The least k with P(X <= k) at least `part`.
+  const auto quantile = [&](double part) {
+    long low = -1, high = static_cast<long>(n);
+    while (high - low > 1) {
+      const long middle = low + (high - low) / 2;
+      (binomial_cdf(middle, n, level) < part ? low : high) = middle;
+    }
+    return static_cast<double>(high) / static_cast<double>(n);
+  };
+  return {quantile(0.025), quantile(0.975)};
+}
+
+double arm_ratio(double level, double half95, double sd) {
+  using boost::math::quantile;
+  using boost::math::students_t;
+  const double wanted = half95 / sd, upper = 0.5 * (1.0 + level);
+  constexpr double kMost = 1e6;  // degrees: as good as normal
+  if (!(wanted > core::student_t975(kMost))) {
+    return quantile(boost::math::normal(), upper) / core::kNormal95;
+  }
+  double low = 1.0, high = kMost;  // t falls with the degrees
+  while (high - low > 1e-9 * high) {
+    const double middle = std::sqrt(low * high);
+    (core::student_t975(middle) > wanted ? low : high) = middle;
+  }
+  return quantile(students_t(low), upper) / quantile(students_t(low), 0.975);
+}
+
 namespace {
 
-std::vector<CoverageRow> significant(const Coverage& coverage, bool below) {
-  std::vector<CoverageRow> judged, failing;
+std::vector<CoverageFailure> significant(const Coverage& coverage, bool below) {
+  std::vector<CoverageFailure> judged, failing;
   for (const CoverageRow& row : coverage.rows) {
-    if (row.estimator != "naive-lines" && row.determined > 0) judged.push_back(row);
+    if (row.estimator == "naive-lines" || row.determined == 0) continue;
+    for (const LevelCount& at : row.levels) judged.push_back({row, at});
   }
-  for (const CoverageRow& row : judged) {
-    if (row.p_value < 0.01 / static_cast<double>(judged.size()) && (row.coverage < kLevel) == below)
-      failing.push_back(row);
+  for (const CoverageFailure& one : judged) {
+    if (one.at.p_value < 0.01 / static_cast<double>(judged.size()) && (one.at.coverage < one.at.level) == below) {
+      failing.push_back(one);
+    }
   }
   return failing;
 }
 
 }  // namespace
 
-std::vector<CoverageRow> too_narrow(const Coverage& coverage) {
+std::vector<CoverageFailure> too_narrow(const Coverage& coverage) {
   return significant(coverage, true);
 }
 
-std::vector<CoverageRow> too_wide(const Coverage& coverage) {
+std::vector<CoverageFailure> too_wide(const Coverage& coverage) {
   return significant(coverage, false);
 }
 

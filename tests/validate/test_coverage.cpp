@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "catch.h"
 #include "test_paths.h"
+#include "validate/binomial.h"
 
 using namespace glidelab;
 using namespace glidelab::validate;
@@ -43,6 +44,16 @@ TEST_CASE("intervals of the estimators hold the truth in most of 60 replicates, 
     CHECK(*whole.efficiency > 0.55);
     CHECK(*whole.efficiency < 1.9);
     CHECK(*lines.efficiency < *whole.efficiency);
+    // Nominal within the binomial tails of 1 in 20,000 at every level, each interval within the next.
+    REQUIRE(whole.levels.size() == 5);
+    std::size_t before = 0;
+    for (const LevelCount& at : whole.levels) {
+      INFO(at.level);
+      CHECK(at.p_value > 1e-4);
+      CHECK(at.covered >= before);
+      before = at.covered;
+      if (at.level == 0.95) CHECK(at.covered == whole.covered);
+    }
   }
   // Smoothed neighbours are not independent: a textbook interval of the slope is several times too short.
   CHECK(row_of(coverage, "naive-lines", "k_over_m_1_s").covered < 50);
@@ -76,23 +87,53 @@ TEST_CASE("a noise or a number of replicates of nothing is refused") {
   CHECK_THROWS_AS(measure_coverage(one_mass(), {.replicates = 0, .noise_sd_m = 1e-5}), base::InputError);
 }
 
-TEST_CASE("rows fail where the count is far from 95 %, not where it is near, and never for the naive lines") {
+TEST_CASE("an interval's arms at another level are those of the normal, or of t with the interval's degrees") {
+  // t of 3 degrees: 3.182446 at 0.975, 0.764892 at 0.75, 5.840909 at 0.995 (tables); 1.959964, 0.674490, 2.575829.
+  CHECK(arm_ratio(0.5, 3.182446305, 1.0) == Approx(0.764892 / 3.182446).epsilon(1e-5));
+  CHECK(arm_ratio(0.99, 3.182446305, 1.0) == Approx(5.840909 / 3.182446).epsilon(1e-5));
+  CHECK(arm_ratio(0.5, 2.0 * 1.959963985, 2.0) == Approx(0.674490 / 1.959964).epsilon(1e-5));
+  CHECK(arm_ratio(0.99, 1.959963985, 1.0) == Approx(2.575829 / 1.959964).epsilon(1e-5));
+  CHECK(arm_ratio(0.95, 2.2, 1.0) == Approx(1.0).epsilon(1e-12));
+}
+
+TEST_CASE("the band of chance holds at least 95 % of a binomial's counts, and less with one fewer at either end") {
+  for (const std::size_t n : {20u, 200u}) {
+    for (const double level : {0.5, 0.95}) {
+      const CoverageBand band = band_of(level, n);
+      const long low = std::lround(band.low * static_cast<double>(n));
+      const long high = std::lround(band.high * static_cast<double>(n));
+      CHECK(binomial_cdf(high, n, level) - binomial_cdf(low - 1, n, level) >= 0.95);
+      CHECK(binomial_cdf(high - 1, n, level) < 0.975);
+      CHECK(binomial_cdf(low, n, level) >= 0.025);
+    }
+  }
+}
+
+TEST_CASE("a level out of bounds or twice is refused") {
+  CHECK_THROWS_AS(measure_coverage(one_mass(), {.replicates = 4, .noise_sd_m = 1e-5, .levels = {0.5, 1.0}}),
+                  base::InputError);
+  CHECK_THROWS_AS(measure_coverage(one_mass(), {.replicates = 4, .noise_sd_m = 1e-5, .levels = {0.5, 0.5}}),
+                  base::InputError);
+}
+
+TEST_CASE("rows fail where a level's count is far from it, not where it is near, and never for the naive lines") {
   Coverage coverage;
-  coverage.rows.resize(4);
-  for (CoverageRow& row : coverage.rows) row.determined = 1000;
-  coverage.rows[0].estimator = "trajectory";
-  coverage.rows[0].p_value = 1e-3;
-  coverage.rows[1].estimator = "phase-diagram";
-  coverage.rows[1].p_value = 0.006;  // above a third of 1 %
-  coverage.rows[2].estimator = "naive-lines";
-  coverage.rows[2].p_value = 0.0;
-  coverage.rows[3].estimator = "phase-diagram";
-  coverage.rows[3].p_value = 1e-6;
-  for (CoverageRow& row : coverage.rows) row.coverage = 0.93;
-  coverage.rows[3].coverage = 1.0;
+  coverage.levels = {0.5, 0.95};
+  const auto row = [](const char* estimator, double p50, double p95, double coverage95) {
+    CoverageRow of;
+    of.estimator = estimator;
+    of.determined = 1000;
+    of.levels = {{0.5, 450, 0.45, 0.0, 1.0, p50}, {0.95, 0, coverage95, 0.0, 1.0, p95}};
+    return of;
+  };
+  // Six tests of estimators: 1 % over six is 0.0017.
+  coverage.rows = {row("trajectory", 1e-3, 0.5, 0.94), row("phase-diagram", 0.0018, 0.5, 0.94),
+                   row("naive-lines", 0.0, 0.0, 0.6), row("phase-diagram-gls", 0.5, 1e-6, 1.0)};
   const auto narrow = too_narrow(coverage), wide = too_wide(coverage);
   REQUIRE(narrow.size() == 1);
-  CHECK(narrow[0].estimator == "trajectory");
+  CHECK(narrow[0].row.estimator == "trajectory");
+  CHECK(narrow[0].at.level == 0.5);
   REQUIRE(wide.size() == 1);
-  CHECK(wide[0].estimator == "phase-diagram");
+  CHECK(wide[0].row.estimator == "phase-diagram-gls");
+  CHECK(wide[0].at.level == 0.95);
 }

@@ -1,0 +1,93 @@
+#include "report/coverage_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "report/gnuplot.h"
+#include "report/plot_style.h"
+#include "report/quantity_names.h"
+
+namespace glidelab::report {
+
+std::string coverage_estimator_name(const std::string& estimator) {
+  if (estimator == "trajectory") return "fit of the whole motion";
+  if (estimator == "phase-diagram-gls") return "generalised lines";
+  if (estimator == "phase-diagram") return "lines of the phase diagram";
+  if (estimator == "naive-lines") return "naive lines (for contrast)";
+  return estimator;
+}
+
+Plot coverage_plot(const validate::Coverage& coverage) {
+  std::string tics, script(kFrame);
+  std::vector<PlotData> data;
+  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
+  for (std::size_t e = 0; e < estimators.size(); ++e) data.push_back({fmt::format("e{}", e), {}});
+  double row_number = 0.0, lowest = 90.0;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    if (row.determined == 0) continue;
+    row_number += 1.0;
+    const auto place =
+        static_cast<std::size_t>(std::find(estimators.begin(), estimators.end(), row.estimator) - estimators.begin());
+    if (place == estimators.size()) continue;
+    lowest = std::min(lowest, 100.0 * row.low95 - 2.0);
+    data[place].rows.push_back({100.0 * row.coverage, row_number, 100.0 * row.low95, 100.0 * row.high95});
+    tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ",
+                        gnuplot_quoted(fmt::format("{}  {}", row.configuration, symbol_of(row.quantity))), row_number);
+  }
+  script += fmt::format(
+      "unset offsets\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
+      "set xlabel 'intervals of 95 % that hold the truth  (%)'\nset key outside top center horizontal maxcols 1\n"
+      "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
+      lowest, row_number + 0.7, tics);
+  for (std::size_t e = 0; e < estimators.size(); ++e) {
+    if (data[e].rows.empty()) continue;
+    script += fmt::format("{}${} using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}' title {}",
+                          script.ends_with("plot ") ? "" : ", ", data[e].name, color(e),
+                          gnuplot_quoted(coverage_estimator_name(estimators[e])));
+  }
+  const int height = 190 + 18 * std::max(10, static_cast<int>(row_number));
+  return {Drawing{script, data, {560, height}}, "Coverage of the stated intervals, with its own 95 % interval",
+          "Coverage of each quantity by each estimator"};
+}
+
+Plot reliability_plot(const validate::Coverage& coverage) {
+  PlotData band{"band", {}};
+  for (double level = 0.02; level < 0.985; level += 0.03) {
+    const validate::CoverageBand of = validate::band_of(level, coverage.replicates);
+    band.rows.push_back({100.0 * level, 100.0 * of.low, 100.0 * of.high});
+  }
+  const validate::CoverageBand last = validate::band_of(0.999, coverage.replicates);
+  band.rows.push_back({99.9, 100.0 * last.low, 100.0 * last.high});
+  std::vector<PlotData> data = {band};
+  std::string script = std::string(kFrame) +
+                       "unset offsets\nset xrange [0:102]\nset yrange [0:102]\nset key maxcols 2\n"
+                       "set xlabel 'level that the intervals state  (%)'\n"
+                       "set ylabel 'intervals that hold the truth  (%)'\n"
+                       "plot $band using 1:2:3 with filledcurves fc rgb '#dddddd' title 'chance (95 %)', "
+                       "x with lines dt 3 lc rgb '#555555' title 'as stated'";
+  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
+  for (std::size_t e = 0; e < estimators.size(); ++e) {
+    PlotData points{fmt::format("e{}", e), {}};
+    const double beside = 0.7 * (static_cast<double>(e) - 1.5);  // of the level, so that they do not hide each other
+    for (const validate::CoverageRow& row : coverage.rows) {
+      if (row.estimator != estimators[e]) continue;
+      for (const validate::LevelCount& at : row.levels) {
+        points.rows.push_back({100.0 * at.level + beside, 100.0 * at.coverage});
+      }
+    }
+    if (points.rows.empty()) continue;
+    script += fmt::format(", ${} using 1:2 with points pt 7 ps 0.5 lc rgb '{}' title {}", points.name, color(e),
+                          gnuplot_quoted(coverage_estimator_name(estimators[e])));
+    data.push_back(std::move(points));
+  }
+  return {Drawing{script, data, {560, 480}},
+          fmt::format("How many of the intervals of each level hold the truth: a point for each quantity, beside the "
+                      "level where several estimators have one; grey: what 95 % of {} replicates do by chance where "
+                      "the intervals are right",
+                      coverage.replicates),
+          "Reliability: actual over nominal coverage"};
+}
+
+}  // namespace glidelab::report
