@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/interrupt.h"
 #include "app/progress_display.h"
 #include "base/errors.h"
@@ -10,6 +12,7 @@
 #include "report/number_text.h"
 #include "report/text_table.h"
 #include "validate/baseline.h"
+#include "validate/baseline_power.h"
 
 namespace glidelab::app {
 namespace {
@@ -35,6 +38,29 @@ std::string table(const validate::Baseline& baseline) {
   return report::text_table(rows, 3);
 }
 
+/// What would have to become worse to be found, and where that is much.
+void say_power(const CommonOptions& common, const validate::Baseline& then, const validate::Baseline& now,
+               const validate::BaselineComparison& comparison) {
+  std::vector<std::vector<std::string>> rows = {
+      {"configuration", "estimator", "quantity", "errors times", "or mean farther off by"}};
+  std::size_t weak = 0;
+  std::uint64_t runs = 0;
+  for (const validate::Detectable& of : validate::detectable(then, now, comparison)) {
+    rows.push_back({of.configuration, of.estimator, of.quantity,
+                    of.factor ? report::number_text(*of.factor, 3) : "none is found",
+                    of.bias ? report::number_text(*of.bias, 2) : "–"});
+    if (!of.weak()) continue;
+    ++weak;
+    runs = std::max(runs, of.runs_for_weak);
+  }
+  say(common, fmt::format("the smallest worsening that is found with probability {}:\n{}", validate::kFound,
+                          report::text_table(rows, 3)));
+  if (weak == 0) return;
+  say(common, fmt::format("warning: a weak gate: of {} of {} quantities it finds with probability {} only what is more "
+                          "than {} times as large; about {} runs would do, of the baseline and now (--runs)",
+                          weak, rows.size() - 1, validate::kFound, validate::kWeak, runs));
+}
+
 }  // namespace
 
 void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file) {
@@ -47,8 +73,13 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
     throw base::InputError(base::Issue{gate.compare, 0, "scenario", "the text of another scenario",
                                        fmt::format("that of {}, as when the baseline was written", scenario_file)});
   }
+  if (then && gate.noise_m && *gate.noise_m != then->noise_m) {
+    throw base::InputError(
+        base::Issue{gate.compare, 0, "--noise-m", fmt::format("{}", *gate.noise_m),
+                    fmt::format("{}, with which the baseline was made, or the option left out", then->noise_m)});
+  }
   validate::BaselineOptions options;
-  options.noise_m = then ? then->noise_m : gate.noise_m;
+  options.noise_m = then ? then->noise_m : gate.noise_m.value_or(options.noise_m);
   options.runs = gate.runs;
   // Other noise than a baseline's of the default seed: with the same one an unchanged analysis would prove nothing.
   options.seed = common.seed.value_or(then ? 2 : 1);
@@ -67,6 +98,7 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
                   "of half a standard deviation with {:.2f}, a doubled bandwidth with {:.2f}",
                   comparison.tests, comparison.significance, comparison.power_spread, comparison.power_bias,
                   comparison.power_doubled));
+  say_power(common, *then, now, comparison);
   if (comparison.worse.empty()) {
     say(common, "nothing is worse than the baseline");
     return;

@@ -1,6 +1,8 @@
 /// validate --baseline, --write-baseline: is the analysis worse than it was?
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "app/common_options.h"
@@ -11,7 +13,7 @@ struct BaselineGate {
   std::string compare;  ///< --baseline
   std::string write;    ///< --write-baseline
   std::uint64_t runs = 100;
-  double noise_m = 2e-5;
+  std::optional<double> noise_m = {};
   bool wanted() const { return !compare.empty() || !write.empty(); }
 };
 

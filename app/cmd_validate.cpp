@@ -90,19 +90,27 @@ void add_validate(CLI::App& app, Command& chosen) {
           "are worse than in this file by a statistical test")
       ->type_name("FILE");
   command->add_option("--write-baseline", options->gate.write, "Store such errors, for --baseline")->type_name("FILE");
-  command->add_option("--runs", options->gate.runs, "Replicates for a baseline")
-      ->type_name("N")
-      ->check(CLI::Range(10, 1000000))
-      ->capture_default_str();
-  command
-      ->add_option("--noise-m", options->gate.noise_m,
-                   "Standard deviation of a position for --write-baseline; --baseline takes the stored one")
-      ->type_name("METRES")
-      ->check(CLI::Range(1e-9, 1.0))
-      ->capture_default_str();
+  CLI::Option* runs = command->add_option("--runs", options->gate.runs, "Replicates for a baseline")
+                          ->type_name("N")
+                          ->check(CLI::Range(10, 1000000))
+                          ->capture_default_str();
+  CLI::Option* noise =
+      command
+          ->add_option("--noise-m", options->gate.noise_m,
+                       "Standard deviation of a position for --write-baseline, else 2e-5; --baseline takes the stored "
+                       "one and refuses another")
+          ->type_name("METRES")
+          ->check(CLI::Range(1e-9, 1.0));
   add_common_options(*command, options->common, "glidelab-out/validate-<name of the scenario file>",
                      "Seed of the camera's noise; default: the scenario's");
-  command->callback([options, &chosen] { chosen = [options] { validate_command(*options); }; });
+  command->callback([options, runs, noise, &chosen] {
+    for (const CLI::Option* option : {runs, noise}) {
+      if (option->count() > 0 && !options->gate.wanted()) {
+        throw CLI::RequiresError(option->get_name(), "--baseline or --write-baseline");
+      }
+    }
+    chosen = [options] { validate_command(*options); };
+  });
 }
 
 }  // namespace glidelab::app

@@ -9,6 +9,7 @@
 #include "small_scenario.h"
 #include "temp_dir.h"
 #include "test_paths.h"
+#include "validate/small_sweep.h"
 
 using namespace glidelab;
 using nlohmann::json;
@@ -91,4 +92,54 @@ TEST_CASE("an interrupt ends validation with status 130 and leaves nothing behin
   const tests::ProcessResult result = process.wait();
   CHECK(result.status == 130);
   CHECK(entries(temp.path()) == 1);
+}
+
+TEST_CASE("a gate of few runs says how little it finds, and takes no other noise than its baseline's") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", tests::kSweptScenario);
+  const std::string scenario = dir / "s.toml", file = dir / "b.json";
+  const auto validate = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"validate", scenario, "--runs", "10"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return tests::glidelab(arguments, dir.path());
+  };
+  REQUIRE(validate({"--write-baseline", file, "--noise-m", "3e-5"}).status == 0);
+  const tests::ProcessResult other = validate({"--baseline", file, "--noise-m", "2e-5"});
+  CHECK(other.status == 1);
+  CHECK(other.err.find("--noise-m: found 2e-05, expected 3e-05, with which the baseline was made") !=
+        std::string::npos);
+  const tests::ProcessResult same = validate({"--baseline", file, "--noise-m", "3e-5"});
+  INFO(same.err);
+  CHECK(same.err.find("the smallest worsening that is found with probability 0.9") != std::string::npos);
+  // |z| of normal z: 10 runs need (z_level + z_0.9) = 4.7 times 0.603 / (0.798 (f - 1)) sqrt((f² + 1) / 10) <= 1.
+  CHECK(same.err.find("warning: a weak gate: of 10 of 10 quantities") != std::string::npos);
+  const tests::ProcessResult alone = tests::glidelab({"validate", scenario, "--noise-m", "3e-5"}, dir.path());
+  CHECK(alone.status == 2);
+  CHECK(alone.err.find("--noise-m requires --baseline or --write-baseline") != std::string::npos);
+}
+
+TEST_CASE("coverage with a noise that is given asks no camera, and counts at the levels that are asked for") {
+  const tests::TempDir dir;
+  std::string text = tests::kSweptScenario;
+  text.replace(text.find("position_m = [0.0,"), 18, "position_m = [9.0,");  // looks at the wall beside the track
+  base::write_file(dir / "s.toml", tests::kSweptScenario);
+  base::write_file(dir / "aside.toml", text);
+  const tests::ProcessResult result = tests::glidelab({"coverage", "aside.toml", "--noise-m", "2e-5", "--replicates",
+                                                       "5", "--level", "50", "99.5", "--json", "-q", "-o", "out"},
+                                                      dir.path());
+  INFO(result.err);
+  REQUIRE((result.status == 0 || result.status == 4));
+  const nlohmann::json found = nlohmann::json::parse(result.out);
+  CHECK(found["levels"] == nlohmann::json({0.5, 0.995}));
+  for (const nlohmann::json& quantity : found["quantities"]) {
+    REQUIRE(quantity["levels"].size() == 2);
+    CHECK(quantity["levels"][0]["covered"] <= quantity["levels"][1]["covered"]);
+  }
+  const tests::ProcessResult seen = tests::glidelab({"coverage", "aside.toml", "--replicates", "5"}, dir.path());
+  CHECK(seen.status == 1);
+  CHECK(seen.err.find("never in the picture") != std::string::npos);
+  const tests::ProcessResult wrong =
+      tests::glidelab({"coverage", "s.toml", "--noise-m", "2e-5", "--replicates", "5", "--level", "100"}, dir.path());
+  CHECK(wrong.status == 1);
+  CHECK(wrong.err.find("level: found 1, expected a number above 0 and below 1") != std::string::npos);
 }
