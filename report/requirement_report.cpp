@@ -6,12 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/json_numbers.h"
 #include "report/number_text.h"
-#include "report/plot_style.h"
 #include "report/quantity_names.h"
+#include "report/requirement_plot.h"
 #include "report/text_table.h"
 
 namespace glidelab::report {
@@ -21,19 +20,6 @@ using validate::Candidate;
 using validate::Requirement;
 using validate::Target;
 using validate::Verdict;
-
-bool reached(const Candidate& candidate) {
-  return candidate.verdict == Verdict::reached || candidate.verdict == Verdict::by_bound;
-}
-
-std::string target_name(const Target& target, const std::string& factor = {}) {
-  std::string unit = unit_of(target.quantity);
-  if (!factor.empty()) unit = factor + (unit.empty() ? "" : " " + unit);
-  const char* measure = target.measure == Target::Measure::sd        ? "rms error"
-                        : target.measure == Target::Measure::error95 ? "95 % error"
-                                                                     : "bias";
-  return fmt::format("{} of {}{}", measure, symbol_of(target.quantity), unit.empty() ? "" : fmt::format(" ({})", unit));
-}
 
 /// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
 struct Scale {
@@ -110,10 +96,6 @@ std::string limit_text(const Candidate& candidate) {
   return text;
 }
 
-double cost_of(const Requirement& requirement, const Candidate& candidate) {
-  return requirement.by_price ? *candidate.price : candidate.pixels_s * 1e-6;
-}
-
 void add_results(std::vector<std::string>& cells, const Requirement& requirement, const Candidate& candidate) {
   for (std::size_t t = 0; t < candidate.results.size(); ++t) {
     const double scale = scale_of(requirement.targets[t]).size;
@@ -123,54 +105,58 @@ void add_results(std::vector<std::string>& cells, const Requirement& requirement
   }
 }
 
-/// What the plot and the front are about: the first target, by runs where there are some, else by its bound.
-double reach_of(const Candidate& candidate) {
-  if (candidate.verdict == Verdict::refused || candidate.results.empty())
-    return std::numeric_limits<double>::quiet_NaN();
-  const validate::TargetResult& result = candidate.results.front();
-  const double value = result.found.value_or(result.bound.value_or(std::numeric_limits<double>::quiet_NaN()));
-  return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+/// Name and number in the tables: "6. webcam".
+std::string numbered(const Requirement& requirement, std::size_t i) {
+  return fmt::format("<b>{}. {}</b>", i + 1, escape(requirement.candidates[i].name));
 }
 
-Plot front_plot(const Requirement& requirement) {
-  const Target& target = requirement.targets.front();
-  PlotData met{"met", {}}, missed{"missed", {}}, front{"front", {}};
-  double best = std::numeric_limits<double>::infinity();
-  double number = 0.0;
-  for (const Candidate& candidate : requirement.candidates) {  // the cheapest first
-    ++number;
-    const double value = reach_of(candidate), cost = cost_of(requirement, candidate);
-    if (!std::isfinite(value)) continue;
-    (reached(candidate) ? met : missed).rows.push_back({cost, value, number});
-    if (value < best) {
-      if (!front.rows.empty()) front.rows.push_back({cost, best});
-      front.rows.push_back({cost, value});
-      best = value;
+/// What the answer is, in some sentences.
+std::string meaning(const Requirement& requirement) {
+  std::vector<std::size_t> reaching, undecided, possible, missed;
+  for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
+    const Candidate& candidate = requirement.candidates[i];
+    if (reached(candidate)) {
+      reaching.push_back(i);
+    } else if (candidate.verdict == Verdict::undecided) {
+      undecided.push_back(i);
+    } else if (candidate.verdict == Verdict::unconfirmed) {
+      possible.push_back(i);
+    } else {
+      missed.push_back(i);
     }
   }
-  std::vector<PlotData> data;
-  std::string script = std::string(kFrame) + "set logscale xy\nset format x '%g'\nset format y '%g'\n";
-  script +=
-      fmt::format("set xlabel {}\nset ylabel {}\n",
-                  gnuplot_quoted(requirement.by_price ? "price, middle of its class (EUR)" : "million pixels a second"),
-                  gnuplot_quoted(target_name(target)));
-  script +=
-      fmt::format("set offsets 0,0,0,0\nplot {:.9g} with lines dt 2 lc rgb '#555555' title 'target'", target.value);
-  const auto add = [&](const PlotData& block, const std::string& how) {
-    if (block.rows.empty()) return;
-    script += fmt::format(", ${} using 1:2 {}", block.name, how);
-    if (block.rows.front().size() > 2) {
-      script += fmt::format(", ${} using 1:2:(sprintf('%d', $3)) with labels offset 1.1,0.5 notitle", block.name);
+  std::string text = fmt::format("<p>{} of {} reach the target.", reaching.size(), requirement.candidates.size());
+  if (!reaching.empty()) {
+    const Candidate& first = requirement.candidates[reaching.front()];
+    text += fmt::format(" {} is {} that does", numbered(requirement, reaching.front()),
+                        requirement.by_price ? "the cheapest" : "the one with the fewest pixels a second");
+    if (!first.price_class.empty()) text += fmt::format(" ({})", escape(first.price_class));
+    if (!first.results.empty() && first.results.front().found && std::isfinite(*first.results.front().found)) {
+      const validate::TargetResult& result = first.results.front();
+      const double scale = scale_of(requirement.targets.front()).size;
+      text +=
+          fmt::format(": {} is {}, {} times within the target",
+                      escape(target_name(requirement.targets.front(), scale_of(requirement.targets.front()).factor)),
+                      value_and_sd_text(*result.found / scale, result.found_sd / scale),
+                      number_text(requirement.targets.front().value / *result.found, 2));
     }
-    data.push_back(block);
-  };
-  add(front, fmt::format("with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
-  add(met, fmt::format("with points pt 7 ps 0.8 lc rgb '{}' title 'reaches all targets'", kColors[2]));
-  add(missed, fmt::format("with points pt 6 ps 0.8 lc rgb '{}' title 'does not'", kColors[1]));
-  return {Drawing{script, data, {620, 420}},
-          "What each camera, by its number in the tables, reaches over what it costs; the line joins those that no "
-          "cheaper one beats",
-          "Reached accuracy over cost"};
+    text += ".";
+  }
+  if (!undecided.empty()) {
+    text += fmt::format(" Of {} the errors span the target: more runs decide.", undecided.size());
+  }
+  if (!possible.empty()) {
+    text += fmt::format(" Of {} the bound allows it, and nothing was run.", possible.size());
+  }
+  if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
+    const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
+    constexpr double kSome = 1.05;  // times smaller: as in the table
+    text += limit.gain < kSome
+                ? fmt::format(" What keeps {} from it is no single limitation.", numbered(requirement, missed.front()))
+                : fmt::format(" What keeps {} from it most: {}, without which it would err {} times less.",
+                              numbered(requirement, missed.front()), escape(limit.name), number_text(limit.gain, 2));
+  }
+  return "<h2 id=\"meaning\">What this means</h2>\n" + text + "</p>\n";
 }
 
 }  // namespace
@@ -178,6 +164,7 @@ Plot front_plot(const Requirement& requirement) {
 Page requirement_report(const Requirement& requirement) {
   Html body = fmt::format("<h1>{}</h1>\n<p>What reaches {} on the worst configuration; {} first.</p>\n",
                           escape(requirement.name), escape(targets_text(requirement)), order_text(requirement));
+  body += meaning(requirement);
   const std::string next = next_step(requirement);
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
   std::vector<std::string> header = {"no.", "camera", "cost", "verdict", "frames/s", "position noise (µm)"};
@@ -206,7 +193,7 @@ Page requirement_report(const Requirement& requirement) {
     }
   }
   body += good.empty() ? "<p class=\"note bad\">None reaches it.</p>\n" : "<h2>These do</h2>\n" + good.str();
-  body += figures({front_plot(requirement)});
+  body += figures({requirement_plot(requirement)});
   if (!others.empty()) body += "<h2>The others</h2>\n" + others.str();
   body += fmt::format(
       "<p class=\"soft\">The bound is that of Cramér and Rao for the motion seen at this rate with this noise of a "

@@ -41,7 +41,29 @@ FilmStudio::FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int
   pattern_.calibration = core::calibrate_any_lens(pattern_.boards, setup.square_m);
 }
 
-MadeTracks FilmStudio::film(const render::Scenario& scenario, std::uint64_t seed, int jobs) {
+std::optional<core::CameraModel> true_camera(const render::Camera& camera) {
+  const render::Lens& lens = camera.lens;
+  if (lens.model == render::LensModel::rational) return std::nullopt;
+  const bool fisheye = lens.model == render::LensModel::fisheye;
+  core::CameraModel model;
+  model.fx = camera.focal_px.x();
+  model.fy = camera.focal_px.y();
+  model.cx = camera.center_px.x();
+  model.cy = camera.center_px.y();
+  model.distortion = fisheye ? std::array{lens.k1, lens.k2, lens.k3, lens.k4, 0.0}
+                             : std::array{lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+  model.size = {camera.width_px, camera.height_px};
+  model.lens = fisheye ? core::LensKind::fisheye : core::LensKind::brown_conrady;
+  return model;
+}
+
+MadeTracks FilmStudio::film(const render::Scenario& scenario, std::uint64_t seed, int jobs,
+                            const std::optional<core::CameraModel>& lens) {
+  core::SeenPattern pattern = pattern_;
+  if (lens) {
+    pattern.calibration.camera = *lens;
+    pattern.calibration.covariance.setZero();
+  }
   const bool lossy = render::lossy(scenario.codec);
   const core::Experiment experiment =
       rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = lossy, .stills = false},
@@ -53,7 +75,7 @@ MadeTracks FilmStudio::film(const render::Scenario& scenario, std::uint64_t seed
   }
   MadeTracks made = make_tracks(scenario, seed);
   made.setups = experiment.clips;
-  made.tracks = core::tracks_of(experiment, jobs, progress_, open, false, &pattern_).tracks;
+  made.tracks = core::tracks_of(experiment, jobs, progress_, open, false, &pattern).tracks;
   return made;
 }
 

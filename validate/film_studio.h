@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "base/progress.h"
 #include "base/temporary_folder.h"
 #include "core/camera_and_planes.h"
+#include "core/camera_model.h"
 #include "render/clip_set.h"
 #include "render/scenario.h"
 #include "validate/canvas_pool.h"
@@ -28,7 +30,10 @@ class FilmStudio {
   /// The scenario's clips with the noise of this seed, tracked, with the truth of the scenario. A lossy codec's clips
   /// are written and read back. The truth's positions count from the track's reference point, the tracks' from the
   /// pattern.
-  MadeTracks film(const render::Scenario& scenario, std::uint64_t seed, int jobs);
+  /// With `lens`, that camera stands in place of the calibrated one, as if it were known without error; where the plane
+  /// lies is still found from the drawn pattern.
+  MadeTracks film(const render::Scenario& scenario, std::uint64_t seed, int jobs,
+                  const std::optional<core::CameraModel>& lens = std::nullopt);
 
   /// Nothing before the first recording without a lossy codec.
   const std::shared_ptr<const render::Stage>& stage() const { return stage_; }
@@ -40,6 +45,9 @@ class FilmStudio {
   std::shared_ptr<CanvasPool> canvases_ = std::make_shared<CanvasPool>();
   core::SeenPattern pattern_;
 };
+
+/// The scenario's camera in the analysis' form; nothing for a rational lens, which that form does not have.
+std::optional<core::CameraModel> true_camera(const render::Camera& camera);
 
 /// One recording with a calibration of its own.
 MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs,

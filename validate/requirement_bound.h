@@ -14,6 +14,7 @@ namespace glidelab::validate {
 struct Setting {
   render::Scenario scenario;
   std::optional<double> given_noise_m = {};  ///< of tracks; else as the camera lets one expect
+  bool lens_known = false;                   ///< rendered clips are restituted with the true camera
 };
 
 /// Of a position, clip by clip.

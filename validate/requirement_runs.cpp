@@ -75,7 +75,8 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
       studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_,
                                             [this](std::string_view, double) { options_.watch(); });
     }
-    return studio->film(setting.scenario, seed, 1);
+    return studio->film(setting.scenario, seed, 1,
+                        setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
   }
   // Clips of one scenario have about one noise: their root mean square.
   const std::vector<double> noise_m = noise_of(setting, clean.truth);
@@ -130,6 +131,11 @@ std::vector<Limit> RecordedRuns::limits(const std::vector<TargetResult>& results
     changed = setting;
     changed.scenario.codec = render::Codec::ffv1;
     try_without("codec (lossless instead, by runs)", changed, options_.confirm);
+  }
+  if (true_camera(setting.scenario.camera)) {
+    changed = setting;
+    changed.lens_known = true;
+    try_without("calibration (the true camera instead, by runs)", changed, options_.confirm);
   }
   try_without("lens, calibration and tracking (true positions with the expected noise, by runs)", setting,
               Confirm::tracks);

@@ -26,7 +26,8 @@ class RecordedRuns {
   Verdict judge(std::vector<TargetResult>& results) { return judge(setting_, options_.confirm, results); }
 
   /// What is in no bound, thought away one by one, by the same runs: how many times smaller the errors in `results` are
-  /// with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec, and with the true
+  /// with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec, with the true
+  /// camera in place of the calibrated one (not of a rational lens, which the analysis cannot write), and with the true
   /// positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
   std::vector<Limit> limits(const std::vector<TargetResult>& results);
 

@@ -6,6 +6,7 @@
 #include "report/html.h"
 #include "report/laws_report.h"
 #include "report/plan_report.h"
+#include "report/requirement_plot.h"
 #include "report/requirement_report.h"
 
 using namespace glidelab;
@@ -76,8 +77,25 @@ TEST_CASE("the numbers in the plot of require are those of its tables, the cheap
   CHECK(has(page.html, "<td>1</td><td>webcam</td>"));
   CHECK(has(page.html, "<td>2</td><td>phone</td>"));
   const std::string& plotted = page.files.at("plots/01-reached-accuracy-over-cost.csv");
-  CHECK(has(plotted, "# met\n10,1.98e-05,1\n"));
-  CHECK(has(plotted, "# missed\n10,0.002,2\n"));
+  // One standard deviation of 0.3 bounds at 1.1 bounds, as a ratio: exp(3/11) = 1.3135.
+  CHECK(has(plotted, "# met\n10,1.98e-05,1,1.507"));
+  CHECK(has(plotted, "e-05,2.600"));
+  CHECK(has(plotted, "# missed\n10,0.002,2,"));
+  CHECK(has(page.html, "1 of 2 reach the target. <b>1. webcam</b> is the one with the fewest pixels"));
+  CHECK(has(page.html, "19.8 ± 5.4, 25 times within the target"));
+}
+
+TEST_CASE("points of require that lie close together share one label") {
+  CHECK(report::ranges_text({1, 2, 3, 7, 9, 10}) == "1-3, 7, 9, 10");
+  validate::Requirement requirement = one_camera("mu", 0.0005, 1.8e-5);
+  for (const double found : {2.0e-5, 2.1e-5, 9e-3}) {
+    requirement.candidates.push_back(requirement.candidates.front());
+    requirement.candidates.back().results.front().found = found;
+  }
+  // 1.98e-5, 2e-5 and 2.1e-5 of a range of 450 times: within its hundredth part.
+  const std::string script = report::requirement_plot(requirement).drawing.script;
+  CHECK(has(script, "set label '1-3' at"));
+  CHECK(has(script, "set label '4' at"));
 }
 
 TEST_CASE("a plan says sizes with their units, and what to do about effects that look alike") {
