@@ -60,17 +60,29 @@ struct Label {
   std::vector<int> numbers;
 };
 
-/// `points`: cost, value, number. Close is what a label would cover: on these logarithmic axes a part of their length.
-std::vector<Label> labels_of(const std::vector<std::vector<double>>& points) {
-  constexpr double kAcross = 0.06, kUp = 0.045;
-  double x_from = 1e300, x_to = 1e-300, y_from = 1e300, y_to = 1e-300;
-  for (const std::vector<double>& row : points) {
-    x_from = std::min(x_from, row[0]);
-    x_to = std::max(x_to, row[0]);
-    y_from = std::min(y_from, row[1]);
-    y_to = std::max(y_to, row[1]);
+/// A logarithmic axis: what is on it and some room, with 1, 2 and 5 times powers of ten written.
+struct LogAxis {
+  double from = std::numeric_limits<double>::infinity(), to = 0.0;
+  void include(double value) {
+    from = std::min(from, value);
+    to = std::max(to, value);
   }
-  const double wide = std::max(std::log(x_to / x_from), 1e-9), high = std::max(std::log(y_to / y_from), 1e-9);
+  double length() const { return std::log(to / from); }
+  std::string script(const std::string& name) const {
+    std::string tics;
+    for (int power = static_cast<int>(std::floor(std::log10(from))); std::pow(10.0, power) < to; ++power) {
+      for (const double digit : {1.0, 2.0, 5.0}) {
+        const double value = digit * std::pow(10.0, power);
+        if (value >= from && value <= to) tics += fmt::format("{}{:.6g}", tics.empty() ? "" : ", ", value);
+      }
+    }
+    return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3})\n", name, from, to, tics);
+  }
+};
+
+/// `points`: cost, value, number. Close is what a label would cover: of these axes a part of their length.
+std::vector<Label> labels_of(const std::vector<std::vector<double>>& points, double wide, double high) {
+  constexpr double kAcross = 0.07, kUp = 0.06;
   std::vector<Label> labels;
   for (const std::vector<double>& row : points) {
     const auto near = std::find_if(labels.begin(), labels.end(), [&](const Label& label) {
@@ -123,7 +135,18 @@ Plot requirement_plot(const Requirement& requirement) {
       fmt::format("set xlabel {}\nset ylabel {}\n",
                   gnuplot_quoted(requirement.by_price ? "price, middle of its class (EUR)" : "million pixels a second"),
                   gnuplot_quoted(target_name(target)));
-  for (const Label& label : labels_of(all)) {
+  constexpr double kLeft = 1.2, kRight = 1.6, kAbove = 1.3;  // times, for labels and bars
+  LogAxis x, y;
+  y.include(target.value / kAbove);
+  y.include(target.value * kAbove);
+  for (const std::vector<double>& row : all) {
+    x.include(row[0] / kLeft);
+    x.include(row[0] * kRight);
+    y.include(row[3] / kAbove);
+    y.include(row[4] * kAbove);
+  }
+  if (!all.empty()) script += x.script("x") + y.script("y");
+  for (const Label& label : labels_of(all, x.length(), y.length())) {
     script += fmt::format("set label {} at {:.9g},{:.9g} offset 0.8,0.45 font ',11'\n",
                           gnuplot_quoted(ranges_text(label.numbers)), label.x, label.y);
   }
