@@ -90,6 +90,9 @@ struct Sweep {
   std::uint64_t samples = 0;  ///< points of a design other than factorial
   std::uint64_t replicates = 1;
   double noise_m = 0.0;           ///< standard deviation of a track's positions
+  /// With rendered clips: the replicates of a point share the calibration of the first one, as recordings before one
+  /// camera do; else each has stills and a calibration of its own.
+  bool calibrate_once = false;
   std::optional<double> field_m;  ///< width of the plane that the picture shall show: sets the camera's distance
   std::vector<Axis> axes;
   std::vector<Analysis> analyses;

@@ -113,6 +113,12 @@ Sweep read_sweep(const std::filesystem::path& path) {
   }
   sweep.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
   sweep.replicates = static_cast<std::uint64_t>(root.integer_or("replicates", 1, 1, std::numeric_limits<long>::max()));
+  if (root.has("calibration")) {
+    sweep.calibrate_once = root.word("calibration", {"each", "once"}) == "once";
+    if (sweep.level == Level::tracks) {
+      root.reject("calibration", "a calibration", "no such key with level = \"tracks\", which has no pictures");
+    }
+  }
   sweep.field_m = root.maybe_number("field_m", base::above(0.0));
   read_analyses(root, sweep);
   for (const TomlTable& table : root.tables_or_none("vary")) {

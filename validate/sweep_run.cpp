@@ -89,12 +89,24 @@ MadeTracks RunWorker::tracks_for(const RunRecord& record, const std::string& tex
   return made_;
 }
 
+FilmStudio& RunWorker::studio_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario) {
+  if (!studio_ || studio_point_ != record.point || studio_of_ != text) {
+    studio_.reset();
+    const std::uint64_t seed = seed_of(sweep_, record.point * sweep_.replicates);
+    studio_ = std::make_unique<FilmStudio>(scenario, seed, 1, nullptr, progress_);
+    studio_point_ = record.point;
+    studio_of_ = text;
+  }
+  return *studio_;
+}
+
 void RunWorker::fill(RunRecord& record) {
   const RunScenario run = scenario_with(sweep_, record.values);
   MadeTracks made;
   std::vector<LeastSd> least;
   if (sweep_.level == Level::clips) {
-    made = film_tracks(run.scenario, record.seed, 1, progress_);
+    made = sweep_.calibrate_once ? studio_for(record, run.text, run.scenario).film(run.scenario, record.seed, 1)
+                                 : film_tracks(run.scenario, record.seed, 1, progress_);
   } else {
     const MadeTracks clean = tracks_for(record, run.text, run.scenario);
     made = with_noise(clean, run.noise_m, record.seed);

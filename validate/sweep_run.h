@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/progress.h"
 #include "core/phase_diagram.h"
+#include "validate/film_studio.h"
 #include "validate/made_tracks.h"
 #include "validate/sweep.h"
 
@@ -62,6 +64,13 @@ class RunWorker {
 
   const Sweep& sweep_;
   base::Progress progress_;
+  /// Of the record's point, whose stills have the noise of its first run's seed.
+  FilmStudio& studio_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
+
+  // Replicates of one point share their calibration where the sweep says so; what is drawn may change the scenario.
+  std::uint64_t studio_point_ = 0;
+  std::string studio_of_;
+  std::unique_ptr<FilmStudio> studio_;
   // The motion of replicates of one point is the same, but for a clock that errs at random.
   std::string made_of_;
   MadeTracks made_;

@@ -110,3 +110,26 @@ TEST_CASE("A range over a key of whole numbers gives whole numbers where it says
       tests::refusal_of_sweep("", kNoise + width + "random = { distribution = \"uniform\", from = 300, to = 400 }\n"),
       Contains("whole = true"));
 }
+
+TEST_CASE("Replicates that share a calibration are those of the first one's, whoever evaluates them and when") {
+  const tests::TempDir dir;
+  const auto sweep_of = [&](const std::string& calibration) {
+    tests::write_sweep(dir.path(),
+                       "level = \"clips\"\nreplicates = 2\nestimators = [\"phase-diagram\"]\n" + calibration, "");
+    base::write_file(dir / "scenario.toml",
+                     tests::kSweptScenario + "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n");
+    return validate::read_sweep(dir / "sweep.toml");
+  };
+  const auto value = [](const validate::RunRecord& record) {
+    INFO(record.why);
+    REQUIRE_FALSE(record.failed);
+    return record.quantities.front().value.value();
+  };
+  const validate::Sweep once = sweep_of("calibration = \"once\""), each = sweep_of("calibration = \"each\"");
+  validate::RunWorker shared(once), alone(once), apart(each);
+  const double first = value(shared.evaluate(0)), second = value(shared.evaluate(1));
+  CHECK(value(alone.evaluate(1)) == second);
+  CHECK(value(apart.evaluate(0)) == first);   // the first one's stills are its own either way
+  CHECK(value(apart.evaluate(1)) != second);  // the other's are not
+  CHECK_THAT(tests::refusal_of_sweep("calibration = \"once\"", kNoise), Contains("calibration"));
+}
