@@ -1,9 +1,9 @@
-/// The section of a sweep's page on whether mu falls with mass (validate/mass_study.h).
+/// The section of a sweep's page on whether mu falls with mass (validate/mass_study.h, as part of the summary).
 #pragma once
 
 #include <string>
 
-#include "validate/mass_study.h"
+#include "validate/sweep_summary.h"
 
 namespace glidelab::report {
 
