@@ -21,6 +21,7 @@ Process::Process(std::vector<std::string> arguments, const fs::path& working_dir
   pointers.push_back(nullptr);
   const std::string out = (folder_ / "out").string();
   const std::string err = (folder_ / "err").string();
+  for (const std::string& file : {out, err}) base::write_file(file, "");  // a child may be killed before it opens them
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
   if (pid_ == 0) {  // only async-signal-safe calls from here to exec
