@@ -89,7 +89,7 @@ struct Sweep {
   std::uint64_t seed = 1;
   std::uint64_t samples = 0;  ///< points of a design other than factorial
   std::uint64_t replicates = 1;
-  double noise_m = 0.0;           ///< standard deviation of a track's positions
+  double noise_m = 0.0;  ///< standard deviation of a track's positions
   /// With rendered clips: the replicates of a point share the calibration of the first one, as recordings before one
   /// camera do; else each has stills and a calibration of its own.
   bool calibrate_once = false;
