@@ -68,6 +68,7 @@ OpenCvCalibration run_opencv(const std::vector<const BoardView*>& views, cv::Siz
 struct Uncertainty {
   Eigen::Matrix<double, 9, 9> covariance;
   CornerNoise noise;
+  std::vector<CornerRest> rests;
 };
 
 Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<const BoardView*>& views,
@@ -77,6 +78,7 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
   for (int k = 0; k < 9; ++k) {
     if (found.sd.at<double>(k) > 0.0) free.push_back(k);  // OpenCV says 0 of a fixed term
   }
+  Uncertainty uncertainty;
   std::vector<ViewDerivatives> derivatives;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const BoardCorners& corners = views[i]->corners;
@@ -93,10 +95,10 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
       view.residual[static_cast<Eigen::Index>(2 * k)] = corners.points[k].x - projected[k].x;
       view.residual[static_cast<Eigen::Index>(2 * k + 1)] = corners.points[k].y - projected[k].y;
     }
+    add_rests(corners.points, view.residual, uncertainty.rests);
     derivatives.push_back({std::move(view), jacobian.rightCols<9>()(Eigen::all, free)});
   }
   const TermUncertainty terms = uncertainty_of_terms(derivatives);
-  Uncertainty uncertainty;
   uncertainty.noise = terms.noise;
   uncertainty.covariance.setZero();
   uncertainty.covariance(free, free) = terms.covariance;
@@ -293,6 +295,7 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   for (int i = 0; i < 5; ++i) camera.distortion[static_cast<std::size_t>(i)] = found.distortion.at<double>(i);
   calibration.covariance = fit.uncertainty.covariance;
   calibration.noise = fit.uncertainty.noise;
+  calibration.rests = corner_map(boards.picture_size, fit.uncertainty.rests);
   calibration.model = fit.model;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();

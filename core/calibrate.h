@@ -28,6 +28,7 @@
 
 #include "core/camera_model.h"
 #include "core/chessboard.h"
+#include "core/corner_map.h"
 #include "core/corner_noise.h"
 #include "core/experiment.h"
 
@@ -54,6 +55,7 @@ struct Calibration {
   /// Of fx, fy, cx, cy, k1, k2, p1, p2, k3 (the views' poses are fitted with them); rows of fixed terms are 0.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
   CornerNoise noise;    ///< what the covariance assumes of the corners
+  CornerMap rests;      ///< what the fit leaves, over the picture
   std::string model;    ///< the distortion's terms, and the tests of those that were looked at
   double rms_px = 0.0;  ///< per corner (distance), over the views used
   std::size_t views_used = 0;

@@ -156,8 +156,10 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     const Fit& fit = *found;
     const int free_terms = kTerms - fixed;
     std::vector<ViewDerivatives> derivatives;
+    std::vector<CornerRest> rests;
     for (std::size_t i = 0; i < views.size(); ++i) {
       derivatives.push_back(derivatives_of(fit, i, views[i]->corners, square_m, free_terms));
+      add_rests(views[i]->corners.points, derivatives.back().view.residual, rests);
     }
     const TermUncertainty uncertainty = uncertainty_of_terms(derivatives);
     const int last = free_terms - 1;
@@ -167,6 +169,7 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     calibration.camera = fit.camera;
     calibration.rms_px = fit.rms_px;
     calibration.noise = uncertainty.noise;
+    calibration.rests = corner_map(boards.picture_size, rests);
     calibration.covariance.topLeftCorner(free_terms, free_terms) = uncertainty.covariance;
     calibration.views_used = views.size();
     calibration.notes = std::move(notes);

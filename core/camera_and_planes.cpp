@@ -82,6 +82,7 @@ CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPat
   }
   result.model = calibration.model;
   result.views_used = calibration.views_used;
+  result.rests = calibration.rests;
   result.notes = calibration.notes;
   double sum = 0.0, count = 0.0;
   for (const auto& [name, corners] : planes) {

@@ -36,11 +36,18 @@ struct SceneLook {
   std::array<double, kRowBands> gain_sd{};  ///< 0: no patch in that band
 };
 
-/// Mean size of the steps between neighbouring pixels of a row, by the column of the right one modulo 8: a codec of 8 x
-/// 8 blocks leaves larger ones at 0.
+/// Size of the steps between neighbouring pixels of a row, by the column of the right one modulo 8 (block_steps.h): a
+/// codec of 8 x 8 blocks leaves larger ones at 0.
 struct BlockSteps {
   std::array<double, 8> mean{};
   double count = 0.0;  ///< steps of each
+};
+
+/// How much resting pixels of about one brightness change from frame to frame (level_noise.h), codes.
+struct NoiseAtLevel {
+  double level_code = 0.0;  ///< their mean
+  double sd_code = 0.0;     ///< of one pixel
+  double known_to = 0.0;    ///< standard deviation of sd_code
 };
 
 struct PictureRecord {
@@ -54,7 +61,8 @@ struct PictureRecord {
   BlockSteps steps;
   /// Variance of a pixel's change over two frames, over that from one to the next: 1 where noise is new in every frame.
   std::optional<double> noise_memory;
-  double noise_code = 0.0;  ///< standard deviation of a resting pixel from frame to frame, codes
+  double noise_code = 0.0;                 ///< standard deviation of a resting pixel from frame to frame, codes
+  std::vector<NoiseAtLevel> noise_levels;  ///< the same by brightness, darkest first
 };
 
 }  // namespace glidelab::core

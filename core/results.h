@@ -193,6 +193,21 @@ struct ConfigurationResult {
   std::vector<std::string> notes;
 };
 
+struct CornerCell {
+  double u_px = 0.0, v_px = 0.0;    ///< mean place of its corners
+  double du_px = 0.0, dv_px = 0.0;  ///< mean rest
+  double sd_px = 0.0;               ///< of either
+  std::size_t corners = 0;
+};
+
+/// What a camera's fit leaves of the pattern's corners, over the picture (corner_map.h).
+struct CornerMap {
+  int width_px = 0, height_px = 0;
+  std::vector<CornerCell> cells;  ///< with two corners or more, row by row
+  double scatter_px = 0.0;        ///< s
+  double excess = 0.0;            ///< 0 where no cell has two corners, or nothing scatters
+};
+
 struct CalibrationResult {
   std::string experiment;
   double rms_px = 0.0;
@@ -204,6 +219,7 @@ struct CalibrationResult {
   double plane_rms_px = 0.0;          ///< the same in the picture, one coordinate
   double plane_expected_px = 0.0;     ///< what the corners' noise and the camera's own uncertainty explain of it
   std::size_t views_used = 0;
+  CornerMap rests;                 ///< what the camera's fit leaves of the corners, over the picture
   std::vector<std::string> notes;  ///< views without a visible pattern, …
 };
 

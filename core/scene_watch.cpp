@@ -9,30 +9,11 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kSide = 24;                 // px
 constexpr std::size_t kOfStructure = 12;  // patches, for each of the two directions
 constexpr std::size_t kSpread = 12;       // patches all over the picture, for the light
 constexpr std::size_t kReferenceFrames = 6;
-constexpr double kDisturbed = 3.0;     // residuals over the usual ones
-constexpr std::size_t kStepEvery = 4;  // frames
-constexpr int kStepRows = 24;
-constexpr double kLargestStep = 12.0 / 255.0;  // of full scale: larger ones are edges of things
-constexpr double kWellKnown = 0.5;             // px; a shift known less well is no measurement
-constexpr double kTells = 0.2;         // px; a patch that is to agree with the others must know its shift so well
-constexpr double kOff = 5.0;           // of its standard deviations
-constexpr double kRestep = 0.2;        // px
-constexpr double kInterpolated = 0.1;  // px: residual over gradient of structure near the pixels' own size
-constexpr double kLeastNoise = 0.1;    // codes: rounding, blurred
-constexpr double kLossyNoise = 1.0;    // codes, of a pixel
-constexpr double kBlock = 64.0;        // pixels that a codec errs in together
-constexpr double kSofter = 0.2873;     // noise of a pixel after the blur below: sum of its weights' squares
-constexpr int kMargin = 12;            // px around a patch
-
-std::vector<float> pixels_of(const cv::Mat& grey, const cv::Rect& place) {
-  cv::Mat_<float> part;
-  grey(place).convertTo(part, CV_32F);
-  return {part.begin(), part.end()};
-}
+constexpr double kRestep = 0.2;  // px
+constexpr int kMargin = 12;      // px around a patch
 
 cv::Rect margined(const cv::Rect& place) {
   return {place.x - kMargin, place.y - kMargin, place.width + 2 * kMargin, place.height + 2 * kMargin};
@@ -41,9 +22,9 @@ cv::Rect margined(const cv::Rect& place) {
 /// Blurred by a normal distribution of 1 px, so that a derivative means something.
 std::vector<float> soft_pixels_of(const cv::Mat& grey, const cv::Rect& place) {
   cv::Mat_<float> part, soft;
-  grey({place.x - 2, place.y - 2, kSide + 4, kSide + 4}).convertTo(part, CV_32F);
+  grey({place.x - 2, place.y - 2, kPatchSide + 4, kPatchSide + 4}).convertTo(part, CV_32F);
   cv::GaussianBlur(part, soft, {5, 5}, 1.0);
-  const cv::Mat_<float> middle = soft({2, 2, kSide, kSide}).clone();
+  const cv::Mat_<float> middle = soft({2, 2, kPatchSide, kPatchSide}).clone();
   return {middle.begin(), middle.end()};
 }
 
@@ -56,13 +37,13 @@ struct Candidate {
 
 void SceneWatch::choose(const cv::Mat& grey) {
   const int margin = kMargin;
-  const int free_u = grey.cols - kSide - 2 * margin, free_v = grey.rows - kSide - 2 * margin;
+  const int free_u = grey.cols - kPatchSide - 2 * margin, free_v = grey.rows - kPatchSide - 2 * margin;
   if (free_u < 0 || free_v < 0) return;
   std::vector<Candidate> candidates;
-  const int step = std::max(kSide, static_cast<int>(std::sqrt(static_cast<double>(grey.total()) / 400.0)));
+  const int step = std::max(kPatchSide, static_cast<int>(std::sqrt(static_cast<double>(grey.total()) / 400.0)));
   for (int v = margin; v <= margin + free_v; v += step) {
     for (int u = margin; u <= margin + free_u; u += step) {
-      Candidate candidate{cv::Rect(u, v, kSide, kSide), 0.0, 0.0};
+      Candidate candidate{cv::Rect(u, v, kPatchSide, kPatchSide), 0.0, 0.0};
       cv::Mat soft, gu, gv;
       grey(candidate.place).convertTo(soft, CV_32F);
       cv::GaussianBlur(soft, soft, {5, 5}, 1.0);
@@ -111,7 +92,7 @@ void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
   cv::Mat_<float> gu, gv;
   cv::filter2D(whole, gu, CV_32F, slope);
   cv::filter2D(whole, gv, CV_32F, slope.t());
-  const cv::Rect middle(kMargin, kMargin, kSide, kSide);
+  const cv::Rect middle(kMargin, kMargin, kPatchSide, kPatchSide);
   const auto flat = [&](const cv::Mat_<float>& from) {
     const cv::Mat_<float> part = from(middle).clone();
     return std::vector<float>(part.begin(), part.end());
@@ -134,7 +115,7 @@ void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
 }
 
 void SceneWatch::make_reference() {
-  constexpr int kWhole = kSide + 2 * kMargin;
+  constexpr int kWhole = kPatchSide + 2 * kMargin;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     Patch& patch = patches_[p];
     patch.around = cv::Mat_<float>(kWhole, kWhole, 0.0F);
@@ -160,130 +141,9 @@ void SceneWatch::make_reference() {
   }
   std::vector<double> usual;
   for (const Patch& patch : patches_) usual.push_back(patch.usual_rms);
-  const double most = 3.0 * std::max(median_of(usual), kLeastNoise);
+  const double most = 3.0 * std::max(median_of(usual), kPatchNoise);
   std::erase_if(patches_, [&](const Patch& patch) { return patch.usual_rms > most; });
   ready_ = true;
-}
-
-SceneLook SceneWatch::compare(const Pixels& pixels) {
-  SceneLook look;
-  struct Found {
-    Patch* patch;
-    cv::Vec3d by;
-    double rest;
-  };
-  std::vector<Found> found;
-  std::vector<double> rests;
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    Patch& patch = patches_[p];
-    const std::size_t n = patch.reference.size();
-    std::swap(patch.before_that, patch.before);
-    std::swap(patch.before, patch.residual);
-    patch.residual.assign(n, 0.0F);
-    if (pixels[p].empty()) {
-      patch.good = 0;
-      continue;
-    }
-    cv::Vec3d right(0.0, 0.0, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double off = pixels[p][i] - patch.reference[i];
-      right += off * cv::Vec3d(patch.reference[i], -patch.gu[i], -patch.gv[i]);
-    }
-    const cv::Vec3d by = patch.inverse * right;
-    double rest = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double model = by[0] * patch.reference[i] - by[1] * patch.gu[i] - by[2] * patch.gv[i];
-      patch.residual[i] = static_cast<float>(pixels[p][i] - patch.reference[i] - model);
-      rest += patch.residual[i] * patch.residual[i];
-    }
-    // Fine structure that has moved by part of a pixel is never quite what interpolation makes of it.
-    const double moved = std::min(1.0, std::hypot(shift_.x + by[1], shift_.y + by[2]));
-    const double steep = std::sqrt((patch.structure(0, 0) + patch.structure(1, 1)) / static_cast<double>(n));
-    const double usual = std::hypot(std::max(patch.usual_rms, kLeastNoise), kInterpolated * steep * moved);
-    if (std::sqrt(rest / static_cast<double>(n)) > kDisturbed * usual) {
-      patch.good = 0;
-      continue;
-    }
-    found.push_back({&patch, by, rest / static_cast<double>(n)});
-    rests.push_back(found.back().rest);
-  }
-  if (found.empty()) return look;
-  double variance = std::max(median_of(rests), kLeastNoise * kLeastNoise) / (kSofter * kSofter);  // of a pixel
-  if (lossy_) variance = kBlock * std::max(variance, kLossyNoise * kLossyNoise);
-  // What moves otherwise than half of the patches that can tell is not the scene.
-  for (const int axis : {0, 1}) {
-    std::vector<double> shifts;
-    for (const Found& one : found) {
-      if (variance * one.patch->inverse(1 + axis, 1 + axis) < kTells * kTells) shifts.push_back(one.by[1 + axis]);
-    }
-    if (shifts.size() < 3) continue;
-    const double usual = median_of(shifts);
-    std::erase_if(found, [&](const Found& one) {
-      const double sd = std::sqrt(variance * one.patch->inverse(1 + axis, 1 + axis));
-      const bool off = sd < kTells && std::abs(one.by[1 + axis] - usual) > kOff * std::max(sd, 0.01);
-      if (off) one.patch->good = 0;
-      return off;
-    });
-  }
-  cv::Matx22d information = cv::Matx22d::zeros();
-  cv::Vec2d sum(0.0, 0.0);
-  std::array<double, kRowBands> gain{}, weight{};
-  for (const Found& one : found) {
-    Patch& patch = *one.patch;
-    ++patch.good;
-    information += patch.structure;
-    sum += patch.structure * cv::Vec2d(one.by[1], one.by[2]);
-    const auto band = static_cast<std::size_t>(std::clamp(
-        (patch.place.y + kSide / 2) * static_cast<int>(kRowBands) / size_.height, 0, static_cast<int>(kRowBands) - 1));
-    gain[band] += one.by[0] / patch.gain_variance;
-    weight[band] += 1.0 / patch.gain_variance;
-    if (patch.good < 3) continue;
-    for (std::size_t i = 0; i < patch.residual.size(); ++i) {
-      change_one_ += std::pow(patch.residual[i] - patch.before[i], 2);
-      change_two_ += std::pow(patch.residual[i] - patch.before_that[i], 2);
-    }
-    changes_ += patch.residual.size();
-  }
-  for (std::size_t b = 0; b < kRowBands; ++b) {
-    if (weight[b] == 0.0) continue;
-    look.gain[b] = gain[b] / weight[b];
-    look.gain_sd[b] = std::sqrt(variance / weight[b]);
-  }
-  if (found.empty()) return look;
-  const cv::Matx22d inverse = information.inv();
-  const cv::Vec2d shift = inverse * sum;
-  // What patches differ by beyond their pixels' noise errs in all pixels of a patch together, as a codec's blocks do.
-  std::array<std::vector<double>, 2> off;
-  for (const Found& one : found) {
-    for (const int axis : {0, 1}) {
-      const double own = variance * one.patch->inverse(1 + axis, 1 + axis);
-      off[static_cast<std::size_t>(axis)].push_back(std::pow(one.by[1 + axis] - shift[axis], 2) / own);
-    }
-  }
-  const auto excess = [](const std::vector<double>& squares) {
-    constexpr double kMedianOfSquare = 0.455;  // of a standard normal deviate
-    return std::max(1.0, median_of(squares) / kMedianOfSquare);
-  };
-  look.sd_u_px = std::sqrt(variance * inverse(0, 0) * excess(off[0]));
-  look.sd_v_px = std::sqrt(variance * inverse(1, 1) * excess(off[1]));
-  look.u_px = shift_.x + shift[0];
-  look.v_px = shift_.y + shift[1];
-  if (!(look.sd_u_px < kWellKnown)) look.u_px = look.sd_u_px = 0.0;
-  if (!(look.sd_v_px < kWellKnown)) look.v_px = look.sd_v_px = 0.0;
-  return look;
-}
-
-void SceneWatch::add_steps(const cv::Mat& grey) {
-  const double scale = grey.depth() == CV_8U ? 1.0 : 1.0 / 257.0, most = 255.0 * kLargestStep;
-  const int apart = std::max(1, grey.rows / kStepRows);
-  for (int v = apart / 2; v < grey.rows; v += apart) {
-    const std::vector<float> row = pixels_of(grey, cv::Rect(0, v, grey.cols, 1));
-    const std::size_t whole = row.size() / 8 * 8;  // of each column as many
-    for (std::size_t u = 8; u < whole; ++u) {
-      steps_.mean[u % 8] += std::min(most, scale * std::abs(row[u] - row[u - 1]));
-    }
-    steps_.count += static_cast<double>(whole / 8 - (whole > 0 ? 1 : 0));
-  }
 }
 
 void SceneWatch::look(const cv::Mat& grey, double t_s) {
@@ -303,7 +163,7 @@ void SceneWatch::add(const cv::Mat& grey, double t_s) {
     size_ = grey.size();
     choose(grey);
   }
-  if ((looks_.size() + early_.size()) % kStepEvery == 0) add_steps(grey);
+  steps_.add(grey);
   if (patches_.empty()) return;
   if (ready_) return look(grey, t_s);
   early_.push_back(grey.clone());
@@ -314,12 +174,26 @@ void SceneWatch::add(const cv::Mat& grey, double t_s) {
   early_.clear();
 }
 
+PixelChanges SceneWatch::changes_by_level() const {
+  PixelChanges pixels;
+  for (const Patch& patch : patches_) {
+    for (std::size_t i = 0; i < patch.changed.size(); ++i) {
+      pixels.push_back({patch.reference[i], patch.changed[i], patch.changes});
+    }
+  }
+  return pixels;
+}
+
 void SceneWatch::finish(PictureRecord& record) {
   record.scene = std::move(looks_);
-  record.steps = steps_;
-  for (double& mean : record.steps.mean) mean /= std::max(1.0, steps_.count);
+  record.steps = steps_.finish();
+  if (!lossy_ && through_lossy_codec(record)) allow_for_codec(record.scene);
   if (changes_ == 0) return;
-  record.noise_code = std::sqrt(0.5 * change_one_ / static_cast<double>(changes_)) / kSofter;
+  record.noise_code = std::sqrt(0.5 * change_one_ / static_cast<double>(changes_)) / kPatchSofter;
+  for (NoiseAtLevel& one : record.noise_levels = noise_by_level(changes_by_level())) {
+    one.sd_code /= kPatchSofter;
+    one.known_to /= kPatchSofter;
+  }
   if (change_one_ > 0.0) record.noise_memory = change_two_ / change_one_;
 }
 

@@ -18,15 +18,22 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/block_steps.h"
+#include "core/level_noise.h"
 #include "core/picture_record.h"
 
 namespace glidelab::core {
+
+inline constexpr int kPatchSide = 24;           ///< px
+inline constexpr double kPatchNoise = 0.1;      ///< codes: rounding, blurred
+inline constexpr double kPatchSofter = 0.2873;  ///< noise of a pixel after the blur: sum of its weights' squares
 
 class SceneWatch {
  public:
   /// `lossy`: the file says that it is compressed with loss. What a codec leaves is then no noise that is new in every
   /// pixel and frame: it freezes it, so that even a plain wall has structure that rests and later jumps. Errors count
-  /// as one code at least, the same in all of a block of 8 x 8 pixels.
+  /// as one code at least, the same in all of a block of 8 x 8 pixels. So they do in finish() where the pictures
+  /// themselves have blocks (block_steps.h) and the file says nothing.
   explicit SceneWatch(bool lossy = false) : lossy_(lossy) {}
   void add(const cv::Mat& grey, double t_s);
   /// Fills what it has seen into the record: scene, steps, noise.
@@ -43,6 +50,8 @@ class SceneWatch {
     double usual_rms = 0.0;
     std::vector<float> residual, before, before_that;  ///< of the last three frames
     int good = 0;                                      ///< frames in a row in which it counted
+    std::vector<double> changed;                       ///< sum of squares of each pixel's changes
+    double changes = 0.0;                              ///< from one frame to the next
   };
   using Pixels = std::vector<std::vector<float>>;  ///< of each patch
 
@@ -52,7 +61,8 @@ class SceneWatch {
   static void shift_reference(Patch& patch, cv::Point2d shift);
   SceneLook compare(const Pixels& pixels);
   void look(const cv::Mat& grey, double t_s);
-  void add_steps(const cv::Mat& grey);
+  PixelChanges changes_by_level() const;
+  void allow_for_codec(std::vector<SceneLook>& looks) const;
 
   cv::Size size_;
   std::vector<Patch> patches_;
@@ -62,7 +72,8 @@ class SceneWatch {
   bool ready_ = false;
   cv::Point2d shift_;  ///< at which the references stand
   std::vector<SceneLook> looks_;
-  BlockSteps steps_;
+  std::vector<double> variances_;  ///< of a pixel, that the looks' errors come from
+  BlockStepSums steps_;
   double change_one_ = 0.0, change_two_ = 0.0;
   std::size_t changes_ = 0;
 };

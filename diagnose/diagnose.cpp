@@ -218,6 +218,9 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   progress("measuring the gap", 0.9);
   Diagnosis diagnosis = verdict_of(set, comparison, std::move(pictures));
   add_speeds(results, diagnosis.measured);
+  for (const core::CalibrationResult& of : results.calibrations) {
+    diagnosis.calibrations.push_back({of.experiment, of.rests});
+  }
   return diagnosis;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/results.h"
 #include "diagnose/line_comparison.h"
 
 namespace glidelab::diagnose {
@@ -147,11 +148,18 @@ struct PictureFinding {
 };
 
 /// A measurement in the pictures for the plots: `lengthening` (px², of the marker's image over px/s), `brightness`
-/// (relative, over time), `drift across`, `drift down` (px, of the fixed scene over time).
+/// (relative, over time), `drift across`, `drift down` (px, of the fixed scene over time), `noise` (codes², a pixel's
+/// variance over its level in codes).
 struct PictureCurve {
   std::string what, clip;
   std::vector<double> at, value, sd;
   std::vector<double> expected, fitted;  ///< as stated, and as found; empty where there is none
+};
+
+/// What a camera's fit leaves of the pattern's corners.
+struct CalibrationRests {
+  std::string experiment;
+  core::CornerMap rests;
 };
 
 /// What a twin has not, because no scenario can say it.
@@ -195,8 +203,9 @@ struct Diagnosis {
   std::vector<ResidualCurve> residuals;
   std::vector<PictureFinding> pictures;  ///< empty for tracks
   std::vector<PictureCurve> picture_curves;
-  std::vector<std::string> notes;  ///< limits that a reader should know
-  std::string twin;                ///< the fitted motions as a scenario file; empty for a table of lines
+  std::vector<CalibrationRests> calibrations;  ///< of each folder with a pattern
+  std::vector<std::string> notes;              ///< limits that a reader should know
+  std::string twin;                            ///< the fitted motions as a scenario file; empty for a table of lines
   std::vector<TwinLack> twin_lacks;
   double twin_from_m = 0.0;              ///< x of the data where the twin's x is 0
   std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines

@@ -10,6 +10,7 @@
 #include "diagnose/effect_list.h"
 #include "diagnose/picture_file.h"
 #include "diagnose/picture_light.h"
+#include "diagnose/picture_noise.h"
 #include "diagnose/picture_shape.h"
 #include "diagnose/picture_sway.h"
 #include "diagnose/score_space.h"
@@ -122,6 +123,7 @@ PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
   add_gradient(clips, evidence);
   add_codec(clips, evidence);
   add_missing(clips, evidence);
+  add_noise(clips, evidence);
   for (PictureFinding& finding : evidence.findings) {
     finding.seen = finding.log_evidence > kSeenInPictures;
     finding.stage = effect_list()[effect_index(finding.id)].stage;

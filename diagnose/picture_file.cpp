@@ -6,20 +6,12 @@
 #include <cmath>
 #include <string>
 
+#include "core/block_steps.h"
+
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kMemory = 0.05;  // of a ratio of variances that should be 1
-
-/// Larger steps between pixels where blocks of 8 meet, against the other seven columns' scatter.
-double block_excess(const core::BlockSteps& steps, double& relative) {
-  double mean = 0.0, square = 0.0;
-  for (std::size_t c = 1; c < 8; ++c) mean += steps.mean[c] / 7.0;
-  for (std::size_t c = 1; c < 8; ++c) square += std::pow(steps.mean[c] - mean, 2) / 6.0;
-  relative = mean > 0.0 ? steps.mean[0] / mean - 1.0 : 0.0;
-  const double floor = 0.02 * mean;  // columns of a real scene differ by as much
-  return (steps.mean[0] - mean) / std::max(1e-12, std::hypot(std::sqrt(square), floor));
-}
 
 }  // namespace
 
@@ -34,11 +26,10 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   std::size_t lossy = 0, lossless = 0;
   std::string codec, lossy_codec;
   for (const FilmedClip& clip : clips) {
-    double mine = 0.0;
-    const double z = block_excess(clip.record->steps, mine);
-    if (z > excess) {
-      excess = z;
-      relative = mine;
+    const core::BlockEdges edges = core::block_edges(clip.record->steps);
+    if (edges.z > excess) {
+      excess = edges.z;
+      relative = edges.relative;
     }
     memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
     if (clip.record->lossy) ++(*clip.record->lossy ? lossy : lossless);
@@ -49,7 +40,7 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
     return (other.id == "light_flicker" || other.id == "camera_motion") && other.log_evidence > kSeenInPictures;
   });
   PictureFinding finding = finding_of("compression");
-  const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // seven columns tell their scatter poorly
+  const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // of columns that tell their scatter poorly
   // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
   finding.stated = lossy > 0;
   finding.log_evidence =

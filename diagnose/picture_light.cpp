@@ -8,6 +8,7 @@
 
 #include "base/dense.h"
 #include "base/number_text.h"
+#include "core/block_steps.h"
 #include "diagnose/picture_file.h"
 #include "diagnose/picture_scene.h"
 
@@ -80,7 +81,7 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   // Where the file does not tell, pixels that remember do: light that changes by less than 1 % cannot make them.
   double least = memory_log_evidence(clips) > kSeenInPictures ? kLeastFlickerLossy : kLeastFlicker;
   for (const FilmedClip& clip : clips) {
-    if (clip.record->lossy.value_or(false)) least = kLeastFlickerLossy;
+    if (core::through_lossy_codec(*clip.record)) least = kLeastFlickerLossy;
     for (const core::SceneLook& look : clip.record->scene) {
       least = std::max(least, kOfDrift * std::hypot(look.u_px, look.v_px));
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/block_steps.h"
 #include "diagnose/picture_scene.h"
 #include "diagnose/score_space.h"
 
@@ -16,7 +17,7 @@ constexpr double kLeastSwayLossy_px = 0.3;  // of a codec, which keeps the scene
 
 double least_sway_px(const std::vector<FilmedClip>& clips) {
   const bool lossy = std::any_of(clips.begin(), clips.end(),
-                                 [](const FilmedClip& clip) { return clip.record->lossy.value_or(false); });
+                                 [](const FilmedClip& clip) { return core::through_lossy_codec(*clip.record); });
   return lossy ? kLeastSwayLossy_px : kLeastSway_px;
 }
 

@@ -17,7 +17,9 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kField = 1.6;            // m that a scenario's own camera sees from 2.4 m
 constexpr std::size_t kFewestPlaces = 8;  // that a line is laid through
 /// Code of a scenario's wall, which most of what rests is: of its albedo, white level and offset.
-constexpr double kWallCode = 0.38 * 0.75 * 253.0;
+constexpr double kLastCode = 255.0, kBlackCode = 2.0, kRange = kLastCode - kBlackCode;  // of a scenario's 8 bits
+constexpr double kWallCode = 0.38 * 0.75 * kRange;
+constexpr double kWellKnown = 5.0;                 // standard deviations
 constexpr double kFocalOfWidth = 1.5;              // of a usual lens, where nothing tells: as a scenario's own camera
 constexpr double kMostRotation = 10.0 / kDegrees;  // that a scenario allows a pattern
 
@@ -151,6 +153,21 @@ void look_by_scale(const Filming& filming, double reference_m, double incline_ra
   view.assumed.emplace_back("the focal length, and with it the distance");
 }
 
+/// Light's noise and the sensor's own from the noise over the level; where that does not tell them apart, light's
+/// alone, of a wall as bright as a scenario has it. Rounding to whole codes makes 1/12 of the variance.
+std::string sensor_section(const Filming& filming) {
+  if (filming.full_code != kLastCode || filming.lossy.value_or(false)) return "";
+  const double variance = filming.noise_code * filming.noise_code - 1.0 / 12.0;
+  const bool told_apart = filming.noise && filming.noise->gain_code > kWellKnown * filming.noise->gain_sd;
+  const double gain = told_apart ? filming.noise->gain_code : variance / kWallCode;
+  const double well_e = kRange / gain;
+  if (!(gain > 0.0) || !(well_e > 10.0 && well_e < 1e7)) return "";
+  const double read_code2 = told_apart ? filming.noise->at(kBlackCode) - 1.0 / 12.0 : 0.0;
+  return fmt::format(
+      "\n[sensor]  # a resting pixel's noise is {:.3g} codes\nfull_well_e = {:.6g}\nread_noise_e = {:.6g}\n",
+      filming.noise_code, well_e, std::sqrt(std::max(0.0, read_code2)) / gain);
+}
+
 }  // namespace
 
 std::optional<Filming> filming_of(const core::AnalysisResults& results, const std::vector<core::Experiment>& folders,
@@ -176,6 +193,7 @@ std::optional<Filming> filming_of(const core::AnalysisResults& results, const st
       found.lossy = clip.pictures->lossy;
       found.full_code = clip.pictures->full_code;
       found.noise_code = clip.pictures->noise_code;
+      found.noise = noise_law(clip.pictures->noise_levels);
       if (folder.calibration) {
         found.inner_columns =
             std::max(folder.calibration->inner_corners.width, folder.calibration->inner_corners.height);
@@ -255,17 +273,7 @@ std::string scene_sections(const std::optional<Filming>& filming, const TwinView
         filming->inner_columns, filming->inner_rows, view.pattern->square_m, view.pattern->x_m, view.pattern->y_m,
         view.pattern->rotation_rad * kDegrees);
   }
-  // Shot noise alone, of the wall as bright as a scenario has it; rounding to whole codes makes 1/12 besides.
-  const double variance = filming->noise_code * filming->noise_code - 1.0 / 12.0;
-  if (variance > 0.0 && filming->full_code == 255.0 && !filming->lossy.value_or(false)) {
-    const double well = 253.0 * kWallCode / variance;
-    if (well > 10.0 && well < 1e7) {
-      text += fmt::format(
-          "\n[sensor]  # a resting pixel's noise is {:.3g} codes\nfull_well_e = {:.6g}\nread_noise_e = 0.0\n",
-          filming->noise_code, well);
-    }
-  }
-  return text;
+  return text + sensor_section(*filming);
 }
 
 }  // namespace glidelab::diagnose

@@ -17,6 +17,7 @@
 #include "core/camera_model.h"
 #include "core/experiment.h"
 #include "core/results.h"
+#include "diagnose/noise_law.h"
 
 namespace glidelab::diagnose {
 
@@ -36,8 +37,9 @@ struct Filming {
   std::string codec;  ///< four letters, as the container has them
   std::optional<bool> lossy;
   double full_code = 255.0;
-  double noise_code = 0.0;  ///< of a resting pixel; 0: not measured
-  bool others = false;      ///< further clips were filmed by another camera
+  double noise_code = 0.0;        ///< of a resting pixel; 0: not measured
+  std::optional<NoiseLaw> noise;  ///< of its pixels over the level, where it was seen
+  bool others = false;            ///< further clips were filmed by another camera
 };
 
 /// Nothing where no clip was filmed, or too little of one was seen. The folders are those of the results, in order; the

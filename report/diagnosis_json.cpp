@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "report/camera_plots.h"
 #include "report/json_numbers.h"
 #include "report/line_report.h"
 
@@ -161,6 +162,32 @@ Json gap_json(const diagnose::GapSizes& gap) {
   return object;
 }
 
+Json noise_json(const diagnose::PictureCurve& curve) {
+  Json one;
+  one["level_code"] = curve.at;
+  one["variance_code2"] = curve.value;
+  one["sd_code2"] = curve.sd;
+  one["linear_code2"] = curve.fitted;
+  put(one, "excess", curve_excess(curve));
+  return one;
+}
+
+Json rests_json(const diagnose::CalibrationRests& of) {
+  Json one;
+  one["experiment"] = of.experiment;
+  put(one, "excess", of.rests.excess);
+  one["cells"] = Json::array();
+  for (const core::CornerCell& cell : of.rests.cells) {
+    one["cells"].push_back({{"u_px", cell.u_px},
+                            {"v_px", cell.v_px},
+                            {"du_px", cell.du_px},
+                            {"dv_px", cell.dv_px},
+                            {"sd_px", cell.sd_px},
+                            {"corners", cell.corners}});
+  }
+  return one;
+}
+
 }  // namespace
 
 std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
@@ -204,6 +231,14 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
     one["parameters"] = parameters_json(finding.parameters);
     one["words"] = finding.words;
     document["pictures"].push_back(std::move(one));
+  }
+  document["pixel_noise"] = Json::array();
+  for (const diagnose::PictureCurve& curve : diagnosis.picture_curves) {
+    if (curve.what == "noise") document["pixel_noise"].push_back(noise_json(curve));
+  }
+  document["calibration_rests"] = Json::array();
+  for (const diagnose::CalibrationRests& of : diagnosis.calibrations) {
+    document["calibration_rests"].push_back(rests_json(of));
   }
   document["notes"] = diagnosis.notes;
   return json_text(document);

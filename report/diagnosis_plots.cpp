@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "report/camera_plots.h"
 #include "report/effect_names.h"
 #include "report/gnuplot.h"
 #include "report/plot_style.h"
@@ -186,11 +187,20 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
 
 std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots;
+  for (const diagnose::CalibrationRests& of : diagnosis.calibrations) {
+    for (Plot& plot : calibration_plots(of.rests, diagnosis.calibrations.size() > 1 ? of.experiment : "")) {
+      plots.push_back(std::move(plot));
+    }
+  }
   PlotData light{"light", {}, {"t (s)", "brightness, change (%)"}};
   PlotData across{"across", {}, {"t (s)", "to the right (px)"}}, down{"down", {}, {"t (s)", "downwards (px)"}};
   for (const diagnose::PictureCurve& curve : diagnosis.picture_curves) {
     if (curve.what == "lengthening") {
       plots.push_back(lengthening_plot(curve));
+      continue;
+    }
+    if (curve.what == "noise") {
+      plots.push_back(noise_plot(curve));
       continue;
     }
     PlotData& into = curve.what == "brightness" ? light : curve.what == "drift across" ? across : down;

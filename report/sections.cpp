@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "report/camera_plots.h"
 #include "report/configuration_name.h"
 #include "report/file_names.h"
 #include "report/html.h"
@@ -183,6 +184,8 @@ Html camera_section(const core::AnalysisResults& results) {
       table.row({names[i], fixed ? "0 (left out)" : value_and_sd_text(calibration.distortion[i], sd_of(4 + i))});
     }
     if (!table.empty()) text += table.str();
+    text +=
+        figures(calibration_plots(calibration.rests, results.calibrations.size() > 1 ? calibration.experiment : ""));
     text += notes_html(calibration.notes);
   }
   text += figures(pixel_phase_plot(phase_points(results), false));

@@ -141,3 +141,66 @@ TEST_CASE("A picture that is smaller than a patch has nothing to watch", "[scene
   CHECK(record.scene.empty());
   CHECK_FALSE(record.noise_memory);
 }
+
+TEST_CASE("A pixel's noise is measured at each brightness", "[scene]") {
+  constexpr double kDark = 0.4, kGain = 0.02;  // codes², codes
+  std::mt19937 random(11);
+  core::SceneWatch watch;
+  for (int k = 0; k < 60; ++k) {
+    cv::Mat_<unsigned char> picture(kHeight, kWidth);
+    for (int v = 0; v < kHeight; ++v) {
+      for (int u = 0; u < kWidth; ++u) {
+        const double level = 20.0 + 200.0 * u / kWidth;
+        std::normal_distribution<double> noise(0.0, std::sqrt(kDark + kGain * level));
+        picture(v, u) = cv::saturate_cast<unsigned char>(level + noise(random));
+      }
+    }
+    watch.add(picture, k / kRate_hz);
+  }
+  core::PictureRecord record;
+  watch.finish(record);
+  REQUIRE(record.noise_levels.size() >= 6);
+  CHECK(record.noise_levels.back().level_code - record.noise_levels.front().level_code > 100.0);
+  double chi2 = 0.0;
+  for (const core::NoiseAtLevel& one : record.noise_levels) {
+    const double expected = std::sqrt(kDark + kGain * one.level_code + 1.0 / 12.0);  // with rounding
+    CHECK(one.known_to < 0.05 * one.sd_code);
+    // A group has pixels of a range of levels, whose mean variance is that of the mean level.
+    CHECK(std::abs(one.sd_code - expected) < 5.0 * one.known_to);
+    chi2 += std::pow((one.sd_code - expected) / one.known_to, 2) / static_cast<double>(record.noise_levels.size());
+  }
+  CHECK(chi2 < 2.5);
+  CHECK(chi2 > 0.05);  // known_to is no mere bound
+}
+
+TEST_CASE("A scene whose blocks show is trusted as little as one of a file that says it is lossy", "[scene]") {
+  const auto seen = [](bool said) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0.0, 1.0);
+    core::SceneWatch watch(said);
+    for (int k = 0; k < 40; ++k) {
+      cv::Mat_<double> blocks(kHeight / 8 + 1, kWidth / 8 + 1);
+      for (double& one : blocks) one = 6.0 * noise(random);
+      cv::Mat_<unsigned char> picture(kHeight, kWidth);
+      for (int v = 0; v < kHeight; ++v) {
+        for (int u = 0; u < kWidth; ++u) {
+          picture(v, u) = cv::saturate_cast<unsigned char>(wall(u, v) + blocks(v / 8, u / 8) + noise(random));
+        }
+      }
+      watch.add(picture, k / kRate_hz);
+    }
+    core::PictureRecord record;
+    watch.finish(record);
+    return record;
+  };
+  const core::PictureRecord said = seen(true), silent = seen(false);
+  REQUIRE(said.scene.size() == silent.scene.size());
+  for (std::size_t k = 0; k < said.scene.size(); ++k) {
+    // What patches differ by is weighed against a pixel's noise, then widened: up to twice as wide.
+    CHECK(silent.scene[k].sd_u_px > 0.7 * said.scene[k].sd_u_px);
+    CHECK(silent.scene[k].sd_u_px < 2.0 * said.scene[k].sd_u_px);
+    for (std::size_t b = 0; b < core::kRowBands; ++b) {
+      CHECK(silent.scene[k].gain_sd[b] == Approx(said.scene[k].gain_sd[b]).epsilon(0.3));
+    }
+  }
+}

@@ -187,3 +187,15 @@ TEST_CASE("a twin of what one scale restitutes sees the marker where the pixels 
     CHECK((*seen - (filming.through_px + (x + kReference_m) * filming.along_px_m)).norm() < 1e-5);
   }
 }
+
+TEST_CASE("a twin's sensor makes the noise that was seen at each brightness", "[twin]") {
+  constexpr double kWell_e = 12000.0, kRead_e = 25.0;
+  diagnose::Filming filming = filmed();
+  const double gain = 253.0 / kWell_e;
+  filming.noise = diagnose::NoiseLaw{gain, 1e-4 * gain, gain * gain * kRead_e * kRead_e - 2.0 * gain + 1.0 / 12.0};
+  const Written twin = written("", {}, filming);
+  CHECK(twin.scenario.sensor.full_well_e == Approx(kWell_e).epsilon(1e-4));
+  CHECK(twin.scenario.sensor.read_noise_e == Approx(kRead_e).epsilon(1e-4));
+  filming.noise->gain_sd = gain;  // one brightness: light's noise alone, of the wall
+  CHECK(written("", {}, filming).scenario.sensor.read_noise_e == 0.0);
+}
