@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/size_text.h"
 #include "diagnose/expected_evidence.h"
 #include "diagnose/held_out.h"
 #include "diagnose/next_changes.h"
@@ -181,7 +182,7 @@ std::vector<Weak> named_parameters(const MotionFit& fit) {
     named.push_back({fmt::format("{} of {}", globals[g].parameter->key, effect_list()[globals[g].effect].id), "", at,
                      value.value, value.by_member});
   }
-  if (named.empty()) named = {{"K", " N s/m", 0, fit.at.global[0], 1.0}, {"mu", "", 1, fit.at.global[1], 1.0}};
+  if (named.empty()) named = {{"K", "N s/m", 0, fit.at.global[0], 1.0}, {"mu", "", 1, fit.at.global[1], 1.0}};
   return named;
 }
 
@@ -205,19 +206,16 @@ std::string sharpen(const TrackSet& set, const Comparison& comparison, const Mot
     best = after;
     choice = &change;
   }
-  // As many digits of it as its standard deviation leaves, and one more.
-  const double ratio = sd > 0.0 ? std::abs(weak.value) / sd : 1.0;
-  const int digits = 2 + std::max(0, static_cast<int>(std::ceil(std::log10(std::max(1.0, ratio)))));
-  const std::string known = fmt::format("Nothing else is likely; known least is {} ({:.{}g} ± {:.2g}{}).", weak.name,
-                                        weak.value, std::min(digits, 10), sd, weak.unit);
+  const std::string known = fmt::format("Nothing else is likely; known least is {} ({}).", weak.name,
+                                        base::size_and_sd_text(weak.value, sd, weak.unit));
   if (choice == nullptr || best > kSharpens * sd) {
     return fmt::format(
         "{} None of {} changes weighed ({}) would sharpen it by a twentieth: more clips of each kind "
         "would, by the root of their number.",
         known, changes.size(), kinds_in_words(changes));
   }
-  return fmt::format("{} {}: of {} changes weighed ({}) this one sharpens it most, to ± {:.2g}{}.", known,
-                     choice->words, changes.size(), kinds_in_words(changes), best, weak.unit);
+  return fmt::format("{} {}: of {} changes weighed ({}) this one sharpens it most, to ± {}.", known, choice->words,
+                     changes.size(), kinds_in_words(changes), base::size_text(best, 2, weak.unit));
 }
 
 /// The first of these effects that only pictures or single frames show: its sentence.

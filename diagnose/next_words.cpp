@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "base/number_text.h"
 #include "diagnose/next_changes.h"
 #include "diagnose/next_clip.h"
 
@@ -45,9 +46,10 @@ Cover best_cover(const TrackSet& set, const MotionFit& nominal, const std::funct
 /// `unit` and `of`: "m" and "places".
 std::string cover_words(const Cover& cover, const GapRegion& region, const char* of, const char* unit) {
   return fmt::format(
-      "{}: of {} launches it has most positions ({} of {}) at {} from {:.2g} to {:.2g} {}, where the "
+      "{}: of {} launches it has most positions ({} of {}) at {} from {} to {} {}, where the "
       "excess lies",
-      cover.words, cover.launches, cover.inside, cover.positions, of, region.from, region.to, unit);
+      cover.words, cover.launches, cover.inside, cover.positions, of, base::number_text(region.from, 2),
+      base::number_text(region.to, 2), unit);
 }
 
 std::string for_masses(const TrackSet& set) {

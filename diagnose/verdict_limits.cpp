@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/size_text.h"
 #include "diagnose/held_out.h"
 
 namespace glidelab::diagnose {
@@ -22,9 +23,9 @@ std::vector<std::string> what_drives(const MotionFit& fit) {
     const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
     if (!(value < -kBelowZero * sd)) continue;
     words.push_back(
-        fmt::format("The fit has a {} below zero ({:.2g} ± {:.1g}{}), which would drive the glider: what is missing "
+        fmt::format("The fit has a {} below zero ({}), which would drive the glider: what is missing "
                     "takes it there, or what is stated of the inclination, of downhill or of the masses is wrong.",
-                    g == 0 ? "drag" : "friction", value, sd, g == 0 ? " N s/m" : ""));
+                    g == 0 ? "drag" : "friction", base::size_and_sd_text(value, sd, g == 0 ? "N s/m" : "")));
   }
   return words;
 }

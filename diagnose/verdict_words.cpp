@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/size_text.h"
+
 namespace glidelab::diagnose {
 namespace {
 
@@ -126,11 +128,12 @@ std::string verdict_words(const Diagnosis& diagnosis) {
       if (!region.clip.empty()) text = text + " and is largest in clip " + region.clip;
       if (region.lacking) {
         text += fmt::format(
-            ": {}. How large it is these data do not tell: the estimate, {:.2g} {}, is far more than the usual model "
-            "lacks anywhere ({:.2g} {}).",
-            region.what, region.size, region.unit, *region.lacking, region.unit);
+            ": {}. How large it is these data do not tell: the estimate, {}, is far more than the usual model lacks "
+            "anywhere ({}).",
+            region.what, base::size_text(region.size, 2, region.unit),
+            base::size_text(*region.lacking, 2, region.unit));
       } else {
-        text += fmt::format(": {} of up to {:.2g} {}.", region.what, region.size, region.unit);
+        text += fmt::format(": {} of up to {}.", region.what, base::size_text(region.size, 2, region.unit));
       }
     }
     return text + gap_words(diagnosis);

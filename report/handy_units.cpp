@@ -4,37 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "report/number_text.h"
 
 namespace glidelab::report {
-namespace {
-
-constexpr double kBelow = 0.1;  // of a unit: then a smaller one
-constexpr std::array<std::string_view, 4> kPrefixed = {"m", "s", "N", "m/s²"};
-constexpr std::array<std::string_view, 4> kPrefixes = {"", "m", "µ", "n"};
-
-struct Scaled {
-  double factor = 1.0;
-  std::string unit;  ///< with the space before it
-};
-
-Scaled scaled(double size, std::string_view unit) {
-  Scaled of{1.0, unit.empty() ? std::string() : fmt::format(" {}", unit)};
-  if (std::find(kPrefixed.begin(), kPrefixed.end(), unit) == kPrefixed.end()) return of;
-  if (!std::isfinite(size) || size == 0.0) return of;
-  std::size_t prefix = 0;
-  while (prefix + 1 < kPrefixes.size() && std::abs(size) * of.factor < kBelow) {
-    of.factor *= 1000.0;
-    ++prefix;
-  }
-  of.unit = fmt::format(" {}{}", kPrefixes[prefix], unit);
-  return of;
-}
-
-}  // namespace
 
 NamedUnit name_and_unit(std::string_view key) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kUnits = {{{"_kg_m", "kg/m"},
@@ -56,16 +30,6 @@ NamedUnit name_and_unit(std::string_view key) {
     }
   }
   return {std::string(key), ""};
-}
-
-std::string size_text(double value, int digits, std::string_view unit) {
-  const Scaled of = scaled(value, unit);
-  return number_text(value * of.factor, digits) + of.unit;
-}
-
-std::string size_and_sd_text(double value, double sd, std::string_view unit) {
-  const Scaled of = scaled(std::abs(value) > sd || !std::isfinite(sd) ? value : sd, unit);
-  return value_and_sd_text(value * of.factor, sd * of.factor) + of.unit;
 }
 
 std::string parameter_text(std::string_view key, double value, double sd) {
