@@ -147,6 +147,7 @@ Eigen::MatrixXd square_root(const Eigen::MatrixXd& covariance) {
     if (covariance(k, k) > 0.0) free.push_back(k);
   }
   const auto size = static_cast<Eigen::Index>(free.size());
+  if (size == 0) return Eigen::MatrixXd::Zero(covariance.rows(), 0);
   Eigen::VectorXd sd(size);
   for (Eigen::Index k = 0; k < size; ++k)
     sd[k] = std::sqrt(covariance(free[static_cast<std::size_t>(k)], free[static_cast<std::size_t>(k)]));

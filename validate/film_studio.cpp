@@ -62,9 +62,7 @@ MadeTracks FilmStudio::film(const render::Scenario& scenario, std::uint64_t seed
   core::SeenPattern pattern = pattern_;
   if (lens) {
     pattern.calibration.camera = *lens;
-    // As good as none: a restitution whose camera has no variance at all has nothing to take the root of.
-    constexpr double kMillionthSd = 1e-12;
-    pattern.calibration.covariance *= kMillionthSd;
+    pattern.calibration.covariance.setZero();
   }
   const bool lossy = render::lossy(scenario.codec);
   const core::Experiment experiment =

@@ -169,7 +169,7 @@ TEST_CASE("planes of one calibration have the camera's modes in common, and each
   const auto one = tests::known_corners(known, slanted(), 0.04, 0.02, random);
   const auto two =
       tests::known_corners(known, tests::known_plane({0, 0, 1.4}, 0, 0.1, 0, 0.16, 0.1), 0.04, 0.02, random);
-  const auto calibration = core::calibrate_camera(boards, 0.04);
+  auto calibration = core::calibrate_camera(boards, 0.04);
   const auto first = core::Restitution::from_pattern(calibration, {one}, 0.04, 0.0, 0.0).modes();
   const auto second = core::Restitution::from_pattern(calibration, {two}, 0.04, 0.0, 0.0).modes();
   REQUIRE(first.size() == second.size());
@@ -189,6 +189,11 @@ TEST_CASE("planes of one calibration have the camera's modes in common, and each
   double variance = 0.0;
   for (const auto& mode : first) variance += std::pow((mode.camera.fx - calibration.camera.fx) / mode.sds, 2);
   CHECK(std::abs(variance / calibration.covariance(0, 0) - 1.0) < 1e-6);  // differences of numbers of 830 at 1e-13
+
+  calibration.covariance.setZero();  // a camera that is known: the plane's pose is left
+  const auto known_camera = core::Restitution::from_pattern(calibration, {one}, 0.04, 0.0, 0.0).modes();
+  REQUIRE(known_camera.size() == 6);
+  for (const auto& mode : known_camera) CHECK_FALSE(mode.of_camera);
 }
 
 TEST_CASE("one scale divides pixels by it and hands its uncertainty on") {
