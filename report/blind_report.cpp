@@ -182,6 +182,7 @@ std::string blind_json(const BlindRun& run) {
   document["outside_variable_named"] = share_json(score.where);
   document["outside_variable_first"] = share_json(score.where_first);
   document["left_out"] = shares_json(score.left_out);
+  document["left_out_variable_first"] = share_json(score.left_out_where);
   document["reliability"] = Json::array();
   for (const auto& bin : score.reliability) {
     Json one = share_json(bin.right);
@@ -245,6 +246,8 @@ Page blind_page(const BlindRun& run) {
   if (!score.left_out.empty()) {
     HtmlTable left({"verdict with the true effect taken from the list", "cases"});
     for (const auto& [word, share] : score.left_out) left.row({escape(word), blind_percent(share)});
+    left.row(
+        {"of the unknown: the first region lies over a variable of the effect", blind_percent(score.left_out_where)});
     body += "<h2>Leave one effect out</h2>\n" + left.str();
   }
   HtmlTable confusion({"truth", "named first (times)"}, 2);

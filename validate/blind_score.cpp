@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "validate/blind_effects.h"
+#include "validate/blind_left_out.h"
 #include "validate/blind_scene_effects.h"
 
 namespace glidelab::validate {
@@ -19,7 +20,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kModerate = 15.0, kStrong = 50.0;  // log likelihood, as the targets have them
-constexpr double kSure = 0.8;
 constexpr double kSameShrink = 0.95;
 constexpr double kClearGap = 3.0;  // standard errors: a shrink of less is noise over noise
 constexpr std::size_t kBins = 10;
@@ -34,20 +34,6 @@ std::set<std::string> classes_of(const BlindOutcome& outcome) {
   std::set<std::string> classes;
   for (const BlindCause& cause : outcome.causes) classes.insert(blind_class(cause.id, outcome.filmed));
   return classes;
-}
-
-std::string true_class(const BlindOutcome& outcome) {
-  return blind_class(outcome.causes.front().id, outcome.filmed);
-}
-
-/// All that a verdict names: its effects and their equals.
-std::set<std::string> named_by(const BlindOutcome& outcome) {
-  std::set<std::string> named;
-  for (const BlindNamed& effect : outcome.verdict.effects) {
-    named.insert(blind_class(effect.id, outcome.filmed));
-    for (const std::string& id : effect.equivalent_to) named.insert(blind_class(id, outcome.filmed));
-  }
-  return named;
 }
 
 const std::vector<std::string>& library_of(const BlindOutcome& outcome) {
@@ -208,18 +194,6 @@ void add_shrink(const BlindOutcome& outcome, BlindScore& score) {
   count(score.shrunk, reached >= kSameShrink);
 }
 
-std::string verdict_without(const BlindOutcome& outcome) {
-  const BlindVerdict& without = *outcome.left_out;
-  if (without.verdict != "effect") return without.verdict;
-  // Equals of the truth on these data, as the full diagnosis says it, may take its place.
-  const std::set<std::string> named = named_by(outcome);
-  const bool truth_named = named.contains(true_class(outcome));
-  if (truth_named && named.contains(blind_class(without.effects.front().id, outcome.filmed))) return "equivalent";
-  const bool sure = std::any_of(without.effects.begin(), without.effects.end(),
-                                [](const BlindNamed& effect) { return effect.probability > kSure; });
-  return sure ? "another name, probability over 0.8" : "another name";
-}
-
 void add_case(const BlindOutcome& outcome, BlindScore& score) {
   const BlindVerdict& verdict = outcome.verdict;
   const std::string strength(strength_word(outcome));
@@ -232,12 +206,18 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
       for (const char* word : {"unknown", "equivalent", "none", "another name", "another name, probability over 0.8"}) {
         count(score.left_out[word], said == word);
       }
+      const auto variables = variables_of(outcome.causes.front().id);
+      if (said == "unknown" && !variables.empty()) {
+        const auto& where = outcome.left_out->where;
+        count(score.left_out_where,
+              !where.empty() && std::find(variables.begin(), variables.end(), where.front()) != variables.end());
+      }
     }
   }
   if (outcome.kind == BlindKind::outside) {
     count(score.recognised[strength], verdict.verdict == "unknown");
     count(score.wrong_name, std::any_of(verdict.effects.begin(), verdict.effects.end(),
-                                        [](const BlindNamed& effect) { return effect.probability > kSure; }));
+                                        [](const BlindNamed& effect) { return effect.probability > kSureName; }));
     if (verdict.verdict == "unknown") {
       const auto& where = verdict.where;
       const std::string& variable = outcome.causes.front().variable;
@@ -274,6 +254,19 @@ std::string blind_class(const std::string& id, bool filmed) {
   if (id == "frame_rate_error") return "scale_error";
   if (id == "base_vibration" && !filmed) return "camera_motion";
   return id;
+}
+
+std::string true_class(const BlindOutcome& outcome) {
+  return blind_class(outcome.causes.front().id, outcome.filmed);
+}
+
+std::set<std::string> named_by(const BlindOutcome& outcome) {
+  std::set<std::string> named;
+  for (const BlindNamed& effect : outcome.verdict.effects) {
+    named.insert(blind_class(effect.id, outcome.filmed));
+    for (const std::string& id : effect.equivalent_to) named.insert(blind_class(id, outcome.filmed));
+  }
+  return named;
 }
 
 std::string_view strength_word(const BlindOutcome& outcome) {

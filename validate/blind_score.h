@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,12 @@ struct BlindOutcome {
 
 /// scale_error and frame_rate_error give one word; so do camera_motion and base_vibration on tracks.
 std::string blind_class(const std::string& id, bool filmed);
+/// That of the one cause.
+std::string true_class(const BlindOutcome& outcome);
+/// All that a verdict names, as classes: its effects and their equals.
+std::set<std::string> named_by(const BlindOutcome& outcome);
+inline constexpr double kSureName = 0.8;  ///< a name with more is a sure one
+
 /// "weak", "moderate", "strong"; of a pair by its weaker cause.
 std::string_view strength_word(const BlindOutcome& outcome);
 
@@ -101,6 +108,7 @@ struct BlindScore {
   std::vector<double> shrink_of_oracle;        ///< single, strong: shrink over the true effect's own, each case
   BlindShare shrunk;                           ///< of these: at least 0.95
   std::map<std::string, BlindShare> left_out;  ///< unknown, equivalent, none, name, sure name: of those left out
+  BlindShare left_out_where;                   ///< unknown of those: the first region is in a variable of the effect
   std::vector<ConfusionRow> confusion;
   std::size_t failed = 0;
 };
