@@ -1,4 +1,5 @@
-/// SIGINT, SIGTERM and SIGHUP set a flag; the work looks at it and ends by itself, cleaning up behind it.
+/// SIGINT, SIGTERM and SIGHUP set a flag; the work looks at it and ends by itself, cleaning up behind it. Another one,
+/// two seconds later or more, ends the process at once, and what it had begun stays.
 #pragma once
 
 #include <functional>

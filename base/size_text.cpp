@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/number_text.h"
 
@@ -44,6 +45,28 @@ std::string size_and_sd_text(double value, double sd, std::string_view unit) {
   const Scaled of = scaled(std::abs(value) > sd || !std::isfinite(sd) ? value : sd, unit);
   if (!(sd > 0.0) || !std::isfinite(sd)) return value_text(value * of.factor, sd) + of.unit;
   return value_and_sd_text(value * of.factor, sd * of.factor) + of.unit;
+}
+
+NamedUnit name_and_unit(std::string_view key) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kUnits = {{{"_kg_m", "kg/m"},
+                                                                                     {"_1_m2", "1/m²"},
+                                                                                     {"_1_m", "1/m"},
+                                                                                     {"_n_s_m", "N s/m"},
+                                                                                     {"_n_m", "N/m"},
+                                                                                     {"_m_s2", "m/s²"},
+                                                                                     {"_m_s", "m/s"},
+                                                                                     {"_kg", "kg"},
+                                                                                     {"_hz", "Hz"},
+                                                                                     {"_px", "px"},
+                                                                                     {"_n", "N"},
+                                                                                     {"_m", "m"},
+                                                                                     {"_s", "s"}}};
+  for (const auto& [ending, unit] : kUnits) {
+    if (key.ends_with(ending)) {
+      return {std::string(key.substr(0, key.size() - ending.size())), std::string(unit)};
+    }
+  }
+  return {std::string(key), ""};
 }
 
 }  // namespace glidelab::base

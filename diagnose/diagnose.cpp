@@ -143,6 +143,10 @@ void settle_noise(TrackSet& set) {
   set_tails_aside(set, missing.fit);
 }
 
+/// A codec that makes pictures out of those before leaves what has moved by less than some hundredths of a pixel where
+/// it was, and so makes a friction of the slowest motion.
+constexpr double kHeldPx = 0.05;  // from one frame to the next
+
 /// Whether the files say, or the pictures show, that they have been through a codec with loss.
 void note_loss(const PictureEvidence& pictures, TrackSet& set) {
   set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
@@ -151,6 +155,13 @@ void note_loss(const PictureEvidence& pictures, TrackSet& set) {
   set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
                     return clip.record->codec == "MJPG";  // each picture by itself
                   });
+  set.held_m_s = 0.0;
+  if (!set.handed_on) return;
+  for (const FilmedClip& clip : pictures.clips) {
+    if (clip.px_per_m > 0.0) {
+      set.held_m_s = std::max(set.held_m_s, kHeldPx * clip.camera.frame_rate_hz / clip.px_per_m);
+    }
+  }
 }
 
 /// How far the best explanation that names something (or nothing) is from the noise: chi² a point.

@@ -51,6 +51,7 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
     }
     if (longest > 0.0) range = {kShortestPush * frame, kLatest * longest};
   }
+  if (parameter.member == &E::stribeck_m_s) range.low = std::max(range.low, set.held_m_s);
   if (parameter.with_mass) {
     double heaviest_kg = 1.0;
     for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);

@@ -15,7 +15,7 @@ struct ParameterRange {
 
 /// Sizes as in effect_list(), those that go with the mass for the heaviest glider; a place within the positions, a
 /// frequency of at least two turns in the longest motion, a release after four frames and in the first two
-/// fifths of the longest one.
+/// fifths of the longest one, a Stribeck speed above that at which a codec may hold the marker (TrackSet::held_m_s).
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
 
 /// From the least to the largest position.

@@ -20,7 +20,7 @@ std::vector<double> second_parameters(const TrackSet& set, const EffectInfo& eff
     return set.groups.size() > 1 ? std::vector<double>{0.0, 1.0} : std::vector<double>{0.0};
   }
   if (effect.id == "stribeck") {
-    for (double v = 0.008; v < 0.7; v *= 1.5) shapes.push_back(v);
+    for (double v = std::max(0.008, set.held_m_s); v < 0.7; v *= 1.5) shapes.push_back(v);
     return shapes;
   }
   const ParameterRange x = range_of_places(set);

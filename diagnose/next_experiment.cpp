@@ -179,8 +179,9 @@ std::vector<Weak> named_parameters(const MotionFit& fit) {
     if (globals[g].parameter == nullptr || globals[g].parameter->key.empty()) continue;
     const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
     if (!std::isfinite(value.value)) continue;  // a v_c that fits best where it is absent
-    named.push_back({fmt::format("{} of {}", globals[g].parameter->key, effect_list()[globals[g].effect].id), "", at,
-                     value.value, value.by_member});
+    const base::NamedUnit of = base::name_and_unit(globals[g].parameter->key);
+    named.push_back({fmt::format("{} of {}", of.name, effect_list()[globals[g].effect].id), of.unit, at, value.value,
+                     value.by_member});
   }
   if (named.empty()) named = {{"K", "N s/m", 0, fit.at.global[0], 1.0}, {"mu", "", 1, fit.at.global[1], 1.0}};
   return named;

@@ -93,7 +93,8 @@ struct TrackSet {
   bool pieces = false;     ///< clips are pieces of a single one (driven_motions.h)
   bool pictures = false;   ///< at least one clip was filmed
   bool lossy = false;      ///< at least one has been through a codec with loss,
-  bool handed_on = false;  ///< and one that makes pictures out of those before
+  bool handed_on = false;  ///< and one that makes pictures out of those before:
+  double held_m_s = 0.0;   ///< slower than this the marker may be held where it was (0: by none)
   std::optional<FilmNoise> film_noise;
   std::vector<std::string> notes;
   /// Frames that the analysis took for hand or stop and that a motion could hold.

@@ -100,14 +100,14 @@ std::string blind_meaning(const validate::BlindScore& score) {
                       calibrated                 ? ""
                       : over_stated(score) > 0.0 ? ", it is too sure of itself"
                                                  : ", it is too modest");
-  std::string missed;
-  std::size_t weighed = 0;
+  std::string missed = calibrated ? "" : "the expected calibration error";
+  std::size_t weighed = 1;  // with that of the calibration
   for (const BlindTarget& target : blind_targets(score)) {
     if (target.share.of == 0) continue;
     ++weighed;
     if (!is_met(target)) missed += (missed.empty() ? "" : "; ") + escape(target.what);
   }
-  if (weighed == 0) return text + " No case says anything about the targets.</p>\n";
+  if (weighed == 1) return text + " No case says anything about the targets.</p>\n";
   return text + (missed.empty()
                      ? fmt::format(" All {} targets that these cases say anything about are met.</p>\n", weighed)
                      : fmt::format(" Missed: {}.</p>\n", missed));

@@ -9,12 +9,8 @@
 
 namespace glidelab::report {
 
-/// A key by itself: "c_kg_m" is c in kg/m. No unit where the key names none.
-struct NamedUnit {
-  std::string name, unit;
-};
-NamedUnit name_and_unit(std::string_view key);
-
+using base::name_and_unit;
+using base::NamedUnit;
 using base::size_and_sd_text;
 using base::size_text;
 

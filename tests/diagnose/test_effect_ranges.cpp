@@ -64,6 +64,16 @@ TEST_CASE("a release is after four frames and in the first two fifths, a lens' a
   CHECK(x.high > 0.4);
 }
 
+TEST_CASE("where a codec may hold a slow marker no friction of that speed is looked for") {
+  diagnose::TrackSet set = set_with({}, 1);
+  const std::size_t stribeck = diagnose::effect_index("stribeck");
+  const auto slowest = [&] { return diagnose::range_of(set, diagnose::effect_list()[stribeck].parameters[1]).low; };
+  CHECK(slowest() == 0.003);
+  set.held_m_s = 0.02;
+  CHECK(slowest() == 0.02);
+  for (const std::vector<double>& shape : diagnose::effect_shapes(set, stribeck)) CHECK(shape.at(0) >= 0.02);
+}
+
 TEST_CASE("pushes that go along the motions are a hand's, the same pushes this way and that are so more seldom") {
   // In the linear neighbourhood the two differ by signs alone: what the data show of each push is the same.
   const auto evidence = [](const std::array<double, 8>& ways, double size) {

@@ -232,7 +232,7 @@ TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and not
     CHECK(diagnosis.next_experiment.find("nothing") == std::string::npos);
     return diagnosis.next_experiment;
   };
-  CHECK(advice(tests::made_launches(), drag).find("known least is c_kg_m of quadratic_drag") != std::string::npos);
+  CHECK(advice(tests::made_launches(), drag).find("known least is c of quadratic_drag") != std::string::npos);
   const tests::MadeEffect scale{{}, [](double x, double) { return 1.02 * x; }};
   const std::string alike = advice(tests::made_launches(), scale);
   INFO(alike);

@@ -102,4 +102,5 @@ TEST_CASE("what blind cases mean is told of what was there, with intervals, and 
   CHECK(has("All 2 targets"));
   score.reliability[0].stated = 0.5;
   CHECK(has("too modest"));
+  CHECK(has("Missed: the expected calibration error"));  // no other: 5 % of false alarms are allowed
 }
