@@ -10,12 +10,15 @@
 
 #include "core/least_squares.h"
 #include "core/pixel_edge.h"
+#include "core/pixel_noise.h"
 
 namespace glidelab::core {
 namespace {
 
 constexpr int kLargestForDetection = 1600;  // px; larger pictures are halved for finding, not for refining
 constexpr int kLeastSide = 20;        // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
+constexpr double kNoisy = 8.0;        // codes
+constexpr int kMostBlurs = 5;         // by 1 px
 constexpr double kWindowShare = 0.7;  // of the distance to the next edge
 constexpr double kLargestWindowPx = 14.0;
 constexpr double kSmallestWindowPx = 2.5;
@@ -38,8 +41,23 @@ cv::Mat to_8_bits(const cv::Mat& grey) {
   return eight;
 }
 
-std::vector<cv::Point2f> detect(const cv::Mat& eight, cv::Size inner_corners, BoardDetector detector) {
-  if (std::min(eight.cols, eight.rows) < kLeastSide) return {};
+/// The detectors look through the outlines of all dark spots, pairs of them too: noise makes so many that they take
+/// hours. Blurred until it is below kNoisy; the corners' places are refined in the picture itself.
+cv::Mat without_specks(const cv::Mat& eight) {
+  cv::Mat seen = eight, values;
+  for (int pass = 0; pass < kMostBlurs; ++pass) {
+    seen.convertTo(values, CV_32F);
+    if (noise_of(values) < kNoisy) break;
+    cv::Mat softer;
+    cv::GaussianBlur(seen, softer, {}, 1.0);
+    seen = softer;
+  }
+  return seen;
+}
+
+std::vector<cv::Point2f> detect(const cv::Mat& picture, cv::Size inner_corners, BoardDetector detector) {
+  if (std::min(picture.cols, picture.rows) < kLeastSide) return {};
+  const cv::Mat eight = without_specks(picture);
   std::vector<cv::Point2f> corners;
   bool found = false;
   if (detector != BoardDetector::sector_based) {

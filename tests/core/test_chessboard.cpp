@@ -193,3 +193,16 @@ TEST_CASE("a picture without the board gives nothing") {
   const cv::Mat grey = tests::expose(cv::Mat(240, 320, CV_64F, cv::Scalar(100.0)), 3.0, 5);
   CHECK_FALSE(core::find_board(grey, {9, 6}));
 }
+
+TEST_CASE("a board is found in noise of a third of its contrast, and none in noise alone") {
+  // The detectors alone take minutes for the specks of such a picture.
+  const cv::Matx33d pose = board_pose(9, 6, {320.0, 240.0}, 42.0, 0.2, 0.01);
+  const cv::Mat noisy = tests::expose(paint_board({640, 480}, pose, 9, 6, true, 2, 0.5), 40.0, 5);
+  const auto board = core::find_board(noisy, {9, 6});
+  REQUIRE(board);
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 9; ++i) CHECK(distance(board->at(i, j), tests::map(pose, i, j)) < 5.0);  // a wrong one: 42 px
+  }
+  const cv::Mat grey = tests::expose(cv::Mat_<double>(480, 640, 0.5), 40.0, 6);
+  CHECK_FALSE(core::find_board(grey, {9, 6}));
+}
