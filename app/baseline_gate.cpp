@@ -64,7 +64,15 @@ void say_power(const CommonOptions& common, const validate::Baseline& then, cons
 }  // namespace
 
 void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file) {
-  if (!gate.write.empty()) check_own_file(gate.write, "--write-baseline", "{");
+  if (!gate.write.empty()) {
+    check_file_writable(gate.write);
+    check_own_file(gate.write, "--write-baseline", "{");
+    std::error_code error;  // of a file that is not there
+    if (!gate.compare.empty() && fs::equivalent(gate.compare, gate.write, error)) {
+      throw base::InputError(base::Issue{gate.write, 0, "--write-baseline", "the file of --baseline",
+                                         "another one: what is compared with is kept"});
+    }
+  }
   const std::string text = base::read_file(scenario_file);
   const render::Scenario scenario = render::read_scenario(text, scenario_file, render::ScenarioChecks::values);
   std::optional<validate::Baseline> then;
@@ -78,11 +86,15 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
         base::Issue{gate.compare, 0, "--noise-m", fmt::format("{}", *gate.noise_m),
                     fmt::format("{}, with which the baseline was made, or the option left out", then->noise_m)});
   }
+  if (then && then->seed && common.seed == then->seed) {
+    throw base::InputError(base::Issue{
+        gate.compare, 0, "--seed", fmt::format("{}, with which the baseline was made", *then->seed),
+        "another one, or the option left out: with the same noise an unchanged analysis would prove nothing"});
+  }
   validate::BaselineOptions options;
   options.noise_m = then ? then->noise_m : gate.noise_m.value_or(options.noise_m);
   options.runs = gate.runs;
-  // Other noise than a baseline's of the default seed: with the same one an unchanged analysis would prove nothing.
-  options.seed = common.seed.value_or(then ? 2 : 1);
+  options.seed = common.seed.value_or(then ? validate::other_seed(*then) : options.seed);
   options.jobs = common.jobs;
   ProgressDisplay display(common.quiet, common.verbose);
   const validate::Baseline now =

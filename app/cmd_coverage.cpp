@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -32,6 +33,18 @@ struct CoverageCommand {
   double noise_m = 0.0;
   std::vector<double> levels;  ///< in per cent
 };
+
+std::string check_bandwidth(const std::string& text) {
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
+  return fmt::format("\"{}\" is no number of seconds above 0", text);
+}
+
+std::string check_level(const std::string& text) {
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(text, value) && value > 0.0 && value < 100.0) return {};
+  return fmt::format("\"{}\" is no number of per cent above 0 and below 100", text);
+}
 
 void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool noise_given) {
   // With a noise that is given no camera looks on: it need not see the motions.
@@ -63,10 +76,16 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
   if (std::all_of(coverage.rows.begin(), coverage.rows.end(),
                   [](const validate::CoverageRow& row) { return row.determined == 0; })) {
     throw base::NotMet(fmt::format(
-        "{}: nothing to count: no estimator found a value of what is known of these motions. K/m, mu and v_lim are "
-        "true of viscous and Coulomb friction only; under another law the inclination alone is, where the motions "
-        "determine it",
+        "{}: nothing to count: no estimator found a value of what is known of these motions. K/m and mu are true "
+        "of viscous and Coulomb friction only; under another law the inclination and the limit velocity are, where the "
+        "motions determine them",
         options.scenario));
+  }
+  if (bandwidth_given && std::all_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
+        return row.determined == 0 || row.estimator != "phase-diagram";
+      })) {
+    throw base::NotMet(fmt::format("{}: with --bandwidth {} the phase diagram finds no value in any replicate",
+                                   options.scenario, options.bandwidth_s));
   }
   // Of a row that fails at several levels one.
   std::set<std::string> failing;
@@ -90,18 +109,28 @@ void add_coverage(CLI::App& app, Command& chosen) {
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
-  CLI::Option* noise = command->add_option(
-      "--noise-m", options->noise_m,
-      "Standard deviation of the noise of every position, in metres (no pictures are made); default: the least that "
-      "the scenario's camera, light and marker allow, clip by clip");
-  command->add_option("--replicates", options->coverage.replicates, "How many")->capture_default_str();
+  CLI::Option* noise =
+      command
+          ->add_option("--noise-m", options->noise_m,
+                       "Standard deviation of the noise of every position, in metres (no pictures are made); default: "
+                       "the least that the scenario's camera, light and marker allow, clip by clip")
+          ->type_name("METRES")
+          ->check(check_noise_m);
+  command->add_option("--replicates", options->coverage.replicates, "How many")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   command
       ->add_option("--level", options->levels,
                    "Levels of the intervals to count, in per cent, each above 0 and below 100; may be several")
       ->type_name("PERCENT...")
+      ->check(check_level)
       ->default_str("50 68 90 95 99");
-  CLI::Option* bandwidth = command->add_option(
-      "--bandwidth", options->bandwidth_s, "Bandwidth of the phase diagram in seconds; default: chosen clip by clip");
+  CLI::Option* bandwidth = command
+                               ->add_option("--bandwidth", options->bandwidth_s,
+                                            "Bandwidth of the phase diagram in seconds; default: chosen clip by clip")
+                               ->type_name("SECONDS")
+                               ->check(check_bandwidth);
   add_common_options(*command, options->common, "glidelab-out/coverage-<name of the scenario file>",
                      "Seed of the noise; default: the scenario's");
   command->callback([options, bandwidth, noise, &chosen] {

@@ -100,9 +100,10 @@ void add_validate(CLI::App& app, Command& chosen) {
                        "Standard deviation of a position for --write-baseline, else 2e-5; --baseline takes the stored "
                        "one and refuses another")
           ->type_name("METRES")
-          ->check(CLI::Range(1e-9, 1.0));
+          ->check(check_noise_m);
   add_common_options(*command, options->common, "glidelab-out/validate-<name of the scenario file>",
-                     "Seed of the camera's noise; default: the scenario's");
+                     "Seed of the noise; default: the scenario's, for a baseline 1, beside --baseline another than "
+                     "the file's");
   command->callback([options, runs, noise, &chosen] {
     for (const CLI::Option* option : {runs, noise}) {
       if (option->count() > 0 && !options->gate.wanted()) {

@@ -123,6 +123,23 @@ void check_writable(const fs::path& folder) {
   }
 }
 
+void check_file_writable(const fs::path& file) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  std::error_code error;
+  if (fs::is_directory(file, error)) base::throw_system_error(file.string(), "cannot be written", EISDIR);
+  if (!fs::is_directory(folder, error)) {
+    base::throw_system_error(file.string(), "cannot be written", fs::exists(folder, error) ? ENOTDIR : ENOENT);
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) base::throw_system_error(file.string(), "cannot be written", errno);
+}
+
+std::string check_noise_m(const std::string& text) {
+  constexpr double kLeast_m = 1e-9, kMost_m = 1.0;
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(text, value) && value >= kLeast_m && value <= kMost_m) return {};  // NaN is neither
+  return fmt::format("\"{}\" is no number of metres from {} to {}", text, kLeast_m, kMost_m);
+}
+
 void print_result(std::string_view text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (!written || std::fflush(stdout) != 0) base::throw_system_error("standard output", "cannot be written", errno);

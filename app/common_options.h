@@ -42,6 +42,12 @@ void check_own_file(const std::filesystem::path& file, const std::string& option
 /// are made beside it and renamed, which works within one file system only.
 void check_writable(const std::filesystem::path& folder);
 
+/// The same of a file that is written beside its final name: its folder is there, and can be written into.
+void check_file_writable(const std::filesystem::path& file);
+
+/// For CLI11: why the text is no finite number of metres above 0 that a position's noise can be; empty where it is one.
+std::string check_noise_m(const std::string& text);
+
 /// Writes to standard output and flushes it; EnvironmentError where that fails.
 void print_result(std::string_view text);
 

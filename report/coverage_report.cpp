@@ -141,9 +141,9 @@ std::string meaning(const validate::Coverage& coverage) {
   });
   if (!any) {
     return text +
-           "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m, µ and "
-           "v_lim are true of viscous and Coulomb friction only; under another law the inclination α alone has a true "
-           "value, and these motions do not determine it.</p>\n";
+           "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m and µ "
+           "are true of viscous and Coulomb friction only; under another law the inclination α has a true value, and "
+           "the limit velocity where the forces balance, and these motions do not determine them.</p>\n";
   }
   if (narrow.empty()) {
     text +=

@@ -13,12 +13,13 @@
 ///     bandwidth   Welch's t of ln(bandwidth), in either direction: it has no better and worse
 ///
 /// each one-sided (but for the bandwidth) at significance / number of tests (Bonferroni), so that an unchanged analysis
-/// fails with at most the significance. The seeds now are others than then unless they are given to be the same.
+/// fails with at most the significance. With the same noise it would prove nothing: other_seed().
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,7 @@ struct Baseline {
   std::string scenario;  ///< its text
   double noise_m = 0.0;
   std::uint64_t runs = 0;
+  std::optional<std::uint64_t> seed = {};  ///< of the noise; files of versions before it have none
   std::vector<ErrorRecord> records;
   std::vector<SmoothingRecord> smoothing;
 };
@@ -95,7 +97,11 @@ struct BaselineComparison {
 /// InputError where the two are not of one scenario, noise and set of quantities.
 BaselineComparison compare_baselines(const Baseline& then, const Baseline& now);
 
+/// Of other noise than the baseline's; of one that does not know its seed than that of the default, 1.
+std::uint64_t other_seed(const Baseline& then);
+
 std::string baseline_json(const Baseline& baseline);
+/// InputError for what --write-baseline has not made, with the first key that is wrong.
 Baseline read_baseline(const std::filesystem::path& file);
 
 }  // namespace glidelab::validate

@@ -18,6 +18,9 @@ namespace {
   switch (status & 0xff) {
     case SQLITE_NOTADB:
       throw base::InputError(base::Issue{name, 0, "", "no database", "a database that glidelab sweep has made"});
+    case SQLITE_CORRUPT:
+      throw base::InputError(base::Issue{name, 0, "", "a damaged database (it was cut off or changed)",
+                                         "a database that glidelab sweep has made, as it left it"});
     case SQLITE_ERROR:
     case SQLITE_CONSTRAINT:
     case SQLITE_MISMATCH:
@@ -91,6 +94,19 @@ void SqlStatement::run() {
 void SqlStatement::reset() {
   check(sqlite3_reset(statement_.get()));
   check(sqlite3_clear_bindings(statement_.get()));
+}
+
+bool SqlStatement::same_row(const SqlStatement& other, int columns) const {
+  for (int i = 0; i < columns; ++i) {
+    sqlite3_stmt *const a = statement_.get(), *const b = other.statement_.get();
+    const int type = sqlite3_column_type(a, i);
+    if (type != sqlite3_column_type(b, i)) return false;
+    if (type == SQLITE_INTEGER && integer(i) != other.integer(i)) return false;
+    if (type == SQLITE_FLOAT && number(i) != other.number(i)) return false;
+    if (type == SQLITE_TEXT && text(i) != other.text(i)) return false;
+    if (type == SQLITE_BLOB) return false;  // no table has one
+  }
+  return true;
 }
 
 bool SqlStatement::is_null(int column) const {

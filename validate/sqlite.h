@@ -35,6 +35,8 @@ class SqlStatement {
   void run();
   void reset();
 
+  /// The first `columns` of both rows are of the same types and values, numbers to the last bit.
+  bool same_row(const SqlStatement& other, int columns) const;
   bool is_null(int column) const;
   std::int64_t integer(int column) const;
   double number(int column) const;

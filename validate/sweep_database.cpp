@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <map>
+#include <set>
 
 #include "base/errors.h"
 #include "validate/sweep_design.h"
@@ -122,6 +124,43 @@ void check_identity(Database& database, const std::vector<std::pair<std::string,
                     wanted.second.find('\n') == std::string::npos ? shorten(wanted.second) : "that of this sweep")});
   }
 }
+
+/// Its first column is the run.
+struct TableOfRuns {
+  const char* name;
+  int columns;
+};
+
+/// All rows of single runs, in the order of their keys.
+class RowsOfRun {
+ public:
+  RowsOfRun(Database& database, const std::vector<TableOfRuns>& tables) : tables_(tables) {
+    for (const TableOfRuns& table : tables) {
+      select_.push_back(
+          database.prepare(fmt::format("SELECT * FROM {} WHERE run = ?1 ORDER BY 1, 2, 3, 4", table.name)));
+    }
+  }
+  /// The other has the same rows of the run.
+  bool same(std::int64_t run, RowsOfRun& other) {
+    bool all = true;
+    for (std::size_t t = 0; t < tables_.size() && all; ++t) {
+      SqlStatement &a = select_[t], &b = other.select_[t];
+      a.bind(1, run);
+      b.bind(1, run);
+      for (bool more = true; more && all;) {
+        more = a.step();
+        all = more == b.step() && (!more || a.same_row(b, tables_[t].columns));
+      }
+      a.reset();
+      b.reset();
+    }
+    return all;
+  }
+
+ private:
+  std::vector<TableOfRuns> tables_;
+  std::vector<SqlStatement> select_;
+};
 
 }  // namespace
 
@@ -249,33 +288,45 @@ void SweepDatabase::take(const std::vector<fs::path>& others) {
     check_identity(there, expected);
   }
   Transaction transaction(database_);
-  SqlStatement twice = database_.prepare("SELECT 1 FROM run WHERE run = ?1");
-  const auto copy = [&](Database& there, const char* table, int columns) {
-    std::string marks = "?1";
-    for (int i = 2; i <= columns; ++i) marks += fmt::format(", ?{}", i);
-    SqlStatement add = database_.prepare(fmt::format("INSERT INTO {} VALUES ({})", table, marks));
-    SqlStatement rows = there.prepare(fmt::format("SELECT * FROM {}", table));
-    while (rows.step()) {
-      for (int i = 0; i < columns; ++i) add.bind_column(i + 1, rows, i);
-      add.run();
-    }
-  };
-  for (const fs::path& other : others) {
-    Database there(other, Database::Mode::read);
+  const std::vector<TableOfRuns> tables = {{"run", 6 + static_cast<int>(axes_)}, {"result", 12}, {"clip", 10}};
+  std::map<std::int64_t, std::size_t> from;  // which of the others a run was taken of; not in it: it was here before
+  for (std::size_t which = 0; which < others.size(); ++which) {
+    Database there(others[which], Database::Mode::read);
+    RowsOfRun here_rows(database_, tables), there_rows(there, tables);
+    SqlStatement known = database_.prepare("SELECT 1 FROM run WHERE run = ?1");
+    std::set<std::int64_t> alike;
     SqlStatement runs = there.prepare("SELECT run FROM run");
     while (runs.step()) {
-      const bool known = twice.bind(1, runs.integer(0)).step();
-      twice.reset();
-      if (known) {
-        throw base::InputError(base::Issue{other.string(), 0, fmt::format("run {}", runs.integer(0)),
-                                           "a run that another of the databases has too", "shards that share no run"});
+      const std::int64_t run = runs.integer(0);
+      const bool twice = known.bind(1, run).step();
+      known.reset();
+      if (!twice) {
+        from.emplace(run, which);
+        continue;
       }
+      if (!here_rows.same(run, there_rows)) {
+        const auto first = from.find(run);
+        const fs::path& has = first == from.end() ? database_.file() : others[first->second];
+        throw base::InputError(base::Issue{others[which].string(), 0, fmt::format("run {}", run),
+                                           fmt::format("other results than {} has of it", has.string()),
+                                           "the same; leave one of the two out, or give another --out"});
+      }
+      alike.insert(run);
     }
     runs.reset();
-    copy(there, "run", 6 + static_cast<int>(axes_));
-    copy(there, "result", 12);
-    copy(there, "clip", 10);
-    copy(there, "timing", 2);
+    const auto copy = [&](const TableOfRuns& table) {
+      std::string marks = "?1";
+      for (int i = 2; i <= table.columns; ++i) marks += fmt::format(", ?{}", i);
+      SqlStatement add = database_.prepare(fmt::format("INSERT INTO {} VALUES ({})", table.name, marks));
+      SqlStatement rows = there.prepare(fmt::format("SELECT * FROM {}", table.name));
+      while (rows.step()) {
+        if (alike.contains(rows.integer(0))) continue;
+        for (int i = 0; i < table.columns; ++i) add.bind_column(i + 1, rows, i);
+        add.run();
+      }
+    };
+    for (const TableOfRuns& table : tables) copy(table);
+    copy({"timing", 2});
   }
   transaction.commit();
 }

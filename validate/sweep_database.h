@@ -55,7 +55,8 @@ class SweepDatabase {
   void add(const RunRecord& record, double wall_s);
 
   /// Takes over all runs of other databases of the same sweep and version (any shard), all of them or none (one
-  /// transaction). InputError for a file that is not there, another sweep's, and a run that is there already.
+  /// transaction); a run that several have with the same rows (but its time) once. InputError for a file that is not
+  /// there, is damaged, is another sweep's, or has other rows of a run, with the file that has the others.
   void take(const std::vector<std::filesystem::path>& others);
 
   Database& database() { return database_; }

@@ -158,6 +158,84 @@ TEST_CASE("A merge takes all of its files or none, and says what is not there ye
   const tests::ProcessResult half = tests::glidelab({"sweep", sweep, "-o", out, "--merge", part});
   CHECK(half.status == 0);
   CHECK(half.err.find("not complete: 3 of 6 runs are missing") != std::string::npos);
+  // A merge that came too early is no hindrance to that of all.
+  REQUIRE(tests::glidelab({"sweep", sweep, "-q", "-o", out, "--shard", "2/2"}).status == 0);
+  const tests::ProcessResult all =
+      tests::glidelab({"sweep", sweep, "-o", out, "--merge", part, out / "sweep-2-of-2.sqlite"});
+  INFO(all.err);
+  CHECK(all.status == 0);
+  CHECK(runs_in(out / "sweep.sqlite") == 6);
+}
+
+TEST_CASE("A part of a sweep that was cut off is wrong input, named, and nothing is merged") {
+  const tests::TempDir dir;
+  const std::string sweep = tests::write_sweep(dir.path(), "", tests::kTwoKeys);
+  const fs::path out = dir / "out", part = out / "sweep-1-of-2.sqlite";
+  REQUIRE(tests::glidelab({"sweep", sweep, "-q", "-o", out, "--shard", "1/2"}).status == 0);
+  const std::uintmax_t size = fs::file_size(part);
+  REQUIRE(size > 20000);
+  for (const std::uintmax_t left : {std::uintmax_t{1000}, std::uintmax_t{4096}, std::uintmax_t{20000}, size - 4096}) {
+    fs::copy_file(part, dir / "cut.sqlite", fs::copy_options::overwrite_existing);
+    fs::resize_file(dir / "cut.sqlite", left);
+    const tests::ProcessResult result = tests::glidelab({"sweep", sweep, "-o", out, "--merge", dir / "cut.sqlite"});
+    INFO(left << " bytes: " << result.err);
+    CHECK(result.status == 1);
+    CHECK(result.err.find("cut.sqlite") != std::string::npos);
+    CHECK_FALSE(fs::exists(out / "sweep.sqlite"));
+  }
+}
+
+TEST_CASE("A job array's script takes the number of parts from a whole array only, else it wants to be told") {
+  const tests::TempDir dir;
+  const std::string script = fs::path(tests::kSourceDir) / "tools/sweep.sbatch";
+  struct Task {
+    int id, min, max, count;
+    std::string parts, in_environment;
+  };
+  const auto task = [&](const Task& of) {
+    std::vector<std::string> arguments = {"env",
+                                          "GLIDELAB=echo",
+                                          fmt::format("SLURM_ARRAY_TASK_ID={}", of.id),
+                                          fmt::format("SLURM_ARRAY_TASK_MIN={}", of.min),
+                                          fmt::format("SLURM_ARRAY_TASK_MAX={}", of.max),
+                                          fmt::format("SLURM_ARRAY_TASK_COUNT={}", of.count),
+                                          "SLURM_CPUS_PER_TASK=1",
+                                          "GLIDELAB_PARTS=" + of.in_environment,
+                                          "sh",
+                                          script,
+                                          "s.toml",
+                                          "out"};
+    if (!of.parts.empty()) arguments.push_back(of.parts);
+    return tests::run(arguments, dir.path());
+  };
+  const auto does = [&](const Task& of, const std::string& shard) {
+    const tests::ProcessResult result = task(of);
+    INFO(result.out << result.err);
+    CHECK(result.status == 0);
+    CHECK(result.out == "sweep s.toml -o out --quiet --shard " + shard + " --jobs 1\n");
+  };
+  const auto refuses = [&](const Task& of) {
+    const tests::ProcessResult result = task(of);
+    INFO(result.out << result.err);
+    CHECK(result.status == 2);
+    CHECK(result.out.empty());
+    CHECK(result.err.starts_with("sweep.sbatch: "));
+  };
+  does({1, 1, 8, 8, "", ""}, "1/8");
+  does({8, 1, 8, 8, "", ""}, "8/8");
+  does({1, 1, 1, 1, "8", ""}, "1/8");
+  does({5, 5, 5, 1, "", "8"}, "5/8");
+  refuses({1, 1, 1, 1, "", ""});   // one task: again, or of one part?
+  refuses({5, 1, 5, 2, "", ""});   // 1,5
+  refuses({7, 0, 7, 8, "", ""});   // from 0
+  refuses({9, 9, 9, 1, "8", ""});  // no part
+  refuses({0, 0, 7, 8, "8", ""});
+  refuses({1, 1, 1, 1, "x", ""});
+  fs::create_directory(dir / "out");
+  base::write_file(dir / "out/sweep-3-of-8.sqlite", "");
+  refuses({1, 1, 2, 2, "", ""});  // 1 and 2 of 8 again
+  does({1, 1, 2, 2, "8", ""}, "1/8");
+  does({1, 1, 8, 8, "", ""}, "1/8");
 }
 
 TEST_CASE("The size is said before a sweep starts, and a run's whole scenario can be had") {

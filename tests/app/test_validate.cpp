@@ -120,6 +120,51 @@ TEST_CASE("a gate of few runs says how little it finds, and takes no other noise
   CHECK(alone.err.find("--noise-m requires --baseline or --write-baseline") != std::string::npos);
 }
 
+TEST_CASE("a baseline is never compared with its own noise, nor written over by what it is compared with") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", tests::kSweptScenario);
+  const auto validate = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"validate", "s.toml", "--runs", "10", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return tests::glidelab(arguments, dir.path());
+  };
+  for (const std::string seed : {"1", "2"}) {
+    INFO(seed);
+    fs::remove(dir / "then.json");
+    REQUIRE(validate({"--write-baseline", "then.json", "--seed", seed}).status == 0);
+    const std::string then = base::read_file(dir / "then.json");
+    CHECK(json::parse(then).at("seed") == std::stoi(seed));
+    const tests::ProcessResult now = validate({"--baseline", "then.json", "--write-baseline", "now.json"});
+    REQUIRE((now.status == 0 || now.status == 4));
+    const json found = json::parse(base::read_file(dir / "now.json"));
+    CHECK(found.at("seed") != json::parse(then).at("seed"));
+    CHECK(found.at("records") != json::parse(then).at("records"));
+    const tests::ProcessResult same = validate({"--baseline", "then.json", "--seed", seed});
+    CHECK(same.status == 1);
+    CHECK(same.err.find("--seed: found " + seed + ", with which the baseline was made") != std::string::npos);
+    const tests::ProcessResult both = validate({"--baseline", "then.json", "--write-baseline", "./then.json"});
+    CHECK(both.status == 1);
+    CHECK(both.err.find("found the file of --baseline") != std::string::npos);
+    CHECK(base::read_file(dir / "then.json") == then);
+  }
+  CHECK(validate({"--write-baseline", "x.json", "--noise-m", "nan"}).status == 2);
+}
+
+TEST_CASE("a baseline that cannot be written is said before the first run") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", tests::kSweptScenario);
+  fs::create_directory(dir / "folder");
+  for (const char* file : {"none/b.json", "s.toml/b.json", "folder"}) {
+    const tests::ProcessResult result =
+        tests::glidelab({"validate", "s.toml", "--runs", "10", "--write-baseline", file}, dir.path());
+    INFO(file << ": " << result.err);
+    CHECK(result.status == 3);
+    CHECK(result.err.find(std::string(file) + ": cannot be written") != std::string::npos);
+    CHECK(result.err.find("runs:") == std::string::npos);
+    CHECK(result.out.empty());
+  }
+}
+
 TEST_CASE("coverage with a noise that is given asks no camera, and counts at the levels that are asked for") {
   const tests::TempDir dir;
   std::string text = tests::kSweptScenario;
@@ -142,6 +187,34 @@ TEST_CASE("coverage with a noise that is given asks no camera, and counts at the
   CHECK(seen.err.find("never in the picture") != std::string::npos);
   const tests::ProcessResult wrong =
       tests::glidelab({"coverage", "s.toml", "--noise-m", "2e-5", "--replicates", "5", "--level", "100"}, dir.path());
-  CHECK(wrong.status == 1);
-  CHECK(wrong.err.find("level: found 1, expected a number above 0 and below 1") != std::string::npos);
+  CHECK(wrong.status == 2);
+  CHECK(wrong.err.find("\"100\" is no number of per cent above 0 and below 100") != std::string::npos);
+}
+
+TEST_CASE("coverage refuses numbers that mean nothing before it begins, and says where a bandwidth leaves no value") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", tests::kSweptScenario);
+  const auto coverage = [&](const std::string& option, const std::string& value) {
+    std::vector<std::string> arguments = {"coverage", "s.toml", "-q"};
+    if (option != "--noise-m") arguments.insert(arguments.end(), {"--noise-m", "2e-5"});
+    if (option != "--replicates") arguments.insert(arguments.end(), {"--replicates", "5"});
+    arguments.push_back(option + "=" + value);
+    return tests::glidelab(arguments, dir.path());
+  };
+  for (const auto& [option, values] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"--replicates", {"-1", "0", "1000000000000", "1.5"}},
+           {"--bandwidth", {"-1", "0", "nan", "inf", "wide"}},
+           {"--level", {"0", "100", "-5", "nan"}},
+           {"--noise-m", {"-1", "0", "nan", "inf"}}}) {
+    for (const std::string& value : values) {
+      const tests::ProcessResult result = coverage(option, value);
+      INFO(option << " " << value << ": " << result.err);
+      CHECK(result.status == 2);
+      CHECK(result.err.find(option) != std::string::npos);
+    }
+  }
+  // 100 s in a clip of 1.2 s: no point is free of the clip's ends.
+  const tests::ProcessResult wide = coverage("--bandwidth", "100");
+  CHECK(wide.status == 4);
+  CHECK(wide.err.find("with --bandwidth 100 the phase diagram finds no value") != std::string::npos);
 }

@@ -124,6 +124,55 @@ TEST_CASE("A file keeps every number of a baseline") {
   CHECK(read.smoothing.back().log_bandwidth == baseline.smoothing.back().log_bandwidth);
   CHECK(read.smoothing.back().log_a_error_sd == baseline.smoothing.back().log_a_error_sd);
   CHECK(validate::compare_baselines(read, baseline).worse.empty());
+  CHECK(read.seed == baseline.seed);
+  CHECK(read.seed.has_value());
+}
+
+TEST_CASE("A baseline is compared with other noise than its own, one without a seed with that of seed 2") {
+  validate::Baseline baseline = then();
+  for (const std::uint64_t seed : {std::uint64_t{1}, std::uint64_t{2}, ~std::uint64_t{0}}) {
+    baseline.seed = seed;
+    CHECK(validate::other_seed(baseline) != seed);
+  }
+  baseline.seed.reset();
+  const tests::TempDir dir;
+  base::write_file(dir / "b.json", validate::baseline_json(baseline));
+  const validate::Baseline old = validate::read_baseline(dir / "b.json");
+  CHECK_FALSE(old.seed.has_value());
+  CHECK(validate::other_seed(old) == 2);
+}
+
+TEST_CASE("What is wrong with a baseline's file is said by its key, in no library's words") {
+  const tests::TempDir dir;
+  const auto refusal = [&](const std::string& text) -> std::string {
+    base::write_file(dir / "b.json", text);
+    try {
+      validate::read_baseline(dir / "b.json");
+    } catch (const base::InputError& error) {
+      CHECK(std::string(error.what()).find("json.exception") == std::string::npos);
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string head = R"({"format": 2, "scenario": "", "noise_m": 2e-5, "runs": 9)";
+  const std::string name = (dir / "b.json").string();
+  const auto says = [&](const std::string& text, const std::string& what) {
+    INFO(text << " " << refusal(text));
+    CHECK(refusal(text).find(name + what) != std::string::npos);
+  };
+  says("{}", ": format: found nothing");
+  says("[1, 2]", ": found array");
+  says("{\n\"format\": oops}", ":2: found what is no JSON");
+  says("", ":1: found what is no JSON");
+  says(R"({"format": "2"})", ": format: found string");
+  says(R"({"format": 2, "scenario": 3})", ": scenario: found number, expected a text");
+  says(head + "}", ": records: found nothing");
+  says(head + R"(, "seed": -1, "records": [], "smoothing": []})", ": seed: found -1");
+  says(head + R"(, "seed": 1e999})", ": found a number beyond");
+  says(head + R"(, "records": 5})", ": records: found number, expected a list");
+  says(head + R"(, "records": [{}]})", ": records[0].configuration: found nothing");
+  says(head + R"(, "records": [], "smoothing": [{"clip": "a", "runs": 2, "log_bandwidth": null}]})",
+       ": smoothing[0].log_bandwidth: found null, expected a number");
 }
 
 TEST_CASE("A baseline of another scenario, noise or form is refused") {

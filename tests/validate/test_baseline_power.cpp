@@ -29,13 +29,13 @@ Baseline drawn(std::mt19937_64& engine, double factor, double bias) {
   }
   record.sd = std::sqrt(record.sd);
   record.deviation_sd = std::sqrt(record.deviation_sd);
-  Baseline baseline{"text", 1e-5, kRuns, {record}, {}};
+  Baseline baseline{"text", 1e-5, kRuns, {}, {record}, {}};
   return baseline;
 }
 
 /// A baseline with the moments of normal errors themselves.
 Baseline ideal() {
-  Baseline baseline{"text", 1e-5, kRuns, {}, {}};
+  Baseline baseline{"text", 1e-5, kRuns, {}, {}, {}};
   baseline.records = {{"m1", "trajectory", "mu", kRuns, kRuns, kRuns, 0.0, 1.0, std::sqrt(2.0 / M_PI),
                        std::sqrt(1.0 - 2.0 / M_PI), 0.0}};
   return baseline;
