@@ -21,7 +21,8 @@ struct BareTrackOptions {
 /// A regular file that is not experiment.toml.
 bool is_bare_track(const std::filesystem::path& path);
 
-/// Of a folder read_experiment(); of a file an experiment of one clip, named after the file, x taken as downhill.
+/// Of a folder read_experiment(); of a file an experiment of one clip, named after the file, x taken as downhill, how
+/// it was launched not known: no motion is the hand's for its direction alone.
 /// InputError as read_experiment(), and for a path that is not there.
 Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options);
 

@@ -12,9 +12,12 @@
 #include "core/camera_and_planes.h"
 #include "core/clip_look.h"
 #include "core/clip_to_track.h"
+#include "core/free_motion.h"
 #include "core/marker_smear.h"
 #include "core/median.h"
+#include "core/motion.h"
 #include "core/noise.h"
+#include "core/outliers.h"
 #include "core/quantile.h"
 #include "core/restitution.h"
 #include "core/track_csv.h"
@@ -90,6 +93,13 @@ bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip) {
                    clip.height_px - 1.0 - sighting.v_px}) < margin_px;
 }
 
+/// As the analysis will find it, before it puts times of lost frames right.
+std::optional<AgainstLaunch> against_launch(const ClipSetup& setup, const TrackData& track) {
+  if (track.x_m.size() < kFewestTrackPoints) return std::nullopt;
+  const Motion motion = motion_of(track, setup.mass_kg);
+  return find_free_motion(without(motion, find_outliers(motion)), setup).against_launch;
+}
+
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const Attempt& attempt,
                      const ClipWatches& watches) {
   const TrackData& track = attempt.track;
@@ -107,6 +117,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   }
   clip.frame_rate_hz = track.frame_rate_hz;
   if (track.x_m.size() >= kFewestTrackPoints) clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
+  clip.against_launch = against_launch(setup, track);
   const Speeds speeds = speeds_of(track);
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;

@@ -16,6 +16,8 @@
 namespace glidelab::core {
 namespace {
 
+constexpr double kMassRatio = 100.0;  // grams for kilograms make 1000
+
 struct Member {
   const ClipSetup* setup;
   const ClipResult* clip;
@@ -249,6 +251,27 @@ void set_correction(const Quantity& as_fitted, Quantity& recovered) {
   recovered.smoothing_correction = recovered.estimate->value - as_fitted.estimate->value;
 }
 
+/// Where there is no line because the motion that it needs went against the stated launch, that is why.
+void tell_launch(const std::vector<Member>& members, ConfigurationResult& result) {
+  std::string told, told_of_limit;
+  for (const Member& member : members) {
+    const std::optional<AgainstLaunch>& against = member.clip->against_launch;
+    if (!against || !against->until_s) continue;
+    if (std::any_of(result.lines.begin(), result.lines.end(),
+                    [&](const LineFit& line) { return line.direction == against->direction; })) {
+      continue;
+    }
+    const std::string of_clip = fmt::format("; {}: {} (launched and downhill in experiment.toml say so)",
+                                            member.clip->name, sentence(*against));
+    told += of_clip;
+    if (against->direction > 0) told_of_limit += of_clip;
+  }
+  if (!result.mu.estimate) result.mu.why += told;
+  if (!result.alpha_deg.estimate) result.alpha_deg.why += told;
+  if (!result.v_lim_m_s.estimate) result.v_lim_m_s.why += told_of_limit;
+  if (!result.k_over_m_1_s.estimate) result.k_over_m_1_s.why += told;
+}
+
 ConfigurationResult join_members(const std::vector<Member>& members, double gravity_m_s2, LineMethod lines) {
   ConfigurationResult result;
   result.mass_kg = members.front().setup->mass_kg;
@@ -262,16 +285,30 @@ ConfigurationResult join_members(const std::vector<Member>& members, double grav
   result.lines = join_lines(members, lines, LawBiasIs::kept);
   if (!biased) {
     recover(result.lines, gravity_m_s2, result);
+    tell_launch(members, result);
     return result;
   }
   ConfigurationResult as_fitted;
   recover(result.lines, gravity_m_s2, as_fitted);
   recover(join_lines(members, lines, LawBiasIs::taken_off), gravity_m_s2, result);
+  tell_launch(members, result);
   set_correction(as_fitted.k_over_m_1_s, result.k_over_m_1_s);
   set_correction(as_fitted.mu, result.mu);
   set_correction(as_fitted.alpha_deg, result.alpha_deg);
   set_correction(as_fitted.v_lim_m_s, result.v_lim_m_s);
   return result;
+}
+
+/// Gliders of one track do not differ so; grams and kilograms do.
+void note_masses(std::vector<ConfigurationResult>& results) {
+  double least_kg = std::numeric_limits<double>::infinity();
+  for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
+  for (ConfigurationResult& result : results) {
+    if (result.mass_kg < kMassRatio * least_kg) continue;
+    result.notes.push_back(
+        fmt::format("mass_kg = {:.6g}, and {:.6g} of the lightest: masses are in kilograms, and one looks like grams",
+                    result.mass_kg, least_kg));
+  }
 }
 
 }  // namespace
@@ -294,6 +331,7 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   for (const std::vector<Member>& members : configurations) {
     results.push_back(join_members(members, gravity_m_s2, lines));
   }
+  note_masses(results);
   return results;
 }
 

@@ -15,7 +15,8 @@ namespace glidelab::core {
 
 enum class Shutter { global, rolling };
 enum class TimeSource { rate, container };
-enum class Launched { up, down, released };  ///< up: towards -x, down: towards +x, also on a level track
+/// up: towards -x, down: towards +x, also on a level track; unknown: a file of a track alone, of which nobody said it.
+enum class Launched { up, down, released, unknown };
 
 /// What the camera was told to do, or what its data sheet says.
 struct CameraSettings {

@@ -17,6 +17,7 @@ namespace {
 constexpr double kNearEvent = 3.0;       // pilot bandwidths within which the pilot mixes both sides
 constexpr double kRealBandwidths = 4.0;  // a stretch shorter than this is no motion to fit
 constexpr std::size_t kRealPoints = 8;
+constexpr double kHardlyAny = 0.05;  // of the points against the launch: slivers of it are no motion with it
 constexpr double kShortest = 0.574;  // of the longest: 4^(-2/5), see the header
 
 class Finder {
@@ -130,18 +131,35 @@ class Finder {
       end = range.from;
       break;
     }
-    if (end == n_) return;  // it never moves as launched: nothing to tell from
-    bool any = false;
+    std::size_t against = 0, with = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (reason_[i] != LeftOut::used) continue;
+      against += direction_[i] == -launched && i < end;
+      with += direction_[i] == launched;
+    }
+    if (against == 0) return;
+    AgainstLaunch found;
+    found.direction = -launched;
+    found.share = share_of_free(against);
+    if (end == n_) {  // it never moves as launched: nothing to tell a hand from
+      if (static_cast<double>(with) > kHardlyAny * static_cast<double>(against)) return;
+      free.against_launch = found;
+      return;
+    }
+    found.until_s = motion_.t_s[end];
+    for (const PointRange& range : ranges_of(direction_)) {
+      if (range.to != end || direction_[range.from] != -launched) continue;
+      found.at_a_turn = is_real(range) && reason_[range.to - 1] == LeftOut::used;
+    }
     for (std::size_t i = 0; i < end; ++i) {
-      if (direction_[i] != -launched || reason_[i] != LeftOut::used) continue;
-      reason_[i] = LeftOut::hand;
-      any = true;
+      if (direction_[i] == -launched && reason_[i] == LeftOut::used) reason_[i] = LeftOut::hand;
     }
-    if (any) {
-      free.notes.push_back(
-          fmt::format("what moves towards {} before {:.3f} s is left out as the hand: the launch was towards {}",
-                      launched > 0 ? "-x" : "+x", motion_.t_s[end], launched > 0 ? "+x" : "-x"));
-    }
+    free.against_launch = found;
+  }
+
+  double share_of_free(std::size_t count) const {
+    const auto free = std::count(reason_.begin(), reason_.end(), LeftOut::used);
+    return static_cast<double>(count) / static_cast<double>(free);
   }
 
   std::vector<FreeStretch> stretches() const {
@@ -185,6 +203,13 @@ Motion between(const Motion& motion, std::size_t from, std::size_t to) {
 }
 
 }  // namespace
+
+std::string sentence(const AgainstLaunch& against) {
+  const std::string way = against.direction > 0 ? "+x" : "-x", launch = against.direction > 0 ? "-x" : "+x";
+  if (!against.until_s) return fmt::format("it moves towards {} only: the launch was towards {}", way, launch);
+  return fmt::format("what moves towards {} before {:.3f} s is left out as the hand: the launch was towards {}", way,
+                     *against.until_s, launch);
+}
 
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
   const auto& t = motion.t_s;

@@ -13,14 +13,15 @@
 ///  is
 ///    four times worse than the longest of its direction (T below 0.57 of it) is left out: least squares gives all
 ///    points one weight, so its points would add noise and no information.
-///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing.
+///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. A
+///    launch that nobody stated has no wrong direction.
 /// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter.
 /// Each stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an
 /// impact or a release; times of those need to be known only well enough to keep their far side out.
 #pragma once
 
 #include <cstddef>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "core/experiment.h"
@@ -43,7 +44,7 @@ struct FreeMotion {
   std::vector<FreeStretch> stretches;  ///< in the order of time; they share no point
   std::vector<LeftOut> reason;         ///< of every point; `used` within the stretches
   double pilot_bandwidth_s = 0.0;
-  std::vector<std::string> notes;
+  std::optional<AgainstLaunch> against_launch;
 };
 
 /// The setup's start_s and end_s, where given, are taken at their word: nothing after the one counts as hand, nothing

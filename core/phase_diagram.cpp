@@ -249,7 +249,8 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   const std::vector<std::size_t> outliers = find_outliers(measured);
   const Motion motion = without(measured, outliers);
   const FreeMotion free = find_free_motion(motion, setup);
-  clip.notes.insert(clip.notes.end(), free.notes.begin(), free.notes.end());
+  clip.against_launch = free.against_launch;
+  if (free.against_launch) clip.notes.push_back(sentence(*free.against_launch));
   if (options.bandwidth_s) {
     clip.bandwidth_s = *options.bandwidth_s;
     clip.bandwidth_method = "given";

@@ -22,7 +22,7 @@ enum class Severity {
 /// One thing that was found, and what to do about it.
 struct Finding {
   Severity severity = Severity::note;
-  std::string about;   ///< "pattern", "plumb line", or a clip's name
+  std::string about;   ///< "pattern", "masses", "plumb line", or a clip's name
   std::string found;   ///< "the marker is 4.1 px wide"
   std::string advice;  ///< "move closer or use a bigger one"; empty where nothing is to be done
 };
@@ -72,8 +72,9 @@ struct ClipCheck {
   std::optional<double> measured_exposure_s, measured_blur_px;
   double longest_blur_px = 0.0;  ///< by an exposure as long as a frame
   std::optional<double> position_noise_m;
-  double inside_pattern = 1.0;   ///< share of the sightings within the outline of all corners seen
-  std::vector<PixelPlace> path;  ///< at most 200 places
+  std::optional<AgainstLaunch> against_launch;  ///< of the motion, as the analysis will find it
+  double inside_pattern = 1.0;                  ///< share of the sightings within the outline of all corners seen
+  std::vector<PixelPlace> path;                 ///< at most 200 places
   std::vector<MarkerSighting> sightings;
   std::vector<std::string> notes;  ///< what the reading of the clip tells
 };

@@ -23,6 +23,8 @@ constexpr double kAtTheTop = 0.985, kTooDark = 0.25, kTooBright = 0.05;
 constexpr double kFineBlur = 0.5, kWorstBlur = 2.0;           // marker diameters
 constexpr double kRateAgrees = 1.5e-3;                        // as frame_source.cpp: rates are stated rounded
 constexpr double kWorstMissing = 0.01, kWorstRepeated = 0.1;  // shares of the frames
+constexpr double kMassRatio = 100.0;                          // grams for kilograms make 1000
+constexpr double kAgainstLaunch = 0.25;                       // share of the points that move freely
 constexpr double kDrift = 0.75;                               // frames
 
 std::string percent(double share) {
@@ -244,6 +246,46 @@ void judge_marker(const ClipCheck& clip, bool scaled, Notebook& book) {
   }
 }
 
+/// Gliders of one track do not differ so; grams and kilograms do.
+void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) {
+  const auto lighter = [](const ClipSetup& a, const ClipSetup& b) { return a.mass_kg < b.mass_kg; };
+  const auto least = std::min_element(experiment.clips.begin(), experiment.clips.end(), lighter);
+  std::vector<std::string> heavy;
+  for (const ClipSetup& clip : experiment.clips) {
+    if (clip.mass_kg >= kMassRatio * least->mass_kg)
+      heavy.push_back(fmt::format("{} ({:.6g})", clip.name, clip.mass_kg));
+  }
+  if (heavy.empty()) return;
+  findings.push_back({Severity::change, "masses",
+                      fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", list_of(heavy), kMassRatio,
+                                  least->name, least->mass_kg),
+                      "state every mass in kilograms: one looks like grams"});
+}
+
+/// A hand rests or pushes before the glider goes its way; free motion turns.
+void judge_launch(const Experiment& experiment, const ClipCheck& clip, Notebook& book) {
+  if (!clip.against_launch || clip.against_launch->share < kAgainstLaunch) return;
+  const AgainstLaunch& against = *clip.against_launch;
+  if (against.until_s && !against.at_a_turn) return;
+  const auto setup = std::find_if(experiment.clips.begin(), experiment.clips.end(),
+                                  [&](const ClipSetup& of) { return of.name == clip.name; });
+  if (setup == experiment.clips.end()) return;
+  const auto group = std::find_if(experiment.groups.begin(), experiment.groups.end(),
+                                  [&](const GroupSetup& of) { return of.name == setup->group; });
+  const bool own = group != experiment.groups.end() && group->downhill;
+  const int downhill = own ? *group->downhill : experiment.track.downhill;
+  const std::string launched = setup->launched == Launched::up     ? "up"
+                               : setup->launched == Launched::down ? "down"
+                                                                   : "released";
+  book.add(
+      Severity::change,
+      fmt::format("{}, as launched = \"{}\" and downhill = \"{}\" say; that is {} of its free motion",
+                  sentence(against), launched, downhill > 0 ? "+X" : "-X", percent(against.share)),
+      fmt::format("see which of the two is wrong: launched of this clip, or downhill in [{}]; if neither is, start_s "
+                  "says where the hand lets go",
+                  own ? "[group]" : "track"));
+}
+
 void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook book) {
   if (!clip.failure.empty()) {
     book.add(Severity::unusable, clip.failure,
@@ -258,6 +300,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook bo
     book.add(clip.seen < kFewestSightings ? Severity::unusable : Severity::change,
              fmt::format("the track has {} points", clip.seen), "record at a higher rate");
   }
+  judge_launch(experiment, clip, book);
   for (const std::string& note : clip.notes) {
     const bool said = note.find("the very picture before them") != std::string::npos ||
                       (note.starts_with("the marker looks ") && size_disagrees(clip));  // above, with advice
@@ -269,6 +312,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook bo
 
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<Finding> findings;
+  judge_masses(experiment, findings);
   if (check.pattern) judge_pattern(*check.pattern, {findings, "pattern"});
   for (const ClipCheck& clip : check.clips) judge_clip(experiment, clip, {findings, clip.name});
   if (!check.plumb_failure.empty()) findings.push_back({Severity::unusable, "plumb line", check.plumb_failure, {}});

@@ -152,6 +152,17 @@ struct FreeBlock {
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of these points
 };
 
+/// Motion against the stated direction of the launch, before any with it (free_motion.h).
+struct AgainstLaunch {
+  int direction = 0;              ///< in which it moves
+  std::optional<double> until_s;  ///< where motion as launched begins; none where there is none: nothing is left out
+  double share = 0.0;             ///< of the points that move freely
+  bool at_a_turn = false;         ///< it goes over into motion as launched with neither a rest nor a push between
+};
+
+/// "what moves towards +x before 0.542 s is left out as the hand: the launch was towards -x"
+std::string sentence(const AgainstLaunch& against);
+
 struct ClipResult {
   std::string name;
   std::string experiment;  ///< name of the folder it comes from
@@ -171,6 +182,7 @@ struct ClipResult {
   Quantity v_lim_m_s;
   std::vector<Stretch> stretches;
   std::vector<LeftOutInterval> left_out;
+  std::optional<AgainstLaunch> against_launch;
   std::vector<std::string> notes;  ///< what a reader should know: a container's other rate, gaps, …
   std::vector<MotionPoint> motion;
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of every frame of `motion`; 0 without a marker

@@ -106,7 +106,8 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   }
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
-    if (setup.launched == core::Launched::released || motion.t_s.front() > 0.2) continue;
+    const bool stated_way = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
+    if (!stated_way || motion.t_s.front() > 0.2) continue;
     const std::size_t some = std::min<std::size_t>(8, motion.x_m.size() - 1);
     const double way = motion.x_m[some] - motion.x_m.front();
     const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;

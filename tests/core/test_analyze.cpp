@@ -67,6 +67,45 @@ TEST_CASE("a folder of two tracks gives the law that made them") {
   close(found.v_lim_m_s, kLaw.v_lim());
 }
 
+TEST_CASE("a file alone that goes up and down gives mu and alpha whatever mass and inclination are stated") {
+  const tests::TempDir temp;
+  write_track(temp / "up.csv", tests::launch(kLaw, -1.3, 1.7), 1);
+  for (const double incline_deg : {-4.0, 0.0, 4.0}) {
+    core::AnalysisOptions options;
+    options.bare.mass_kg = 0.2;
+    options.bare.incline_deg = incline_deg;
+    const auto results = analyze({temp / "up.csv"}, options);
+    INFO("stated " << incline_deg);
+    for (const core::LeftOutInterval& interval : results.clips.at(0).left_out) {
+      CHECK(interval.reason != core::LeftOut::hand);
+    }
+    const core::ConfigurationResult& found = results.configurations.at(0);
+    REQUIRE(found.mu.estimate);
+    REQUIRE(found.alpha_deg.estimate);
+    // Four standard deviations, as stated: 1 in 16,000 by chance.
+    CHECK(std::abs(found.mu.estimate->value - kLaw.mu) < 4.0 * found.mu.estimate->sd);
+    CHECK(std::abs(found.alpha_deg.estimate->value - kLaw.alpha_deg) < 4.0 * found.alpha_deg.estimate->sd);
+  }
+}
+
+TEST_CASE("a launch stated the wrong way round is why there is no mu, with the clip and the time of the turn") {
+  const tests::TempDir temp;
+  const auto folder = make_folder(temp / "one", 1);
+  std::ifstream in(folder / "experiment.toml");
+  std::string toml((std::istreambuf_iterator<char>(in)), {});
+  toml.replace(toml.find("launched = \"up\""), 15, "launched = \"down\"");
+  std::ofstream(folder / "experiment.toml") << toml;
+  const auto results = analyze({folder}, {});
+  const core::Quantity& mu = results.configurations.at(0).mu;
+  CHECK_FALSE(mu.estimate);
+  const std::string before = "up: what moves towards -x before ";
+  const auto at = mu.why.find(before);
+  REQUIRE(at != std::string::npos);
+  // v = 0 in closed form, give or take the first smoothing's four frames.
+  const double turn_s = std::log1p(1.3 * kLaw.k_1_s / kLaw.a0(-1)) / kLaw.k_1_s;
+  CHECK(std::abs(std::stod(mu.why.substr(at + before.size())) - turn_s) < 0.02);
+}
+
 TEST_CASE("clips of one name in two folders get their folder's name, and join one configuration") {
   const tests::TempDir temp;
   const auto results = analyze({make_folder(temp / "one", 1), make_folder(temp / "two", 11)}, {});

@@ -107,6 +107,31 @@ TEST_CASE("a configuration of one direction has K/m, and null for mu and alpha w
   CHECK_FALSE(none.v_lim_m_s.estimate);
 }
 
+TEST_CASE("a line that is missing because the motion went against the stated launch says so, for what needs it alone") {
+  ClipResult clip = clip_on({{-1, 2.0, 0.6, 0.01, 0.002}});
+  clip.against_launch = AgainstLaunch{1, 0.542, 0.4, true};
+  const auto result = join({kUp}, {clip});
+  for (const Quantity* quantity : {&result.mu, &result.alpha_deg, &result.v_lim_m_s}) {
+    CHECK_THAT(quantity->why, Catch::Matchers::Contains(
+                                  "clip: what moves towards +x before 0.542 s is left out as the hand: the launch was "
+                                  "towards -x (launched and downhill"));
+  }
+  clip.against_launch->direction = -1;  // of which there is a line: that is not why
+  CHECK_THAT(join({kUp}, {clip}).mu.why, !Catch::Matchers::Contains("hand"));
+}
+
+TEST_CASE("a configuration a hundred times as heavy as the lightest has a note, one ninety times has none") {
+  for (const double kg : {221.0, 0.318 * 90.0}) {
+    const std::vector<ClipSetup> setups = {tests::clip_setup(Launched::up, 4.0, 0.318),
+                                           tests::clip_setup(Launched::up, 4.0, kg)};
+    const ClipResult clip = clip_on({{-1, 2.0, 0.6, 0.01, 0.002}});
+    const auto results = join_configurations(setups, {clip, clip}, kGravity);
+    REQUIRE(results.size() == 2);
+    CHECK(results[0].notes.empty());
+    CHECK(results[1].notes.size() == (kg > 100.0 ? 1 : 0));
+  }
+}
+
 TEST_CASE("the friction of a negative jump comes out negative, and intercepts beyond gravity give no inclination") {
   CHECK(join({kUp}, {clip_on({{-1, 2.0, 0.60, 0.01, 0.002}, {1, 2.0, 0.62, 0.01, 0.002}})}).mu.estimate->value < 0.0);
   const auto steep = join({kUp}, {clip_on({{-1, 2.0, 11.0, 0.01, 0.002}, {1, 2.0, 10.0, 0.01, 0.002}})});
