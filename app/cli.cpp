@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
@@ -28,6 +29,17 @@
 
 namespace glidelab::app {
 namespace {
+
+/// CLI11's, but for the words of an option that takes one of many.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text = CLI::Formatter::make_option_opts(option);
+    const std::string type = option->get_type_name();
+    const std::size_t at = text.find(type);
+    return type.empty() || at == std::string::npos ? text : text.replace(at, type.size(), shown_type(*option));
+  }
+};
 
 constexpr int kDone = 0;
 constexpr int kWrongInput = 1;
@@ -70,6 +82,8 @@ int run_command(const Command& command) {
     if (interrupted()) return fail(kInterrupted, "interrupted; nothing was written");
     try {
       throw;
+    } catch (const CommandLineError& error) {
+      return fail(kWrongCommandLine, error.what());
     } catch (const base::InputError& error) {
       return fail(kWrongInput, error.what());
     } catch (const base::NumericalError& error) {
@@ -92,20 +106,36 @@ int run_command(const Command& command) {
   }
 }
 
-/// An option's value that is none of its words, with the word that was meant; empty where there is none.
+/// An option's value that is none of its words, with the word that was meant; empty where there is none. What takes a
+/// number or a word ("SECONDS|RULE") says it itself.
 std::string misspelt_value(const CLI::App& command, const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::size_t equals = arguments[i].find('=');
     const std::string name = arguments[i].substr(0, equals);
     const CLI::Option* const option = name.starts_with("--") ? command.get_option_no_throw(name) : nullptr;
     const std::vector<std::string> words = option == nullptr ? std::vector<std::string>() : words_of(*option);
-    if (words.empty() || (equals == std::string::npos && i + 1 == arguments.size())) continue;
+    const bool or_else = option != nullptr && option->get_type_name().find("|") != std::string::npos;
+    if (words.empty() || or_else || (equals == std::string::npos && i + 1 == arguments.size())) continue;
     const std::string value = equals == std::string::npos ? arguments[i + 1] : arguments[i].substr(equals + 1);
     if (std::find(words.begin(), words.end(), value) != words.end()) continue;
     return fmt::format("{}: found \"{}\", expected one of {}{}", name, value, fmt::join(words, ", "),
                        base::did_you_mean(value, words));
   }
   return {};
+}
+
+/// What stands where a command is wanted: an option that only commands take, or none at all; empty where it is the
+/// program's own, or may be misspelt.
+std::string before_command(const CLI::App& app, const std::string& word) {
+  if (app.get_option_no_throw(word) != nullptr) return {};
+  const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
+  const bool of_a_command = std::any_of(commands.begin(), commands.end(), [&](const CLI::App* command) {
+    return command->get_option_no_throw(word) != nullptr;
+  });
+  const char* version = word == "-v" ? "; --version shows the version" : "";
+  if (of_a_command) return fmt::format("option \"{0}\" without a command: glidelab COMMAND {0}{1}", word, version);
+  return word.starts_with("--") ? std::string()
+                                : fmt::format("unknown option \"{}\"; glidelab --help lists them", word);
 }
 
 /// CLI11 says of a misspelt command that one is missing, of a misspelt option that it was not expected; this says which
@@ -123,6 +153,10 @@ std::string misspelt(const CLI::App& app, const std::vector<std::string>& argume
     const std::string meant = base::did_you_mean(first, names);
     return fmt::format("unknown command \"{}\"{}{} the commands are {}", first, meant, meant.empty() ? ";" : "",
                        fmt::join(names, ", "));
+  }
+  if (chosen == &app) {
+    const std::string meant_of_command = before_command(app, first.substr(0, first.find('=')));
+    if (!meant_of_command.empty()) return meant_of_command;
   }
   std::vector<std::string> options;
   for (const CLI::Option* option : chosen->get_options()) {
@@ -163,6 +197,7 @@ int run(int argc, char** argv) {
       "Glidelab rehearses video experiments on friction: it simulates a glider on a track, films it, analyses the film "
       "as one analyses a real one, and compares the result with the truth.",
       "glidelab");
+  app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Show this help");
   app.set_version_flag("--version", version_text(), "Show the version, and the libraries it was built with");
   std::string text;  // in place of a command's result

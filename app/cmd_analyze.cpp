@@ -13,7 +13,9 @@
 #include "app/common_options.h"
 #include "app/interrupt.h"
 #include "app/progress_display.h"
+#include "app/refuse_scenario.h"
 #include "base/errors.h"
+#include "base/nearest_word.h"
 #include "base/staged_output.h"
 #include "core/analyze.h"
 #include "core/bandwidth_rule.h"
@@ -71,10 +73,12 @@ void check_file_options(const AnalyzeOptions& options, const std::vector<fs::pat
 
 void analyze(const AnalyzeOptions& options) {
   if (options.robust && options.estimator != "trajectory") {
-    throw base::InputError(base::Issue{"", 0, "--robust", options.estimator,
-                                       "the estimator trajectory (lines leave positions off the motion out anyway)"});
+    throw CommandLineError(
+        base::describe({"", 0, "--robust", options.estimator,
+                        "the estimator trajectory (lines leave positions off the motion out anyway)"}));
   }
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
+  refuse_scenarios(options.experiments);
   check_file_options(options, folders);
   const std::string title = title_of(folders, options.bare);
   report::check_gnuplot();
@@ -104,13 +108,19 @@ void analyze(const AnalyzeOptions& options) {
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 
+std::vector<std::string> rule_names() {
+  std::vector<std::string> names = core::bandwidth_rule_names();
+  names.insert(names.begin(), kLines);
+  return names;
+}
+
 std::string check_bandwidth(const std::string& text) {
-  const auto& rules = core::bandwidth_rule_names();
+  const std::vector<std::string> rules = rule_names();
   double value = 0.0;
-  if (text == kLines || std::find(rules.begin(), rules.end(), text) != rules.end()) return {};
+  if (std::find(rules.begin(), rules.end(), text) != rules.end()) return {};
   if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
-  return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}, {}", text, kLines,
-                     fmt::join(rules, ", "));
+  return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}{}", text, fmt::join(rules, ", "),
+                     base::did_you_mean(text, rules));
 }
 
 }  // namespace
@@ -129,10 +139,11 @@ void add_analyze(CLI::App& app, Command& chosen) {
   command
       ->add_option("--bandwidth", options->bandwidth,
                    fmt::format("Width of the smoothing kernel in seconds, or the rule that chooses it for each clip: "
-                               "{}, {} (docs/bandwidth.md)",
-                               kLines, fmt::join(core::bandwidth_rule_names(), ", ")))
+                               "{} (docs/bandwidth.md)",
+                               fmt::join(rule_names(), ", ")))
       ->type_name("SECONDS|RULE")
-      ->check(check_bandwidth)
+      ->check(CLI::Validator([](std::string& text) { return check_bandwidth(text); },
+                             fmt::format("{{{}}}", fmt::join(rule_names(), ","))))
       ->capture_default_str();
   command
       ->add_option(

@@ -9,6 +9,7 @@
 #include "app/common_options.h"
 #include "app/interrupt.h"
 #include "app/progress_display.h"
+#include "app/refuse_scenario.h"
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "core/check_recording.h"
@@ -44,6 +45,7 @@ std::vector<core::Preview> previews_of(const core::Experiment& experiment, const
 }
 
 void check(const CheckOptions& options) {
+  refuse_scenarios({options.folder});
   const core::Experiment experiment = core::read_experiment(options.folder, options.outside);
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "check", options.folder);

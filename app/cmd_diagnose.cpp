@@ -8,13 +8,16 @@
 #include "app/allow_outside.h"
 #include "app/commands.h"
 #include "app/common_options.h"
+#include "app/completion.h"
 #include "app/interrupt.h"
 #include "app/progress_display.h"
+#include "app/refuse_scenario.h"
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "core/analyze.h"
 #include "core/experiment.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/effect_list.h"
 #include "diagnose/plan.h"
 #include "diagnose/twin.h"
 #include "render/scenario.h"
@@ -67,8 +70,8 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
   }
   const render::Scenario scenario = render::read_scenario(first);
   if (!(options.noise_m > 0.0)) {
-    throw base::InputError(base::Issue{first.string(), 0, "--noise-m", "nothing",
-                                       "the noise of a position in metres, above 0: a scenario alone has none"});
+    throw CommandLineError(base::describe({first.string(), 0, "--noise-m", "nothing",
+                                           "the noise of a position in metres, above 0: a scenario alone has none"}));
   }
   const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
   const validate::MadeTracks made = validate::with_noise(validate::make_tracks(scenario, seed), options.noise_m, seed);
@@ -94,6 +97,7 @@ void plan(const DiagnoseCommand& options) {
 
 void diagnose(const DiagnoseCommand& options) {
   if (options.plan) return plan(options);
+  refuse_scenarios(options.experiments);
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   std::string title = core::read_experiment(folders.front(), options.outside).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
@@ -152,7 +156,8 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->type_name("DIR")
       ->required();
   command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")
-      ->type_name("EFFECT");
+      ->type_name("EFFECT")
+      ->check(one_of(diagnose::effect_words()));
   command
       ->add_option(
           "--twin", options->twin,

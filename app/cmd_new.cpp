@@ -33,12 +33,14 @@ void check_free(const fs::path& folder) {
 
 void make_new(const NewOptions& options) {
   if (!options.folder.empty() && !options.common.out.empty()) {
-    throw base::InputError(
-        base::Issue{"", 0, "--out", options.common.out, "either FOLDER or --out, which say the same"});
+    throw CommandLineError(
+        base::describe({"", 0, "--out", options.common.out, "either FOLDER or --out, which say the same"}));
   }
   CommonOptions where = options.common;
   if (where.out.empty()) where.out = options.folder;
-  if (where.out.empty()) throw base::InputError(base::Issue{"", 0, "FOLDER", "nothing", "the name of a new folder"});
+  if (where.out.empty()) {
+    throw CommandLineError(base::describe({"", 0, "FOLDER", "nothing", "the name of a new folder"}));
+  }
   const fs::path folder = output_folder(where, "new", where.out);
   check_free(folder);
   const std::string name = folder.filename().string();

@@ -44,14 +44,16 @@ std::pair<int, int> corners_of(const std::string& text) {
 
 void pattern(const PatternOptions& options) {
   const report::Paper& paper = report::paper_of(options.paper);
-  const auto [columns, rows] = corners_of(options.corners);
+  const auto [columns, rows] = of_command_line([&] { return corners_of(options.corners); });
   const double square_m =
       options.square_mm > 0.0 ? options.square_mm * kMillimetre : report::largest_square_m(paper, columns, rows);
   const report::BoardSheet board{paper, columns, rows, square_m};
   report::MarkerSheet markers{paper, {}};
   for (const double diameter : options.markers_mm) markers.diameters_m.push_back(diameter * kMillimetre);
-  report::validate(board);
-  report::validate(markers);
+  of_command_line([&] {
+    report::validate(board);
+    report::validate(markers);
+  });
 
   const fs::path out = output_folder(options.common, "pattern", paper.name);
   check_writable(out);

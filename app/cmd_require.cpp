@@ -29,7 +29,9 @@ struct RequireOptions {
 
 void require_command(const RequireOptions& options) {
   validate::RequirementOptions how;
-  for (const std::string& target : options.targets) how.targets.push_back(validate::parse_target(target));
+  of_command_line([&] {
+    for (const std::string& target : options.targets) how.targets.push_back(validate::parse_target(target));
+  });
   how.confirm = options.confirm == "none"    ? validate::Confirm::none
                 : options.confirm == "clips" ? validate::Confirm::clips
                                              : validate::Confirm::tracks;

@@ -5,10 +5,28 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "base/errors.h"
+
 namespace glidelab::app {
+
+/// Wrong words on the command line that show only after it was read (exit status 2).
+class CommandLineError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Does `work`, which looks at nothing but words of the command line: its InputError is a CommandLineError.
+template <class Work>
+auto of_command_line(const Work& work) {
+  try {
+    return work();
+  } catch (const base::InputError& error) {
+    throw CommandLineError(error.what());
+  }
+}
 
 struct CommonOptions {
   std::string out;  ///< empty: the default

@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <sstream>
+
+#include "base/nearest_word.h"
 
 namespace glidelab::app {
 namespace {
@@ -176,6 +179,22 @@ std::vector<std::string> words_of(const CLI::Option& option) {
   std::istringstream list(type.substr(open + 1, close - open - 1));
   for (std::string word; std::getline(list, word, ',');) words.push_back(word);
   return words;
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  return CLI::Validator(
+      [words](std::string& value) {
+        if (std::find(words.begin(), words.end(), value) != words.end()) return std::string();
+        return fmt::format("found \"{}\", expected one of {}{}", value, fmt::join(words, ", "),
+                           base::did_you_mean(value, words));
+      },
+      fmt::format("{{{}}}", fmt::join(words, ",")));
+}
+
+std::string shown_type(const CLI::Option& option) {
+  constexpr std::size_t kMostWords = 6;  // more stand in the description, or where it points to
+  const std::string type = option.get_type_name();
+  return words_of(option).size() > kMostWords ? type.substr(0, type.find(":{")) : type;
 }
 
 std::string completion_script(const CLI::App& app, const std::string& shell) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,12 @@ namespace glidelab::app {
 
 /// The words of which the option takes one; none where it takes something else.
 std::vector<std::string> words_of(const CLI::Option& option);
+
+/// A check of an option that takes one of these words: what it was instead, and which was meant.
+CLI::Validator one_of(const std::vector<std::string>& words);
+
+/// The option's type as help and manual show it: its words where they are few.
+std::string shown_type(const CLI::Option& option);
 
 /// A script that completes commands, options, their words and files: for "bash" (to be sourced, or put among
 /// bash-completion/completions) or "zsh" (a file _glidelab on its fpath).

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/completion.h"
 #include "version_of_build.h"
 
 namespace glidelab::app {
@@ -37,7 +38,7 @@ std::string option_head(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   std::string head = names.empty() ? option.get_name(true) : fmt::format("{}", fmt::join(names, ", "));
-  if (!names.empty() && option.get_expected_max() > 0) head += " " + option.get_type_name();
+  if (!names.empty() && option.get_expected_max() > 0) head += " " + shown_type(option);
   return head;
 }
 

@@ -1,4 +1,5 @@
-/// The word that somebody may have meant, by its edit distance (Levenshtein, 1966: letters put in, left out, replaced).
+/// The word that somebody may have meant, by its edit distance (Damerau, 1964: letters put in, left out, replaced,
+/// or exchanged with their neighbour).
 #pragma once
 
 #include <string>

@@ -116,12 +116,27 @@ void keep_own_files(const fs::path& old, const fs::path& fresh) {
 
 }  // namespace
 
+namespace {
+
+/// EnvironmentError where the folder, or one that it is to be made in, is a link to nothing.
+void refuse_dangling(const fs::path& folder) {
+  std::error_code error;  // what cannot be looked at says so when it is made
+  for (fs::path at = folder; at.has_relative_path(); at = at.parent_path()) {
+    if (!fs::is_symlink(fs::symlink_status(at, error)) || fs::exists(at, error)) continue;
+    const fs::path target = fs::read_symlink(at, error);
+    throw EnvironmentError(at.string() + ": is a link to nothing (" + target.string() + " does not exist)");
+  }
+}
+
+}  // namespace
+
 StagedOutput::StagedOutput(fs::path final_dir)
     : final_(without_trailing_slash(std::move(final_dir))), staging_(staging_name(final_)) {
   std::error_code error;
   if (fs::exists(final_, error) && !fs::is_directory(final_, error)) {
     throw_system_error(final_.string(), "cannot be an output folder", ENOTDIR);
   }
+  refuse_dangling(final_);
   clear_leftovers(final_);
   fs::create_directories(staging_, error);
   if (error) throw_system_error(final_.string(), "output folder cannot be written", error.value());

@@ -42,7 +42,7 @@ frame_rate_hz = 240.0              # what it filmed at, whatever rate the file p
 [calibration]
 pattern = "chessboard"
 inner_corners = [9, 6]             # where four squares meet; a board of 10 x 7 squares has 9 x 6
-square_m = 0.025                   # side of one square AS PRINTED: measure ten of them with a ruler
+square_m = 0.025                   # side of one square AS PRINTED: measure 9 in a row with a ruler
 views = "calibration/view-*.png"   # a dozen pictures: tilted to all sides, near and far, out to the picture's corners
 plane = "calibration/plane.png"    # the pattern where the marker moves, its long side along the track; several pictures
                                    # along the track are better: "calibration/plane-*.png"

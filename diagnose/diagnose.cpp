@@ -254,6 +254,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     cameras.resize(setups.size(), experiment.camera);
     experiments.push_back(experiment);
   }
+  indices(options.without);  // what is misspelt shows before the clips are read
   const core::AnalysisResults results =
       core::analyze(folders,
                     {.bandwidth_s = {},

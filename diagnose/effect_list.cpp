@@ -135,6 +135,13 @@ const std::vector<EffectInfo>& effect_list() {
   return list;
 }
 
+std::vector<std::string> effect_words() {
+  std::vector<std::string> words;
+  for (const EffectInfo& effect : effect_list()) words.emplace_back(effect.id);
+  words.emplace_back("smoothing_bias");
+  return words;
+}
+
 std::size_t effect_index(std::string_view id) {
   const auto& list = effect_list();
   for (std::size_t i = 0; i < list.size(); ++i) {

@@ -45,6 +45,10 @@ struct EffectInfo {
 /// All effects that tracks can show.
 const std::vector<EffectInfo>& effect_list();
 
+/// What may be left out of a diagnosis: the ids of effect_list(), and smoothing_bias, which only a table of lines
+/// shows.
+std::vector<std::string> effect_words();
+
 /// Index in effect_list(); std::out_of_range for another word.
 std::size_t effect_index(std::string_view id);
 

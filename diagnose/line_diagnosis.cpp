@@ -1,6 +1,7 @@
 #include "diagnose/line_diagnosis.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +24,11 @@ constexpr double kSameEvidence = 3.0;
 constexpr double kReadAngle = 0.3;  // degrees: what a person reads off a plumb, where a table says nothing
 
 void check_names(const std::vector<std::string>& without) {
-  std::string known = "smoothing_bias";
-  for (const EffectInfo& effect : effect_list()) known += ", " + std::string(effect.id);
+  const std::vector<std::string> known = effect_words();
   for (const std::string& id : without) {
-    const bool found = id == "smoothing_bias" || std::any_of(effect_list().begin(), effect_list().end(),
-                                                             [&](const EffectInfo& effect) { return effect.id == id; });
-    if (!found) throw base::InputError(base::Issue{"", 0, "without", fmt::format("\"{}\"", id), "one of " + known});
+    if (std::find(known.begin(), known.end(), id) != known.end()) continue;
+    throw base::InputError(
+        base::Issue{"", 0, "without", fmt::format("\"{}\"", id), fmt::format("one of {}", fmt::join(known, ", "))});
   }
 }
 

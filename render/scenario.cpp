@@ -145,6 +145,13 @@ void refuse_sweep(std::string_view text, const std::filesystem::path& path) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path) {
+  std::error_code ignored;  // what cannot be looked at says so when it is read
+  if (std::filesystem::is_directory(path, ignored)) {
+    const bool recording = std::filesystem::exists(path / "experiment.toml", ignored);
+    throw base::InputError(base::Issue{path.string(), 0, "",
+                                       recording ? "a folder with an experiment.toml, a recording" : "a folder",
+                                       "a scenario, a file (docs/scenario.md)"});
+  }
   return read_scenario(base::read_file(path), path);
 }
 

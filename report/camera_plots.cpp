@@ -19,6 +19,15 @@ double round_down(double value) {
   return (value >= 5.0 * ten ? 5.0 : value >= 2.0 * ten ? 2.0 : 1.0) * ten;
 }
 
+/// The least step, 1, 2 or 5 times a power of ten, that leaves room for numbers of pixels side by side.
+double tic_step(int width_px) {
+  constexpr double kMostTics = 7.0;
+  const double least = width_px / kMostTics;
+  const double down = round_down(least);
+  if (down >= least) return down;
+  return round_down(2.5 * down);  // 1, 2, 5, 10
+}
+
 }  // namespace
 
 std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::string& experiment) {
@@ -26,6 +35,7 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
   for (const core::CornerCell& cell : rests.cells) largest = std::max(largest, std::hypot(cell.du_px, cell.dv_px));
   if (!(largest > 0.0)) return {};
   const double enlarged = round_down(kArrow * rests.width_px / largest);
+  const double step = tic_step(rests.width_px);
   PlotData arrows{"arrows", {}, {"u (px)", "v (px)", "du, enlarged (px)", "dv, enlarged (px)"}};
   PlotData noise{"noise", {}, {"u (px)", "v (px)", "standard deviation, enlarged (px)"}};
   for (const core::CornerCell& cell : rests.cells) {
@@ -35,13 +45,14 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
   const std::string script =
       std::string(kFrame) +
       fmt::format(
-          "set size ratio -1\nset offsets 0,0,0,0\nset xrange [-0.5:{}]\nset yrange [{}:-0.5]\nset xlabel 'u (px)'\n"
-          "set ylabel 'v (px)'\n"
-          "plot $noise using 1:2:3 with circles fillcolor rgb '{}' fillstyle solid noborder title 'what noise makes', "
-          "$arrows using 1:2:3:4 with vectors filled head size graph 0.012,20 lw 1.5 lc rgb '{}' title 'mean rest, "
-          "{:g} "
+          "set size ratio -1\nset offsets 0,0,0,0\nset xrange [-0.5:{0}]\nset yrange [{1}:-0.5]\nset xtics {2}\nset "
+          "ytics {2}\n"
+          "set xlabel 'u (px)'\nset ylabel 'v (px)'\n"
+          "plot $noise using 1:2:3 with circles fillcolor rgb '{3}' fillstyle solid noborder title 'what noise makes', "
+          "$arrows using 1:2:3:4 with vectors filled head size graph 0.012,20 lw 1.5 lc rgb '{4}' title 'mean rest, "
+          "{5:g} "
           "times enlarged'\n",
-          rests.width_px - 0.5, rests.height_px - 0.5, kShade, kColors[0], enlarged);
+          rests.width_px - 0.5, rests.height_px - 0.5, step, kShade, kColors[0], enlarged);
   return {
       {Drawing{script, std::vector{noise, arrows}},
        fmt::format("{}Where the pattern's corners lie off what the camera's model makes of them, mean over all views "

@@ -20,6 +20,7 @@ constexpr double kGap = 0.004;         // m; between markers
 constexpr double kLabel = 0.018;       // m; left of a row of markers
 constexpr double kRounding = 1e-9;     // m; sums of lengths that fit exactly may exceed by this
 constexpr double kMillimetre = 0.001;  // m
+constexpr double kFinest = 0.001;      // m; a square or disc of 12 dots of a printer with 300 dots an inch
 
 const std::array<Paper, 3> kPapers = {
     Paper{"a4", 0.297, 0.210}, {"a3", 0.420, 0.297}, {"letter", 11.0 * 0.0254, 8.5 * 0.0254}};
@@ -62,8 +63,7 @@ void draw(SheetCanvas& canvas, const BoardSheet& sheet) {
   }
   draw_foot(canvas, sheet.paper,
             fmt::format("inner_corners = [{}, {}]   square_m = {:.6g}", sheet.columns, sheet.rows, sheet.square_m),
-            fmt::format("X runs to the right. Measure {} squares ({}) and correct square_m.", sheet.columns,
-                        millimetres(sheet.columns * sheet.square_m)));
+            measure_text(sheet));
 }
 
 /// Side of the square that a marker of this diameter stands on.
@@ -142,10 +142,12 @@ void validate(const BoardSheet& sheet) {
          "not tell which way it lies");
   }
   const double largest = room_for_square(sheet.paper, sheet.columns, sheet.rows);
-  if (!(sheet.square_m > 0.0) || sheet.square_m > largest + kRounding) {
+  if (!(sheet.square_m >= kFinest - kRounding) || sheet.square_m > largest + kRounding) {
     fail("--square-mm", fmt::format("{:.6g}", sheet.square_m / kMillimetre),
-         fmt::format("above 0 and at most {:.4g}, so that {} x {} squares and their margin fit on {}",
-                     largest / kMillimetre, sheet.columns + 1, sheet.rows + 1, sheet.paper.name));
+         fmt::format(
+             "at least {:g}, which a printer draws sharply, and at most {:.4g}, so that {} x {} squares and their "
+             "margin fit on {}",
+             kFinest / kMillimetre, largest / kMillimetre, sheet.columns + 1, sheet.rows + 1, sheet.paper.name));
   }
 }
 
@@ -155,15 +157,21 @@ void validate(const MarkerSheet& sheet) {
   if (sheet.diameters_m.empty()) fail("--marker-mm", "nothing", "one or more diameters");
   for (const double diameter : sheet.diameters_m) {
     // One of each kind beside each other.
-    if (diameter > 0.0 && 2.0 * tile(diameter) + kGap <= room_across + kRounding) continue;
+    if (diameter >= kFinest - kRounding && 2.0 * tile(diameter) + kGap <= room_across + kRounding) continue;
     fail("--marker-mm", fmt::format("{:.6g}", diameter / kMillimetre),
-         fmt::format("above 0 and at most {:.4g} on {}", 0.25 * (room_across - kGap) / kMillimetre, sheet.paper.name));
+         fmt::format("at least {:g}, which a printer draws sharply, and at most {:.4g} on {}", kFinest / kMillimetre,
+                     0.25 * (room_across - kGap) / kMillimetre, sheet.paper.name));
   }
   if (height_of_rows(sheet.diameters_m) > room_down + kRounding) {
     fail("--marker-mm", fmt::format("rows of {} in all", millimetres(height_of_rows(sheet.diameters_m))),
          fmt::format("at most {}, twice the diameters with gaps of {}, on {}", millimetres(room_down),
                      millimetres(kGap), sheet.paper.name));
   }
+}
+
+std::string measure_text(const BoardSheet& sheet) {
+  return fmt::format("X runs to the right. Measure {} squares ({}) and correct square_m.", sheet.columns,
+                     millimetres(sheet.columns * sheet.square_m));
 }
 
 std::string board_page(const BoardSheet& sheet, SheetFormat format) {

@@ -38,8 +38,12 @@ struct BoardSheet {
 /// not even one of 1 mm does.
 double largest_square_m(const Paper& paper, int columns, int rows);
 
-/// InputError (of `--corners`, `--square-mm`) where the board's two ends would look alike or it does not fit.
+/// InputError (of `--corners`, `--square-mm`) where the board's two ends would look alike, it does not fit, or its
+/// squares are finer than 1 mm, which printers do not draw sharply.
 void validate(const BoardSheet& sheet);
+/// What the sheet says below the board: how many squares in a row to measure. At its black ends a row shows the
+/// board's edge, and no row has two.
+std::string measure_text(const BoardSheet& sheet);
 std::string board_page(const BoardSheet& sheet, SheetFormat format);
 SheetPicture board_picture(const BoardSheet& sheet, double pixels_per_m);
 
@@ -49,7 +53,7 @@ struct MarkerSheet {
   std::vector<double> diameters_m;
 };
 
-/// InputError (of `--marker-mm`) where they do not fit.
+/// InputError (of `--marker-mm`) where they do not fit, or one is finer than 1 mm.
 void validate(const MarkerSheet& sheet);
 std::string marker_page(const MarkerSheet& sheet, SheetFormat format);
 SheetPicture marker_picture(const MarkerSheet& sheet, double pixels_per_m);

@@ -82,6 +82,13 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
       {"diagnose", "folder", "--twin", "-o", "there"},
       {"simulate", "a.toml", "--rate", "-200"},
       {"render", "a.toml", "--no-such-option"},
+      {"diagnose", "folder", "--without", "quadratic_darg"},
+      {"analyze", "folder", "--robust"},
+      {"require", "a.toml", "--target", "mu"},
+      {"new"},
+      {"new", "a", "-o", "b"},
+      {"-v"},
+      {"-x"},
   };
   for (const std::vector<std::string>& arguments : wrong) {
     const tests::ProcessResult result = tests::glidelab(arguments);
@@ -228,14 +235,88 @@ TEST_CASE("a misspelt value of an option is answered with the one that was meant
                            "trajectory; did you mean \"trajectory\"?") != std::string::npos);
   CHECK(tests::glidelab({"pattern", "--paper=a5"}).err.find("did you mean \"a4\"?") != std::string::npos);
   const tests::ProcessResult target = tests::glidelab({"require", "x.toml", "--target", "mue=0.001"});
-  CHECK(target.status == 1);
+  CHECK(target.status == 2);
   CHECK(target.err.find("did you mean \"mu\"?") != std::string::npos);
+  // The second of two as well, and before a folder is looked at.
+  const tests::ProcessResult without =
+      tests::glidelab({"diagnose", "folder", "--without", "stribeck", "quadratic_darg"});
+  CHECK(without.status == 2);
+  CHECK(without.err.find("did you mean \"quadratic_drag\"?") != std::string::npos);
+  CHECK(tests::glidelab({"diagnose", "folder", "--without", "smoothing_bias"}).status == 1);  // no such folder
+  const tests::ProcessResult rule = tests::glidelab({"analyze", "folder", "--bandwidth", "gvc"});
+  CHECK(rule.status == 2);
+  CHECK(rule.err.find("did you mean \"gcv\"?") != std::string::npos);
+  // A number beside another option's wrong word is none itself.
+  CHECK(tests::glidelab({"analyze", "folder", "--bandwidth", "0.02", "--estimator", "trajectry"})
+            .err.find("--estimator: found") != std::string::npos);
   const tests::TempDir temp;
   std::string scenario = tests::tiny_scenario();
   const std::size_t at = scenario.find("launched = \"up\"");
   REQUIRE(at != std::string::npos);
   base::write_file(temp / "s.toml", scenario.replace(at, 15, "launched = \"upp\""));
   CHECK(tests::glidelab({"simulate", "s.toml"}, temp.path()).err.find("did you mean \"up\"?") != std::string::npos);
+}
+
+TEST_CASE("help shows the words of an option where they are few, and not twenty names of effects") {
+  const std::string diagnose = tests::glidelab({"diagnose", "--help"}).out;
+  CHECK(diagnose.find("--without EFFECT ...") != std::string::npos);
+  CHECK(diagnose.find("{") == std::string::npos);
+  CHECK(tests::glidelab({"analyze", "--help"}).out.find("--bandwidth SECONDS|RULE=lines") != std::string::npos);
+  CHECK(tests::glidelab({"pattern", "--help"}).out.find("NAME:{a4,a3,letter}=a4") != std::string::npos);
+  CHECK(tests::glidelab({"--man"}).out.find("quadratic_drag") == std::string::npos);
+}
+
+TEST_CASE("an option of commands that stands alone is told its place") {
+  const tests::ProcessResult short_one = tests::glidelab({"-v"});
+  CHECK(short_one.status == 2);
+  CHECK(short_one.err.find("option \"-v\" without a command") != std::string::npos);
+  CHECK(short_one.err.find("--version") != std::string::npos);
+  CHECK(tests::glidelab({"--json", "check"}).err.find("option \"--json\" without a command") != std::string::npos);
+  CHECK(tests::glidelab({"-x"}).err.find("unknown option \"-x\"") != std::string::npos);
+}
+
+TEST_CASE("a scenario, a sweep or a folder where another is wanted is called what it is") {
+  const tests::TempDir temp;
+  base::write_file(temp / "tiny.toml", tests::tiny_scenario());
+  base::write_file(temp / "sweep.toml", "scenario = \"tiny.toml\"\n[[vary]]\nkey = \"seed\"\nvalues = [1, 2]\n");
+  for (const char* command : {"analyze", "diagnose", "check"}) {
+    const tests::ProcessResult scenario = tests::glidelab({command, "tiny.toml"}, temp.path());
+    INFO(command << ": " << scenario.err);
+    CHECK(scenario.status == 1);
+    CHECK(scenario.err.find("tiny.toml: found a scenario, expected a recording") != std::string::npos);
+    const tests::ProcessResult sweep = tests::glidelab({command, "sweep.toml"}, temp.path());
+    CHECK(sweep.status == 1);
+    CHECK(sweep.err.find("sweep.toml: found a sweep") != std::string::npos);
+  }
+  const tests::ProcessResult folder = tests::glidelab({"render", "."}, temp.path());
+  CHECK(folder.status == 1);
+  CHECK(folder.err.find("found a folder, expected a scenario") != std::string::npos);
+  base::write_file(temp / "experiment.toml", "");
+  CHECK(tests::glidelab({"render", "."}, temp.path()).err.find("a recording, expected a scenario") !=
+        std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
+}
+
+TEST_CASE("a plan of a scenario wants its noise on the command line") {
+  const tests::TempDir temp;
+  base::write_file(temp / "tiny.toml", tests::tiny_scenario());
+  const tests::ProcessResult result = tests::glidelab({"diagnose", "--plan", "tiny.toml"}, temp.path());
+  CHECK(result.status == 2);
+  CHECK(result.err.find("--noise-m: found nothing") != std::string::npos);
+}
+
+TEST_CASE("an output folder that is a link to nothing is called one, and so is what it would lie in") {
+  const tests::TempDir temp;
+  base::write_file(temp / "tiny.toml", tests::tiny_scenario());
+  std::filesystem::create_symlink("gone", temp / "link");
+  for (const char* out : {"link", "link/inside"}) {
+    const tests::ProcessResult result = tests::glidelab({"simulate", "tiny.toml", "-o", out}, temp.path());
+    INFO(result.err);
+    CHECK(result.status == 3);
+    CHECK(result.err.find("link: is a link to nothing (gone does not exist)") != std::string::npos);
+  }
+  std::filesystem::create_directory(temp / "gone");
+  CHECK(tests::glidelab({"simulate", "tiny.toml", "-o", "link"}, temp.path()).status == 0);
 }
 
 TEST_CASE("a terminal without colours gets none") {
@@ -267,10 +348,15 @@ TEST_CASE("bash completes the words of an option, nothing for a number, and file
                    "ask glidelab render s\n"
                    "ask glidelab validate x --baseline s\n"
                    "ask glidelab help rend\n"
-                   "ask glidelab analyze -q\n");
+                   "ask glidelab analyze -q\n"
+                   "ask glidelab diagnose x --without quad\n"
+                   "ask glidelab diagnose x --without smooth\n"
+                   "ask glidelab analyze x --bandwidth g\n");
   const tests::ProcessResult result = tests::run({"bash", "ask.sh"}, temp.path());
   INFO(result.err);
-  CHECK(result.out == "trajectory\ntrajectory\na4 a3 letter\nclips\nbash zsh\n\ns.toml\ns.toml\nrender\n-q\n");
+  CHECK(result.out ==
+        "trajectory\ntrajectory\na4 a3 letter\nclips\nbash zsh\n\ns.toml\ns.toml\nrender\n-q\n"
+        "quadratic_drag\nsmoothing_bias\ngcv\n");
 }
 
 TEST_CASE("zsh takes the completion at a terminal: the words of an option, and no error for a number") {
@@ -296,13 +382,17 @@ ask 'glidelab require x --confirm cl'
 ask 'glidelab rend'
 ask 'glidelab --completion ba'
 ask 'glidelab pattern --pap'
+ask 'glidelab diagnose x --without quad'
+ask 'glidelab analyze x --bandwidth gc'
 )");
   const tests::ProcessResult result = tests::run({"timeout", "30", "zsh", "-f", "ask.zsh"}, temp.path());
   INFO(result.out << result.err);
   CHECK(result.status == 0);
-  for (const char* line : {"<LINE:glidelab analyze x --estimator trajectory >", "<LINE:glidelab analyze x --jobs >",
-                           "<LINE:glidelab require x --confirm clips >", "<LINE:glidelab render >",
-                           "<LINE:glidelab --completion bash >", "<LINE:glidelab pattern --paper"}) {
+  for (const char* line :
+       {"<LINE:glidelab analyze x --estimator trajectory >", "<LINE:glidelab analyze x --jobs >",
+        "<LINE:glidelab require x --confirm clips >", "<LINE:glidelab render >", "<LINE:glidelab --completion bash >",
+        "<LINE:glidelab pattern --paper", "<LINE:glidelab diagnose x --without quadratic_drag >",
+        "<LINE:glidelab analyze x --bandwidth gcv >"}) {
     INFO(line);
     CHECK(result.out.find(line) != std::string::npos);
   }

@@ -59,6 +59,6 @@ TEST_CASE("diagnose: a table of lines cannot be planned, and what is left out mu
   CHECK(planned.err.find("a table of lines, expected clips or tracks") != std::string::npos);
   const tests::ProcessResult without = tests::glidelab(
       {"diagnose", temp.path().string(), "--without", "nonsense", "--no-page", "-o", (temp / "out").string()});
-  CHECK(without.status == 1);
+  CHECK(without.status == 2);
   CHECK(without.err.find("\"nonsense\"") != std::string::npos);
 }

@@ -42,8 +42,8 @@ TEST_CASE("new leaves a folder with files alone, and takes an empty one") {
 
 TEST_CASE("new takes its folder once, as FOLDER or as --out") {
   const tests::TempDir temp;
-  CHECK(tests::glidelab({"new"}, temp.path()).status == 1);
-  CHECK(tests::glidelab({"new", "a", "-o", "b"}, temp.path()).status == 1);
+  CHECK(tests::glidelab({"new"}, temp.path()).status == 2);
+  CHECK(tests::glidelab({"new", "a", "-o", "b"}, temp.path()).status == 2);
   const tests::ProcessResult made = tests::glidelab({"new", "-o", "b", "--json"}, temp.path());
   CHECK(made.status == 0);
   CHECK(nlohmann::json::parse(made.out).at("files").size() == 2);

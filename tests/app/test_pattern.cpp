@@ -35,14 +35,17 @@ TEST_CASE("pattern names the option that is wrong, and writes nothing") {
     arguments.insert(arguments.begin(), "pattern");
     const tests::ProcessResult result = tests::glidelab(arguments, temp.path());
     INFO(result.err);
-    CHECK(result.status == 1);
+    CHECK(result.status == 2);
     CHECK(result.err.find(named) != std::string::npos);
   };
   refuses({"--corners", "8x6"}, "--corners: found 8x6");
   refuses({"--corners", "9"}, "--corners: found 9");
   refuses({"--corners", "9x6x2"}, "--corners: found 9x6x2");
-  refuses({"--square-mm", "30"}, "--square-mm: found 30, expected above 0 and at most 25");
+  refuses({"--square-mm", "30"},
+          "--square-mm: found 30, expected at least 1, which a printer draws sharply, and at most 25");
   refuses({"--marker-mm", "200"}, "--marker-mm: found 200");
+  refuses({"--square-mm", "0.1"}, "--square-mm: found 0.1, expected at least 1");
+  refuses({"--marker-mm", "0.01"}, "--marker-mm: found 0.01, expected at least 1");
   CHECK(tests::glidelab({"pattern", "--paper", "a9"}, temp.path()).status == 2);
   CHECK(tests::glidelab({"pattern", "--square-mm", "0"}, temp.path()).status == 2);
   CHECK_FALSE(fs::exists(temp / "glidelab-out"));

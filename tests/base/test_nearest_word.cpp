@@ -10,6 +10,7 @@ TEST_CASE("A word with one letter put in, left out, replaced or two swapped find
   CHECK(nearest_word("rendr", known) == "render");
   CHECK(nearest_word("analyse", known) == "analyze");
   CHECK(nearest_word("lwas", known) == "laws");
+  CHECK(nearest_word("gvc", {"cv", "gcv"}) == "gcv");  // one change, two neighbours, against two
   CHECK(nearest_word("analyze", known) == "analyze");
 }
 

@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "catch.h"
 #include "core/chessboard.h"
+#include "core/experiment_template.h"
 
 using namespace glidelab;
 
@@ -105,6 +106,11 @@ TEST_CASE("a board whose ends look alike, or that does not fit its paper, is ref
   CHECK_THROWS_AS(report::validate(report::MarkerSheet{a4, {}}), base::InputError);
   CHECK_THROWS_AS(report::validate(report::MarkerSheet{a4, {0.080}}), base::InputError);
   CHECK_THROWS_AS(report::validate(report::MarkerSheet{a4, {0.030, 0.030, 0.030}}), base::InputError);
+  // What printers do not draw sharply: a millimetre is 12 dots at 300 an inch.
+  CHECK_NOTHROW(report::validate(BoardSheet{a4, 9, 6, 0.001}));
+  CHECK_THROWS_AS(report::validate(BoardSheet{a4, 9, 6, 0.0009}), base::InputError);
+  CHECK_NOTHROW(report::validate(report::MarkerSheet{a4, {0.001}}));
+  CHECK_THROWS_AS(report::validate(report::MarkerSheet{a4, {0.008, 0.0009}}), base::InputError);
   CHECK_THROWS_AS(report::paper_of("a9"), base::InputError);
 }
 
@@ -118,4 +124,13 @@ TEST_CASE("the files say their size in the paper's own lengths") {
   // PDF counts in points, which Cairo writes with at least four digits.
   CHECK(std::abs(std::stod(box[1]) - 297.0 / 25.4 * 72.0) < 0.1);
   CHECK(std::abs(std::stod(box[2]) - 210.0 / 25.4 * 72.0) < 0.1);
+}
+
+TEST_CASE("the sheet and a new experiment's file have as many squares measured") {
+  // Nine of the ten: in a row of squares the board's edge shows at its black ends, and a row has one.
+  const report::BoardSheet sheet{report::paper_of("a4"), 9, 6, 0.025};
+  CHECK(report::measure_text(sheet).find("Measure 9 squares") != std::string::npos);
+  const std::string toml = core::experiment_template("x");
+  CHECK(toml.find("inner_corners = [9, 6]") != std::string::npos);
+  CHECK(toml.find("measure 9 in a row") != std::string::npos);
 }
