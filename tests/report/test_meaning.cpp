@@ -96,10 +96,10 @@ TEST_CASE("what blind cases mean is told of what was there, with intervals, and 
   CHECK(has("Missed: nothing: another verdict than none"));  // 10 % of at most 5
   CHECK_FALSE(has("moderate"));
   score.false_alarm = {20, 1};
+  CHECK(has("All 3 targets"));  // one strong effect, nothing wrong, the calibration
   score.calibration_error = 0.2;
   score.reliability = {{0.8, 1.0, 0.9, {10, 7}}};
   CHECK(has("too sure of itself"));
-  CHECK(has("All 2 targets"));
   score.reliability[0].stated = 0.5;
   CHECK(has("too modest"));
   CHECK(has("Missed: the expected calibration error"));  // no other: 5 % of false alarms are allowed
