@@ -26,9 +26,11 @@ class Setter {
  public:
   Setter(const std::string& file, const TomlAssignment& assignment) : file_(file), assignment_(assignment) {}
 
-  void apply(toml::table& tree) const {
-    const std::vector<Step> steps = parse();
-    into(tree, steps, 0);
+  /// The places that took the value, by numbers.
+  std::vector<std::string> apply(toml::table& tree) const {
+    std::vector<std::string> places;
+    into(tree, parse(), places);
+    return places;
   }
 
  private:
@@ -129,18 +131,21 @@ class Setter {
   }
 
   /// How many values were put in; of a path through several tables, at least one has to take it.
-  void into(toml::table& table, const std::vector<Step>& steps, std::size_t at) const {
-    if (through(table, steps, at) == 0) {
+  void into(toml::table& table, const std::vector<Step>& steps, std::vector<std::string>& places) const {
+    if (through(table, steps, 0, "", places) == 0) {
       fail("nothing that it picks", "a path that leads to one key of the scenario or more");
     }
   }
 
-  std::size_t through(toml::table& table, const std::vector<Step>& steps, std::size_t at) const {
+  std::size_t through(toml::table& table, const std::vector<Step>& steps, std::size_t at, const std::string& before,
+                      std::vector<std::string>& places) const {
     const Step& step = steps[at];
+    const std::string here = before + (before.empty() ? "" : ".") + step.key;
     const bool last = at + 1 == steps.size();
     if (step.pick == Step::Pick::none) {
       if (last) {
         put(table, step.key);
+        places.push_back(here);
         return 1;
       }
       toml::node* inner = table.get(step.key);
@@ -151,7 +156,7 @@ class Setter {
              fmt::format("which one: {0}[1], {0}[*] or {0}[name=…]", step.key));
       }
       if (!inner->is_table()) fail(fmt::format("\"{}\", which is no table", step.key), "a table");
-      return through(*inner->as_table(), steps, at + 1);
+      return through(*inner->as_table(), steps, at + 1, here, places);
     }
     toml::node* inner = table.get(step.key);
     toml::array* array = inner == nullptr ? nullptr : inner->as_array();
@@ -161,11 +166,13 @@ class Setter {
     }
     std::size_t count = 0;
     for (const std::size_t i : picked(*array, step)) {
+      const std::string element_here = fmt::format("{}[{}]", here, i + 1);
       if (last) {
         put(*array, i);
+        places.push_back(element_here);
         ++count;
       } else if (toml::table* element = array->get(i)->as_table()) {
-        count += through(*element, steps, at + 1);
+        count += through(*element, steps, at + 1, element_here, places);
       } else {
         fail(fmt::format("\"{}\", whose elements are no tables", step.key), "tables");
       }
@@ -231,6 +238,11 @@ std::string with_values(std::string_view toml, const std::string& shown_as,
   toml::table tree = parsed(toml, shown_as);
   for (const TomlAssignment& assignment : assignments) Setter(shown_as, assignment).apply(tree);
   return text_of(tree);
+}
+
+std::vector<std::string> reached_by(std::string_view toml, const std::string& shown_as, const std::string& path) {
+  toml::table tree = parsed(toml, shown_as);
+  return Setter(shown_as, TomlAssignment{path, 0.0}).apply(tree);
 }
 
 }  // namespace glidelab::base

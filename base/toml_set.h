@@ -32,6 +32,10 @@ std::string toml_text(const TomlScalar& value);
 std::string with_values(std::string_view toml, const std::string& shown_as,
                         const std::vector<TomlAssignment>& assignments);
 
+/// What a value at this path would replace or make, each as a path by numbers: "configuration[2].mass_kg". InputError
+/// as of with_values.
+std::vector<std::string> reached_by(std::string_view toml, const std::string& shown_as, const std::string& path);
+
 /// A table of a document, and the keys of it that are not to be taken over.
 struct TomlSection {
   std::string name;

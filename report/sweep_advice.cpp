@@ -125,7 +125,7 @@ std::string sweep_advice(const SweepSummary& summary) {
     return series.quantity == "k_over_m_1_s" && is_rule(series.estimator);
   });
   if (rules < 2 || !overall_rms(summary, "k_over_m_1_s", kDefault)) return {};
-  std::string text = "<h2>Which rule</h2>\n<p>Over all runs the least rms error is that of";
+  std::string text = "<h2>Which rule</h2>\n<p>Over all runs, among the rules alone, the least rms error is that of";
   bool any = false;
   for (const QuantityName& quantity : kQuantities) {
     const Series* const series = series_of(summary.overall, quantity.key, kDefault);

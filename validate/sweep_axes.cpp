@@ -105,6 +105,16 @@ void read_choices(const TomlTable& table, Axis& axis) {
   }
 }
 
+/// A value given twice would be a point that comes twice.
+void check_values_once(const TomlTable& table, const std::string& form, const std::vector<base::TomlScalar>& values) {
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const auto here = values.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(values.begin(), here, *here) == here) continue;
+    table.reject(form, fmt::format("{} twice", base::toml_text(*here)), "each one once");
+    return;
+  }
+}
+
 void read_source(const TomlTable& table, Design design, Axis& axis, const std::filesystem::path& folder) {
   const std::vector<std::string> forms = {"values",  "words", "switch",    "choices",
                                           "cameras", "range", "log_range", "random"};
@@ -122,9 +132,11 @@ void read_source(const TomlTable& table, Design design, Axis& axis, const std::f
   if (form == "values") {
     for (const double value : table.numbers("values", 0)) source.values.emplace_back(value);
     if (source.values.empty()) table.reject("values", "an empty list", "one value or more");
+    check_values_once(table, form, source.values);
   } else if (form == "words") {
     for (std::string& word : table.texts_or_none("words")) source.values.emplace_back(std::move(word));
     if (source.values.empty()) table.reject("words", "an empty list", "one text or more");
+    check_values_once(table, form, source.values);
   } else if (form == "switch") {
     table.boolean_or("switch", true);
     source.values = {false, true};
@@ -147,6 +159,7 @@ void read_source(const TomlTable& table, Design design, Axis& axis, const std::f
       for (const std::string& file : found) source.values.emplace_back(file);
     }
     if (source.values.empty()) table.reject("cameras", "no camera file", "camera files, or folders with some");
+    check_values_once(table, form, source.values);
   } else if (form == "random") {
     read_random(table, design, source);
   } else {

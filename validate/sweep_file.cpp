@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "base/errors.h"
@@ -50,16 +51,63 @@ void read_analyses(const TomlTable& root, Sweep& sweep) {
   if (sweep.analyses.empty()) root.reject("estimators", "an empty list", "one or more");
 }
 
-void check_names(const TomlTable& root, const Sweep& sweep) {
+/// As SQLite compares the names of columns: of the letters a to z, capitals are no others.
+std::string folded(std::string name) {
+  for (char& c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return name;
+}
+
+/// `tables`: of the axes.
+void check_names(const std::vector<TomlTable>& tables, const Sweep& sweep) {
   const std::set<std::string> taken = {"run", "point", "replicate", "seed", "status", "why"};
-  std::set<std::string> names, keys;
-  for (const Axis& axis : sweep.axes) {
-    if (taken.contains(axis.name)) root.reject("vary", fmt::format("the name \"{}\"", axis.name), "another name");
-    if (!names.insert(axis.name).second) root.reject("vary", fmt::format("\"{}\" twice", axis.name), "each name once");
+  std::map<std::string, std::string> names;
+  std::set<std::string> keys;
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    const Axis& axis = sweep.axes[i];
+    const std::string at = tables[i].has("name") ? "name" : "key";
+    if (taken.contains(folded(axis.name))) {
+      tables[i].reject(at, fmt::format("the name \"{}\"", axis.name),
+                       fmt::format("a name other than the columns {}", fmt::join(taken, ", ")));
+    }
+    const auto [other, is_new] = names.emplace(folded(axis.name), axis.name);
+    if (!is_new) {
+      tables[i].reject(at, fmt::format("\"{}\" beside \"{}\"", axis.name, other->second),
+                       "each name once: columns that differ by capitals alone are one");
+    }
     for (const std::string& key : axis.keys) {
-      if (!keys.insert(key).second) root.reject("vary", fmt::format("the key \"{}\" twice", key), "each key once");
+      if (!keys.insert(key).second) {
+        tables[i].reject(at, fmt::format("the key \"{}\" twice", key), "each key once");
+      }
     }
   }
+}
+
+/// One value of the scenario that two keys reach would be that of the later one, in a row that has both.
+void check_reach(const Sweep& sweep) {
+  std::map<std::string, const std::string*> reached;
+  std::vector<base::Issue> issues;
+  for (const Axis& axis : sweep.axes) {
+    for (const std::string& key : axis.keys) {
+      if (key == kNoiseKey) continue;
+      std::vector<std::string> places;
+      try {
+        places = base::reached_by(sweep.scenario_text, sweep.scenario_file.string(), key);
+      } catch (const base::InputError&) {
+        continue;  // try_values says what is wrong with it
+      }
+      for (const std::string& place : places) {
+        const auto [other, is_new] = reached.emplace(place, &key);
+        if (is_new) continue;
+        issues.push_back({sweep.file.string(), axis.line, key,
+                          fmt::format("a key that reaches {}, as \"{}\" does", place, *other->second),
+                          "keys that share no value of the scenario"});
+        break;
+      }
+    }
+  }
+  if (!issues.empty()) throw base::InputError(std::move(issues));
 }
 
 /// Whether every run's noise of tracks comes from an axis.
@@ -121,10 +169,11 @@ Sweep read_sweep(const std::filesystem::path& path) {
   }
   sweep.field_m = root.maybe_number("field_m", base::above(0.0));
   read_analyses(root, sweep);
-  for (const TomlTable& table : root.tables_or_none("vary")) {
+  const std::vector<TomlTable> axes = root.tables_or_none("vary");
+  for (const TomlTable& table : axes) {
     sweep.axes.push_back(read_axis(table, sweep.design, path.parent_path()));
   }
-  check_names(root, sweep);
+  check_names(axes, sweep);
   for (const TomlTable& table : root.tables_or_none("published_fall")) {
     sweep.published_falls.push_back({table.text("configuration"), table.number("mu_lightest"),
                                      table.number("mu_heaviest"), table.number("r2", base::between_open(0.0, 1.0)),
@@ -146,6 +195,7 @@ Sweep read_sweep(const std::filesystem::path& path) {
   sweep.scenario_file = path.parent_path() / scenario;
   sweep.scenario_text = base::read_file(sweep.scenario_file);
   point_count(sweep);
+  check_reach(sweep);
   const bool cameras_vary = std::any_of(sweep.axes.begin(), sweep.axes.end(), [](const Axis& axis) {
     return axis.keys == std::vector<std::string>{"camera_file"};
   });

@@ -67,6 +67,18 @@ TEST_CASE("Values reach keys of tables, elements of arrays, and the tables of an
   CHECK(groups[1].tables("force")[0].number("k") == 4.0);
 }
 
+TEST_CASE("Paths of any spelling reach places that are called by their numbers") {
+  using Places = std::vector<std::string>;
+  const auto reached = [](const std::string& path) { return base::reached_by(kText, "t.toml", path); };
+  CHECK(reached("camera.rate") == Places{"camera.rate"});
+  CHECK(reached("light.on") == Places{"light.on"});  // not there yet
+  CHECK(reached("camera.place[3]") == Places{"camera.place[3]"});
+  CHECK(reached("group[*].mass") == Places{"group[1].mass", "group[2].mass"});
+  CHECK(reached("group[name=g.2].mass") == Places{"group[2].mass"});
+  CHECK(reached("group[*].force[law=viscous].k") == Places{"group[1].force[1].k", "group[2].force[1].k"});
+  CHECK_THROWS_AS(reached("group[3].mass"), base::InputError);
+}
+
 TEST_CASE("A whole number serves for integers and for numbers, and a fraction keeps every bit") {
   const base::TomlFile file = parsed({{"bits", 12.0}, {"x", 0.1 + 0.2}});
   CHECK(file.root().integer("bits", 0, 20) == 12);
