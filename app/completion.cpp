@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cstddef>
 #include <sstream>
 
@@ -12,13 +13,6 @@
 
 namespace glidelab::app {
 namespace {
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
-}
 
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
@@ -117,8 +111,12 @@ complete -F _glidelab glidelab
 
 /// The first line of what is said of an option, between single quotes and brackets.
 std::string between_brackets(const std::string& text) {
-  const std::string line = text.substr(0, text.find('\n'));
-  return replaced(replaced(replaced(replaced(line, "\\", "\\\\"), "'", "'\\''"), "[", "("), "]", ")");
+  std::string line = text.substr(0, text.find('\n'));
+  boost::replace_all(line, "\\", "\\\\");
+  boost::replace_all(line, "'", "'\\''");
+  boost::replace_all(line, "[", "(");
+  boost::replace_all(line, "]", ")");
+  return line;
 }
 
 /// One specification of _arguments for each name of each option. The action behind the second colon is zsh code: a list

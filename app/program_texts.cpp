@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cstddef>
 #include <string_view>
 #include <vector>
@@ -15,19 +16,13 @@
 namespace glidelab::app {
 namespace {
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
-}
-
 /// Text for roff: a backslash, a hyphen that may not be broken, and a dot or quote that would begin a request.
 std::string roff(const std::string& text) {
-  std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  std::string safe = boost::replace_all_copy(text, "\\", "\\e");
+  boost::replace_all(safe, "-", "\\-");
   for (const char* start : {".", "'"}) {
     if (safe.starts_with(start)) safe.insert(0, "\\&");
-    safe = replaced(safe, std::string("\n") + start, std::string("\n\\&") + start);
+    boost::replace_all(safe, std::string("\n") + start, std::string("\n\\&") + start);
   }
   return safe;
 }
