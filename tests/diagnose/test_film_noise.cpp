@@ -183,6 +183,24 @@ TEST_CASE("uneven times are told from errors that go with the place") {
   CHECK(std::abs(noise.jitter_s - 4e-5) < 5.0 * noise.jitter_sd_s + 6e-6);  // and half a step of the sizes tried
 }
 
+TEST_CASE("in a file whose pictures are made of those before, noise that goes with the speed is its codec's own") {
+  // At 600 px/s, 3 times the noise and 12 times: a codec does the first, and the second seven times in a thousand.
+  const auto noise_of = [](double uneven_s, bool handed_on) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal(0.0, uneven_s);
+    const tests::MadeExperiment made = filmed([&](double, double v) { return v * normal(random); }, 13);
+    diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    set.lossy = set.handed_on = handed_on;
+    REQUIRE(diagnose::find_film_noise(set, diagnose::fit_nominal(set)));
+    return *set.film_noise;
+  };
+  CHECK(noise_of(1e-5, false).jitter_log_evidence > 10.0);
+  const diagnose::FilmNoise codecs = noise_of(1e-5, true);
+  CHECK(codecs.jitter_log_evidence < 1.0);
+  CHECK(codecs.shape.jitter_s > 0.0);  // the fast positions are less certain all the same
+  CHECK(noise_of(4e-5, true).jitter_log_evidence > 2.0);
+}
+
 TEST_CASE("a step in the picture beside uneven times is not given to these") {
   // 0.3 px over 0.02 m, a hundred times the noise; 20 µs at 600 px/s are six times. The list holds no such step.
   std::mt19937_64 random(5);
