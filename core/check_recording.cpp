@@ -13,6 +13,7 @@
 #include "core/clip_look.h"
 #include "core/clip_to_track.h"
 #include "core/free_motion.h"
+#include "core/lost_frames.h"
 #include "core/marker_smear.h"
 #include "core/median.h"
 #include "core/motion.h"
@@ -29,11 +30,11 @@ constexpr double kTopSpeed = 0.99;    // quantile: single frames may be wrong
 constexpr std::size_t kSpeedLag = 4;  // frames over which a speed is taken
 constexpr std::size_t kPathPlaces = 200;
 constexpr int kAcross = 8, kDown = 6;  // parts of the picture
-// A step counts as a jump or a stall where the two on either side lie within an eighth of a straight line, and it is
-// clear of noise.
-constexpr double kBeyondTone = 2.0;   // times the stated exposure
-constexpr double kBeyondPlace = 0.5;  // marker diameters: less a marker may lengthen by where it is (perspective)
-constexpr double kAgree = 0.125, kJump = 1.6, kStall = 0.4, kClearOfNoise = 8.0;
+constexpr double kBeyondTone = 2.0;    // times the stated exposure
+constexpr double kBeyondPlace = 0.5;   // marker diameters: less a marker may lengthen by where it is (perspective)
+// A step counts as a stall where the two on either side lie within an eighth of a straight line, and the rest of it is
+// six standard deviations of its noise: a clip has thousands of steps, and a codec's errors are no bell.
+constexpr double kAgree = 0.125, kStall = 0.4, kClearOfNoise = 15.0;
 
 struct Speeds {
   double px_s = 0.0, m_s = 0.0;
@@ -59,8 +60,9 @@ Speeds speeds_of(const TrackData& track) {
   return {quantile(px_s, kTopSpeed), quantile(m_s, kTopSpeed), m > 0.0 ? px / m : 0.0};
 }
 
-/// Steps from frame to frame that are far longer or shorter than their neighbours, of which two on either side agree.
-void count_odd_steps(const std::vector<MarkerSighting>& sightings, double noise_px, ClipCheck& clip) {
+/// Steps from frame to frame that are far shorter than their neighbours, of which two on either side agree.
+std::size_t stalls_of(const std::vector<MarkerSighting>& sightings, double noise_px) {
+  std::size_t stalls = 0;
   const auto step = [&](std::size_t i) {
     return std::hypot(sightings[i + 1].u_px - sightings[i].u_px, sightings[i + 1].v_px - sightings[i].v_px);
   };
@@ -74,9 +76,9 @@ void count_odd_steps(const std::vector<MarkerSighting>& sightings, double noise_
     double off = 0.0;
     for (std::size_t k = 0; k < 4; ++k) off = std::max(off, std::abs(around[k] - middle - rise * place[k]));
     if (middle < kClearOfNoise * noise_px || off > kAgree * middle) continue;
-    clip.jumps += step(i) > kJump * middle ? 1 : 0;
-    clip.stalls += step(i) < kStall * middle ? 1 : 0;
+    stalls += step(i) < kStall * middle ? 1 : 0;
   }
+  return stalls;
 }
 
 /// One track with the fits behind it, or why there is none.
@@ -91,13 +93,6 @@ bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip) {
   const double margin_px = 3.0 * sighting.radius_px + clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
   return std::min({sighting.u_px, sighting.v_px, clip.width_px - 1.0 - sighting.u_px,
                    clip.height_px - 1.0 - sighting.v_px}) < margin_px;
-}
-
-/// As the analysis will find it, before it puts times of lost frames right.
-std::optional<AgainstLaunch> against_launch(const ClipSetup& setup, const TrackData& track) {
-  if (track.x_m.size() < kFewestTrackPoints) return std::nullopt;
-  const Motion motion = motion_of(track, setup.mass_kg);
-  return find_free_motion(without(motion, find_outliers(motion)), setup).against_launch;
 }
 
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const Attempt& attempt,
@@ -116,8 +111,13 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
     clip.spanned = track.frame.back() - clip.first + 1;
   }
   clip.frame_rate_hz = track.frame_rate_hz;
-  if (track.x_m.size() >= kFewestTrackPoints) clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
-  clip.against_launch = against_launch(setup, track);
+  if (track.x_m.size() >= kFewestTrackPoints) {
+    // As the analysis will find it, before it puts times of lost frames right.
+    const Motion motion = motion_of(track, setup.mass_kg);
+    clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
+    clip.against_launch = find_free_motion(without(motion, find_outliers(motion)), setup).against_launch;
+    if (clip.pictures) clip.jumps = find_lost_frames(track, motion).size();
+  }
   const Speeds speeds = speeds_of(track);
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;
@@ -156,7 +156,8 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   clip.entered = at_edge(track.sightings.front(), clip);
   clip.left = at_edge(track.sightings.back(), clip);
   clip.longest_blur_px = speeds.px_s / camera.frame_rate_hz;
-  count_odd_steps(track.sightings, clip.centre_sd_px, clip);
+  clip.stalls =
+      stalls_of(track.sightings, std::max(clip.centre_sd_px, clip.position_noise_m.value_or(0.0) * speeds.px_per_m));
   const std::size_t every = track.sightings.size() / kPathPlaces + 1;
   for (std::size_t i = 0; i < track.sightings.size(); i += every) {
     clip.path.push_back({track.sightings[i].u_px, track.sightings[i].v_px});

@@ -52,7 +52,7 @@ struct ClipCheck {
   std::size_t repeated = 0;            ///< frames equal to the one before, bit by bit
   std::size_t irregular_steps = 0;     ///< between the file's time stamps
   double drift_frames = 0.0;           ///< how far the stamps leave a uniform row, in frames
-  std::size_t jumps = 0;               ///< single steps well above those around: frames that are not there
+  std::size_t jumps = 0;               ///< places where frames are missing (lost_frames.h)
   std::size_t stalls = 0;              ///< single steps well below those around: frames that came twice
   double saturated = 0.0;              ///< share of the pixels at the largest code
   double dark = 0.0;                   ///< share of the pixels at 0

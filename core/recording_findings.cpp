@@ -128,7 +128,7 @@ void judge_times(const Experiment& experiment, const ClipCheck& clip, Notebook& 
     const double share = static_cast<double>(clip.jumps) / static_cast<double>(std::max<std::size_t>(clip.seen, 1));
     book.add(
         share > kWorstMissing ? Severity::unusable : Severity::change,
-        fmt::format("the marker jumps {} by about two frames' way: frames are missing", times(clip.jumps)),
+        fmt::format("the marker jumps {} by the way of whole frames: frames are missing", times(clip.jumps)),
         "record to a faster disk or in a smaller format, and say time = \"container\" if the file has true stamps");
   }
   if (clip.repeated + clip.stalls > 0) {

@@ -150,6 +150,16 @@ TEST_CASE("frames that are missing show as jumps of the marker, frames that came
   CHECK(finds(twice, "change", "the very picture before them"));
 }
 
+TEST_CASE("a codec that leaves a slow marker where it was for a frame loses no frames") {
+  // 0.4 px a frame at most: where a block is coded anew only when it is off by enough, one step is none and the next is
+  // two.
+  const json check = Recording(scenario("exposure_s = 0.001", "[codec]\nname = \"h264\"\ncrf = 23.0", 240.0,
+                                        {"down", -0.2, 0.35, 1.0}))
+                         .check(0);
+  CHECK(check.at("clips").at(0).at("jumps") == 0);
+  CHECK(check.at("clips").at(0).at("stalls") == 0);
+}
+
 TEST_CASE("a marker that is not there is a finding of its clip, and names from files stay text") {
   const Recording recording(scenario());
   recording.replace("name = \"up\"", "name = \"<script>alert(1)<x>\"");
