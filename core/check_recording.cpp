@@ -122,7 +122,9 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;
   if (!clip.pictures || track.sightings.empty()) return clip;
-  const ClipLook look = watches.of(setup.file).look(*experiment.marker, track.sightings, attempt.fits);
+  MarkerSetup marker = *experiment.marker;
+  if (track.dark_marker) marker.color_bgr = cv::Vec3b(0, 0, 0);
+  const ClipLook look = watches.of(setup.file).look(marker, track.sightings, attempt.fits);
   clip.width_px = look.size.width;
   clip.height_px = look.size.height;
   clip.container_rate_hz = look.file.container_rate_hz;

@@ -28,6 +28,10 @@ namespace {
 
 constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track up to a few degrees"
 
+// A marker whose brightness nobody states: of the frames from its first to its last, in how many a good one is seen;
+// and in how many times as many as a bright one a dark one must be.
+constexpr double kWellSeen = 0.9, kFarBetter = 1.2;
+
 int downhill_of(const Experiment& experiment, const std::string& name) {
   const GroupSetup* group = group_of(experiment, name);
   return group != nullptr && group->downhill ? *group->downhill : experiment.track.downhill;
@@ -40,6 +44,20 @@ struct SeenClip {
   cv::Size size;
   std::vector<std::string> notes;
   std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
+  bool dark_marker = false;
+
+  bool moves() const {
+    return std::any_of(marker.sightings.begin(), marker.sightings.end(), [&](const MarkerSighting& sighting) {
+      const MarkerSighting& first = marker.sightings.front();
+      return std::hypot(sighting.u_px - first.u_px, sighting.v_px - first.v_px) > 1.5 * first.radius_px;
+    });
+  }
+  /// In most frames from the first sighting to the last, of something that moves.
+  bool well_seen() const {
+    if (!moves()) return false;
+    const std::size_t span = marker.sightings.back().frame - marker.sightings.front().frame + 1;
+    return static_cast<double>(marker.sightings.size()) > kWellSeen * static_cast<double>(span);
+  }
 };
 
 /// Counts frames over all clips for the progress.
@@ -89,9 +107,9 @@ void put_even(SeenClip& seen) {
   seen.frame_t_s = std::move(even->t_s);
 }
 
-SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                 const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
-  const bool with_color = signal_kind(*experiment.marker) == SignalKind::colored;
+SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
+                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+  const bool with_color = signal_kind(marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
   // Where no ray belongs to a pixel (far outside the calibrated field) the marker is as large as elsewhere.
@@ -101,7 +119,7 @@ SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Came
     if (radius) usual_px = usual_px == 0.0 ? *radius : usual_px;
     return radius.value_or(usual_px == 0.0 ? 5.0 : usual_px);
   };
-  MarkerTracker tracker(clip.file, *experiment.marker, radius_at);
+  MarkerTracker tracker(clip.file, marker, radius_at);
   SeenClip seen;
   const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
   constexpr std::size_t kTellEvery = 10;
@@ -137,6 +155,40 @@ SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const Came
   return seen;
 }
 
+/// As the marker's colour says; without one by its brightness: the disc is bright, or, where such a one is hardly seen
+/// and a dark one well, dark.
+SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+                 const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+  const auto look = [&](const MarkerSetup& marker) {
+    return look_for(marker, experiment, clip, setting, open, look_at_scene, counter);
+  };
+  if (experiment.marker->color_bgr) return look(*experiment.marker);
+  std::optional<SeenClip> bright;
+  std::optional<NoMarker> no_bright;
+  try {
+    bright = look(*experiment.marker);
+    if (bright->well_seen()) return *std::move(bright);
+  } catch (const NoMarker& nothing) {
+    no_bright = nothing;
+  }
+  MarkerSetup dark = *experiment.marker;
+  dark.color_bgr = cv::Vec3b(0, 0, 0);
+  try {
+    SeenClip seen = look(dark);
+    const double others = bright && bright->moves() ? static_cast<double>(bright->marker.sightings.size()) : 0.0;
+    if (seen.well_seen() && static_cast<double>(seen.marker.sightings.size()) > kFarBetter * others) {
+      seen.dark_marker = true;
+      seen.notes.emplace_back(
+          "the marker is darker than its surroundings, as color = \"#101010\" in [marker] would say");
+      return seen;
+    }
+  } catch (const base::InputError&) {
+    // No single dark one either: what there is of the bright one is what counts.
+  }
+  if (no_bright) throw NoMarker(*no_bright);
+  return *std::move(bright);
+}
+
 struct PlanePoint {
   MarkerSighting sighting;
   cv::Point2d place;
@@ -158,6 +210,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   track.frame_t_s = seen.frame_t_s;
   track.notes = seen.notes;
   track.pictures = seen.pictures;
+  track.dark_marker = seen.dark_marker;
   for (const PlanePoint& point : points) {
     track.frame.push_back(point.sighting.frame);
     // A rolling shutter exposes the marker's row later than the picture's middle row, to which the frame's time

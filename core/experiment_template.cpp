@@ -64,7 +64,7 @@ plane = "calibration/plane.png"    # the pattern where the marker moves, its lon
 [marker]
 diameter_m = 0.020
 #height_m = 0.0                    # its centre off the pattern's plane, towards the camera
-#color = "#101010"                 # a black disc; or the colour of an object that is known by its hue, as "#e04020"
+#color = "#101010"                 # a black disc (left out, a bright one is looked for first); or the hue of an object, as "#e04020"
 #start_px = [400, 120]             # where it is in the first frame, should something else move as well
 
 [track]

@@ -171,10 +171,11 @@ std::size_t MarkerTracker::path_at_start() const {
   }
   const double allowed = 3.0 * radius_px_ + 10.0;
   if (best == paths_.size() || nearest > allowed) {
-    fail(fmt::format("no marker near start_px = [{:.1f}, {:.1f}] in the first frames{}", marker_.start_px->x,
-                     marker_.start_px->y,
-                     best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
-         fmt::format("one of about {:.1f} px radius within {:.0f} px", radius_px_, allowed));
+    throw NoMarker(
+        issue(fmt::format("no marker near start_px = [{:.1f}, {:.1f}] in the first frames{}", marker_.start_px->x,
+                          marker_.start_px->y,
+                          best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
+              fmt::format("one of about {:.1f} px radius within {:.0f} px", radius_px_, allowed)));
   }
   return best;
 }
@@ -187,9 +188,11 @@ std::size_t MarkerTracker::resting_path(std::vector<std::string>& notes) const {
     if (2 * paths_[i].seen.size() >= frames_ && ratio > 0.75 && ratio < 1.33) candidates.push_back(i);
   }
   if (candidates.size() != 1) {
-    fail(fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
-                     candidates.empty() ? "" : fmt::format(", and {} such things rest", candidates.size())),
-         "a bright marker (or one of the colour stated) of the diameter stated, or start_px");
+    throw NoMarker(
+        issue(fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
+                          candidates.empty() ? "" : fmt::format(", and {} such things rest", candidates.size())),
+              "a marker of the diameter stated, brighter or darker than what is around it (or of the colour stated), "
+              "or start_px"));
   }
   notes.emplace_back("the marker does not move in this clip");
   return candidates.front();
@@ -237,11 +240,12 @@ std::size_t MarkerTracker::choose_path(std::vector<std::string>& notes) const {
     if (overlaps(common, marker.seen.size(), other.seen.size()) && alike(marker.radius_px, other.radius_px, 1.2) &&
         alike(marker.amplitude, other.amplitude, 1.4) && alike(marker.travel_px, other.travel_px, 1.6)) {
       const cv::Point2d a = marker.seen.front().fit.centre, b = other.seen.front().fit.centre;
-      fail(fmt::format(
-               "two markers that look and move alike, at ({:.0f}, {:.0f}) px in frame {} and ({:.0f}, {:.0f}) px "
-               "in frame {}",
-               a.x, a.y, marker.seen.front().frame, b.x, b.y, other.seen.front().frame),
-           "one marker, or start_px in [marker] to say which");
+      throw base::InputError(
+          issue(fmt::format(
+                    "two markers that look and move alike, at ({:.0f}, {:.0f}) px in frame {} and ({:.0f}, {:.0f}) px "
+                    "in frame {}",
+                    a.x, a.y, marker.seen.front().frame, b.x, b.y, other.seen.front().frame),
+                "one marker, or start_px in [marker] to say which"));
     }
   }
   return best;

@@ -72,8 +72,8 @@ MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, Rad
       kind_(signal_kind(marker_)),
       radius_at_(std::move(radius_at)) {}
 
-void MarkerTracker::fail(std::string found, std::string expected) const {
-  throw base::InputError(base::Issue{clip_.string(), 0, "marker", std::move(found), std::move(expected)});
+base::Issue MarkerTracker::issue(std::string found, std::string expected) const {
+  return {clip_.string(), 0, "marker", std::move(found), std::move(expected)};
 }
 
 std::optional<MarkerFit> MarkerTracker::measure(const Signal& signal, const MarkerGuess& guess, Method method) const {
@@ -311,7 +311,7 @@ void MarkerTracker::search_rest() {
 
 void MarkerTracker::add(const Frame& frame) {
   const auto signal = signal_of(frame, marker_, kind_);
-  if (!signal) fail("a clip without colours", "a clip in colour, as [marker] color asks for");
+  if (!signal) throw base::InputError(issue("a clip without colours", "a clip in colour, as [marker] color asks for"));
   if (frames_ == 0) {
     const cv::Point2d middle(0.5 * (signal->values.cols - 1), 0.5 * (signal->values.rows - 1));
     radius_px_ = std::max(radius_at_(middle), kSmallestRadiusPx);

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "base/errors.h"
 #include "core/experiment.h"
 #include "core/frame_source.h"
 #include "core/marker.h"
@@ -29,6 +30,11 @@ namespace glidelab::core {
 
 /// Expected radius of the marker's image at a pixel.
 using RadiusAt = std::function<double(cv::Point2d)>;
+
+/// Nothing in the clip is like the marker.
+class NoMarker : public base::InputError {
+  using base::InputError::InputError;
+};
 
 struct TrackedMarker {
   std::vector<MarkerSighting> sightings;  ///< frames rise
@@ -43,8 +49,8 @@ class MarkerTracker {
   /// Takes the next frame. InputError where a hue is to be looked for in a grey clip.
   void add(const Frame& frame);
 
-  /// The marker's track. InputError where nothing of its size moves (and not exactly one such thing rests), where two
-  /// equal ones move alike and start_px does not say which, or where there is nothing at start_px.
+  /// The marker's track. NoMarker where nothing of its size moves (and not exactly one such thing rests), or where
+  /// there is nothing at start_px; InputError where two equal ones move alike and start_px does not say which.
   TrackedMarker finish();
 
  private:
@@ -108,7 +114,7 @@ class MarkerTracker {
   std::size_t choose_path(std::vector<std::string>& notes) const;
   std::size_t path_at_start() const;
   std::size_t resting_path(std::vector<std::string>& notes) const;
-  [[noreturn]] void fail(std::string found, std::string expected) const;
+  base::Issue issue(std::string found, std::string expected) const;
 
   std::filesystem::path clip_;
   MarkerSetup marker_;

@@ -27,6 +27,7 @@ struct TrackData {
   std::vector<std::vector<double>> shared_m;
   std::vector<MarkerSighting> sightings;          ///< empty for a track from a file
   std::shared_ptr<const PictureRecord> pictures;  ///< where they were asked for
+  bool dark_marker = false;  ///< seen as darker than its surroundings, without a colour that says so
   std::vector<std::string> notes;
 };
 
