@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/dense.h"
+#include "core/lost_frames.h"
 #include "core/median.h"
 
 namespace glidelab::diagnose {
@@ -138,6 +139,21 @@ Lateness plain_losses(const TrackSet& set, std::size_t& count) {
   return late;
 }
 
+/// Those that the analysis finds, clip by clip.
+Lateness analysed_losses(const TrackSet& set, std::size_t& count) {
+  Lateness late;
+  for (const TrackedMotion& motion : set.motions) {
+    const TrackedClip& clip = set.clips[motion.clip];
+    const double step_s = 1.0 / clip.frame_rate_hz;
+    const auto of_clip = [&](double t) { return core::put_right(t, clip.lost, step_s) - t; };
+    std::vector<double> late_s;
+    for (const double t : motion.t_s) late_s.push_back(of_clip(t) - of_clip(motion.t_s.front()));
+    count += static_cast<std::size_t>(std::lround(late_s.back() / step_s));
+    late.push_back(std::move(late_s));
+  }
+  return late;
+}
+
 /// How many frames are lost before each point of a motion, as the fit has its path: of all such sequences that never
 /// fall the likeliest (Viterbi), each loss paid for.
 std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit, std::size_t i, double loss) {
@@ -180,8 +196,10 @@ std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit
   return late;
 }
 
-bool lowers(const MotionFit& next, std::size_t more, const MissingFrames& found) {
-  return next.cost + 2.0 * kClear * static_cast<double>(more) < found.fit.cost;
+/// Whether so many losses in all, each paid for, are likelier than those found.
+bool lowers(const MotionFit& next, std::size_t count, const MissingFrames& found) {
+  const double more = static_cast<double>(count) - static_cast<double>(found.count);
+  return next.cost + 2.0 * kClear * more < found.fit.cost;
 }
 
 /// How many frames are lost at each place, all fitted together: what two losses do to K, mu and the inclination may
@@ -221,7 +239,7 @@ bool add_hidden(const TrackSet& set, bool together, MissingFrames& found) {
     for (std::size_t p = place.point; p < tried[place.motion].size(); ++p) tried[place.motion][p] += place.step_s;
   }
   MotionFit next = fit_motions(set, found.fit.effects, found.fit.at, tried);
-  if (!lowers(next, places.size(), found)) return false;
+  if (!lowers(next, found.count + places.size(), found)) return false;
   found.fit = std::move(next);
   found.count += places.size();
   return true;
@@ -238,11 +256,24 @@ void place_anew(const TrackSet& set, MissingFrames& found) {
     }
     if (tried == found.fit.late) return;
     MotionFit next = fit_motions(set, found.fit.effects, found.fit.at, tried);
-    const double more = std::round(count) - static_cast<double>(found.count);
-    if (!(next.cost + 2.0 * kClear * more < found.fit.cost)) return;
+    const auto all = static_cast<std::size_t>(std::lround(count));
+    if (!lowers(next, all, found)) return;
     found.fit = std::move(next);
-    found.count = static_cast<std::size_t>(std::lround(count));
+    found.count = all;
   }
+}
+
+/// With those that only the whole fit shows.
+MissingFrames with_hidden(const TrackSet& set, MissingFrames all) {
+  for (int round = 0; round < kRounds; ++round) {
+    const std::size_t before = all.count;
+    for (int more = 0; more < kMostMissing && add_hidden(set, false, all); ++more) {
+    }
+    if (all.count > 0) add_hidden(set, true, all);
+    if (all.count > 0) place_anew(set, all);
+    if (all.count == before) break;
+  }
+  return all;
 }
 
 }  // namespace
@@ -257,24 +288,24 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
     found.fit.late.emplace_back(motion.t_s.size(), 0.0);
     points += static_cast<double>(motion.t_s.size());
   }
-  std::size_t plain = 0;
-  const Lateness late = plain_losses(set, plain);
-  if (plain > 0) {
-    MotionFit next = fit_motions(set, fit.effects, fit.at, late);
-    if (lowers(next, plain, found)) {
-      found.fit = std::move(next);
-      found.count = plain;
-    }
-  }
-  MissingFrames all = found;
-  for (int round = 0; round < kRounds; ++round) {
-    const std::size_t before = all.count;
-    for (int more = 0; more < kMostMissing && add_hidden(set, false, all); ++more) {
-    }
-    if (all.count > 0) add_hidden(set, true, all);
-    if (all.count > 0) place_anew(set, all);
-    if (all.count == before) break;
-  }
+  // Each way of looking sees what another misses where losses are close together: the likeliest end counts.
+  std::size_t plain = 0, analysed = 0;
+  const Lateness by_parabolas = plain_losses(set, plain), by_analysis = analysed_losses(set, analysed);
+  const MissingFrames nothing = found;
+  MissingFrames all = nothing;
+  const auto try_out = [&](const Lateness& late, std::size_t count) {
+    if (count == 0) return;
+    MissingFrames seen = nothing;
+    seen.fit = fit_motions(set, fit.effects, fit.at, late);
+    seen.count = count;
+    if (!lowers(seen.fit, count, nothing)) return;
+    MissingFrames more = with_hidden(set, seen);
+    if (lowers(seen.fit, count, found)) found = std::move(seen);
+    if (lowers(more.fit, more.count, all)) all = std::move(more);
+  };
+  try_out(by_parabolas, plain);
+  if (by_analysis != by_parabolas) try_out(by_analysis, analysed);
+  if (found.count == 0) all = with_hidden(set, nothing);
   // What no single jump shows counts only where it leaves nothing: many a curve looks like a row of losses.
   if (all.fit.cost < kNothingLeft * points) found = std::move(all);
   if (found.count == 0) return found;

@@ -80,6 +80,8 @@ struct TrackedClip {
   double duration_s = 0.0;
   std::size_t frames = 0;
   double bandwidth_s = 0.0;  ///< of the analysis' smoothing
+  /// As the analysis finds them (core/lost_frames.h), in the file's times from the clip's first frame.
+  std::vector<core::LostFrames> lost = {};
 };
 
 struct TrackSet {
