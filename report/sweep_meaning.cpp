@@ -56,37 +56,72 @@ std::string at_text(const validate::AxisSummary& axis, const GroupStatistics& gr
   return axis.words ? escape(group.label) : number_text(group.position, 3);
 }
 
+/// "over 4 of 6 combinations of the other keys", where not all have an answer.
+std::string part_of(const validate::Likeness& of, std::string_view what) {
+  if (of.whole || of.alike == of.combinations) return {};
+  return fmt::format(" (over those {} of {} {})", of.alike, of.combinations, what);
+}
+
 /// "rate is 0.001 1/s at 500 and 0.004 1/s at 31.2, 4 times as much"; empty where one value has answers or none errs.
-std::string span_of(const validate::AxisSummary& axis, const Series& best) {
-  const Series* const series = series_of(axis.series, best);
-  if (series == nullptr) return {};
+std::string span_of(const validate::AxisSummary& axis, const Series& series) {
   const GroupStatistics *least = nullptr, *most = nullptr;
-  for (const GroupStatistics& group : series->groups) {
-    if (group.statistics.answered == 0) continue;
-    if (least == nullptr || group.statistics.rms < least->statistics.rms) least = &group;
-    if (most == nullptr || group.statistics.rms > most->statistics.rms) most = &group;
+  const auto rms = [&](const GroupStatistics& of) { return validate::comparable(series, of)->rms; };
+  for (const GroupStatistics& group : series.groups) {
+    const ErrorStatistics* const of = validate::comparable(series, group);
+    if (of == nullptr || of->answered == 0) continue;
+    if (least == nullptr || of->rms < rms(*least)) least = &group;
+    if (most == nullptr || of->rms > rms(*most)) most = &group;
   }
-  if (least == most || !(least->statistics.rms > 0.0)) return {};
-  return fmt::format("{} is {} at {} and {} at {}, {} times as much", escape(axis.name),
-                     with_unit(least->statistics.rms, best.quantity), at_text(axis, *least),
-                     with_unit(most->statistics.rms, best.quantity), at_text(axis, *most),
-                     number_text(most->statistics.rms / least->statistics.rms, 2));
+  if (least == most || !(rms(*least) > 0.0)) return {};
+  return fmt::format(
+      "{}{} is {} at {} and {} at {}, {} times as much", escape(axis.name),
+      part_of(series.likeness, "combinations of the other keys and configurations that have an answer at each value"),
+      with_unit(rms(*least), series.quantity), at_text(axis, *least), with_unit(rms(*most), series.quantity),
+      at_text(axis, *most), number_text(rms(*most) / rms(*least), 2));
+}
+
+bool answered_at_two(const Series& series) {
+  return std::count_if(series.groups.begin(), series.groups.end(),
+                       [](const GroupStatistics& group) { return group.statistics.answered > 0; }) > 1;
+}
+
+/// "turning: 0.0001; straight: 0.0002": where each run has both, or over those that have.
+std::string configurations_of(const SweepSummary& summary, const Series& best) {
+  std::string text, part;
+  for (const validate::ConfigurationSummary& of : summary.configurations) {
+    const Series* const series = series_of(of.overall, best);
+    if (series == nullptr) continue;
+    const ErrorStatistics* const errors = validate::comparable(*series, series->groups.front());
+    if (errors == nullptr || errors->answered == 0) continue;
+    part = part_of(series->likeness, "runs in which each configuration has an answer");
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", escape(of.name), with_unit(errors->rms, best.quantity));
+  }
+  return text + part;
 }
 
 /// Of one quantity over the keys and the configurations.
 std::string changes_of(const SweepSummary& summary, const Series& best) {
-  std::string text;
+  std::string text, unlike;
+  bool drawn = false;
   for (const validate::AxisSummary& axis : summary.axes) {
-    const std::string span = span_of(axis, best);
+    const Series* const series = series_of(axis.series, best);
+    if (series == nullptr) continue;
+    const std::string span = span_of(axis, *series);
     if (!span.empty()) text += fmt::format("{}along {}", text.empty() ? "" : "; ", span);
+    const validate::Likeness& of = series->likeness;
+    if (of.whole || of.alike > 0 || !answered_at_two(*series)) continue;
+    unlike += (unlike.empty() ? "" : ", ") + escape(axis.name);
+    drawn = of.combinations == 0;
   }
-  for (const validate::ConfigurationSummary& of : summary.configurations) {
-    const Series* const series = series_of(of.overall, best);
-    if (series == nullptr || series->groups.front().statistics.answered == 0) continue;
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", escape(of.name),
-                        with_unit(series->groups.front().statistics.rms, best.quantity));
+  const std::string configurations = configurations_of(summary, best);
+  if (!configurations.empty()) text += (text.empty() ? "" : "; ") + configurations;
+  if (!text.empty()) text = fmt::format(" The rms error of {} {}.", symbol_of(best.quantity), text);
+  if (!unlike.empty()) {
+    text += fmt::format(" Along {} it is not compared: some runs have no answer, and {}.", unlike,
+                        drawn ? "with drawn values those that have are not alike at two values of a key"
+                              : "no combination of the other keys has one at each value");
   }
-  return text.empty() ? text : fmt::format(" The rms error of {} {}.", symbol_of(best.quantity), text);
+  return text;
 }
 
 /// "K/m, µ by trajectory (80 to 88 %)": of each estimator its quantities, of many estimators the first.

@@ -86,6 +86,28 @@ std::string error_axis(const std::vector<PlotData>& data) {
   return fmt::format("set yrange [{:.6g}:{:.6g}]\nset ytics ({:.6g})\n", from, to, fmt::join(ladder, ", "));
 }
 
+/// What of the runs a line is of, where some have no answer.
+std::string part_of(const Series& series) {
+  const validate::Likeness& of = series.likeness;
+  if (of.whole || (of.alike > 0 && of.alike == of.combinations)) return {};
+  if (of.alike > 0) return fmt::format(", {} of {}", of.alike, of.combinations);
+  return ", unlike runs";
+}
+
+/// For the caption: what part_of() says.
+std::string note_of(const std::vector<Series>& all, std::string_view quantity) {
+  std::string note;
+  bool of_alike = false, of_unlike = false;
+  for (const Series& series : all) {
+    if (series.quantity != quantity || part_of(series).empty()) continue;
+    (series.likeness.alike > 0 ? of_alike : of_unlike) = true;
+  }
+  if (of_alike)
+    note += "; n of m: over those combinations of the other keys and configurations that have an answer at every value";
+  if (of_unlike) note += "; unlike runs: some have no answer, so that those at two values are not alike";
+  return note;
+}
+
 /// Columns: position, rms, sd, least sd, bias, two standard errors of it, coverage, two standard errors of it.
 std::vector<PlotData> data_of(const std::vector<Series>& all, std::string_view quantity,
                               std::vector<std::string>& titles) {
@@ -93,8 +115,11 @@ std::vector<PlotData> data_of(const std::vector<Series>& all, std::string_view q
   for (const Series& series : all) {
     if (series.quantity != quantity) continue;
     PlotData block{fmt::format("series{}", data.size()), {}};
+    const validate::Likeness& likeness = series.likeness;
     for (const validate::GroupStatistics& group : series.groups) {
-      const validate::ErrorStatistics& of = group.statistics;
+      const bool alike = likeness.whole || likeness.alike > 0;
+      if (alike && validate::comparable(series, group) == nullptr) continue;
+      const validate::ErrorStatistics& of = alike ? *validate::comparable(series, group) : group.statistics;
       if (of.answered == 0) continue;
       // Where all or no intervals hold the truth the binomial error is that of one more run each way.
       const double n = static_cast<double>(of.answered), p = (of.coverage * n + 1.0) / (n + 2.0);
@@ -103,7 +128,7 @@ std::vector<PlotData> data_of(const std::vector<Series>& all, std::string_view q
                             200.0 * std::sqrt(p * (1.0 - p) / n)});
     }
     if (block.rows.empty()) continue;
-    titles.push_back(series.estimator);
+    titles.push_back(series.estimator + part_of(series));
     data.push_back(std::move(block));
   }
   return data;
@@ -137,7 +162,8 @@ Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::str
   Frame frame;
   frame.data = data_of(all, quantity, frame.titles);
   if (frame.data.empty()) return frame;
-  if (shorten(frame.titles)) frame.note = "; what is named by a rule or h alone are lines of the phase diagram";
+  frame.note = note_of(all, quantity);
+  if (shorten(frame.titles)) frame.note += "; what is named by a rule or h alone are lines of the phase diagram";
   // gnuplot makes the legend's columns as wide as its longest text: some 7.5 points a letter at this size, and its
   // sample.
   std::size_t longest = std::string_view("stated sd (dashed)").size();

@@ -97,6 +97,15 @@ Json statistics_json(const ErrorStatistics& of) {
   return object;
 }
 
+/// Where some runs have no answer: the same over those that are alike at every value.
+void put_alike(Json& object, const validate::Series& series, const validate::GroupStatistics& group) {
+  const validate::Likeness& of = series.likeness;
+  if (of.whole) return;
+  object["combinations"] = of.combinations;
+  object["combinations_alike"] = of.alike;
+  object["alike"] = group.alike ? statistics_json(*group.alike) : Json(nullptr);
+}
+
 }  // namespace
 
 Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
@@ -193,6 +202,7 @@ std::string sweep_json(const SweepSummary& summary) {
         object["quantity"] = series.quantity;
         object["estimator"] = series.estimator;
         object["at"] = group.label;
+        put_alike(object, series, group);
         of_axis["groups"].push_back(std::move(object));
       }
     }

@@ -3,103 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "validate/sweep_design.h"
+#include "validate/sweep_groups.h"
 
 namespace glidelab::validate {
 namespace {
-
-constexpr std::size_t kMostGroups = 40;  // values of an axis that stand for themselves; more are put in bins
-constexpr int kBins = 12;
-
-/// How the rows are put together: an SQL expression of the axis' column.
-struct Grouping {
-  std::string expression = "0";
-  double from = 0.0, to = 0.0;  ///< of the bins
-  bool binned = false, logarithmic = false, words = false;
-};
-
-std::string label_of_word(const std::string& word) {
-  const std::filesystem::path path(word);
-  return path.extension() == ".toml" ? path.stem().string() : word;
-}
-
-Grouping grouping_of(const Axis& axis, Database& database) {
-  using Kind = AxisSource::Kind;
-  Grouping grouping;
-  const std::string column = "r." + sql_name(axis.name);
-  grouping.expression = column;
-  const AxisSource& source = axis.source;
-  grouping.words = source.kind == Kind::list && !std::holds_alternative<double>(source.values.front());
-  if (grouping.words) return grouping;
-  SqlStatement select = database.prepare(
-      fmt::format("SELECT count(DISTINCT {0}), min({0}), max({0}) FROM run r WHERE status = 'done'", column));
-  select.step();
-  grouping.from = select.number(1);
-  grouping.to = select.number(2);
-  const bool ratio =
-      source.kind == Kind::logarithmic || source.kind == Kind::log_uniform || source.kind == Kind::log_normal;
-  grouping.logarithmic = grouping.from > 0.0 && (ratio || grouping.to / grouping.from > 20.0);
-  if (static_cast<std::size_t>(select.integer(0)) <= kMostGroups) return grouping;
-  grouping.binned = true;
-  const std::string place =
-      grouping.logarithmic
-          ? fmt::format("ln({} / {:.17g}) / {:.17g}", column, grouping.from, std::log(grouping.to / grouping.from))
-          : fmt::format("({} - ({:.17g})) / {:.17g}", column, grouping.from, grouping.to - grouping.from);
-  grouping.expression = fmt::format("min({}, CAST({} * ({}) AS INTEGER))", kBins - 1, kBins, place);
-  return grouping;
-}
-
-double middle_of_bin(const Grouping& grouping, double bin) {
-  const double part = (bin + 0.5) / kBins;
-  return grouping.logarithmic ? grouping.from * std::pow(grouping.to / grouping.from, part)
-                              : grouping.from + (grouping.to - grouping.from) * part;
-}
-
-/// The groups come in rising order of the expression. Of all configurations, where none is named.
-std::vector<Series> series_of(Database& database, const Grouping& grouping, std::vector<std::string>& words,
-                              const std::string& configuration = {}) {
-  SqlStatement select = database.prepare(fmt::format(
-      "SELECT s.quantity, s.estimator, {} AS g, count(*), count(s.value), avg(s.value - s.truth), "
-      "avg((s.value - s.truth) * (s.value - s.truth)), avg(s.sd * s.sd), avg(s.least_sd * s.least_sd), "
-      "avg(CASE WHEN s.low95 IS NULL THEN NULL ELSE s.truth >= s.low95 AND s.truth <= s.high95 END) "
-      "FROM result s JOIN run r ON r.run = s.run WHERE s.truth IS NOT NULL AND (?1 = '' OR s.configuration = ?1) "
-      "GROUP BY s.quantity, s.estimator, g ORDER BY s.quantity, s.estimator, g",
-      grouping.expression));
-  select.bind(1, std::string_view(configuration));
-  std::vector<Series> all;
-  while (select.step()) {
-    const std::string quantity = select.text(0), estimator = select.text(1);
-    if (all.empty() || all.back().quantity != quantity || all.back().estimator != estimator) {
-      all.push_back({quantity, estimator, {}});
-    }
-    GroupStatistics group;
-    if (grouping.words) {
-      group.label = label_of_word(select.text(2));
-      auto found = std::find(words.begin(), words.end(), group.label);
-      if (found == words.end()) found = words.insert(words.end(), group.label);
-      group.position = static_cast<double>(found - words.begin());
-    } else {
-      group.position = grouping.binned ? middle_of_bin(grouping, select.number(2)) : select.number(2);
-      group.label = fmt::format("{:.5g}", group.position);
-    }
-    ErrorStatistics& of = group.statistics;
-    of.runs = static_cast<std::uint64_t>(select.integer(3));
-    of.answered = static_cast<std::uint64_t>(select.integer(4));
-    const double count = static_cast<double>(of.answered);
-    of.bias = select.number(5);
-    const double square = select.number(6);
-    of.rms = std::sqrt(square);
-    if (of.answered > 1) of.bias_sd = std::sqrt(std::max(0.0, square - of.bias * of.bias) / (count - 1.0));
-    of.sd = std::sqrt(select.number(7));
-    if (const auto least = select.maybe_number(8)) of.least_sd = std::sqrt(*least);
-    of.coverage = select.number(9);
-    all.back().groups.push_back(std::move(group));
-  }
-  return all;
-}
 
 /// The value below which the given part of a column lies, of `count` rows of one estimator.
 std::optional<double> quantile_of(Database& database, const std::string& rows, const std::string& column,
@@ -141,7 +50,34 @@ std::vector<AccelerationError> accelerations_of(Database& database) {
   return all;
 }
 
+/// Empty where the scenario has one.
+std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Database& database,
+                                                      const ConfigurationCounts& counts) {
+  const Grouping grouping = by_configuration(sweep);
+  std::vector<std::string> names;
+  std::vector<Series> all = series_of(database, grouping, names);
+  if (names.size() < 2) return {};
+  find_alike(sweep, database, grouping, counts, {}, all);
+  std::sort(names.begin(), names.end());
+  std::vector<ConfigurationSummary> configurations;
+  for (const std::string& name : names) {
+    configurations.push_back({name, {}});
+    for (const Series& series : all) {
+      for (const GroupStatistics& group : series.groups) {
+        if (group.label != name) continue;
+        configurations.back().overall.push_back({series.quantity, series.estimator, {group}, series.likeness});
+      }
+    }
+  }
+  return configurations;
+}
+
 }  // namespace
+
+const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group) {
+  if (series.likeness.whole) return &group.statistics;
+  return group.alike ? &*group.alike : nullptr;
+}
 
 SweepSummary summarize(const Sweep& sweep, Database& database) {
   SweepSummary summary;
@@ -159,20 +95,23 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
   summary.cpu_s = timing.number(0);
   std::vector<std::string> no_words;
   summary.overall = series_of(database, {}, no_words);
-  SqlStatement names = database.prepare("SELECT DISTINCT configuration FROM result ORDER BY configuration");
-  while (names.step()) summary.configurations.push_back({names.text(0), {}});
-  if (summary.configurations.size() == 1) summary.configurations.clear();
-  for (ConfigurationSummary& of : summary.configurations) of.overall = series_of(database, {}, no_words, of.name);
+  const ConfigurationCounts with_truth = configurations_of(database);
+  summary.configurations = by_configuration_of(sweep, database, with_truth);
   for (const Axis& axis : sweep.axes) {
-    const Grouping grouping = grouping_of(axis, database);
+    const Grouping grouping = grouping_of(sweep, axis, database);
     AxisSummary of_axis;
     of_axis.name = axis.name;
     of_axis.words = grouping.words;
     of_axis.logarithmic = grouping.logarithmic;
-    of_axis.series = series_of(database, grouping, of_axis.labels);
+    const auto series = [&](const std::string& configuration) {
+      std::vector<Series> all = series_of(database, grouping, of_axis.labels, configuration);
+      find_alike(sweep, database, grouping, with_truth, configuration, all);
+      return all;
+    };
+    of_axis.series = series({});
     if (summary.configurations.size() <= kMostSplit) {
       for (const ConfigurationSummary& of : summary.configurations) {
-        of_axis.of_configurations.push_back(series_of(database, grouping, of_axis.labels, of.name));
+        of_axis.of_configurations.push_back(series(of.name));
       }
     }
     SqlStatement unit = database.prepare("SELECT unit FROM \"schema\" WHERE \"table\" = 'run' AND \"column\" = ?1");

@@ -28,6 +28,16 @@ struct GroupStatistics {
   std::string label;      ///< of the value or the bin, for a table
   double position = 0.0;  ///< on a plot's axis: the value, the middle of the bin, or a number for a word
   ErrorStatistics statistics;
+  /// Over the combinations of all else that are answered in every group (validate/sweep_groups.h); nothing where all
+  /// runs have an answer, and where there are none.
+  std::optional<ErrorStatistics> alike = {};
+};
+
+/// Whether what is in one group is like what is in the others.
+struct Likeness {
+  bool whole = true;               ///< all runs of the sweep have an answer
+  std::uint64_t combinations = 0;  ///< else: of all but the axis (0 where the design has none)
+  std::uint64_t alike = 0;         ///< of these, answered in every group
 };
 
 /// One estimator's answers to one quantity, over all configurations.
@@ -35,7 +45,11 @@ struct Series {
   std::string quantity;
   std::string estimator;
   std::vector<GroupStatistics> groups;
+  Likeness likeness = {};
 };
+
+/// Errors that may be compared from group to group; null where those of unlike runs are all there is.
+const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group);
 
 /// Over the values of one axis, all others mixed. Plots by configuration are readable of this many.
 inline constexpr std::size_t kMostSplit = 4;
@@ -53,7 +67,7 @@ struct AxisSummary {
 /// One configuration of the scenario: the same over its runs alone.
 struct ConfigurationSummary {
   std::string name;
-  std::vector<Series> overall;  ///< each of one group
+  std::vector<Series> overall;  ///< each of one group, with the likeness of the configurations
 };
 
 /// How far from the truth one method's a(t) is: root mean squares over a clip's points that count, clip by clip beside

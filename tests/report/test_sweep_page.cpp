@@ -64,6 +64,34 @@ TEST_CASE("every sweep's page says first who errs least, along which key it chan
   CHECK(report::sweep_meaning(of).empty());
 }
 
+TEST_CASE("where runs have no answer the page compares like runs, or says that it cannot") {
+  validate::SweepSummary of = summary();
+  validate::Series& series = of.axes[0].series[1];
+  series.likeness = {false, 6, 4};
+  for (validate::GroupStatistics& group : series.groups) {
+    group.alike = group.statistics;
+    group.alike->rms = group.position == 50.0 ? 1.5e-4 : 1e-4;
+  }
+  const std::string meaning = report::sweep_meaning(of);
+  CHECK(has(meaning,
+            "along rate_hz (over those 4 of 6 combinations of the other keys and configurations that have an "
+            "answer at each value) is 0.0001 at 200 and 0.00015 at 50, 1.5 times as much"));
+  of.axes[0].of_configurations.clear();
+  std::vector<report::Plot> plots = report::sweep_plots(of.axes[0], "mu");
+  CHECK(plots[0].drawing.data[1].rows[0][1] == 1.5e-4);
+  CHECK(has(plots[0].drawing.script, "'trajectory, 4 of 6'"));
+  CHECK(has(plots[0].caption, "n of m: "));
+  series.likeness = {false, 0, 0};  // with drawn values
+  for (validate::GroupStatistics& group : series.groups) group.alike.reset();
+  const std::string none = report::sweep_meaning(of);
+  CHECK_FALSE(has(none, "times as much"));
+  CHECK(has(none, "Along rate_hz it is not compared: some runs have no answer"));
+  CHECK(has(none, "drawn"));
+  plots = report::sweep_plots(of.axes[0], "mu");
+  CHECK(has(plots[0].drawing.script, "'trajectory, unlike runs'"));
+  CHECK(has(plots[0].caption, "unlike runs: some have no answer"));
+}
+
 TEST_CASE("a sweep of two configurations has a table and an error plot of each, named after its quantity") {
   const validate::SweepSummary of = summary();
   const report::Page page = report::sweep_report(of);
