@@ -50,6 +50,24 @@ std::vector<AccelerationError> accelerations_of(Database& database) {
   return all;
 }
 
+std::vector<std::string> failures_of(Database& database, std::uint64_t failed) {
+  constexpr std::size_t kShown = 5;
+  std::vector<std::string> failures;
+  std::uint64_t kinds = 0, others = failed;
+  SqlStatement reasons =
+      database.prepare("SELECT why, count(*) AS n FROM run WHERE status = 'failed' GROUP BY why ORDER BY n DESC, why");
+  for (; reasons.step(); ++kinds) {
+    if (kinds >= kShown) continue;
+    failures.push_back(fmt::format("{} x {}", reasons.integer(1), reasons.text(0)));
+    others -= static_cast<std::uint64_t>(reasons.integer(1));
+  }
+  if (kinds > kShown) {
+    failures.push_back(fmt::format("and {} more {} ({} {})", kinds - kShown, kinds - kShown == 1 ? "kind" : "kinds",
+                                   others, others == 1 ? "run" : "runs"));
+  }
+  return failures;
+}
+
 /// Empty where the scenario has one.
 std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Database& database,
                                                       const ConfigurationCounts& counts) {
@@ -87,9 +105,7 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
   counts.step();
   summary.runs = static_cast<std::uint64_t>(counts.integer(0));
   summary.failed = static_cast<std::uint64_t>(counts.integer(1));
-  SqlStatement reasons = database.prepare(
-      "SELECT why, count(*) AS n FROM run WHERE status = 'failed' GROUP BY why ORDER BY n DESC, why LIMIT 5");
-  while (reasons.step()) summary.failures.push_back(fmt::format("{} x {}", reasons.integer(1), reasons.text(0)));
+  summary.failures = failures_of(database, summary.failed);
   SqlStatement timing = database.prepare("SELECT total(wall_s) FROM timing");
   timing.step();
   summary.cpu_s = timing.number(0);

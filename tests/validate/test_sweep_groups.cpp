@@ -1,6 +1,7 @@
 /// What may be compared where some runs of a sweep have no answer.
 #include "validate/sweep_groups.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -140,4 +141,24 @@ TEST_CASE("Configurations are compared over the runs in which each has an answer
   CHECK(a.likeness.alike == 6);
   CHECK(validate::comparable(b, b.groups[0])->rms == Approx(2.0 * validate::comparable(a, a.groups[0])->rms));
   CHECK(a.groups[0].statistics.rms > 2.0 * b.groups[0].statistics.rms);  // the hard ones are in it
+}
+
+TEST_CASE("Of more than five kinds of failures the page says how many more there are and of how many runs") {
+  const auto failures = [](std::uint64_t kinds) {
+    const tests::TempDir dir;
+    const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(
+        dir.path(), "replicates = 20", tests::kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [50]\n"));
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    for (std::uint64_t run = 0; run < 20; ++run) {  // kind k: of 2 runs, the last of the rest
+      const std::uint64_t kind = std::min(run / 2, kinds - 1);
+      database.add({run, 0, run, run, {50.0}, true, "reason " + std::to_string(kind), {}, {}}, 0.1);
+    }
+    return validate::summarize(sweep, database.database()).failures;
+  };
+  const std::vector<std::string> eight = failures(8);  // 7 of two runs and one of 6
+  REQUIRE(eight.size() == 6);
+  CHECK(eight[0] == "6 x reason 7");
+  CHECK(eight[5] == "and 3 more kinds (6 runs)");
+  CHECK(failures(6).back() == "and 1 more kind (2 runs)");
+  CHECK(failures(5).size() == 5);
 }
