@@ -80,8 +80,9 @@ void add_require(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "--target", options->targets,
-          "QUANTITY=VALUE (root mean square error), QUANTITY:error95=VALUE (what 95 % of the errors stay within) or "
-          "QUANTITY:bias=VALUE (mean error); quantities are k_over_m_1_s, mu, alpha_deg, v_lim_m_s")
+          "QUANTITY=VALUE or QUANTITY:sd=VALUE (root mean square error), QUANTITY:error95=VALUE (what 95 % of the "
+          "errors stay within) or QUANTITY:bias=VALUE (mean error); quantities are k_over_m_1_s, mu, alpha_deg, "
+          "v_lim_m_s")
       ->type_name("TARGET")
       ->required();
   command

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <memory>
 
 #include "app/commands.h"
@@ -37,17 +38,23 @@ struct SweepOptions {
   bool dry_run = false;
 };
 
-std::string check_shard(const std::string& text) {
-  unsigned long index = 0, count = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lu/%lu%c", &index, &count, &rest) == 2 && index >= 1 && index <= count) return {};
-  return fmt::format("\"{}\" is not a part such as 2/8", text);
+constexpr std::uint64_t kMostShards = 1000000000;
+
+/// "2/8"; nothing of any other text.
+std::optional<validate::Shard> read_shard(const std::string& text) {
+  validate::Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto index = std::from_chars(text.data(), end, shard.index);
+  if (index.ec != std::errc{} || index.ptr == end || *index.ptr != '/') return std::nullopt;
+  const auto count = std::from_chars(index.ptr + 1, end, shard.count);
+  if (count.ec != std::errc{} || count.ptr != end) return std::nullopt;
+  if (shard.index < 1 || shard.index > shard.count || shard.count > kMostShards) return std::nullopt;
+  return shard;
 }
 
-validate::Shard shard_of(const std::string& text) {
-  validate::Shard shard;
-  if (!text.empty()) std::sscanf(text.c_str(), "%lu/%lu", &shard.index, &shard.count);
-  return shard;
+std::string check_shard(const std::string& text) {
+  if (read_shard(text)) return {};
+  return fmt::format("\"{}\" is not a part such as 2/8, of at most {}", text, kMostShards);
 }
 
 std::string duration_text(double seconds) {
@@ -125,8 +132,13 @@ void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const va
   const bool there = fs::exists(out / database_name(shard));
   validate::SweepDatabase database((there ? out : elsewhere.path()) / database_name(shard), sweep, GLIDELAB_VERSION,
                                    shard);
-  fs::path disk = fs::absolute(out);
-  while (!fs::exists(disk) && disk.has_relative_path()) disk = disk.parent_path();
+  fs::path disk = out, made = out;  // the first folder that is there, and what would be made in it
+  for (; !fs::exists(disk) && disk.has_relative_path(); disk = disk.parent_path()) made = disk;
+  if (disk == out) {
+    check_writable(out);
+  } else {
+    check_file_writable(made);
+  }
   say_size(options, validate::estimate_sweep(sweep, database, shard, options.common.jobs, disk, only_interrupts));
 }
 
@@ -178,7 +190,7 @@ void sweep_command(const SweepOptions& options) {
   if (options.common.seed) sweep.seed = *options.common.seed;
   if (options.show) return show_run(sweep, *options.show);
   check_size(options, sweep);
-  const validate::Shard shard = shard_of(options.shard);
+  const validate::Shard shard = read_shard(options.shard).value_or(validate::Shard{});
   if (options.shard.empty()) report::check_gnuplot();
   const fs::path out = output_folder(options.common, "sweep", options.sweep);
   if (options.dry_run) return dry_run(options, sweep, shard, out);
@@ -220,9 +232,12 @@ void add_sweep(CLI::App& app, Command& chosen) {
   command
       ->add_option("--show", options->show,
                    "Print the whole scenario of one run, its camera written in, and do nothing else")
-      ->type_name("RUN");
+      ->type_name("RUN")
+      ->check(check_whole_number)
+      ->excludes("--shard", "--merge");
   command->add_flag("--many-runs", options->many, fmt::format("Allow more than {} runs", kManyRuns));
-  command->add_flag("--dry-run", options->dry_run, "Say how many runs, how long and how much disk, and stop");
+  command->add_flag("--dry-run", options->dry_run, "Say how many runs, how long and how much disk, and stop")
+      ->excludes("--merge", "--show");
   add_common_options(*command, options->common, "glidelab-out/sweep-<name of the sweep file>",
                      "Seed of the sweep; default: the file's");
   command->callback([options, &chosen] { chosen = [options] { sweep_command(*options); }; });

@@ -39,14 +39,6 @@ std::string name_of(const fs::path& input) {
   return (last.extension() == ".toml" ? last.stem() : last.filename()).string();
 }
 
-/// CLI11 takes -1 for the largest unsigned number.
-std::string check_seed(const std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size()) return {};
-  return fmt::format("\"{}\" is not a whole number from 0 to {}", text, std::numeric_limits<std::uint64_t>::max());
-}
-
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options, const std::string& default_out,
@@ -59,7 +51,7 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
         if (text.empty()) return std::string("the name is empty");
         return text.front() == '-' ? fmt::format("found \"{}\", expected the name of a folder", text) : std::string();
       });
-  command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_seed);
+  command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_whole_number);
   command
       .add_option("--jobs", options.jobs,
                   fmt::format("Threads to use; default: the number of cores ({})", options.jobs))
@@ -131,6 +123,13 @@ void check_file_writable(const fs::path& file) {
     base::throw_system_error(file.string(), "cannot be written", fs::exists(folder, error) ? ENOTDIR : ENOENT);
   }
   if (::access(folder.c_str(), W_OK | X_OK) != 0) base::throw_system_error(file.string(), "cannot be written", errno);
+}
+
+std::string check_whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return {};
+  return fmt::format("\"{}\" is not a whole number from 0 to {}", text, std::numeric_limits<std::uint64_t>::max());
 }
 
 std::string check_noise_m(const std::string& text) {

@@ -63,6 +63,9 @@ void check_writable(const std::filesystem::path& folder);
 /// The same of a file that is written beside its final name: its folder is there, and can be written into.
 void check_file_writable(const std::filesystem::path& file);
 
+/// For CLI11, which takes -1 for the largest unsigned number: why the text is none; empty where it is one.
+std::string check_whole_number(const std::string& text);
+
 /// For CLI11: why the text is no finite number of metres above 0 that a position's noise can be; empty where it is one.
 std::string check_noise_m(const std::string& text);
 

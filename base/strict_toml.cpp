@@ -30,6 +30,7 @@ struct TomlTable::Node {
   std::set<std::string, std::less<>> known;
   std::set<std::string, std::less<>> ignored;
   std::map<std::string, std::shared_ptr<Node>, std::less<>> children;
+  std::set<std::string, std::less<>> unread = {};  // keys whose value is not what was asked for
 
   const toml::node* find(std::string_view key) {
     known.emplace(key);
@@ -37,6 +38,7 @@ struct TomlTable::Node {
   }
   /// `at`: what is wrong, or nothing where it is the table itself.
   void reject(std::string_view key, const toml::node* at, std::string found, std::string expected);
+  /// The value cannot be read.
   void reject(std::string_view key, const toml::node* found, std::string expected);
 };
 
@@ -121,6 +123,7 @@ void TomlTable::Node::reject(std::string_view key, const toml::node* at, std::st
                               std::move(expected)});
 }
 void TomlTable::Node::reject(std::string_view key, const toml::node* found, std::string expected) {
+  unread.emplace(key);
   reject(key, found, show(found), std::move(expected));
 }
 
@@ -345,6 +348,7 @@ void TomlTable::ignore(std::string_view key) const {
 }
 
 void TomlTable::reject(std::string_view key, std::string found, std::string expected) const {
+  if (node_->unread.contains(key)) return;
   node_->reject(key, node_->find(key), std::move(found), std::move(expected));
 }
 

@@ -81,7 +81,7 @@ class TomlTable {
   /// Everything below this key is the user's own and is not looked at.
   void ignore(std::string_view key) const;
 
-  /// Records an error of this key that the caller found (a name that is used twice, a range between two keys).
+  /// Records an error that the caller found (a name used twice), unless the key's value could not be read anyway.
   void reject(std::string_view key, std::string found, std::string expected) const;
 
  private:

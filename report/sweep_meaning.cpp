@@ -56,13 +56,13 @@ std::string at_text(const validate::AxisSummary& axis, const GroupStatistics& gr
   return axis.words ? escape(group.label) : number_text(group.position, 3);
 }
 
-/// "over 4 of 6 combinations of the other keys", where not all have an answer.
+/// ", over 4 of 6 combinations of all else": where not all have an answer.
 std::string part_of(const validate::Likeness& of, std::string_view what) {
   if (of.whole || of.alike == of.combinations) return {};
-  return fmt::format(" (over those {} of {} {})", of.alike, of.combinations, what);
+  return fmt::format(", over those {} of {} {}", of.alike, of.combinations, what);
 }
 
-/// "rate is 0.001 1/s at 500 and 0.004 1/s at 31.2, 4 times as much"; empty where one value has answers or none errs.
+/// "0.001 1/s at 500 and 0.004 1/s at 31.2, 4 times as much"; empty where one value has answers or none errs.
 std::string span_of(const validate::AxisSummary& axis, const Series& series) {
   const GroupStatistics *least = nullptr, *most = nullptr;
   const auto rms = [&](const GroupStatistics& of) { return validate::comparable(series, of)->rms; };
@@ -73,11 +73,10 @@ std::string span_of(const validate::AxisSummary& axis, const Series& series) {
     if (most == nullptr || of->rms > rms(*most)) most = &group;
   }
   if (least == most || !(rms(*least) > 0.0)) return {};
-  return fmt::format(
-      "{}{} is {} at {} and {} at {}, {} times as much", escape(axis.name),
-      part_of(series.likeness, "combinations of the other keys and configurations that have an answer at each value"),
-      with_unit(rms(*least), series.quantity), at_text(axis, *least), with_unit(rms(*most), series.quantity),
-      at_text(axis, *most), number_text(rms(*most) / rms(*least), 2));
+  return fmt::format("{} at {} and {} at {}, {} times as much{}", with_unit(rms(*least), series.quantity),
+                     at_text(axis, *least), with_unit(rms(*most), series.quantity), at_text(axis, *most),
+                     number_text(rms(*most) / rms(*least), 2),
+                     part_of(series.likeness, "combinations of all else that have an answer at each value"));
 }
 
 bool answered_at_two(const Series& series) {
@@ -99,75 +98,108 @@ std::string configurations_of(const SweepSummary& summary, const Series& best) {
   return text + part;
 }
 
-/// Of one quantity over the keys and the configurations.
+std::string item(const std::string& text) {
+  return "<li>" + text + "</li>\n";
+}
+
+/// Of one quantity over the keys and the configurations: a list.
 std::string changes_of(const SweepSummary& summary, const Series& best) {
-  std::string text, unlike;
+  std::string list, unlike;
   bool drawn = false;
   for (const validate::AxisSummary& axis : summary.axes) {
     const Series* const series = series_of(axis.series, best);
     if (series == nullptr) continue;
     const std::string span = span_of(axis, *series);
-    if (!span.empty()) text += fmt::format("{}along {}", text.empty() ? "" : "; ", span);
+    if (!span.empty()) list += item(fmt::format("along {}: {}", escape(axis.name), span));
     const validate::Likeness& of = series->likeness;
     if (of.whole || of.alike > 0 || !answered_at_two(*series)) continue;
     unlike += (unlike.empty() ? "" : ", ") + escape(axis.name);
     drawn = of.combinations == 0;
   }
   const std::string configurations = configurations_of(summary, best);
-  if (!configurations.empty()) text += (text.empty() ? "" : "; ") + configurations;
-  if (!text.empty()) text = fmt::format(" The rms error of {} {}.", symbol_of(best.quantity), text);
+  if (!configurations.empty()) list += item(configurations);
   if (!unlike.empty()) {
-    text += fmt::format(" Along {} it is not compared: some runs have no answer, and {}.", unlike,
-                        drawn ? "with drawn values those that have are not alike at two values of a key"
-                              : "no combination of the other keys has one at each value");
+    list += item(fmt::format("along {} it is not compared: some runs have no answer, and {}", unlike,
+                             drawn ? "with drawn values those that have are not alike at two values of a key"
+                                   : "no combination of all else has one at each value"));
   }
-  return text;
+  if (list.empty()) return {};
+  return fmt::format("<p>The rms error of {} by {} is</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
+                     escape(best.estimator), list);
 }
 
+/// What is wrong with a series, as a number: "80" of "80 %".
+struct Listed {
+  const Series* series = nullptr;
+  double number = 0.0;
+};
+
 /// "K/m, µ by trajectory (80 to 88 %)": of each estimator its quantities, of many estimators the first.
-std::string list_of(const std::vector<const Series*>& all) {
+std::string list_of(std::vector<Listed> all, int digits, const char* unit) {
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Listed& x, const Listed& y) { return x.series->estimator < y.series->estimator; });
   std::string text;
   constexpr std::size_t kMost = 4;  // estimators that a paragraph can name
   std::size_t estimators = 0;
   for (std::size_t i = 0; i < all.size();) {
     std::string quantities;
-    double least = 100.0, most = 0.0;
-    const std::string& estimator = all[i]->estimator;
-    for (; i < all.size() && all[i]->estimator == estimator; ++i) {
-      quantities += (quantities.empty() ? "" : ", ") + symbol_of(all[i]->quantity);
-      least = std::min(least, 100.0 * all[i]->groups.front().statistics.coverage);
-      most = std::max(most, all[i]->groups.front().statistics.coverage * 100.0);
+    double least = all[i].number, most = least;
+    const std::string& estimator = all[i].series->estimator;
+    for (; i < all.size() && all[i].series->estimator == estimator; ++i) {
+      quantities += (quantities.empty() ? "" : ", ") + symbol_of(all[i].series->quantity);
+      least = std::min(least, all[i].number);
+      most = std::max(most, all[i].number);
     }
     if (++estimators > kMost) continue;
-    const std::string from = fmt::format("{:.0f}", least), to = fmt::format("{:.0f}", most);
-    text += fmt::format("{}{} by {} ({} %)", text.empty() ? "" : "; ", quantities, escape(estimator),
-                        from == to ? from : fmt::format("{} to {}", from, to));
+    const std::string from = number_text(least, digits), to = number_text(most, digits);
+    text += fmt::format("{}{} by {} ({}{})", text.empty() ? "" : "; ", quantities, escape(estimator),
+                        from == to ? from : fmt::format("{} to {}", from, to), unit);
   }
   if (estimators > kMost) text += fmt::format("; and {} more in the table", estimators - kMost);
   return text;
 }
 
+/// Two lists in a sentence each: of too little and of too much.
+std::string two_lists(const std::string& what, const std::string& little, const std::string& much,
+                      const char* little_is, const char* much_is) {
+  std::string text;
+  if (!little.empty()) text += fmt::format(" {} {}: {}.", what, little_is, little);
+  if (!much.empty()) text += fmt::format("{} {}: {}.", little.empty() ? " " + what : " And", much_is, much);
+  return text;
+}
+
 /// Intervals that hold the truth in another part of the runs than 95 %.
 std::string intervals(const SweepSummary& summary) {
-  std::vector<const Series*> narrow, wide;
+  std::vector<Listed> narrow, wide;
   for (const Series& series : summary.overall) {
     const ErrorStatistics& of = series.groups.front().statistics;
     if (of.answered == 0 || !(of.sd > 0.0)) continue;
     const double se = std::sqrt(0.95 * 0.05 / static_cast<double>(of.answered));
-    if (std::abs(of.coverage - 0.95) > 3.0 * se) (of.coverage < 0.95 ? narrow : wide).push_back(&series);
+    if (std::abs(of.coverage - 0.95) > 3.0 * se) {
+      (of.coverage < 0.95 ? narrow : wide).push_back({&series, 100.0 * of.coverage});
+    }
   }
-  std::string text;
-  for (std::vector<const Series*>* const list : {&narrow, &wide}) {
-    std::stable_sort(list->begin(), list->end(),
-                     [](const Series* x, const Series* y) { return x->estimator < y->estimator; });
+  if (narrow.empty() && wide.empty()) {
+    return " All stated 95 % intervals hold the truth as often as they say, within three standard errors.";
   }
-  if (!narrow.empty()) text += fmt::format(" Intervals of 95 % that hold the truth less often: {}.", list_of(narrow));
-  if (!wide.empty()) {
-    text += fmt::format("{} more often: {}.", narrow.empty() ? " Intervals of 95 % that hold the truth" : " And",
-                        list_of(wide));
+  return two_lists("Intervals of 95 % that hold the truth", list_of(narrow, 2, " %"), list_of(wide, 2, " %"),
+                   "less often", "more often");
+}
+
+/// Stated standard deviations that are far from the errors: a few values that lie far off do not show in coverage.
+std::string stated_sds(const SweepSummary& summary) {
+  std::vector<Listed> small, large;
+  for (const Series& series : summary.overall) {
+    const ErrorStatistics& of = series.groups.front().statistics;
+    if (of.answered == 0 || !(of.sd > 0.0) || !(of.rms > 0.0)) continue;
+    // Two standard errors of the ratio, of normal errors.
+    const double clearly = kAstray * (1.0 + 2.0 / std::sqrt(2.0 * static_cast<double>(of.answered)));
+    if (of.rms > clearly * of.sd) small.push_back({&series, of.rms / of.sd});
+    if (of.sd > clearly * of.rms) large.push_back({&series, of.sd / of.rms});
   }
-  return text.empty() ? " All stated 95 % intervals hold the truth as often as they say, within three standard errors."
-                      : text;
+  return two_lists(fmt::format("Stated standard deviations that are more than {} times", number_text(kAstray, 1)),
+                   list_of(small, 2, " times"), list_of(large, 2, " times"), "smaller than the rms error",
+                   "larger than the rms error");
 }
 
 }  // namespace
@@ -188,8 +220,8 @@ std::string sweep_meaning(const SweepSummary& summary) {
   }
   if (summary.failed > 0) text += fmt::format("{} runs failed and are not in it. ", summary.failed);
   text += "The least rms error over all runs is that of" + who + ".";
-  text += changes_of(summary, *first) + intervals(summary);
-  return "<h2 id=\"meaning\">What this means</h2>\n<p>" + text + "</p>\n";
+  return "<h2 id=\"meaning\">What this means</h2>\n<p>" + text + "</p>\n" + changes_of(summary, *first) + "<p>" +
+         (intervals(summary) + stated_sds(summary)).substr(1) + "</p>\n";
 }
 
 }  // namespace glidelab::report

@@ -71,10 +71,19 @@ std::string acceleration_table(const SweepSummary& summary) {
   }
   HtmlTable table(header, 1);
   const auto ratio = [](const std::optional<double>& value) { return value ? number_text(*value, 3) : "–"; };
-  for (const validate::AccelerationError& of : summary.accelerations) {
-    std::vector<std::string> row = {escape(of.estimator), fmt::format("{}", of.clips), number_text(of.median_m_s2, 3)};
-    if (compared) row.insert(row.end(), {ratio(of.regret), ratio(of.regret90)});
-    table.row(row);
+  const auto add = [&](const std::vector<validate::AccelerationError>& all) {
+    for (const validate::AccelerationError& of : all) {
+      std::vector<std::string> row = {escape(of.estimator), fmt::format("{}", of.clips),
+                                      number_text(of.median_m_s2, 3)};
+      if (compared) row.insert(row.end(), {ratio(of.regret), ratio(of.regret90)});
+      table.row(row);
+    }
+  };
+  add(summary.accelerations);
+  for (const validate::ConfigurationSummary& of : summary.configurations) {
+    if (of.accelerations.empty()) continue;
+    table.heading(escape(of.name));
+    add(of.accelerations);
   }
   return "<h2>Accelerations</h2>\n" + table.str() +
          "<p class=\"soft\">Of each clip's a(t) against the truth, over the points that count. " +
@@ -132,13 +141,14 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
   body += acceleration_table(summary);
   double done = 0.0;
   for (const validate::AxisSummary& axis : summary.axes) {
-    body += fmt::format("<h2>Over {}</h2>\n", escape(axis.name));
+    Html drawn;
     for (const QuantityName& quantity : kQuantities) {
       progress("drawing", done++ / static_cast<double>(summary.axes.size() * kQuantities.size()));
       const std::vector<Plot> plots = sweep_plots(axis, quantity.key, summary.configurations);
       if (plots.empty()) continue;
-      body += fmt::format("<h3>{}</h3>\n", escape(name_of(std::string(quantity.key)))) + figures(plots);
+      drawn += fmt::format("<h3>{}</h3>\n", escape(name_of(std::string(quantity.key)))) + figures(plots);
     }
+    if (!drawn.plots().empty()) body += fmt::format("<h2>Over {}</h2>\n", escape(axis.name)) + drawn;
   }
   return page(summary.name, body);
 }
@@ -182,8 +192,13 @@ std::string sweep_json(const SweepSummary& summary) {
     }
   }
   document["accelerations"] = Json::array();
-  for (const validate::AccelerationError& of : summary.accelerations) {
+  std::vector<validate::AccelerationError> accelerations = summary.accelerations;
+  for (const validate::ConfigurationSummary& of : summary.configurations) {
+    accelerations.insert(accelerations.end(), of.accelerations.begin(), of.accelerations.end());
+  }
+  for (const validate::AccelerationError& of : accelerations) {
     Json object;
+    if (!of.configuration.empty()) object["configuration"] = of.configuration;
     object["estimator"] = of.estimator;
     object["clips"] = of.clips;
     put(object, "median_rms_error_m_s2", of.median_m_s2);

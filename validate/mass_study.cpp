@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "validate/sweep_design.h"
-#include "validate/sweep_scenario.h"
+#include "validate/sweep_groups.h"
 
 namespace glidelab::validate {
 namespace {
@@ -20,18 +20,6 @@ const Axis* axis_of_masses(const Sweep& sweep) {
     if (masses && !axis.source.drawn()) return &axis;
   }
   return nullptr;
-}
-
-/// One after the other, of the first run; no other has other names.
-std::vector<std::string> clips_and_configurations(const Sweep& sweep) {
-  std::vector<std::string> names;
-  const RunScenario first = scenario_with(sweep, values_of(sweep, 0));
-  for (const sim::ConfigurationSetup& configuration : first.scenario.motion.configurations) {
-    for (const sim::MotionSetup& motion : configuration.motions) {
-      names.insert(names.end(), {motion.name, configuration.name});
-    }
-  }
-  return names;
 }
 
 std::string text_of(SqlStatement& rows, int column) {
@@ -90,7 +78,8 @@ MassStudy study_masses(const Sweep& sweep, Database& database) {
   }
   std::string columns;
   for (const Axis* other : others) columns += ", r." + sql_name(other->name);
-  const std::vector<std::string> clips = clips_and_configurations(sweep);
+  const std::vector<std::string> clips = clips_and_configurations(sweep, database);
+  if (clips.empty()) return study;
   std::string marks;
   for (std::size_t i = 0; i < clips.size(); i += 2) {
     marks += fmt::format("{}(?{}, ?{})", i == 0 ? "" : ", ", i + 2, i + 3);

@@ -167,6 +167,14 @@ void read_source(const TomlTable& table, Design design, Axis& axis, const std::f
   }
 }
 
+/// Keys that the form has no use for; asked for, they are not called unknown.
+void refuse_beside(const TomlTable& table, const std::vector<std::string>& keys, const char* form,
+                   const char* expected) {
+  for (const std::string& key : keys) {
+    if (table.has(key)) table.reject(key, fmt::format("a key beside {}", form), expected);
+  }
+}
+
 }  // namespace
 
 Axis read_axis(const TomlTable& table, Design design, const std::filesystem::path& folder) {
@@ -174,11 +182,14 @@ Axis read_axis(const TomlTable& table, Design design, const std::filesystem::pat
   if (table.has("choices")) {
     axis.name = table.text("name");
     axis.line = table.line("choices");
+    refuse_beside(table, {"key", "keys"}, "choices", "none: each choice names its own");
   } else if (table.has("cameras")) {
     axis.line = table.line("cameras");
+    refuse_beside(table, {"key", "keys"}, "cameras", "none: the files are the values");
     axis.name = table.text_or("name", "camera_file");
   } else if (table.has("keys")) {
     axis.line = table.line("keys");
+    refuse_beside(table, {"key"}, "keys", "one of the two");
     axis.keys = table.texts_or_none("keys");
     axis.name = table.text("name");
   } else {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <map>
 #include <set>
 
 #include "base/errors.h"
@@ -125,6 +124,29 @@ void check_identity(Database& database, const std::vector<std::pair<std::string,
   }
 }
 
+/// InputError where a row is of no run of the sweep, or of one that has another seed there.
+void check_runs(Database& database, const Sweep& sweep) {
+  const std::uint64_t count = run_count(sweep);
+  const auto refuse = [&](std::int64_t run, const std::string& found, const std::string& expected) {
+    throw base::InputError(base::Issue{database.file().string(), 0, fmt::format("run {}", run), found, expected});
+  };
+  SqlStatement runs = database.prepare("SELECT run, seed FROM run");
+  while (runs.step()) {
+    const std::int64_t run = runs.integer(0);
+    if (run < 0 || static_cast<std::uint64_t>(run) >= count) {
+      refuse(run, "no run of this sweep", fmt::format("the runs 0 to {}", count - 1));
+    }
+    const std::uint64_t seed = seed_of(sweep, static_cast<std::uint64_t>(run));
+    if (static_cast<std::uint64_t>(runs.integer(1)) == seed) continue;
+    refuse(run, fmt::format("the seed {}", runs.integer(1)), fmt::format("{}, which is that of this run", seed));
+  }
+  for (const char* const table : {"result", "clip", "timing"}) {
+    SqlStatement stray =
+        database.prepare(fmt::format("SELECT run FROM {} WHERE run NOT IN (SELECT run FROM run) LIMIT 1", table));
+    if (stray.step()) refuse(stray.integer(0), fmt::format("rows in {} alone", table), "a row in run as well");
+  }
+}
+
 /// Its first column is the run.
 struct TableOfRuns {
   const char* name;
@@ -162,6 +184,11 @@ class RowsOfRun {
   std::vector<SqlStatement> select_;
 };
 
+bool has_run(const fs::path& file, std::int64_t run) {
+  Database database(file, Database::Mode::read);
+  return database.prepare("SELECT 1 FROM run WHERE run = ?1").bind(1, run).step();
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> sweep_entries(Database& database) {
@@ -190,10 +217,7 @@ WriterLock::~WriterLock() {
 }
 
 SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std::string& version, const Shard& shard)
-    : lock_(file),
-      database_(file, Database::Mode::create),
-      identity_(identity_of(sweep, version)),
-      axes_(sweep.axes.size()) {
+    : lock_(file), database_(file, Database::Mode::create), identity_(identity_of(sweep, version)), sweep_(sweep) {
   SqlStatement any = database_.prepare("SELECT count(*) FROM sqlite_master");
   any.step();
   const bool empty = any.integer(0) == 0;
@@ -217,7 +241,7 @@ SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std
   }
   database_.run("PRAGMA synchronous = NORMAL");  // a killed process loses nothing; a power cut at most the last runs
   std::string marks;
-  for (std::size_t i = 0; i < axes_; ++i) marks += fmt::format(", ?{}", 7 + i);
+  for (std::size_t i = 0; i < sweep_.axes.size(); ++i) marks += fmt::format(", ?{}", 7 + i);
   add_run_ = database_.prepare(fmt::format("INSERT INTO run VALUES (?1, ?2, ?3, ?4, ?5, ?6{})", marks));
   add_result_ = database_.prepare("INSERT INTO result VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)");
   add_clip_ = database_.prepare("INSERT INTO clip VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)");
@@ -286,10 +310,11 @@ void SweepDatabase::take(const std::vector<fs::path>& others) {
     std::vector<std::pair<std::string, std::string>> expected = identity_;
     expected.pop_back();  // of any shard
     check_identity(there, expected);
+    check_runs(there, sweep_);
   }
   Transaction transaction(database_);
-  const std::vector<TableOfRuns> tables = {{"run", 6 + static_cast<int>(axes_)}, {"result", 12}, {"clip", 10}};
-  std::map<std::int64_t, std::size_t> from;  // which of the others a run was taken of; not in it: it was here before
+  const std::vector<TableOfRuns> tables = {
+      {"run", 6 + static_cast<int>(sweep_.axes.size())}, {"result", 12}, {"clip", 10}};
   for (std::size_t which = 0; which < others.size(); ++which) {
     Database there(others[which], Database::Mode::read);
     RowsOfRun here_rows(database_, tables), there_rows(there, tables);
@@ -300,13 +325,12 @@ void SweepDatabase::take(const std::vector<fs::path>& others) {
       const std::int64_t run = runs.integer(0);
       const bool twice = known.bind(1, run).step();
       known.reset();
-      if (!twice) {
-        from.emplace(run, which);
-        continue;
-      }
+      if (!twice) continue;
       if (!here_rows.same(run, there_rows)) {
-        const auto first = from.find(run);
-        const fs::path& has = first == from.end() ? database_.file() : others[first->second];
+        const auto before = others.begin() + static_cast<std::ptrdiff_t>(which);
+        const auto first =
+            std::find_if(others.begin(), before, [&](const fs::path& other) { return has_run(other, run); });
+        const fs::path& has = first == before ? database_.file() : *first;
         throw base::InputError(base::Issue{others[which].string(), 0, fmt::format("run {}", run),
                                            fmt::format("other results than {} has of it", has.string()),
                                            "the same; leave one of the two out, or give another --out"});

@@ -56,7 +56,8 @@ class SweepDatabase {
 
   /// Takes over all runs of other databases of the same sweep and version (any shard), all of them or none (one
   /// transaction); a run that several have with the same rows (but its time) once. InputError for a file that is not
-  /// there, is damaged, is another sweep's, or has other rows of a run, with the file that has the others.
+  /// there, is damaged, is another sweep's, has rows of a run that the sweep has not or that is not in it with its
+  /// seed, or has other rows of a run than another file, which is named.
   void take(const std::vector<std::filesystem::path>& others);
 
   Database& database() { return database_; }
@@ -65,7 +66,7 @@ class SweepDatabase {
   WriterLock lock_;
   Database database_;
   std::vector<std::pair<std::string, std::string>> identity_;
-  std::size_t axes_;
+  Sweep sweep_;
   std::optional<SqlStatement> add_run_, add_result_, add_clip_, add_timing_;
 };
 

@@ -21,6 +21,12 @@ namespace {
 using base::TomlTable;
 
 void read_analyses(const TomlTable& root, Sweep& sweep) {
+  std::set<std::string> seen;
+  const auto add = [&](const std::string& key, Analysis analysis) {
+    const std::string name = analysis.name();
+    if (!seen.insert(name).second) root.reject(key, fmt::format("\"{}\" twice", name), "each one once");
+    sweep.analyses.push_back(std::move(analysis));
+  };
   std::vector<std::string> names = {"phase-diagram", "trajectory"};
   if (root.has("estimators")) names = root.texts_or_none("estimators");
   for (const std::string& name : names) {
@@ -28,13 +34,13 @@ void read_analyses(const TomlTable& root, Sweep& sweep) {
       root.reject("estimators", fmt::format("\"{}\"", name),
                   "\"phase-diagram\", \"phase-diagram-gls\", \"trajectory\"");
     }
-    sweep.analyses.push_back({name, std::nullopt, {}});
+    add("estimators", {name, std::nullopt, {}});
   }
   if (const auto given = root.maybe_numbers("bandwidths_s", 0, base::above(0.0))) {
-    for (const double bandwidth_s : *given) sweep.analyses.push_back({"phase-diagram", bandwidth_s, {}});
+    for (const double bandwidth_s : *given) add("bandwidths_s", {"phase-diagram", bandwidth_s, {}});
   }
   if (const auto given = root.maybe_numbers("all_points_bandwidths_s", 0, base::above(0.0))) {
-    for (const double bandwidth_s : *given) sweep.analyses.push_back({"all-points", bandwidth_s, {}});
+    for (const double bandwidth_s : *given) add("all_points_bandwidths_s", {"all-points", bandwidth_s, {}});
   }
   for (const std::string& rule : root.texts_or_none("bandwidth_rules")) {
     std::vector<std::string> known = core::bandwidth_rule_names();
@@ -42,11 +48,7 @@ void read_analyses(const TomlTable& root, Sweep& sweep) {
     if (std::find(known.begin(), known.end(), rule) == known.end()) {
       root.reject("bandwidth_rules", fmt::format("\"{}\"", rule), fmt::format("some of {}", fmt::join(known, ", ")));
     }
-    sweep.analyses.push_back({"phase-diagram", std::nullopt, rule});
-  }
-  std::set<std::string> seen;
-  for (const Analysis& analysis : sweep.analyses) {
-    if (!seen.insert(analysis.name()).second) root.reject("estimators", analysis.name() + " twice", "each one once");
+    add("bandwidth_rules", {"phase-diagram", std::nullopt, rule});
   }
   if (sweep.analyses.empty()) root.reject("estimators", "an empty list", "one or more");
 }

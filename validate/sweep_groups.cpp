@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "validate/sweep_design.h"
+#include "validate/sweep_scenario.h"
 
 namespace glidelab::validate {
 namespace {
@@ -72,7 +73,8 @@ GroupStatistics group_at(const Grouping& grouping, const SqlStatement& row, int 
                          std::vector<std::string>& words) {
   GroupStatistics group;
   if (grouping.words) {
-    group.label = grouping.of_runs ? row.text(column) : label_of_word(row.text(column));
+    const std::string word = row.text(column);
+    group.label = grouping.of_runs ? word : grouping.switched ? (word == "1" ? "true" : "false") : label_of_word(word);
     auto found = std::find(words.begin(), words.end(), group.label);
     if (found == words.end()) found = words.insert(words.end(), group.label);
     group.position = static_cast<double>(found - words.begin());
@@ -203,6 +205,7 @@ Grouping grouping_of(const Sweep& sweep, const Axis& axis, Database& database) {
   set_combination(sweep, axis, grouping);
   const AxisSource& source = axis.source;
   grouping.words = source.kind == Kind::list && !std::holds_alternative<double>(source.values.front());
+  grouping.switched = source.kind == Kind::list && std::holds_alternative<bool>(source.values.front());
   if (grouping.words) return grouping;
   SqlStatement select = database.prepare(
       fmt::format("SELECT count(DISTINCT {0}), min({0}), max({0}) FROM run r WHERE status = 'done'", column));
@@ -257,6 +260,19 @@ ConfigurationCounts configurations_of(Database& database) {
       "SELECT quantity, estimator, count(DISTINCT configuration) FROM result WHERE truth IS NOT NULL GROUP BY 1, 2");
   while (select.step()) counts[{select.text(0), select.text(1)}] = static_cast<std::uint64_t>(select.integer(2));
   return counts;
+}
+
+std::vector<std::string> clips_and_configurations(const Sweep& sweep, Database& database) {
+  std::vector<std::string> names;
+  SqlStatement first = database.prepare("SELECT min(run) FROM run WHERE status = 'done'");
+  if (!first.step() || first.is_null(0)) return names;
+  const RunScenario run = scenario_with(sweep, values_of(sweep, static_cast<std::uint64_t>(first.integer(0))));
+  for (const sim::ConfigurationSetup& configuration : run.scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      names.insert(names.end(), {motion.name, configuration.name});
+    }
+  }
+  return names;
 }
 
 void find_alike(const Sweep& sweep, Database& database, const Grouping& grouping, const ConfigurationCounts& counts,

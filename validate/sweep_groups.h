@@ -27,6 +27,7 @@ struct Grouping {
   std::string expression = "0";
   double from = 0.0, to = 0.0;  ///< of the bins
   bool binned = false, logarithmic = false, words = false;
+  bool switched = false;  ///< the words are false and true
   /// Two SQL expressions, of what has to be answered in every group to be compared; empty where the design has no such.
   std::string combination = {};
   std::uint64_t combinations = 0;  ///< how many there are, of one configuration
@@ -50,5 +51,9 @@ ConfigurationCounts configurations_of(Database& database);
 /// Sets `likeness` of each series that series_of() gave with the same arguments, and `alike` of its groups.
 void find_alike(const Sweep& sweep, Database& database, const Grouping& grouping, const ConfigurationCounts& counts,
                 const std::string& configuration, std::vector<Series>& all);
+
+/// Clip and configuration, one after the other, by their names in the first run that did not fail; no other run has
+/// other names. Empty where there is none.
+std::vector<std::string> clips_and_configurations(const Sweep& sweep, Database& database);
 
 }  // namespace glidelab::validate

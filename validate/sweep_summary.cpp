@@ -20,27 +20,38 @@ std::optional<double> quantile_of(Database& database, const std::string& rows, c
   return select.maybe_number(0);
 }
 
-std::vector<AccelerationError> accelerations_of(Database& database) {
+/// Of the clips of one configuration, or of all where none is named. `names` as clips_and_configurations() has them.
+std::vector<AccelerationError> accelerations_of(Database& database, const std::vector<std::string>& names,
+                                                const std::string& configuration) {
+  std::string counted = "c.estimator = ?1 AND c.a_rms_error_m_s2 IS NOT NULL";
+  if (!configuration.empty()) {
+    std::string clips;  // their names have no apostrophes
+    for (std::size_t i = 0; i + 1 < names.size(); i += 2) {
+      if (names[i + 1] == configuration) clips += fmt::format("{}'{}'", clips.empty() ? "" : ", ", names[i]);
+    }
+    counted += " AND c.clip IN (" + clips + ")";
+  }
   const std::string best = Analysis{"phase-diagram", std::nullopt, kBestPossible}.name();
-  const std::string alone = "FROM clip c WHERE c.estimator = ?1 AND c.a_rms_error_m_s2 IS NOT NULL";
+  const std::string alone = "FROM clip c WHERE " + counted;
   const std::string beside = fmt::format(
       "FROM clip c JOIN clip b ON b.run = c.run AND b.clip = c.clip AND b.estimator = '{}' "
-      "WHERE c.estimator = ?1 AND c.a_rms_error_m_s2 IS NOT NULL AND b.a_rms_error_m_s2 > 0",
-      best);
+      "WHERE {} AND b.a_rms_error_m_s2 > 0",
+      best, counted);
   const auto rows_of = [&](const std::string& rows, const std::string& estimator) {
     SqlStatement count = database.prepare("SELECT count(*) " + rows);
     count.bind(1, std::string_view(estimator)).step();
     return static_cast<std::uint64_t>(count.integer(0));
   };
   std::vector<AccelerationError> all;
-  SqlStatement names = database.prepare("SELECT DISTINCT estimator FROM clip ORDER BY estimator");
-  while (names.step()) {
+  SqlStatement estimators = database.prepare("SELECT DISTINCT estimator FROM clip ORDER BY estimator");
+  while (estimators.step()) {
     AccelerationError of;
-    of.estimator = names.text(0);
+    of.configuration = configuration;
+    of.estimator = estimators.text(0);
     of.clips = rows_of(alone, of.estimator);
-    if (const auto median = quantile_of(database, alone, "c.a_rms_error_m_s2", of.estimator, of.clips, 0.5)) {
-      of.median_m_s2 = *median;
-    }
+    const auto median = quantile_of(database, alone, "c.a_rms_error_m_s2", of.estimator, of.clips, 0.5);
+    if (!median) continue;  // it has no a(t)
+    of.median_m_s2 = *median;
     const std::uint64_t pairs = rows_of(beside, of.estimator);
     const char* const ratio = "c.a_rms_error_m_s2 / b.a_rms_error_m_s2";
     of.regret = quantile_of(database, beside, ratio, of.estimator, pairs, 0.5);
@@ -50,7 +61,8 @@ std::vector<AccelerationError> accelerations_of(Database& database) {
   return all;
 }
 
-std::vector<std::string> failures_of(Database& database, std::uint64_t failed) {
+/// "6 runs with camera.frame_rate_hz = 120: …": what is wrong with a scenario names it at first.
+std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
   constexpr std::size_t kShown = 5;
   std::vector<std::string> failures;
   std::uint64_t kinds = 0, others = failed;
@@ -58,7 +70,11 @@ std::vector<std::string> failures_of(Database& database, std::uint64_t failed) {
       database.prepare("SELECT why, count(*) AS n FROM run WHERE status = 'failed' GROUP BY why ORDER BY n DESC, why");
   for (; reasons.step(); ++kinds) {
     if (kinds >= kShown) continue;
-    failures.push_back(fmt::format("{} x {}", reasons.integer(1), reasons.text(0)));
+    const std::string why = reasons.text(0), file = sweep.scenario_file.string() + " with ";
+    const char* const runs = reasons.integer(1) == 1 ? "run" : "runs";
+    failures.push_back(why.starts_with(file)
+                           ? fmt::format("{} {} with {}", reasons.integer(1), runs, why.substr(file.size()))
+                           : fmt::format("{} {}: {}", reasons.integer(1), runs, why));
     others -= static_cast<std::uint64_t>(reasons.integer(1));
   }
   if (kinds > kShown) {
@@ -105,7 +121,7 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
   counts.step();
   summary.runs = static_cast<std::uint64_t>(counts.integer(0));
   summary.failed = static_cast<std::uint64_t>(counts.integer(1));
-  summary.failures = failures_of(database, summary.failed);
+  summary.failures = failures_of(sweep, database, summary.failed);
   SqlStatement timing = database.prepare("SELECT total(wall_s) FROM timing");
   timing.step();
   summary.cpu_s = timing.number(0);
@@ -135,7 +151,11 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
     if (unit.step()) of_axis.unit = unit.text(0);
     summary.axes.push_back(std::move(of_axis));
   }
-  summary.accelerations = accelerations_of(database);
+  const std::vector<std::string> clips = clips_and_configurations(sweep, database);
+  summary.accelerations = accelerations_of(database, clips, {});
+  for (ConfigurationSummary& of : summary.configurations) {
+    of.accelerations = accelerations_of(database, clips, of.name);
+  }
   summary.masses = study_masses(sweep, database);
   return summary;
 }

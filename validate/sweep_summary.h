@@ -64,19 +64,21 @@ struct AxisSummary {
   std::vector<std::vector<Series>> of_configurations = {};
 };
 
-/// One configuration of the scenario: the same over its runs alone.
-struct ConfigurationSummary {
-  std::string name;
-  std::vector<Series> overall;  ///< each of one group, with the likeness of the configurations
-};
-
 /// How far from the truth one method's a(t) is: root mean squares over a clip's points that count, clip by clip beside
 /// the best possible bandwidth's on the same clip.
 struct AccelerationError {
+  std::string configuration;  ///< empty: of all
   std::string estimator;
   std::uint64_t clips = 0;
   double median_m_s2 = 0.0;
   std::optional<double> regret, regret90;  ///< error over the best possible one: median, and what 90 % stay below
+};
+
+/// One configuration of the scenario: the same over its runs alone.
+struct ConfigurationSummary {
+  std::string name;
+  std::vector<Series> overall;  ///< each of one group, with the likeness of the configurations
+  std::vector<AccelerationError> accelerations = {};
 };
 
 struct SweepSummary {

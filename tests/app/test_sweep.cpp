@@ -127,8 +127,41 @@ TEST_CASE("What a sweep refuses is one clear message with the right status") {
     CHECK(result.status == 1);
     CHECK(result.err.find("sweep.sqlite") != std::string::npos);
   }
-  SECTION("a part that there is not") {
-    CHECK(tests::glidelab({"sweep", sweep, "-o", out, "--shard", "3/2"}).status == 2);
+  SECTION("a part that there is not, or no number of parts") {
+    for (const char* part : {"3/2", "0/2", "-1/2", "1/-1", "+1/2", " 1/2", "1/2 ", "1/2/3", "1",
+                             "1/99999999999999999999", "99999999999999999999/99999999999999999999", "1/1000000001"}) {
+      const tests::ProcessResult result = tests::glidelab({"sweep", sweep, "-o", out, "--shard", part});
+      INFO(part << ": " << result.err);
+      CHECK(result.status == 2);
+      CHECK(result.err.find(fmt::format("--shard: \"{}\" is not a part such as 2/8", part)) != std::string::npos);
+    }
+    CHECK_FALSE(fs::exists(out));
+  }
+  SECTION("a run of no such number") {
+    for (const char* run : {"-1", "1.5", "x", "99999999999999999999"}) {
+      const tests::ProcessResult result = tests::glidelab({"sweep", sweep, "--show", run});
+      INFO(result.err);
+      CHECK(result.status == 2);
+      CHECK(result.err.find(fmt::format("--show: \"{}\" is not a whole number", run)) != std::string::npos);
+    }
+    CHECK(tests::glidelab({"sweep", sweep, "--show", "6"}).err.find("one of the runs 0 to 5") != std::string::npos);
+  }
+  SECTION("two options that do other things") {
+    for (const std::vector<std::string>& other : {std::vector<std::string>{"--merge", "a.sqlite"}, {"--show", "1"}}) {
+      std::vector<std::string> arguments = {"sweep", sweep, "-o", out, "--dry-run"};
+      arguments.insert(arguments.end(), other.begin(), other.end());
+      const tests::ProcessResult result = tests::glidelab(arguments);
+      CHECK(result.status == 2);
+      CHECK(result.err.find("excludes") != std::string::npos);
+    }
+  }
+  SECTION("a place where nothing can be written, before it says how long it would take") {
+    const tests::ProcessResult result =
+        tests::glidelab({"sweep", sweep, "-o", dir / "sweep.toml" / "out", "--dry-run"});
+    INFO(result.err);
+    CHECK(result.status == 3);
+    CHECK(result.err.find("sweep.toml/out: cannot be written") != std::string::npos);
+    CHECK(result.err.find(" runs") == std::string::npos);
   }
   SECTION("two processes on one database") {
     const std::string long_one = tests::write_sweep(dir.path(), "replicates = 10000", tests::kTwoKeys);

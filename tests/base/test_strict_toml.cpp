@@ -34,6 +34,22 @@ TEST_CASE("a file whose keys were all read passes and gives its values") {
   CHECK(message_of(file).empty());
 }
 
+TEST_CASE("a value that cannot be read is one error, whatever the caller finds wrong with what stands for it") {
+  const TomlFile file = TomlFile::parse("a = [0.0, 0.0]\nb = 3\nc = [1.0, 1.0]\n", "t.toml");
+  file.root().numbers("a", 0, above(0.0));
+  file.root().reject("a", "nan twice", "each one once");
+  file.root().texts_or_none("b");
+  file.root().reject("b", "an empty list", "one or more");
+  file.root().numbers("c", 0);
+  file.root().reject("c", "1 twice", "each one once");
+  const std::string message = message_of(file);
+  CHECK(contains(message, "t.toml:1: a: found 0, expected an array of numbers"));
+  CHECK(contains(message, "t.toml:2: b: found 3, expected an array of texts"));
+  CHECK(contains(message, "t.toml:3: c: found 1 twice"));
+  CHECK_FALSE(contains(message, "nan"));
+  CHECK_FALSE(contains(message, "empty"));
+}
+
 TEST_CASE("an unknown key is named with its line and the nearest known key") {
   const TomlFile file = TomlFile::parse("[camera]\nframe_rate_hz = 200\nexposure_ms = 1\n", "t.toml");
   file.root().table("camera").number("frame_rate_hz");

@@ -55,7 +55,7 @@ TEST_CASE("every sweep's page says first who errs least, along which key it chan
   validate::SweepSummary of = summary();
   const std::string meaning = report::sweep_meaning(of);
   CHECK(has(meaning, "least rms error over all runs is that of trajectory in µ (0.0001)"));
-  CHECK(has(meaning, "along rate_hz is 0.0001 at 200 and 0.0002 at 50, 2 times as much"));
+  CHECK(has(meaning, "<li>along rate_hz: 0.0001 at 200 and 0.0002 at 50, 2 times as much</li>"));
   CHECK(has(meaning, "turning: 0.00008; straight: 0.00016"));
   CHECK(has(meaning, "as often as they say"));
   of.overall[0].groups[0].statistics.coverage = 0.9;  // 4.6 binomial standard errors of 400
@@ -74,22 +74,66 @@ TEST_CASE("where runs have no answer the page compares like runs, or says that i
   }
   const std::string meaning = report::sweep_meaning(of);
   CHECK(has(meaning,
-            "along rate_hz (over those 4 of 6 combinations of the other keys and configurations that have an "
-            "answer at each value) is 0.0001 at 200 and 0.00015 at 50, 1.5 times as much"));
+            "along rate_hz: 0.0001 at 200 and 0.00015 at 50, 1.5 times as much, over those 4 of 6 "
+            "combinations of all else that have an answer at each value"));
   of.axes[0].of_configurations.clear();
   std::vector<report::Plot> plots = report::sweep_plots(of.axes[0], "mu");
   CHECK(plots[0].drawing.data[1].rows[0][1] == 1.5e-4);
   CHECK(has(plots[0].drawing.script, "'trajectory, 4 of 6'"));
-  CHECK(has(plots[0].caption, "n of m: "));
+  CHECK(has(plots[0].caption, "n of m: over those combinations of all else that have an answer at every value"));
   series.likeness = {false, 0, 0};  // with drawn values
   for (validate::GroupStatistics& group : series.groups) group.alike.reset();
   const std::string none = report::sweep_meaning(of);
   CHECK_FALSE(has(none, "times as much"));
-  CHECK(has(none, "Along rate_hz it is not compared: some runs have no answer"));
+  CHECK(has(none, "along rate_hz it is not compared: some runs have no answer"));
   CHECK(has(none, "drawn"));
   plots = report::sweep_plots(of.axes[0], "mu");
   CHECK(has(plots[0].drawing.script, "'trajectory, unlike runs'"));
   CHECK(has(plots[0].caption, "unlike runs: some have no answer"));
+}
+
+TEST_CASE("a stated sd that is far from the rms error is named with its factor, where chance does not do that") {
+  validate::SweepSummary of = summary();
+  CHECK_FALSE(has(report::sweep_meaning(of), "Stated standard deviations"));
+  validate::ErrorStatistics& lines = of.overall[0].groups[0].statistics;
+  validate::ErrorStatistics& fit = of.overall[1].groups[0].statistics;
+  lines.sd = lines.rms / 3.0;
+  fit.sd = 2.5 * fit.rms;
+  const std::string meaning = report::sweep_meaning(of);
+  CHECK(has(meaning, "more than 2 times smaller than the rms error: µ by phase-diagram (3 times)."));
+  CHECK(has(meaning, "And larger than the rms error: µ by trajectory (2.5 times)."));
+  fit.sd = 1.9 * fit.rms;
+  lines.runs = lines.answered = 6;  // of which the rms error is known to 29 % (one standard error)
+  CHECK_FALSE(has(report::sweep_meaning(of), "Stated standard deviations"));
+}
+
+TEST_CASE("over a key with one value there is no plot and no heading") {
+  validate::SweepSummary of = summary();
+  CHECK(has(report::sweep_report(of).html, "Over rate_hz"));
+  const auto keep_one = [](std::vector<validate::Series>& all) {
+    for (validate::Series& series : all) series.groups.resize(1);
+  };
+  keep_one(of.axes[0].series);
+  for (std::vector<validate::Series>& all : of.axes[0].of_configurations) keep_one(all);
+  CHECK(report::sweep_plots(of.axes[0], "mu", of.configurations).empty());
+  CHECK_FALSE(has(report::sweep_report(of).html, "Over rate_hz"));
+}
+
+TEST_CASE("bars of several estimators at one value stand side by side, and coverage within its axis") {
+  validate::SweepSummary of = summary();
+  of.axes[0].of_configurations.clear();
+  for (validate::Series& series : of.axes[0].series) {
+    for (validate::GroupStatistics& group : series.groups) group.statistics.coverage = 1.0;
+  }
+  const report::Plot plot = report::sweep_plots(of.axes[0], "mu").back();
+  REQUIRE(plot.description == "Coverage of µ over rate_hz");
+  const std::vector<double>&a = plot.drawing.data[0].rows[0], &b = plot.drawing.data[1].rows[0];
+  CHECK(a[0] == b[0]);
+  CHECK(a.back() < 50.0);
+  CHECK(b.back() > 50.0);
+  // Wilson's interval of 400 out of 400: from 1 / (1 + 1.96^2 / 400) to 1.
+  CHECK(std::abs(a[7] - 100.0 / (1.0 + 1.96 * 1.96 / 400.0)) < 1e-9);
+  CHECK(std::abs(a[8] - 100.0) < 1e-9);
 }
 
 TEST_CASE("a sweep of two configurations has a table and an error plot of each, named after its quantity") {

@@ -177,6 +177,13 @@ TEST_CASE("What is wrong with a sweep is said before the first run, by its key")
                                                   "[[vary]]\nkey = \"camera.exposure_s\"\nvalues = [0.001]\n"),
              Contains("twice"));
   CHECK_THAT(tests::refusal_of_sweep("colour = 3", kNoise), Contains("colour"));
+  CHECK_THAT(tests::refusal_of_sweep("bandwidths_s = [0.02, 0.02]", kNoise),
+             Contains("sweep.toml:4: bandwidths_s: found \"phase-diagram h=0.02 s\" twice"));
+  const std::string none = tests::refusal_of_sweep("bandwidths_s = [0.0, 0.0]", kNoise);
+  CHECK_THAT(none, Contains("bandwidths_s: found 0, expected") && !Contains("nan"));
+  CHECK_THAT(tests::refusal_of_sweep("", kNoise + "[[vary]]\nname = \"x\"\nkey = \"camera.frame_rate_hz\"\n"
+                                                  "choices = [{ \"camera.frame_rate_hz\" = 60 }]\n"),
+             Contains("sweep.toml:9: vary[1].key: found a key beside choices, expected none: each choice names"));
 }
 
 TEST_CASE("Names that the database would take for one column are refused, whatever their capitals") {
@@ -393,4 +400,39 @@ TEST_CASE("Rendered clips are swept like tracks, lossless ones in memory and los
   }
   REQUIRE(errors.size() == 2);
   CHECK(errors[0] != errors[1]);  // the codec did something
+}
+
+TEST_CASE("A part whose runs are not those of the sweep by number or seed is refused whole") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", tests::kTwoKeys));
+  const auto refusal = [&](const std::string& change) {
+    std::filesystem::remove(dir / "part.sqlite");
+    {
+      validate::SweepDatabase part(dir / "part.sqlite", sweep, "1", {1, 2});
+      validate::run_sweep(sweep, part, {1, 2}, 1);
+      part.database().run(change);
+    }
+    validate::SweepDatabase whole(dir / "whole.sqlite", sweep, "1", {});
+    std::string said = "taken";
+    try {
+      whole.take({dir / "part.sqlite"});
+    } catch (const base::InputError& error) {
+      said = error.what();
+      CHECK(whole.runs() == 0);
+    }
+    return said;
+  };
+  const std::string all_tables =
+      "; UPDATE result SET run = run + %; UPDATE clip SET run = run + %; "
+      "UPDATE timing SET run = run + %";
+  const auto moved = [&](const std::string& by) {
+    std::string sql = "UPDATE run SET run = run + %" + all_tables;
+    for (std::size_t at = sql.find('%'); at != std::string::npos; at = sql.find('%')) sql.replace(at, 1, by);
+    return sql;
+  };
+  CHECK_THAT(refusal(moved("1000")),
+             Contains("part.sqlite: run 1000: found no run of this sweep, expected the runs 0 to 5"));
+  CHECK_THAT(refusal(moved("1")), Contains("part.sqlite: run 1: found the seed"));  // there is such a run
+  CHECK_THAT(refusal("UPDATE clip SET run = run + 1000 WHERE run = 2"), Contains("run 1002: found rows in clip alone"));
+  CHECK(refusal("SELECT 1") == "taken");
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 
+#include "base/staged_output.h"
 #include "catch.h"
 #include "temp_dir.h"
 #include "validate/small_sweep.h"
@@ -157,8 +158,41 @@ TEST_CASE("Of more than five kinds of failures the page says how many more there
   };
   const std::vector<std::string> eight = failures(8);  // 7 of two runs and one of 6
   REQUIRE(eight.size() == 6);
-  CHECK(eight[0] == "6 x reason 7");
+  CHECK(eight[0] == "6 runs: reason 7");
   CHECK(eight[5] == "and 3 more kinds (6 runs)");
   CHECK(failures(6).back() == "and 1 more kind (2 runs)");
   CHECK(failures(5).size() == 5);
+}
+
+TEST_CASE("The error of a(t) beside the best possible one is given of each configuration apart") {
+  const tests::TempDir dir;
+  tests::write_sweep(dir.path(), "replicates = 3",
+                     tests::kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [50]\n");
+  std::string second = tests::one_glider(0.0, 2.768, 0.0071, {{"level", 0.2, -1.2, 1.2}});
+  second.replace(second.find("name = \"m1\""), 11, "name = \"m2\"");
+  base::write_file(dir / "scenario.toml", tests::kSweptScenario + second);
+  const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  for (std::uint64_t run = 0; run < 3; ++run) {  // the first one failed
+    validate::RunRecord record{run, 0, run, validate::seed_of(sweep, run), {50.0}, run == 0, "first", {}, {}};
+    for (const std::string clip : {"up", "level"}) {
+      for (const std::string estimator : {"phase-diagram", "phase-diagram best-possible"}) {
+        const double factor = estimator == "phase-diagram" ? (clip == "up" ? 2.0 : 5.0) : 1.0;
+        if (run > 0) record.clips.push_back({clip, estimator, 60, 60, 0.03, 1e-5, {}, {}, 0.01 * factor});
+      }
+    }
+    for (const char* name : {"m1", "m2"}) {
+      if (run > 0) record.quantities.push_back({name, "phase-diagram", "mu", 1.0, 1.0, {}, {}, {}, {}, ""});
+    }
+    database.add(record, 0.1);
+  }
+  const validate::SweepSummary summary = validate::summarize(sweep, database.database());
+  REQUIRE(summary.configurations.size() == 2);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const validate::AccelerationError& of = summary.configurations[c].accelerations.front();
+    CHECK(of.configuration == (c == 0 ? "m1" : "m2"));
+    CHECK(of.clips == 2);
+    CHECK(*of.regret == Approx(c == 0 ? 2.0 : 5.0).epsilon(1e-12));
+  }
+  CHECK(summary.accelerations.front().clips == 4);
 }

@@ -1,0 +1,37 @@
+/// An axis of numbers whose labels do not run into each other.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glidelab::report {
+
+/// 1, 2 and 5 times powers of ten from the first that is not above `from` to the first that is not below `to`, both
+/// above 0.
+std::vector<double> ladder_of(double from, double to);
+
+/// The x axis of values that were run, with some room at both ends and for what stands beside a value.
+class ValueAxis {
+ public:
+  /// At least one value; where it is logarithmic all are above 0.
+  ValueAxis(std::vector<double> values, bool logarithmic);
+  /// gnuplot: range, scale, a mark at each value (of many at round numbers), and as many labels as a plot of `points`
+  /// width has room for, the first and the last value's among them.
+  std::string script(double points) const;
+  /// Where number i of `count` things that belong to one value stands: side by side, and never as far as halfway to the
+  /// next value.
+  double beside(double value, std::size_t i, std::size_t count) const;
+  std::size_t size() const { return values_.size(); }
+
+ private:
+  double to_axis(double value) const;
+  double from_axis(double place) const;
+  std::vector<double> marks() const;
+  std::vector<double> values_;  // sorted, each once
+  bool logarithmic_;
+  double from_ = 0.0, to_ = 1.0;  // as to_axis() gives them
+  double least_gap_ = 1.0;        // of two values, likewise
+};
+
+}  // namespace glidelab::report

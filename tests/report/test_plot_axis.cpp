@@ -1,0 +1,78 @@
+#include "report/plot_axis.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+struct Tic {
+  std::string label;
+  double at = 0.0;
+};
+
+/// Of the line "set xtics ('60' 60, '' 70)".
+std::vector<Tic> tics_of(const std::string& script) {
+  std::vector<Tic> tics;
+  std::istringstream text(script.substr(script.find("set xtics (") + 11));
+  for (char quote = 0; text >> quote && quote == '\'';) {
+    Tic tic;
+    std::getline(text, tic.label, '\'');
+    text >> tic.at >> quote;
+    tics.push_back(tic);
+  }
+  return tics;
+}
+
+}  // namespace
+
+TEST_CASE("values that were run have marks of their own, and labels only where there is room for them") {
+  const report::ValueAxis axis({120.0, 60.0, 240.0, 60.0}, false);
+  CHECK(axis.size() == 3);
+  const std::vector<Tic> tics = tics_of(axis.script(360.0));
+  REQUIRE(tics.size() == 3);
+  CHECK(tics[0].label == "60");
+  CHECK(tics[1].label == "120");
+  CHECK(tics[2].label == "240");
+  const std::vector<Tic> close = tics_of(report::ValueAxis({30, 31, 32, 33, 500}, false).script(360.0));
+  REQUIRE(close.size() == 5);
+  CHECK(close[0].label == "30");
+  for (std::size_t i = 1; i < 4; ++i) CHECK(close[i].label.empty());
+  CHECK(close[4].label == "500");
+  CHECK(close[2].at == 32.0);
+}
+
+TEST_CASE("many values have a few marks at 1, 2 or 5 times a power of ten, or at multiples of these") {
+  std::vector<double> even, ratio;
+  for (int i = 0; i < 30; ++i) {
+    even.push_back(0.013 * i);
+    ratio.push_back(5e-6 * std::pow(60.0, i / 29.0));
+  }
+  const std::vector<Tic> multiples = tics_of(report::ValueAxis(even, false).script(360.0));  // 0 to 0.377
+  REQUIRE(multiples.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(multiples[i].at - 0.1 * static_cast<double>(i)) < 1e-9);
+  const std::vector<Tic> ladder = tics_of(report::ValueAxis(ratio, true).script(360.0));  // 5e-6 to 3e-4
+  REQUIRE(ladder.size() == 6);
+  const std::vector<double> expected = {5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4};
+  for (std::size_t i = 0; i < 6; ++i) CHECK(std::abs(ladder[i].at / expected[i] - 1.0) < 1e-6);
+}
+
+TEST_CASE("what belongs to one value stands beside it, in order, and nearer to it than to the next one") {
+  for (const bool logarithmic : {false, true}) {
+    const report::ValueAxis axis({1.0, 1.1, 9.0}, logarithmic);
+    double before = 0.0, sum = 0.0;
+    constexpr std::size_t kCount = 9;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const double at = axis.beside(1.0, i, kCount);
+      CHECK(at > before);
+      CHECK(at < 1.05);
+      sum += logarithmic ? std::log(at) : at - 1.0;
+      before = at;
+    }
+    CHECK(std::abs(sum) < 1e-12);
+    CHECK(std::abs(axis.beside(9.0, 4, kCount) - 9.0) < 1e-12);
+  }
+}
