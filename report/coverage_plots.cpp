@@ -53,28 +53,34 @@ Plot coverage_plot(const validate::Coverage& coverage) {
 }
 
 Plot reliability_plot(const validate::Coverage& coverage) {
-  PlotData band{"band", {}};
-  for (double level = 0.02; level < 0.985; level += 0.03) {
-    const validate::CoverageBand of = validate::band_of(level, coverage.replicates);
-    band.rows.push_back({100.0 * level, 100.0 * of.low, 100.0 * of.high});
-  }
-  const validate::CoverageBand last = validate::band_of(0.999, coverage.replicates);
-  band.rows.push_back({99.9, 100.0 * last.low, 100.0 * last.high});
-  std::vector<PlotData> data = {band};
-  std::string script = std::string(kFrame) +
-                       "unset offsets\nset xrange [0:102]\nset yrange [0:102]\nset key maxcols 2\n"
-                       "set xlabel 'level that the intervals state  (%)'\n"
-                       "set ylabel 'intervals that hold the truth  (%)'\n"
-                       "plot $band using 1:2:3 with filledcurves fc rgb '#dddddd' title 'chance (95 %)', "
-                       "x with lines dt 3 lc rgb '#555555' title 'as stated'";
+  // A column of the plot for each level: over the level itself 90, 95 and 99 % would lie over each other.
+  PlotData band{"band", {}}, stated{"stated", {}};
+  std::string tics;
   const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
+  for (std::size_t i = 0; i < coverage.levels.size(); ++i) {
+    const double level = coverage.levels[i], x = static_cast<double>(i);
+    const validate::CoverageBand of = validate::band_of(level, coverage.replicates);
+    band.rows.push_back({x, 0.5 * (of.low + of.high) * 100.0, x - 0.4, x + 0.4, 100.0 * of.low, 100.0 * of.high});
+    stated.rows.push_back({x, 100.0 * level, 0.4});
+    tics += fmt::format("{}'{:g}' {}", i == 0 ? "" : ", ", 100.0 * level, i);
+  }
+  std::vector<PlotData> data = {band, stated};
+  std::string script =
+      std::string(kFrame) +
+      fmt::format(
+          "unset offsets\nset xrange [-0.5:{}]\nset yrange [-2:102]\nset key maxcols 2\nset xtics ({})\n"
+          "set xlabel 'level that the intervals state  (%)'\n"
+          "set ylabel 'intervals that hold the truth  (%)'\n"
+          "plot $band using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '#dddddd' title 'chance (95 %)', "
+          "$stated using 1:2:3 with xerrorbars pt 0 lw 1 lc rgb '#555555' title 'as stated'",
+          static_cast<double>(coverage.levels.size()) - 0.5, tics);
   for (std::size_t e = 0; e < estimators.size(); ++e) {
     PlotData points{fmt::format("e{}", e), {}};
-    const double beside = 0.7 * (static_cast<double>(e) - 1.5);  // of the level, so that they do not hide each other
+    const double beside = 0.18 * (static_cast<double>(e) - 1.5);  // so that estimators do not hide each other
     for (const validate::CoverageRow& row : coverage.rows) {
       if (row.estimator != estimators[e]) continue;
-      for (const validate::LevelCount& at : row.levels) {
-        points.rows.push_back({100.0 * at.level + beside, 100.0 * at.coverage});
+      for (std::size_t i = 0; i < row.levels.size(); ++i) {
+        points.rows.push_back({static_cast<double>(i) + beside, 100.0 * row.levels[i].coverage});
       }
     }
     if (points.rows.empty()) continue;
@@ -83,9 +89,9 @@ Plot reliability_plot(const validate::Coverage& coverage) {
     data.push_back(std::move(points));
   }
   return {Drawing{script, data, {560, 480}},
-          fmt::format("How many of the intervals of each level hold the truth: a point for each quantity, beside the "
-                      "level where several estimators have one; grey: what 95 % of {} replicates do by chance where "
-                      "the intervals are right",
+          fmt::format("How many of the intervals of each level hold the truth: a point for each quantity, the "
+                      "estimators side by side; grey: what 95 % of {} replicates do by chance where the intervals are "
+                      "right",
                       coverage.replicates),
           "Reliability: actual over nominal coverage"};
 }

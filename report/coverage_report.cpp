@@ -248,7 +248,11 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
   body += meaning(coverage);
   const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(),
                                [](const validate::CoverageRow& row) { return row.determined > 0; });
-  if (any) body += figures({coverage_plot(coverage), reliability_plot(coverage)});
+  if (any) {
+    std::vector<Plot> plots = {coverage_plot(coverage)};
+    if (!coverage.levels.empty()) plots.push_back(reliability_plot(coverage));
+    body += figures(plots);
+  }
   if (!coverage.levels.empty()) body += level_table(coverage);
   HtmlTable table({"quantity", "truth", "bias", "sd", "stated sd", "least sd", "efficiency", "coverage", "values"});
   std::string configuration, estimator;

@@ -57,7 +57,8 @@ Reach reach_of(const Candidate& candidate) {
 /// A label of one point, or of several that lie close together.
 struct Label {
   double x = 0.0, y = 0.0;
-  std::vector<int> numbers;
+  std::vector<int> numbers = {};
+  double right = 0.0, top = 0.0;  ///< of the points: beyond them it covers none
 };
 
 /// A logarithmic axis: what is on it and some room, with 1, 2 and 5 times powers of ten written.
@@ -88,7 +89,9 @@ std::vector<Label> labels_of(const std::vector<std::vector<double>>& points, dou
     const auto near = std::find_if(labels.begin(), labels.end(), [&](const Label& label) {
       return std::abs(std::log(row[0] / label.x)) < kAcross * wide && std::abs(std::log(row[1] / label.y)) < kUp * high;
     });
-    Label& label = near == labels.end() ? labels.emplace_back(Label{row[0], row[1], {}}) : *near;
+    Label& label = near == labels.end() ? labels.emplace_back(Label{row[0], row[1]}) : *near;
+    label.right = std::max(label.right, row[0]);
+    label.top = std::max(label.top, row[1]);
     label.numbers.push_back(static_cast<int>(row[2]));
   }
   return labels;
@@ -148,7 +151,7 @@ Plot requirement_plot(const Requirement& requirement) {
   if (!all.empty()) script += x.script("x") + y.script("y");
   for (const Label& label : labels_of(all, x.length(), y.length())) {
     script += fmt::format("set label {} at {:.9g},{:.9g} offset 0.8,0.45 font ',11'\n",
-                          gnuplot_quoted(ranges_text(label.numbers)), label.x, label.y);
+                          gnuplot_quoted(ranges_text(label.numbers)), label.right, label.top);
   }
   script +=
       fmt::format("set offsets 0,0,0,0\nplot {:.9g} with lines dt 2 lc rgb '#555555' title 'target'", target.value);
