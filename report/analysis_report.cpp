@@ -20,12 +20,10 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
   }
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, estimator {}.</p>\n", escape(title),
                           escape(results.estimator));
-  body += fmt::format(
-      "<div class=\"tiles\"><div class=\"tile\"><b>{}</b><span>configurations</span></div>"
-      "<div class=\"tile\"><b>{}</b><span>clips</span></div><div class=\"tile\"><b>{}</b><span>frames</span></div>"
-      "<div class=\"tile\"><b>{}</b><span>{}</span></div></div>\n",
-      results.configurations.size(), results.clips.size(), frames, detected,
-      pictures ? "with the marker found" : "positions");
+  body += fmt::format("<div class=\"tiles\">{}{}{}{}</div>\n",
+                      tile(std::to_string(results.configurations.size()), "configurations"),
+                      tile(std::to_string(results.clips.size()), "clips"), tile(std::to_string(frames), "frames"),
+                      tile(std::to_string(detected), pictures ? "with the marker found" : "positions"));
   body += meaning_of(results);
   body += recovered_section(results);
   body += phase_section(results);

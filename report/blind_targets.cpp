@@ -90,10 +90,8 @@ std::string blind_meaning(const validate::BlindScore& score) {
   add(score.false_alarm, "Nothing wrong", "another verdict than none");
   add(all_of(score.recognised), "A cause that is in no list", "it is called unknown");
   add(score.wrong_name, "A cause that is in no list", "some name gets a probability over 0.8");
-  text =
-      "<h2 id=\"meaning\">What this means</h2>\n<p>How far a verdict on an experiment like these can be "
-      "trusted:</p>\n<ul>\n" +
-      text + "</ul>\n";
+  text = meaning_section("<p>How far a verdict on an experiment like these can be trusted:</p>\n<ul>\n" + text +
+                         "</ul>\n");
   const bool calibrated = score.calibration_error < kWantedCalibration;
   text += fmt::format("<p>A stated probability is off by {} on average: it can{} be taken at its word{}.",
                       number_text(score.calibration_error, 2), calibrated ? "" : "not",

@@ -9,6 +9,7 @@
 #include "report/camera_rows.h"
 #include "report/gnuplot.h"
 #include "report/html.h"
+#include "report/number_text.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
@@ -93,6 +94,27 @@ std::string numbers_table(const core::CameraMeasurement& camera) {
   return table.str() + (remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");
 }
 
+/// How finely a pixel tells light, in the numbers that are known.
+std::string camera_meaning(const core::CameraMeasurement& camera) {
+  std::string text;
+  if (camera.gain_dn_per_e.value && camera.read_noise_e.value) {
+    text =
+        fmt::format("In the dark a pixel wavers by {} electrons ({} codes)", number_text(*camera.read_noise_e.value, 3),
+                    number_text(*camera.read_noise_e.value * *camera.gain_dn_per_e.value, 3));
+    if (camera.full_well_e.value) {
+      const double full = *camera.full_well_e.value;
+      text += fmt::format("; it is full at {} electrons, where it wavers by {} %", number_text(full, 3),
+                          number_text(100.0 / std::sqrt(full), 2));
+    }
+    text += ". ";
+  } else {
+    text = "What these frames do not tell is “–” below, with the reason. ";
+  }
+  return meaning_section("<p>" + text +
+                         "camera.toml beside this page has the numbers as a scenario's [sensor], to rehearse an "
+                         "experiment with this camera.</p>\n");
+}
+
 }  // namespace
 
 Page camera_report(const core::CameraMeasurement& camera) {
@@ -100,7 +122,8 @@ Page camera_report(const core::CameraMeasurement& camera) {
       "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} x {} pixels, {} bits, by photon "
       "transfer (EMVA 1288).</p>\n",
       escape(camera.folder.name), camera.frames, camera.picture.width, camera.picture.height, camera.folder.bit_depth);
-  body += numbers_table(camera);
+  body += camera_meaning(camera);
+  body += "<h2>Numbers</h2>\n" + numbers_table(camera);
   body += fmt::format(
       "<p>Pixels that stand out of the pattern: {} hot, {} dead, {} in all; they are not in the numbers.</p>\n",
       camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
@@ -111,7 +134,7 @@ Page camera_report(const core::CameraMeasurement& camera) {
   }
   std::vector<Plot> plots = {transfer_plot(camera)};
   for (Plot& plot : linearity_plot(camera)) plots.push_back(std::move(plot));
-  body += figures(plots);
+  body += "<h2>Where they come from</h2>\n" + figures(plots);
   return page(camera.folder.name, body);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "report/gnuplot.h"
 #include "report/html.h"
@@ -57,6 +58,44 @@ std::string findings_section(const core::RecordingCheck& check) {
                escape(finding.found), escape(finding.advice)});
   }
   return text + table.str();
+}
+
+/// How much of the clips can be used, and how well a position is known where it is known at its worst.
+std::string extent_words(const core::RecordingCheck& check) {
+  std::size_t frames = 0, seen = 0;
+  std::optional<double> noise;
+  for (const core::ClipCheck& clip : check.clips) {
+    frames += clip.frames;
+    seen += clip.seen;
+    if (clip.position_noise_m) noise = std::max(noise.value_or(0.0), *clip.position_noise_m);
+  }
+  if (frames == 0) return {};
+  std::string text = fmt::format("The marker is found in {} of {} frames of {} clip{}", seen, frames,
+                                 check.clips.size(), check.clips.size() == 1 ? "" : "s");
+  if (noise)
+    text += fmt::format("; one position is off by {} mm or less (standard deviation)", number_text(1e3 * *noise, 2));
+  return text + ".";
+}
+
+std::string check_meaning(const core::RecordingCheck& check) {
+  std::string text;
+  if (!check.usable) {
+    text =
+        "An analysis of this recording would fail, or give numbers that mislead: mend what “must change” below "
+        "first.";
+  } else if (wants_change(check)) {
+    text =
+        "This recording can be analysed as it is. What is “better” below would make its numbers surer, should it be "
+        "recorded again.";
+  } else {
+    text = "This recording can be analysed as it is, and nothing needs to be recorded again.";
+  }
+  const std::string extent = extent_words(check);
+  return meaning_section(fmt::format("<p><b class=\"{}\">{}.</b> {}{}{}</p>\n",
+                                     !check.usable         ? "bad"
+                                     : wants_change(check) ? "soft"
+                                                           : "good",
+                                     verdict_of(check), text, extent.empty() ? "" : " ", extent));
 }
 
 PlotData places(const std::string& name, const std::vector<core::PixelPlace>& from) {
@@ -201,14 +240,9 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
 }  // namespace
 
 Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
-  Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">A look at the recording before any analysis.</p>\n"
-      "<p class=\"note\"><b class=\"{}\">{}.</b></p>\n",
-      escape(check.name),
-      !check.usable         ? "bad"
-      : wants_change(check) ? "soft"
-                            : "good",
-      verdict_of(check));
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">A look at the recording before any analysis.</p>\n",
+                          escape(check.name));
+  body += check_meaning(check);
   body += findings_section(check) + pattern_section(check) + clips_section(check, previews);
   return page("Check of " + check.name, body);
 }

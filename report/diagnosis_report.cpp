@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "report/diagnosis_lead.h"
 #include "report/diagnosis_plots.h"
 #include "report/effect_names.h"
 #include "report/gap_plots.h"
@@ -20,14 +21,6 @@ namespace {
 
 constexpr std::size_t kRanked = 12;
 
-std::string tile(const std::string& number, const std::string& words) {
-  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", escape(number), escape(words));
-}
-
-std::string probability_text(double p) {
-  return p > 0.9995 ? "> 0.999" : p < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", p);
-}
-
 std::string tiles(const diagnose::Diagnosis& diagnosis) {
   std::string text = "<div class=\"tiles\">";
   if (diagnosis.verdict == "effect") {
@@ -40,13 +33,7 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
   } else {
     text += tile(diagnosis.verdict, "verdict");
   }
-  text += tile(probability_text(diagnosis.none), "nothing is missing") +
-          tile(probability_text(diagnosis.unknown), "something without a name");
-  if (diagnosis.gap) {
-    text += tile(fmt::format("{} → {}", number_text(diagnosis.gap->before, 3), number_text(diagnosis.gap->after, 3)),
-                 "gap of held-out clips (1: noise)");
-  }
-  return text + "</div>\n";
+  return text + common_tiles(diagnosis, "gap of held-out clips (1: noise)") + "</div>\n";
 }
 
 std::string effect_table(const diagnose::Diagnosis& diagnosis) {
@@ -183,9 +170,7 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
   if (diagnosis.lines) return line_report(title, diagnosis);
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
   body += tiles(diagnosis);
-  body += fmt::format("<p>{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(diagnosis.summary),
-                      escape(diagnosis.next_experiment));
-  for (const std::string& note : diagnosis.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  body += diagnosis_meaning(diagnosis);
   body += "<h2>The verdict</h2>\n" + effect_table(diagnosis) + figures(verdict_plots(diagnosis));
   const std::vector<Plot> domains = domain_plots(diagnosis);
   if (!domains.empty()) {

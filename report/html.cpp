@@ -194,6 +194,14 @@ Html figures(const std::vector<Plot>& plots) {
   return html + "</div>\n";
 }
 
+std::string tile(const std::string& number, const std::string& words) {
+  return "<div class=\"tile\"><b>" + escape(number) + "</b><span>" + escape(words) + "</span></div>";
+}
+
+std::string meaning_section(const std::string& html) {
+  return "<h2 id=\"meaning\">What this means</h2>\n" + html;
+}
+
 Page page(std::string_view title, const Html& body) {
   Page made;
   std::string text;

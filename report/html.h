@@ -62,6 +62,12 @@ class Html {
   std::vector<Plot> plots_;
 };
 
+/// A number (or a word) large, and what it is below it; both are text.
+std::string tile(const std::string& number, const std::string& words);
+
+/// The part at the top of a page that says in plain words what its numbers say; HTML below a heading.
+std::string meaning_section(const std::string& html);
+
 /// Plots side by side where there is room, each on white paper with its caption.
 Html figures(const std::vector<Plot>& plots);
 

@@ -109,8 +109,9 @@ Page laws_report(const std::vector<LawStudy>& studies, const std::vector<validat
   Html body =
       "<h1>Laws of friction in a(v)</h1>\n<p>How a glider moves under each law: launched up or down, let go from rest, "
       "or started above its limit. Every point is the program's own solution of the equation of motion; the films are "
-      "drawn by its renderer.</p>\n"
-      "<h2 id=\"meaning\">What this means</h2>\n<p>x(t) shows where a glider goes, a(v) which law moves it: "
+      "drawn by its renderer.</p>\n";
+  std::string meaning =
+      "<p>x(t) shows where a glider goes, a(v) which law moves it: "
       "there every motion of one glider on one slope runs on the same curve, wherever it starts. A straight line "
       "is linear viscous friction, a curved one another drag, a jump at v = 0 Coulomb friction. Where the curve falls "
       "through a = 0 the glider tends to that speed, from both sides (dot); where it rises through it, the glider "
@@ -119,9 +120,9 @@ Page laws_report(const std::vector<LawStudy>& studies, const std::vector<validat
       "vanish "
       "at v = 0 does.";
   if (std::ranges::any_of(studies, [](const LawStudy& study) { return study.x_apart_m.has_value(); })) {
-    body += " A pair with almost the same x(t) shows why one should look at a(v).";
+    meaning += " A pair with almost the same x(t) shows why one should look at a(v).";
   }
-  body += "</p>\n<nav><ul>";
+  body += meaning_section(meaning + "</p>\n") + "<nav><ul>";
   for (std::size_t i = 0; i < studies.size(); ++i) {
     body += fmt::format("<li><a href=\"#law{}\">{}</a></li>", i, escape(studies[i].name));
   }

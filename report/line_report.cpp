@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "report/diagnosis_lead.h"
 #include "report/diagnosis_plots.h"
 #include "report/effect_names.h"
 #include "report/gap_text.h"
@@ -14,14 +15,6 @@ namespace glidelab::report {
 namespace {
 
 constexpr std::size_t kUnnamedRows = 3;
-
-std::string tile(const std::string& number, const std::string& words) {
-  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", escape(number), escape(words));
-}
-
-std::string probability_text(double p) {
-  return p > 0.9995 ? "> 0.999" : p < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", p);
-}
 
 std::string joined(const std::vector<std::string>& ids, const char* between) {
   std::string text;
@@ -41,13 +34,7 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
     for (const auto& effect : diagnosis.effects)
       text += tile(probability_text(effect.probability), effect_name(effect.id));
   }
-  text += tile(probability_text(diagnosis.none), "nothing is missing") +
-          tile(probability_text(diagnosis.unknown), "something without a name");
-  if (diagnosis.gap) {
-    text += tile(fmt::format("{} → {}", number_text(diagnosis.gap->before, 3), number_text(diagnosis.gap->after, 3)),
-                 "gap of lines predicted by the others (1: their own scatter)");
-  }
-  return text + "</div>\n";
+  return text + common_tiles(diagnosis, "gap of lines predicted by the others (1: their own scatter)") + "</div>\n";
 }
 
 std::string name_of(const diagnose::LineCandidate& candidate) {
@@ -183,9 +170,7 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n",
                           escape(title), lines.lines);
   body += tiles(diagnosis);
-  body += fmt::format("<p>{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(diagnosis.summary),
-                      escape(diagnosis.next_experiment));
-  for (const std::string& note : diagnosis.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  body += diagnosis_meaning(diagnosis);
   std::vector<Plot> bars = verdict_plots(diagnosis);
   if (bars.size() > 1) {
     constexpr std::string_view kOfClips = "residuals of the held-out clip / noise";

@@ -151,7 +151,7 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
 }
 
 std::string meaning_of(const core::AnalysisResults& results) {
-  std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
+  std::string text;
   const std::vector<std::string> doubts = doubts_about(results);
   if (doubts.empty()) {
     text += "<ul>\n";
@@ -180,7 +180,7 @@ std::string meaning_of(const core::AnalysisResults& results) {
         "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
         r2_text(worst));
   }
-  return text;
+  return meaning_section(text);
 }
 
 std::string meaning_of(const validate::Comparison& comparison) {
@@ -198,7 +198,7 @@ std::string meaning_of(const validate::Comparison& comparison) {
       worst_quantity = &quantity;
     }
   }
-  std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
+  std::string text;
   if (compared > 0) {
     text += fmt::format("<p>{} of {} recovered values lie within two of their standard deviations of the truth", within,
                         compared);
@@ -221,7 +221,7 @@ std::string meaning_of(const validate::Comparison& comparison) {
         number_text(restitution.max_m * 1e3, 2), number_text(100.0 * restitution.rms_m / restitution.field_m, 2),
         number_text(100.0 * restitution.max_m / restitution.field_m, 2), number_text(restitution.field_m, 3));
   }
-  return text;
+  return meaning_section(text);
 }
 
 }  // namespace glidelab::report

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/diagnosis_plots.h"
 #include "report/effect_names.h"
 #include "report/handy_units.h"
@@ -39,6 +41,15 @@ std::string lead(const diagnose::Plan& plan) {
       "can be seen in these "
       "motions at all, and {} of those can be told from every other one.",
       plan.clips, plan.points, number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
+}
+
+/// What follows from what can be seen; plain text.
+std::string consequence(const diagnose::Plan& plan) {
+  if (plan.effects.empty()) return {};
+  const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
+  if (!any) return "Recorded like this, a diagnosis could not find any of them: its “none” would say nothing.";
+  return "Recorded like this, a diagnosis can find an effect from the size “seen from” on. If it then finds none, "
+         "smaller ones may still act, and those that are not seen may be of any size.";
 }
 
 /// What to do about effects that look alike; empty where none do.
@@ -94,10 +105,11 @@ std::string plan_text(const diagnose::Plan& plan) {
 Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">What this experiment will be able to tell apart.</p>\n"
-      "<p>{}</p>\n",
-      escape(title), escape(lead(plan)));
-  for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+      "{}",
+      escape(title), meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), consequence(plan))));
   if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
+  for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  body += "<h2>What can be seen</h2>\n";
   HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     table.row({effect_html(effect.id), escape(effect.words), escape(seen_text(effect)),

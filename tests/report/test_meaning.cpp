@@ -6,6 +6,10 @@
 #include "made_results.h"
 #include "report/analysis_report.h"
 #include "report/blind_targets.h"
+#include "report/camera_report.h"
+#include "report/check_report.h"
+#include "report/diagnosis_report.h"
+#include "report/plan_report.h"
 #include "report/text_table.h"
 
 using namespace glidelab;
@@ -103,4 +107,78 @@ TEST_CASE("what blind cases mean is told of what was there, with intervals, and 
   score.reliability[0].stated = 0.5;
   CHECK(has("too modest"));
   CHECK(has("Missed: the expected calibration error"));  // no other: 5 % of false alarms are allowed
+}
+
+namespace {
+
+/// The first paragraph of "What this means", which stands above every other part of the page; empty where it does not.
+std::string meaning_on(const report::Page& page) {
+  const std::size_t first = page.html.find("<h2");
+  const std::string heading = "<h2 id=\"meaning\">What this means</h2>\n<p>";
+  if (first == std::string::npos || page.html.compare(first, heading.size(), heading) != 0) return {};
+  const std::size_t from = first + heading.size();
+  return page.html.substr(from, page.html.find("</p>", from) - from);
+}
+
+bool tells(const report::Page& page, const std::string& part) {
+  return meaning_on(page).find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict means for the numbers of an analysis") {
+  diagnose::Diagnosis of;
+  of.summary = "The data show <a drag>.";
+  diagnose::Diagnosis lines = of;
+  lines.lines.emplace();
+  for (diagnose::Diagnosis* diagnosis : {&of, &lines}) {
+    diagnosis->verdict = "effect";
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "The data show &lt;a drag&gt;. An analysis of these data"));
+    diagnosis->verdict = "unknown";
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "need not be properties of the track"));
+    diagnosis->verdict = "none";
+    CHECK(meaning_on(report::diagnosis_report("d", *diagnosis)) == "The data show &lt;a drag&gt;.");
+  }
+}
+
+TEST_CASE(
+    "a plan says at the top what a diagnosis could find, and where it could find nothing that its none is empty") {
+  diagnose::Plan plan;
+  plan.clips = 2;
+  plan.effects = {{"scale_error", "a wrong scale", "e", 0.28, true, {}},
+                  {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
+  CHECK(tells(report::plan_page("p", plan), "smaller ones may still act"));
+  plan.effects.front().seen = false;
+  CHECK(tells(report::plan_page("p", plan), "would say nothing"));
+}
+
+TEST_CASE("a check says at the top whether to analyse, to record again or to mend, and how well positions are known") {
+  core::RecordingCheck check;
+  check.clips.resize(2);
+  check.clips[0].frames = check.clips[1].frames = 100;
+  check.clips[0].seen = 99;
+  check.clips[1].seen = 90;
+  check.clips[0].position_noise_m = 2.5e-6;
+  check.clips[1].position_noise_m = 3.6e-6;
+  const auto page = [&] { return report::check_report(check, {}); };
+  CHECK(tells(page(), "nothing needs to be recorded again"));
+  CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
+  CHECK(tells(page(), "off by 0.0036 mm or less"));
+  check.findings = {{core::Severity::change, "m1", "dark", "more light"}};
+  CHECK(tells(page(), "should it be recorded again"));
+  check.findings = {{core::Severity::unusable, "m1", "black", "more light"}};
+  check.usable = false;
+  CHECK(tells(page(), "mend what “must change”"));
+}
+
+TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and that some numbers are missing") {
+  core::CameraMeasurement camera;
+  camera.curve.resize(2);
+  camera.curve[1].mean_dn = camera.curve[1].variance_dn2 = camera.saturation_dn = 100.0;
+  CHECK(tells(report::camera_report(camera), "do not tell"));
+  camera.gain_dn_per_e.value = 0.5;
+  camera.read_noise_e.value = 7.0;
+  camera.full_well_e.value = 10000.0;
+  CHECK(tells(report::camera_report(camera), "by 7 electrons (3.5 codes)"));
+  CHECK(tells(report::camera_report(camera), "full at 10000 electrons, where it wavers by 1 %"));  // 1 / sqrt(10^4)
 }
