@@ -50,15 +50,16 @@ struct RankedExplanation {
 struct GapRegion {
   std::string variable;  ///< x_m, v_m_s, t_s, a_m_s2, mass_kg, direction, group, u_px, v_px, clip
   double from = 0.0, to = 0.0;
-  double excess = 0.0;  ///< largest size over its standard deviation
-  double size = 0.0;
-  std::string unit;  ///< of size: N, m/s², m, N s/m
-  std::string what;  ///< force, friction, displacement, …
-  std::string clip;  ///< where it is one clip's
+  double excess = 0.0;  ///< size over its standard deviation, where that is largest
+  double size = 0.0;    ///< the largest
+  std::string unit;     ///< of size: N, m/s², m, N s/m
+  std::string what;     ///< force, friction, displacement, …
+  std::string clip;     ///< where it is one clip's
   /// What the usual model lacks at most, in the size's unit, where the size is far more than that: not to be believed.
   std::optional<double> lacking = {};
-  std::optional<double> size_sd = {};  ///< of a table of lines
+  std::optional<double> size_sd = {};  ///< of the size; none of what is found otherwise than by a curve or in lines
   int direction = 0;                   ///< sign of v of the lines it is of; 0 where it is of both, or of no lines
+  std::optional<double> at = {};       ///< the variable where a curve has that size
 };
 
 /// A function of one variable that would explain the gap, for the plots.

@@ -16,8 +16,10 @@ namespace glidelab::diagnose {
 
 struct UnnamedRegion {
   double from = 0.0, to = 0.0;
-  double excess = 0.0;  ///< largest size over its standard deviation
-  double size = 0.0;    ///< largest of those at least half as sure as the surest: in the family's unit
+  double excess = 0.0;  ///< size over its standard deviation, where that is largest
+  double size = 0.0;    ///< the largest, in the family's unit
+  double sd = 0.0;      ///< of that size
+  double at = 0.0;      ///< where it is
 };
 
 struct UnnamedFamily {

@@ -36,7 +36,7 @@ UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, in
   }
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
-  // Of each clip the curve that its bumps make together, where it is largest and about as sure as anywhere.
+  // Of each clip the curve that its bumps make together, where it is largest, as sure as where it is surest.
   family.size.assign(set.clips.size(), 0.0);
   family.sd.assign(set.clips.size(), 0.0);
   std::vector<double> surest(set.clips.size(), 0.0);

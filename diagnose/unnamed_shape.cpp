@@ -162,11 +162,12 @@ void name_regions(UnnamedFamily& family) {
     const bool neighbours = family.names.empty();  // members with names have none
     while (neighbours && end < family.at.size() && sureness(end) >= kSure) ++end;
     UnnamedRegion region{family.at[i], family.at[end - 1], 0.0, 0.0};
-    for (std::size_t k = i; k < end; ++k) region.excess = std::max(region.excess, sureness(k));
-    // The largest size of those that are about as sure as any: a bump is as sure at its foot as at its top.
     for (std::size_t k = i; k < end; ++k) {
-      if (sureness(k) < 0.5 * region.excess || std::abs(family.size[k]) < std::abs(region.size)) continue;
+      region.excess = std::max(region.excess, sureness(k));
+      if (std::abs(family.size[k]) <= std::abs(region.size)) continue;
       region.size = family.size[k];
+      region.sd = family.sd[k];
+      region.at = family.at[k];
     }
     family.regions.push_back(region);
     i = end;

@@ -119,6 +119,10 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
                        regions[r].size,  family->unit,    family->what,  ""};
       const double lacking = most.in(region.unit);
       if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
+      if (family->names.empty()) {
+        region.size_sd = regions[r].sd;
+        region.at = regions[r].at;
+      }
       if (family->variable == "clip") {  // a clip as a whole
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
         const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),

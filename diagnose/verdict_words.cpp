@@ -100,6 +100,14 @@ std::string wrongly_stated_words(const Diagnosis& diagnosis) {
       all_of(diagnosis.limits.contradicted), sure);
 }
 
+/// "3.6 ± 0.2 mm at 0.34 m", or the size alone where a curve is not what tells it.
+std::string largest_words(const GapRegion& region) {
+  if (!region.at || !region.size_sd) return base::size_text(region.size, 2, region.unit);
+  const std::string unit = base::name_and_unit(region.variable).unit;
+  return fmt::format("{} {} {}", base::size_and_sd_text(region.size, *region.size_sd, region.unit),
+                     region.variable == "t_s" ? "after" : "at", base::size_text(*region.at, 3, unit));
+}
+
 std::string verdict_words(const Diagnosis& diagnosis) {
   if (only_statements_fail(diagnosis)) {
     return wrongly_stated_words(diagnosis) + gap_words(diagnosis);
@@ -133,7 +141,7 @@ std::string verdict_words(const Diagnosis& diagnosis) {
             region.what, base::size_text(region.size, 2, region.unit),
             base::size_text(*region.lacking, 2, region.unit));
       } else {
-        text += fmt::format(": {} of up to {}.", region.what, base::size_text(region.size, 2, region.unit));
+        text += fmt::format(": {} of up to {}.", region.what, largest_words(region));
       }
     }
     return text + gap_words(diagnosis);

@@ -99,13 +99,17 @@ Plot methods_plot(const validate::BlindScore& score) {
   std::string script =
       std::string(kFrame) +
       "unset offsets\nset style fill solid 0.85 noborder\nset boxwidth 0.19\nset yrange [0:105]\n"
-      "set xrange [0.4:5.6]\nset ylabel 'right  (%)'\nset key outside top center horizontal maxcols 2 samplen 1\n"
-      "set xtics ('none' 1, 'moderate' 2, 'strong' 3, 'two' 4, 'outside' 5)\nplot ";
+      "set xrange [0.4:6.6]\nset ylabel 'right  (%)'\nset key outside top center horizontal maxcols 2 samplen 1\n"
+      "set xtics ('none' 1, 'weak' 2, 'moderate' 3, 'strong' 4, 'two' 5, 'outside' 6)\nplot ";
   for (std::size_t m = 0; m < score.methods.size(); ++m) {
     const auto& method = score.methods[m];
     PlotData rows{fmt::format("m{}", m), {}, {"kind of case (place)", fmt::format("right by {} (%)", method.name)}};
-    const std::vector<BlindShare> shares = {method.none, of(method.single, "moderate"), of(method.single, "strong"),
-                                            method.pair, method.outside};
+    const std::vector<BlindShare> shares = {method.none,
+                                            of(method.single, "weak"),
+                                            of(method.single, "moderate"),
+                                            of(method.single, "strong"),
+                                            method.pair,
+                                            method.outside};
     for (std::size_t s = 0; s < shares.size(); ++s) {
       rows.rows.push_back(
           {static_cast<double>(s) + 1.0 + 0.2 * (static_cast<double>(m) - 1.5), 100.0 * shares[s].share()});

@@ -55,6 +55,7 @@ Json where_json(const diagnose::Diagnosis& diagnosis) {
     put(object, "size", region.size);
     object["unit"] = region.unit;
     if (region.size_sd) put(object, "size_sd", *region.size_sd);
+    if (region.at) put(object, "at", *region.at);
     if (region.direction != 0) object["direction"] = region.direction;
     if (region.lacking) put(object, "lacking", *region.lacking);
     where["regions"].push_back(std::move(object));

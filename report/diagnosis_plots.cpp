@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "report/camera_plots.h"
+#include "report/diagnosis_lead.h"
 #include "report/effect_names.h"
 #include "report/gnuplot.h"
 #include "report/plot_style.h"
@@ -34,7 +35,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   script += "unset key\nunset ytics\nset border 1\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
     // The name stands above its bar: beside it, three effects in one name would leave the bars no room.
-    const std::string name = effect_name(bars[i].second);
+    const std::string name = effect_name(bars[i].second) + ": " + probability_text(bars[i].first);
     script += fmt::format("set label {} at 0, {} left{}\n", gnuplot_quoted(name), 0.26 - static_cast<double>(i),
                           name.size() > kLongName ? " font ',11'" : "");
     data.rows.push_back({-static_cast<double>(i), bars[i].first});
@@ -45,7 +46,8 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
       "'{}'\n",
       kColors[0]);
   return {Drawing{script, std::vector{data}, {620, 90 + 38 * static_cast<int>(bars.size())}},
-          "How probable each explanation is, given these data", "Bar chart of the probabilities of the explanations"};
+          "How probable each explanation is, given these data: what is named, and nothing else",
+          "Bar chart of the probabilities of the explanations"};
 }
 
 Plot clip_gaps(const diagnose::GapSizes& gap) {
@@ -79,11 +81,11 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
                  fmt::format("standard deviation ({})", curve.unit)}};
   for (std::size_t i = 0; i < curve.at.size(); ++i) data.rows.push_back({curve.at[i], curve.size[i], curve.sd[i]});
   std::string script(kFrame);
-  script += fmt::format("unset key\nset xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), curve.what,
-                        curve.unit);
+  script += fmt::format("set xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), curve.what, curve.unit);
   script += fmt::format(
-      "plot $curve using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25, "
-      "$curve using 1:2 with lines lw 2 lc rgb '{}', 0 with lines lw 1 lc rgb '{}'\n",
+      "plot $curve using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25 "
+      "title 'two standard deviations', $curve using 1:2 with lines lw 2 lc rgb '{}' title 'likeliest', 0 with lines "
+      "lw 1 lc rgb '{}' notitle\n",
       kColors[0], kColors[0], kGrey);
   return {Drawing{script, std::vector{data}},
           fmt::format("{} {} over {} that would fill the gap, with two standard deviations{}",
@@ -151,6 +153,40 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
           "Lengthening of the marker's image over its speed"};
 }
 
+/// One quantity of the pictures over time: a block of rows for each clip that has it.
+struct OverTime {
+  PlotData data;
+  std::vector<std::string> clips;
+};
+
+OverTime over_time(const std::vector<diagnose::PictureCurve>& curves, const std::string& what, PlotData data,
+                   double scale) {
+  OverTime of{std::move(data), {}};
+  for (const diagnose::PictureCurve& curve : curves) {
+    if (curve.what != what || curve.at.empty()) continue;
+    if (!of.data.rows.empty()) of.data.rows.emplace_back();  // the next clip begins a block of its own
+    const std::size_t step = std::max<std::size_t>(1, curve.at.size() / kPoints);
+    for (std::size_t p = 0; p < curve.at.size(); p += step) {
+      of.data.rows.push_back({curve.at[p], scale * curve.value[p]});
+    }
+    of.clips.push_back(curve.clip);
+  }
+  return of;
+}
+
+/// A line for each clip in its colour, with its name in the legend; of more clips than there are colours all in grey.
+std::string lines_of(const OverTime& of, int dashes, bool names) {
+  const bool told_apart = of.clips.size() <= kColors.size();
+  std::string text;
+  for (std::size_t i = 0; i < of.clips.size(); ++i) {
+    const std::string title = told_apart ? of.clips[i] : fmt::format("{} clips", of.clips.size());
+    text += fmt::format("{0}${1} using 1:2 every :::{2}::{2} with lines lw 1 dt {3} lc rgb '{4}' {5}",
+                        i > 0 ? ", " : "", of.data.name, i, dashes, told_apart ? color(i) : std::string(kGrey),
+                        names && (told_apart || i == 0) ? "title " + gnuplot_quoted(title) + " noenhanced" : "notitle");
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string axis_of(const std::string& variable) {
@@ -192,44 +228,31 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
       plots.push_back(std::move(plot));
     }
   }
-  PlotData light{"light", {}, {"t (s)", "brightness, change (%)"}};
-  PlotData across{"across", {}, {"t (s)", "to the right (px)"}}, down{"down", {}, {"t (s)", "downwards (px)"}};
-  for (const diagnose::PictureCurve& curve : diagnosis.picture_curves) {
-    if (curve.what == "lengthening") {
-      plots.push_back(lengthening_plot(curve));
-      continue;
-    }
-    if (curve.what == "noise") {
-      plots.push_back(noise_plot(curve));
-      continue;
-    }
-    PlotData& into = curve.what == "brightness" ? light : curve.what == "drift across" ? across : down;
-    const double scale = curve.what == "brightness" ? 100.0 : 1.0;
-    const std::size_t step = std::max<std::size_t>(1, curve.at.size() / kPoints);
-    for (std::size_t p = 0; p < curve.at.size(); p += step) into.rows.push_back({curve.at[p], scale * curve.value[p]});
-    into.rows.emplace_back();  // the next clip begins a line of its own
+  const std::vector<diagnose::PictureCurve>& curves = diagnosis.picture_curves;
+  for (const diagnose::PictureCurve& curve : curves) {
+    if (curve.what == "lengthening") plots.push_back(lengthening_plot(curve));
+    if (curve.what == "noise") plots.push_back(noise_plot(curve));
   }
-  const std::string lines = fmt::format(" using 1:2 with lines lw 1 lc rgb '{}'", kColors[0]);
-  if (!light.rows.empty()) {
+  const OverTime light = over_time(curves, "brightness", {"light", {}, {"t (s)", "brightness, change (%)"}}, 100.0);
+  if (!light.data.rows.empty()) {
     const std::string script = std::string(kFrame) + kFromStart +
-                               "unset key\nset xlabel 'time t (s)'\nset ylabel 'brightness, change  (%)'\nplot $light" +
-                               lines + "\n";
+                               "set xlabel 'time t (s)'\nset ylabel 'brightness, change  (%)'\nplot " +
+                               lines_of(light, 1, true) + "\n";
     plots.push_back(
-        {Drawing{script, std::vector{light}},
+        {Drawing{script, std::vector{light.data}},
          "How bright what rests in the scene is, against each clip's first frames; light that flickers makes "
          "a regular wave",
          "Brightness of the scene over time"});
   }
-  if (across.rows.empty() && down.rows.empty()) return plots;
-  for (PlotData* data : {&across, &down}) {
-    if (data->rows.empty()) data->rows = {{kNan, kNan}};
-  }
+  const OverTime across = over_time(curves, "drift across", {"across", {}, {"t (s)", "to the right (px)"}}, 1.0);
+  const OverTime down = over_time(curves, "drift down", {"down", {}, {"t (s)", "downwards (px)"}}, 1.0);
+  if (across.data.rows.empty() || down.data.rows.empty()) return plots;
   const std::string script =
-      std::string(kFrame) + kFromStart +
-      "set xlabel 'time t (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot $across" + lines +
-      " title 'to the right'" +
-      fmt::format(", $down using 1:2 with lines lw 1 lc rgb '{}' title 'downwards'\n", kColors[1]);
-  plots.push_back({Drawing{script, std::vector{across, down}},
+      std::string(kFrame) + kFromStart + "set xlabel 'time t (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot " +
+      lines_of(across, 1, true) + ", " + lines_of(down, 3, false) +
+      ", keyentry with lines lw 1.5 lc rgb '#000000' title 'to the right', keyentry with lines lw 1.5 dt 3 lc rgb "
+      "'#000000' title 'downwards'\n";
+  plots.push_back({Drawing{script, std::vector{across.data, down.data}},
                    "Where what rests in the scene stands in the picture: a camera at rest keeps it at 0, up to noise",
                    "Drift of the scene in the picture over time"});
   return plots;

@@ -21,6 +21,14 @@ namespace {
 
 constexpr std::size_t kRanked = 12;
 
+/// The number on a tile is of the effect however it acts; the chart has each explanation by itself.
+std::string beside_others(const diagnose::Diagnosis& diagnosis, const diagnose::DiagnosedEffect& effect) {
+  const bool joined = std::any_of(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const auto& ranked) {
+    return ranked.id != effect.id && (" + " + ranked.id + " + ").find(" + " + effect.id + " + ") != std::string::npos;
+  });
+  return joined ? ", alone or with another" : "";
+}
+
 std::string tiles(const diagnose::Diagnosis& diagnosis) {
   std::string text = "<div class=\"tiles\">";
   if (diagnosis.verdict == "effect") {
@@ -28,7 +36,8 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
       std::string names;
       for (const diagnose::AlikeEffect& one : effect.alike)
         names += (names.empty() ? "one of: " : ", ") + effect_name(one.id);
-      text += tile(probability_text(effect.joint_probability), names.empty() ? effect_name(effect.id) : names);
+      text += tile(probability_text(effect.joint_probability),
+                   (names.empty() ? effect_name(effect.id) : names) + beside_others(diagnosis, effect));
     }
   } else {
     text += tile(diagnosis.verdict, "verdict");
@@ -42,7 +51,7 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
     std::string size, same;
     for (const auto& p : effect.parameters) {
       size += size.empty() ? "" : "<br>";
-      size += escape(parameter_text(p));
+      size += symbols_html(parameter_text(p));
     }
     for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + effect_html(id);
     table.row({effect_html(effect.id), escape(effect.stage), probability_text(effect.probability),
@@ -133,15 +142,17 @@ std::string picture_table(const diagnose::Diagnosis& diagnosis) {
 /// Of what pictures show, the unit is a parameter's key.
 std::string region_size(const diagnose::GapRegion& region) {
   const NamedUnit of = name_and_unit(region.unit);
-  return size_text(region.size, 2, of.unit.empty() ? region.unit : of.unit);
+  const std::string& unit = of.unit.empty() ? region.unit : of.unit;
+  return region.size_sd ? size_and_sd_text(region.size, *region.size_sd, unit) : size_text(region.size, 2, unit);
 }
 
 std::string region_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"over", "what", "from", "to", "largest", "largest / sd"}, 2);
+  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, at its surest"}, 2);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
     table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
                escape(region.what), number_text(region.from, 3), number_text(region.to, 3),
-               region.lacking ? "not known" : escape(region_size(region)), number_text(region.excess, 2)});
+               region.lacking ? "not known" : escape(region_size(region)),
+               region.at && !region.lacking ? number_text(*region.at, 3) : "–", number_text(region.excess, 2)});
   }
   return table.empty() ? "" : table.str();
 }

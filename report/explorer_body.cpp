@@ -2,7 +2,8 @@
 
 namespace glidelab::report {
 
-// Text grows with the window, so that a projected page is read from the last row; plots fill what height is left.
+// Text grows with the window, so that a projected page is read from the last row; plots fill what height is left
+// (fit() in explorer_view.cpp measures it).
 const std::string_view kExplorerBody = R"html(<style>
 :root { --first: #0072b2; --second: #d55e00; --third: #00795b; font-size: clamp(16px, 1.9vmin, 30px); }
 @media (prefers-color-scheme: dark) { :root { --first: #6cb8ea; --second: #ff9a57; --third: #4fd0a8; } }
@@ -25,7 +26,7 @@ h1 { font-size: 1.35rem; margin: .2rem 0; }
 #plots figure { max-width: none; background: var(--paper); }
 #plots figcaption { padding: .1rem .6rem .2rem; line-height: 1.25; }
 #plots .wide { grid-column: 1 / -1; }
-#plots canvas { display: block; width: 100%; height: max(11rem, 100vh - 24.5rem); }
+#plots canvas { display: block; width: 100%; height: var(--plot, max(11rem, 100vh - 24.5rem)); }
 #plots canvas#track { height: 5.6rem; }
 #readout { font-variant-numeric: tabular-nums; min-height: 3.6em; padding: .2rem .7rem; }
 #timebar { position: sticky; bottom: 0; display: flex; gap: .8rem; align-items: center; padding: .35rem 0;

@@ -6,7 +6,7 @@ const std::string_view kExplorerView = R"js(
 const $ = id => document.getElementById(id), names = ['k', 'mu', 'alpha', 'v0', 't'], END = 5, POINTS = 500;
 const digits = { k: 2, mu: 4, alpha: 1, v0: 2, t: 2 };
 const units = ['K/m (1/s)', 'C/m (1/√(m·s))', 'C/m (1/m)', 'no drag'];
-let current, playing = 0;
+let current, playing = 0, reserved = 0;
 
 function read() {
   const p = { law: +$('law').value };
@@ -96,7 +96,23 @@ function draw() {
   curve(s, at(q => q.t, q => q.x), s.color('first'), 3); dot(s, p.t, here.x, s.color('third'), 7);
   track(here, points, p);
   $('readout').textContent = `t = ${show(p.t, 2)} s: x = ${show(here.x, 3)} m, v = ${show(here.v, 3)} m/s, a = ${show(here.a, 3)} m/s². ` + fateWords(p, m);
+  reserve();
 }
+// What the words ever needed stays theirs, so that the plots do not jump, and the bar below covers none of them.
+function reserve() {
+  const words = $('readout');
+  if (words.offsetHeight <= reserved) return;
+  reserved = words.offsetHeight; words.style.minHeight = reserved + 'px';
+  fit(); draw();
+}
+function fit() {  // plots beside each other are as high as the window leaves room for
+  const style = document.documentElement.style, em = parseFloat(getComputedStyle(document.documentElement).fontSize);
+  style.removeProperty('--plot');
+  if (getComputedStyle($('plots')).gridTemplateColumns.split(' ').length === 1) return;
+  const others = $('explorer').getBoundingClientRect().bottom + scrollY - $('xt').clientHeight;
+  style.setProperty('--plot', Math.max(11 * em, Math.floor(document.documentElement.clientHeight - others)) + 'px');
+}
+function resized() { reserved = 0; $('readout').style.minHeight = ''; draw(); }
 function track(here, points, p) {
   const s = sheet('track'), { c, width, height, em } = s, xs = points.map(q => q.x), low = Math.min(...xs, 0), high = Math.max(...xs, 0.01);
   const px = x => 4 * em + (width - 8 * em) * (x - low) / (high - low);
@@ -130,7 +146,7 @@ for (const button of document.querySelectorAll('[data-case]')) button.onclick = 
   Object.assign($('law'), { value: law }); $('k').value = k; $('mu').value = mu; $('alpha').value = alpha; $('v0').value = v0; $('t').value = 0;
   pause(); change(); $('play').click();
 };
-window.addEventListener('resize', draw);
+window.addEventListener('resize', resized);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
 const off = measured();
 $('measured').textContent = `Every curve comes from the program's own solver: four orbits a law, scaled, and interpolated by polynomials of fifth order between kept points. At ${off.points} instants of ${off.motions} motions that the solver made as they are, every corner of the sliders among them, the largest found that this page is off is ${(off.x * 1e3).toPrecision(2)} mm, ${(off.v * 1e3).toPrecision(2)} mm/s and ${(off.a * 1e3).toPrecision(2)} mm/s².`;

@@ -125,6 +125,7 @@ std::string script_of(const Drawing& drawing, const std::string& name) {
       "set encoding utf8\n"
       "do for [kind in 'svg pdf'] {{\n"
       "reset\n"
+      "set minussign\n"
       "set datafile separator comma\n"
       "if (kind eq 'svg') {{ set terminal svg noenhanced size {1},{2} dynamic font 'sans-serif,15' background "
       "'#ffffff' }}\n"

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <regex>
 
 #include "base/staged_output.h"
 #include "report/gnuplot.h"
+#include "report/minus_signs.h"
 
 namespace glidelab::report {
 namespace {
@@ -202,6 +204,11 @@ std::string meaning_section(const std::string& html) {
   return "<h2 id=\"meaning\">What this means</h2>\n" + html;
 }
 
+std::string symbols_html(std::string_view text) {
+  static const std::regex kSymbol("(^|[^A-Za-z0-9_/])([A-Za-z])_([A-Za-z0-9]+)(?![A-Za-z0-9_/])");
+  return std::regex_replace(escape(text), kSymbol, "$1$2<sub>$3</sub>");
+}
+
 Page page(std::string_view title, const Html& body) {
   Page made;
   std::string text;
@@ -226,7 +233,7 @@ Page page(std::string_view title, const Html& body) {
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
       "<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-      escape(title), kStyle, text);
+      escape(title), kStyle, with_minus_signs(text));
   return made;
 }
 

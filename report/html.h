@@ -17,6 +17,10 @@ namespace glidelab::report {
 /// The text with &, <, >, quotes and apostrophes as entities; fit for content and for attributes in quotes.
 std::string escape(std::string_view text);
 
+/// escape(), and a quantity's name as it is written by hand: "v_lim" is v with the subscript lim, and so with all
+/// single letters; names of several letters and what is joined to more stay.
+std::string symbols_html(std::string_view text);
+
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
 

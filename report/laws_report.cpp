@@ -89,7 +89,7 @@ std::string equilibrium_text(const LawStudy& study) {
     std::string ends;
     for (const validate::Equilibrium& at : curve.equilibria) {
       const std::string v = number_text(at.v_m_s, 4) + " m/s";
-      const std::string end = at.v_m_s != 0.0 ? (at.stable ? "tends to v_lim = " : "unstable at ") + v
+      const std::string end = at.v_m_s != 0.0 ? (at.stable ? "tends to v<sub>lim</sub> = " : "unstable at ") + v
                               : !at.stable    ? "may rest, but does not come back to it"
                               : at.stops      ? "comes to rest"
                                               : "tends to rest";
@@ -130,7 +130,7 @@ Page laws_report(const std::vector<LawStudy>& studies, const std::vector<validat
   for (std::size_t i = 0; i < studies.size(); ++i) {
     progress("drawing", static_cast<double>(i) / static_cast<double>(studies.size()));
     const LawStudy& study = studies[i];
-    body += fmt::format("<h2 id=\"law{}\">{}</h2>\n<p>{}</p>\n", i, escape(study.name), escape(study.text));
+    body += fmt::format("<h2 id=\"law{}\">{}</h2>\n<p>{}</p>\n", i, escape(study.name), symbols_html(study.text));
     body += fmt::format("<p class=\"soft\">{}</p>\n", equilibrium_text(study));
     if (study.x_apart_m && study.a_apart_m_s2) {
       body += fmt::format(

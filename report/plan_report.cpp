@@ -112,7 +112,7 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   body += "<h2>What can be seen</h2>\n";
   HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    table.row({effect_html(effect.id), escape(effect.words), escape(seen_text(effect)),
+    table.row({effect_html(effect.id), escape(effect.words), symbols_html(seen_text(effect)),
                escape(joined(effect_names(effect.alike)))});
   }
   body +=

@@ -167,8 +167,14 @@ document.documentElement.dataset.seen = boxes.filter(b => b.top >= 0 && b.bottom
 document.documentElement.dataset.rows = new Set(boxes.slice(0, 3).map(b => b.top)).size;
 document.documentElement.dataset.wide = document.documentElement.scrollWidth - innerWidth;
 document.documentElement.dataset.time = boxes[3].bottom - innerHeight;
+let covered = 0;  // of the words, by the bar below them
+for (const law of [0, 1, 2, 3]) for (const mu of [0, 0.03]) for (const alpha of [-4, 1.5, 8]) for (const v0 of [-2, 0, 2]) {
+  $('law').value = law; $('mu').value = mu; $('alpha').value = alpha; $('v0').value = v0; change();
+  covered = Math.max(covered, $('readout').getBoundingClientRect().bottom - $('timebar').getBoundingClientRect().top);
+}
+document.documentElement.dataset.covered = covered;
 )js";
-  for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}}) {
+  for (const auto& [width, height] : {std::pair{1280, 720}, {1280, 1500}, {1920, 1080}}) {
     const auto opened = tests::open_with(temp.path(), page_html(), script, width, height);
     if (!opened) {
       WARN("skipped: no chromium program");
@@ -177,6 +183,7 @@ document.documentElement.dataset.time = boxes[3].bottom - innerHeight;
     INFO(width << " x " << height);
     CHECK(opened->data.at("seen") == "4");
     CHECK(opened->data.at("rows") == "1");
+    CHECK(std::stod(opened->data.at("covered")) < 1.0);
   }
   const auto narrow = tests::open_with(temp.path(), page_html(), script, 500, 900);
   REQUIRE(narrow);

@@ -174,5 +174,8 @@ TEST_CASE("a size far beyond what the accelerations lack is not stated as one") 
   diagnosis.regions.push_back({"v_m_s", 0.0, 0.2, 5.0, 190.0, "N", "force", "", 30.0});
   CHECK(diagnose::summary_of(diagnosis).find("these data do not tell") != std::string::npos);
   diagnosis.regions.front().lacking.reset();
-  CHECK(diagnose::summary_of(diagnosis).find("force of up to") != std::string::npos);
+  CHECK(diagnose::summary_of(diagnosis).find("force of up to 190 N.") != std::string::npos);
+  diagnosis.regions.front().at = 0.15;
+  diagnosis.regions.front().size_sd = 20.0;
+  CHECK(diagnose::summary_of(diagnosis).find("force of up to 190 ± 20 N at 0.15 m/s.") != std::string::npos);
 }

@@ -99,7 +99,8 @@ TEST_CASE("places beside each other are one region, clips beside each other are 
   CHECK(clips.regions[1].to == 1.0);
 }
 
-TEST_CASE("a bump is as large as its top, and what is hardly sure at its edge is not its size") {
+TEST_CASE(
+    "a region's size is the largest of its curve with that place's own deviation, not the one where it is surest") {
   diagnose::UnnamedFamily bump;
   bump.at = {0.0, 1.0, 2.0, 3.0, 4.0};
   bump.size = {1e-6, 0.5, 2.0, 0.5, 7.0};
@@ -108,7 +109,9 @@ TEST_CASE("a bump is as large as its top, and what is hardly sure at its edge is
   REQUIRE(bump.regions.size() == 1);
   CHECK(bump.regions[0].from == 0.0);
   CHECK(bump.regions[0].to == 4.0);
-  CHECK(bump.regions[0].size == 2.0);
+  CHECK(bump.regions[0].size == 7.0);
+  CHECK(bump.regions[0].sd == 2.0);
+  CHECK(bump.regions[0].at == 4.0);
   CHECK(bump.regions[0].excess == Approx(10.0));
 }
 

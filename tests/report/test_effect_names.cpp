@@ -48,11 +48,11 @@ TEST_CASE("the page of a diagnosis tells an effect by its name, and its id besid
   of.ranking[1].log_evidence_gain -= 5.84;
   const std::string page = report::diagnosis_report("named", of, {}).html;
   const auto has = [&](const char* part) { return page.find(part) != std::string::npos; };
-  CHECK(has("<b>0.900</b><span>friction whatever the load</span>"));
+  CHECK(has("<b>0.900</b><span>friction whatever the load, alone or with another</span>"));
   CHECK(has("friction whatever the load <small><code>load_independent_friction</code></small>"));
   CHECK(has("friction whatever the load + cable that tightens"));
   // Both print alike; by how much the second is behind, and nothing at all, is told beside.
   CHECK(has("+1.235·10⁸</td><td class=\"n\">+0.0<"));
-  CHECK(has("+1.235·10⁸</td><td class=\"n\">-5.8<"));
-  CHECK(has("<td class=\"n\">0</td><td class=\"n\">-1.235·10⁸<"));
+  CHECK(has("+1.235·10⁸</td><td class=\"n\">−5.8<"));
+  CHECK(has("<td class=\"n\">0</td><td class=\"n\">−1.235·10⁸<"));
 }

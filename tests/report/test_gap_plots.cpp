@@ -1,13 +1,16 @@
 /// The page of a diagnosis: its gap in pictures, its sizes in handy units.
 #include "report/gap_plots.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "catch.h"
+#include "report/blind_report.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_plots.h"
 #include "report/diagnosis_report.h"
 #include "report/handy_units.h"
+#include "report/html.h"
 
 using namespace glidelab;
 
@@ -96,7 +99,7 @@ TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curve
   one.curves.pop_back();
   CHECK_FALSE(has(report::where_plots(one).front().caption, "any one"));
   const std::string page = report::diagnosis_report("two masses", diagnosis).html;
-  CHECK(has(page, "-3.6 mm"));
+  CHECK(has(page, "−3.6 mm"));
   CHECK(has(page, "How large the gap is"));
   CHECK(has(page, "Map of the residuals by clip"));
   diagnose::Diagnosis lines;
@@ -104,6 +107,66 @@ TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curve
   CHECK(report::domain_plots(lines).empty());
   CHECK(report::phase_gap_plots(lines).empty());
   CHECK(report::residual_maps(lines).empty());
+}
+
+TEST_CASE("the table of a gap's places gives the largest size with its own deviation and where it is") {
+  diagnose::Diagnosis of = two_masses();
+  of.regions.front().size_sd = 2e-4;
+  of.regions.front().at = 0.0712;
+  const std::string page = report::diagnosis_report("places", of).html;
+  CHECK(has(page, "−3.60 ± 0.20 mm</td><td class=\"n\">0.0712</td><td class=\"n\">12</td>"));
+  CHECK(has(report::diagnosis_json(of), "\"at\": 0.0712"));
+}
+
+TEST_CASE("a tile says that its effect may act with others, and the chart prints what each explanation alone has") {
+  diagnose::Diagnosis of;
+  of.verdict = "effect";
+  diagnose::DiagnosedEffect effect{};
+  effect.id = "tether";
+  effect.probability = effect.joint_probability = 0.998;
+  of.effects = {effect};
+  of.ranking.resize(2);
+  of.ranking[0].id = "tether";
+  of.ranking[0].probability = 0.99;
+  of.ranking[1].id = "rolling_shutter + tether";
+  of.ranking[1].probability = 0.008;
+  CHECK(has(report::diagnosis_report("tile", of).html, "0.998</b><span>cable that tightens, alone or with another"));
+  const report::Plot chart = report::verdict_plots(of).front();
+  CHECK(has(chart.drawing.script, "cable that tightens: 0.990"));
+  CHECK(has(chart.caption, "nothing else"));
+  of.ranking.pop_back();
+  CHECK_FALSE(has(report::diagnosis_report("tile", of).html, "alone or with another"));
+}
+
+TEST_CASE("what the scene does over time has a colour and a name for each clip, and what goes right and down is told") {
+  diagnose::Diagnosis of;
+  for (const std::string clip : {"up_1", "do'wn"}) {
+    for (const char* what : {"brightness", "drift across", "drift down"}) {
+      of.picture_curves.push_back({what, clip, {0.0, 0.1}, {0.0, 0.01}, {0.001, 0.001}, {}, {}});
+    }
+  }
+  const auto plots = report::picture_plots(of);
+  REQUIRE(plots.size() == 2);
+  for (const report::Plot& plot : plots) {
+    CHECK(has(plot.drawing.script, "every :::0::0 with lines lw 1 dt 1 lc rgb '#0072b2' title 'up_1' noenhanced"));
+    CHECK(has(plot.drawing.script, "every :::1::1 with lines lw 1 dt 1 lc rgb '#d55e00' title 'do’wn' noenhanced"));
+  }
+  CHECK(plots.front().drawing.data.front().rows.size() == 5);  // two clips of two points, and a line between them
+  CHECK(has(plots.back().drawing.script, "title 'to the right'"));
+  CHECK(has(plots.back().drawing.script, "dt 3 lc rgb '#000000' title 'downwards'"));
+  CHECK_FALSE(report::page("scene", report::figures(plots)).html.empty());  // gnuplot draws them
+}
+
+TEST_CASE("the chart of the blind cases has every kind that its table has") {
+  report::BlindRun run;
+  run.score.methods.resize(1);
+  run.score.methods.front().name = "glidelab diagnose";
+  run.score.methods.front().single["weak"] = {4, 1};
+  const report::Page page = report::blind_page(run);
+  const auto plotted = std::ranges::find_if(
+      page.files, [](const auto& file) { return file.first.ends_with(".csv") && has(file.first, "methods"); });
+  REQUIRE(plotted != page.files.end());
+  CHECK(has(plotted->second, "1.7,25"));  // the second kind, a share of one in four
 }
 
 TEST_CASE("diagnosis.json has the gap of the phase plane with its band, of each part of the data, and of each domain") {

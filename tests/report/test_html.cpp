@@ -1,4 +1,5 @@
 #include "report/html.h"
+#include "report/minus_signs.h"
 
 #include "catch.h"
 #include "made_results.h"
@@ -21,6 +22,23 @@ TEST_CASE("a table of long names gives them a wide column, one of short names or
   report::HtmlTable links({"clip", "frames"});
   links.row({"<a href=\"#a-very-long-place\">m1 &amp; µ</a>", "264"});
   CHECK(links.str().find("<table>") != std::string::npos);  // what is not seen takes no room
+}
+
+TEST_CASE("a hyphen before a number becomes a minus sign on a page, one in a name, a date, a tag or code does not") {
+  CHECK(report::with_minus_signs("-0.3, (-5) ± -2") == "−0.3, (−5) ± −2");
+  CHECK(report::with_minus_signs("<td class=\"n\">-1.2</td>") == "<td class=\"n\">−1.2</td>");
+  for (const std::string same :
+       {"m1-2", "1e-07", "2026-11-23", "a - b", "--cases 3", "<a href=\"#-1\">x</a>", "<code>-1</code>",
+        "<script>x = -1;</script>", "<style>a { top: -1px }</style>", "-", "<", "<code"}) {
+    CHECK(report::with_minus_signs(same) == same);
+  }
+  CHECK(report::with_minus_signs("<code>-1</code>-1") == "<code>-1</code>−1");
+  CHECK(report::page("p", "<p>-4</p>").html.find("<p>−4</p>") != std::string::npos);
+}
+
+TEST_CASE("a quantity's name with one letter has its subscript, and what is longer or a file's key stays text") {
+  CHECK(report::symbols_html("v_lim = 3, v_c up to 2") == "v<sub>lim</sub> = 3, v<sub>c</sub> up to 2");
+  CHECK(report::symbols_html("tether_a x_mid_m m_s/x <b>") == "tether_a x_mid_m m_s/x &lt;b&gt;");
 }
 
 TEST_CASE("base64 gives RFC 4648's test vectors") {

@@ -156,7 +156,7 @@ TEST_CASE("the page of laws tells coming to rest from tending to it, and marks w
   const report::Page page = report::laws_report({study}, {validate::LawFilm{}});
   CHECK(has(page.html,
             "viscous (0°): tends to rest; coulomb (0°): comes to rest; "
-            "stribeck (2°): unstable at 0.1805 m/s, tends to v_lim = 0.4874 m/s"));
+            "stribeck (2°): unstable at 0.1805 m/s, tends to v<sub>lim</sub> = 0.4874 m/s"));
   const auto script = std::ranges::find_if(
       page.files, [](const auto& file) { return file.first.ends_with(".gp") && has(file.first, "a-v"); });
   REQUIRE(script != page.files.end());
