@@ -84,11 +84,9 @@ std::string check_meaning(const core::RecordingCheck& check) {
         "An analysis of this recording would fail, or give numbers that mislead: mend what “must change” below "
         "first.";
   } else if (wants_change(check)) {
-    text =
-        "This recording can be analysed as it is. What is “better” below would make its numbers surer, should it be "
-        "recorded again.";
+    text = "What is “better” below would make its numbers surer, should it be recorded again.";
   } else {
-    text = "This recording can be analysed as it is, and nothing needs to be recorded again.";
+    text = "Nothing needs to be recorded again.";
   }
   const std::string extent = extent_words(check);
   return meaning_section(fmt::format("<p><b class=\"{}\">{}.</b> {}{}{}</p>\n",

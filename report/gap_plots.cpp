@@ -100,7 +100,7 @@ Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& ce
   }
   script += fmt::format(
       "set xrange [{}:{}]\nset yrange [{}:0.5]\nset cbrange [-{}:{}]\nset palette defined (0 '#053061', 1 '#4393c3', 2 "
-      "'#f7f7f7', 3 '#d6604d', 4 '#67001f')\nset cblabel 'residual / noise'\n"
+      "'#f7f7f7', 3 '#d6604d', 4 '#67001f')\nset cblabel 'residual / noise' offset 1.2,0\n"
       "plot $cells using 1:2:3 with image pixels\n",
       map.low, map.high, 0.5 - static_cast<double>(cells.size()), kDeepest, kDeepest);
   const int height = 110 + std::clamp(22 * static_cast<int>(cells.size()), 190, 700);

@@ -161,7 +161,7 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   check.clips[0].position_noise_m = 2.5e-6;
   check.clips[1].position_noise_m = 3.6e-6;
   const auto page = [&] { return report::check_report(check, {}); };
-  CHECK(tells(page(), "nothing needs to be recorded again"));
+  CHECK(tells(page(), "Usable as it is.</b> Nothing needs to be recorded again"));
   CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
   CHECK(tells(page(), "off by 0.0036 mm or less"));
   check.findings = {{core::Severity::change, "m1", "dark", "more light"}};
