@@ -6,19 +6,17 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <set>
+#include <utility>
 
 #include "base/errors.h"
 #include "core/calibrate_fisheye.h"
 #include "core/camera_and_planes.h"
 #include "core/clip_look.h"
 #include "core/clip_to_track.h"
-#include "core/free_motion.h"
-#include "core/lost_frames.h"
 #include "core/marker_smear.h"
 #include "core/median.h"
-#include "core/motion.h"
 #include "core/noise.h"
-#include "core/outliers.h"
+#include "core/phase_diagram.h"
 #include "core/quantile.h"
 #include "core/restitution.h"
 #include "core/track_csv.h"
@@ -30,8 +28,11 @@ constexpr double kTopSpeed = 0.99;    // quantile: single frames may be wrong
 constexpr std::size_t kSpeedLag = 4;  // frames over which a speed is taken
 constexpr std::size_t kPathPlaces = 200;
 constexpr int kAcross = 8, kDown = 6;  // parts of the picture
-constexpr double kBeyondTone = 2.0;    // times the stated exposure
-constexpr double kBeyondPlace = 0.5;   // marker diameters: less a marker may lengthen by where it is (perspective)
+// Times the stated diameter, for a marker that is not found: the tracker takes what is 0.75 to 1.33 times as large as
+// it looks for; the last two are a decimal point.
+constexpr std::array<double, 6> kOtherSizes = {1.6, 1.0 / 1.6, 2.5, 1.0 / 2.5, 10.0, 0.1};
+constexpr double kBeyondTone = 2.0;   // times the stated exposure
+constexpr double kBeyondPlace = 0.5;  // marker diameters: less a marker may lengthen by where it is (perspective)
 // A step counts as a stall where the two on either side lie within an eighth of a straight line, and the rest of it is
 // six standard deviations of its noise: a clip has thousands of steps, and a codec's errors are no bell.
 constexpr double kAgree = 0.125, kStall = 0.4, kClearOfNoise = 15.0;
@@ -111,12 +112,10 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
     clip.spanned = track.frame.back() - clip.first + 1;
   }
   clip.frame_rate_hz = track.frame_rate_hz;
-  if (track.x_m.size() >= kFewestTrackPoints) {
-    // As the analysis will find it, before it puts times of lost frames right.
-    const Motion motion = motion_of(track, setup.mass_kg);
-    clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
-    clip.against_launch = find_free_motion(without(motion, find_outliers(motion)), setup).against_launch;
-    if (clip.pictures) clip.jumps = find_lost_frames(track, motion).size();
+  if (track.x_m.size() >= kFewestTrackPoints) clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
+  if (!track.x_m.empty()) {
+    const auto [least, most] = std::minmax_element(track.x_m.begin(), track.x_m.end());
+    clip.way_m = *most - *least;
   }
   const Speeds speeds = speeds_of(track);
   clip.top_speed_m_s = speeds.m_s;
@@ -257,6 +256,7 @@ std::vector<Attempt> attempt_all(const Experiment& experiment, int jobs, const b
   const auto attempt = [&](const Experiment& part, std::size_t first) {
     PictureResults seen = tracks_of(part, jobs, progress, watches.opener(), false, seen_pattern);
     if (check.pattern) check.pattern->calibration = seen.calibration;
+    check.plumbs.insert(check.plumbs.end(), seen.plumbs.begin(), seen.plumbs.end());
     for (std::size_t i = 0; i < seen.tracks.size(); ++i) {
       attempts[first + i].track = std::move(seen.tracks[i]);
       attempts[first + i].fits = std::move(seen.fits[i]);
@@ -276,7 +276,40 @@ std::vector<Attempt> attempt_all(const Experiment& experiment, int jobs, const b
       check.plumb_failure.clear();
     }
   }
+  // Clips share the marker: the size that one of them shows is looked for in the others first.
+  std::vector<double> factors(kOtherSizes.begin(), kOtherSizes.end());
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    if (attempts[i].failure.empty() || experiment.clips[i].file.empty()) continue;
+    const auto found = std::find_if(factors.begin(), factors.end(), [&](double factor) {
+      Experiment other = alone(experiment, i);
+      other.marker->diameter_m *= factor;
+      try {
+        attempt(other, i);
+        return true;
+      } catch (const base::InputError&) {
+        return false;
+      }
+    });
+    if (found == factors.end()) break;  // what one clip lacks in every size the others may lack too: it takes time
+    attempts[i].track.notes.push_back("a marker of the stated diameter_m is not found: " +
+                                      std::exchange(attempts[i].failure, {}));
+    std::rotate(factors.begin(), found, found + 1);
+  }
   return attempts;
+}
+
+/// Lines, and what they make of the inclination, of the clips that the analysis would take.
+void analyze_motions(const Experiment& experiment, const std::vector<Attempt>& attempts, RecordingCheck& check) {
+  std::vector<ClipSetup> setups;
+  std::vector<ClipResult> results;
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    if (!attempts[i].failure.empty() || attempts[i].track.x_m.size() < kFewestTrackPoints) continue;
+    setups.push_back(experiment.clips[i]);
+    results.push_back(analyze_motion(setups.back(), attempts[i].track, {}));
+    check.clips[i].against_launch = results.back().against_launch;
+    if (check.clips[i].pictures) check.clips[i].jumps = results.back().lost_frames.size();
+  }
+  check.configurations = join_configurations(setups, results, experiment.gravity_m_s2);
 }
 
 }  // namespace
@@ -304,6 +337,7 @@ RecordingCheck check_recording(const Experiment& experiment, int jobs, const bas
     check.clips[i] = check_clip(experiment, experiment.clips[i], attempts[i], watches);
   }
   if (check.pattern) measure_inside(*check.pattern, check.clips);
+  analyze_motions(experiment, attempts, check);
   check.findings = findings_of(experiment, check);
   check.usable = std::none_of(check.findings.begin(), check.findings.end(),
                               [](const Finding& finding) { return finding.severity == Severity::unusable; });

@@ -1,9 +1,10 @@
 /// A look at a recording before any analysis: is the pattern found, is the marker, are the pictures and times fit for
 /// it?
 ///
-/// The pictures pass through the analysis's own functions once (tracks_of: calibration, tracking, restitution), and the
-/// tracks through its first smoothing, for the direction of the launch (free_motion.h); no law is sought. What cannot
-/// be used is a finding here, not an error.
+/// The pictures pass through the analysis's own functions once (tracks_of: calibration, tracking, restitution); a clip
+/// in which no marker of the stated diameter is found is read again for one of another. The tracks
+/// pass through its lines a(v), for the direction of the launch and for the inclination, which are laid beside what is
+/// stated (statement_findings.h). What cannot be used is a finding here, not an error.
 #pragma once
 
 #include "base/progress.h"

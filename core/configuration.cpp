@@ -12,11 +12,10 @@
 #include "core/law_bias.h"
 #include "core/line_fit.h"
 #include "core/phase_diagram.h"
+#include "core/stated_values.h"
 
 namespace glidelab::core {
 namespace {
-
-constexpr double kMassRatio = 100.0;  // grams for kilograms make 1000
 
 struct Member {
   const ClipSetup* setup;
@@ -280,6 +279,9 @@ ConfigurationResult join_members(const std::vector<Member>& members, double grav
   bool biased = false;
   for (const Member& member : members) {
     result.clips.push_back(member.clip->name);
+    if (const auto sd_rad = member.setup->incline_sd_rad) {
+      result.incline_sd_deg = std::min(result.incline_sd_deg.value_or(90.0), degrees_of(*sd_rad));
+    }
     for (const LineFit& line : member.clip->segments) biased = biased || line.parts.law.has_value();
   }
   result.lines = join_lines(members, lines, LawBiasIs::kept);
@@ -297,18 +299,6 @@ ConfigurationResult join_members(const std::vector<Member>& members, double grav
   set_correction(as_fitted.alpha_deg, result.alpha_deg);
   set_correction(as_fitted.v_lim_m_s, result.v_lim_m_s);
   return result;
-}
-
-/// Gliders of one track do not differ so; grams and kilograms do.
-void note_masses(std::vector<ConfigurationResult>& results) {
-  double least_kg = std::numeric_limits<double>::infinity();
-  for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
-  for (ConfigurationResult& result : results) {
-    if (result.mass_kg < kMassRatio * least_kg) continue;
-    result.notes.push_back(
-        fmt::format("mass_kg = {:.6g}, and {:.6g} of the lightest: masses are in kilograms, and one looks like grams",
-                    result.mass_kg, least_kg));
-  }
 }
 
 }  // namespace
@@ -331,7 +321,7 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   for (const std::vector<Member>& members : configurations) {
     results.push_back(join_members(members, gravity_m_s2, lines));
   }
-  note_masses(results);
+  note_statements(results, gravity_m_s2);
   return results;
 }
 

@@ -22,7 +22,7 @@ enum class Severity {
 /// One thing that was found, and what to do about it.
 struct Finding {
   Severity severity = Severity::note;
-  std::string about;   ///< "pattern", "masses", "plumb line", or a clip's name
+  std::string about;   ///< "pattern", "masses", "plumb line", or clips' names
   std::string found;   ///< "the marker is 4.1 px wide"
   std::string advice;  ///< "move closer or use a bigger one"; empty where nothing is to be done
 };
@@ -63,6 +63,7 @@ struct ClipCheck {
   std::optional<double> marker_level;  ///< its own brightness
   double pixel_noise = 0.0;            ///< of a resting pixel from frame to frame; 0 where none is seen
   double centre_sd_px = 0.0;           ///< of one coordinate of the marker's centre, from its fit, median
+  double way_m = 0.0;                  ///< from the uppermost place to the lowest
   double top_speed_m_s = 0.0;
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, by the stated exposure
@@ -83,6 +84,8 @@ struct RecordingCheck {
   std::string name;
   std::optional<PatternCheck> pattern;
   std::vector<ClipCheck> clips;
+  std::vector<ConfigurationResult> configurations;  ///< what the motion makes of the clips, beside what is stated
+  std::vector<PlumbResult> plumbs;
   std::string plumb_failure;      ///< why the plumb line tells nothing; empty where it does, or there is none
   std::vector<Finding> findings;  ///< the gravest first
   bool usable = true;             ///< no finding is Severity::unusable

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/check_recording.h"
+#include "core/finding_words.h"
+#include "core/statement_findings.h"
 
 namespace glidelab::core {
 namespace {
@@ -17,31 +20,16 @@ constexpr double kLeastTiltDeg = 20.0;
 constexpr std::size_t kFewestSightings = 20, kEnoughSightings = 60;
 constexpr double kMostlySeen = 0.95, kPartlySeen = 2.0 / 3.0;
 constexpr std::size_t kFewUnseen = 3;  // frames at a clip's start or end
-constexpr double kFineMarkerPx = 6.0, kWorstMarkerPx = 3.0, kSizeAgrees = 0.15;
+constexpr double kFineMarkerPx = 6.0, kWorstMarkerPx = 3.0;
 constexpr double kFineContrast = 0.15, kFineSignal = 20.0, kWorstSignal = 5.0;
 constexpr double kAtTheTop = 0.985, kTooDark = 0.25, kTooBright = 0.05;
 constexpr double kFineBlur = 0.5, kWorstBlur = 2.0;           // marker diameters
 constexpr double kRateAgrees = 1.5e-3;                        // as frame_source.cpp: rates are stated rounded
 constexpr double kWorstMissing = 0.01, kWorstRepeated = 0.1;  // shares of the frames
-constexpr double kMassRatio = 100.0;                          // grams for kilograms make 1000
-constexpr double kAgainstLaunch = 0.25;                       // share of the points that move freely
 constexpr double kDrift = 0.75;                               // frames
-
-std::string percent(double share) {
-  return fmt::format("{:.3g} %", 100.0 * share);
-}
 
 std::string times(std::size_t count) {
   return count == 1 ? "once" : fmt::format("{} times", count);
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 6;
-  const std::size_t shown = std::min(kMost, names.size());
-  std::string text =
-      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
-  return text;
 }
 
 /// Collects what is found about one thing.
@@ -171,10 +159,6 @@ void judge_light(const ClipCheck& clip, Notebook& book) {
   }
 }
 
-bool size_disagrees(const ClipCheck& clip) {
-  return clip.marker_expected_px > 0.0 && std::abs(std::log(clip.marker_px / clip.marker_expected_px)) > kSizeAgrees;
-}
-
 /// A marker that is smeared away where the glider is fastest is missing at a clip's start or end.
 void judge_ends(const ClipCheck& clip, Notebook& book) {
   const std::size_t before = clip.first, after = clip.frames - clip.first - clip.spanned;
@@ -195,7 +179,7 @@ void judge_ends(const ClipCheck& clip, Notebook& book) {
         fmt::format("the marker is last seen in frame {} of {}", clip.first + clip.spanned, clip.frames));
 }
 
-void judge_marker(const ClipCheck& clip, bool scaled, Notebook& book) {
+void judge_marker(const ClipCheck& clip, Notebook& book) {
   const double share = static_cast<double>(clip.seen) / static_cast<double>(std::max<std::size_t>(clip.spanned, 1));
   if (clip.seen < kEnoughSightings) {
     book.add(clip.seen < kFewestSightings ? Severity::unusable : Severity::change,
@@ -213,14 +197,6 @@ void judge_marker(const ClipCheck& clip, bool scaled, Notebook& book) {
     book.add(clip.marker_px < kWorstMarkerPx ? Severity::unusable : Severity::change,
              fmt::format("the marker is {:.2g} px wide", clip.marker_px), "move closer or use a bigger one");
   }
-  if (size_disagrees(clip)) {
-    book.add(
-        Severity::change,
-        fmt::format("the marker is {:.3g} px wide, and diameter_m makes it {:.3g} px", clip.marker_px,
-                    clip.marker_expected_px),
-        fmt::format("measure diameter_m and {} again: where they disagree one length is wrong, and all speeds with it",
-                    scaled ? "the two points of [scale]" : "square_m"));
-  }
   if (clip.measured_exposure_s) {
     book.add(
         Severity::change,
@@ -228,8 +204,7 @@ void judge_marker(const ClipCheck& clip, bool scaled, Notebook& book) {
                     1e3 * *clip.measured_exposure_s, clip.blur_px ? "; exposure_s says less than half of that" : ""),
         "read the exposure off the camera, and shorten it");
   }
-  const double blur_px = std::max(clip.measured_blur_px.value_or(0.0),
-                                  clip.blur_px.value_or(clip.measured_blur_px ? 0.0 : clip.longest_blur_px));
+  const double blur_px = likely_blur_px(clip);
   if (blur_px > kFineBlur * clip.marker_px) {
     const bool stated = clip.blur_px.has_value() || clip.measured_blur_px.has_value();
     book.add(stated && blur_px > kWorstBlur * clip.marker_px ? Severity::unusable : Severity::change,
@@ -246,46 +221,6 @@ void judge_marker(const ClipCheck& clip, bool scaled, Notebook& book) {
   }
 }
 
-/// Gliders of one track do not differ so; grams and kilograms do.
-void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) {
-  const auto lighter = [](const ClipSetup& a, const ClipSetup& b) { return a.mass_kg < b.mass_kg; };
-  const auto least = std::min_element(experiment.clips.begin(), experiment.clips.end(), lighter);
-  std::vector<std::string> heavy;
-  for (const ClipSetup& clip : experiment.clips) {
-    if (clip.mass_kg >= kMassRatio * least->mass_kg)
-      heavy.push_back(fmt::format("{} ({:.6g})", clip.name, clip.mass_kg));
-  }
-  if (heavy.empty()) return;
-  findings.push_back({Severity::change, "masses",
-                      fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", list_of(heavy), kMassRatio,
-                                  least->name, least->mass_kg),
-                      "state every mass in kilograms: one looks like grams"});
-}
-
-/// A hand rests or pushes before the glider goes its way; free motion turns.
-void judge_launch(const Experiment& experiment, const ClipCheck& clip, Notebook& book) {
-  if (!clip.against_launch || clip.against_launch->share < kAgainstLaunch) return;
-  const AgainstLaunch& against = *clip.against_launch;
-  if (against.until_s && !against.at_a_turn) return;
-  const auto setup = std::find_if(experiment.clips.begin(), experiment.clips.end(),
-                                  [&](const ClipSetup& of) { return of.name == clip.name; });
-  if (setup == experiment.clips.end()) return;
-  const auto group = std::find_if(experiment.groups.begin(), experiment.groups.end(),
-                                  [&](const GroupSetup& of) { return of.name == setup->group; });
-  const bool own = group != experiment.groups.end() && group->downhill;
-  const int downhill = own ? *group->downhill : experiment.track.downhill;
-  const std::string launched = setup->launched == Launched::up     ? "up"
-                               : setup->launched == Launched::down ? "down"
-                                                                   : "released";
-  book.add(
-      Severity::change,
-      fmt::format("{}, as launched = \"{}\" and downhill = \"{}\" say; that is {} of its free motion",
-                  sentence(against), launched, downhill > 0 ? "+X" : "-X", percent(against.share)),
-      fmt::format("see which of the two is wrong: launched of this clip, or downhill in [{}]; if neither is, start_s "
-                  "says where the hand lets go",
-                  own ? "[group]" : "track"));
-}
-
 void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook book) {
   if (!clip.failure.empty()) {
     book.add(Severity::unusable, clip.failure,
@@ -293,14 +228,13 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook bo
     return;
   }
   if (clip.pictures) {
-    judge_marker(clip, experiment.scale.has_value(), book);
+    judge_marker(clip, book);
     judge_light(clip, book);
     judge_times(experiment, clip, book);
   } else if (clip.seen < kEnoughSightings) {
     book.add(clip.seen < kFewestSightings ? Severity::unusable : Severity::change,
              fmt::format("the track has {} points", clip.seen), "record at a higher rate");
   }
-  judge_launch(experiment, clip, book);
   for (const std::string& note : clip.notes) {
     const bool said = note.find("the very picture before them") != std::string::npos ||
                       (note.starts_with("the marker looks ") && size_disagrees(clip));  // above, with advice
@@ -308,18 +242,37 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, Notebook bo
   }
 }
 
+/// What is the same of several clips is said once.
+std::vector<Finding> said_once(std::vector<Finding> findings) {
+  std::vector<Finding> once;
+  std::vector<std::vector<std::string>> about;
+  for (Finding& finding : findings) {
+    const auto same = std::find_if(once.begin(), once.end(), [&](const Finding& before) {
+      return std::tie(before.severity, before.found, before.advice) ==
+             std::tie(finding.severity, finding.found, finding.advice);
+    });
+    if (same != once.end()) {
+      about[static_cast<std::size_t>(same - once.begin())].push_back(finding.about);
+      continue;
+    }
+    about.push_back({finding.about});
+    once.push_back(std::move(finding));
+  }
+  for (std::size_t i = 0; i < once.size(); ++i) once[i].about = list_of(about[i]);
+  return once;
+}
+
 }  // namespace
 
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
-  std::vector<Finding> findings;
-  judge_masses(experiment, findings);
+  std::vector<Finding> findings = statement_findings(experiment, check);
   if (check.pattern) judge_pattern(*check.pattern, {findings, "pattern"});
   for (const ClipCheck& clip : check.clips) judge_clip(experiment, clip, {findings, clip.name});
   if (!check.plumb_failure.empty()) findings.push_back({Severity::unusable, "plumb line", check.plumb_failure, {}});
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return static_cast<int>(a.severity) > static_cast<int>(b.severity);
   });
-  return findings;
+  return said_once(std::move(findings));
 }
 
 }  // namespace glidelab::core

@@ -8,6 +8,7 @@
 
 #include "core/estimate.h"
 #include "core/quantile.h"
+#include "core/stated_values.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -134,6 +135,7 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
     fill(*fit, results.gravity_m_s2, configuration);
     note_fit(*fit, options, configuration);
   }
+  core::note_statements(results.configurations, results.gravity_m_s2);
   return results;
 }
 

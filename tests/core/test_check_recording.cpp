@@ -135,6 +135,24 @@ TEST_CASE("a marker that is not seen at a clip's start or end is a finding, wors
   CHECK(findings(half).at(0).severity == core::Severity::unusable);
 }
 
+TEST_CASE("a marker that is not found for its size is looked for in others, and then its size is the finding") {
+  const tests::TempDir dir;
+  write_clip(dir / "clip.mkv");
+  for (const double factor : {2.4, 1.0 / 2.4}) {
+    core::Experiment experiment = experiment_of({dir / "clip.mkv", dir / "clip.mkv"});
+    experiment.marker->diameter_m *= factor;
+    const core::RecordingCheck check = core::check_recording(experiment, 2);
+    CHECK_FALSE(check.usable);
+    REQUIRE_FALSE(check.findings.empty());
+    INFO(check.findings[0].found);
+    CHECK(check.findings[0].severity == core::Severity::unusable);
+    CHECK(check.findings[0].about == "clip 0, clip 1");
+    CHECK(check.findings[0].found.find("diameter_m") != std::string::npos);
+    // A disc of 12 px, found by another size to a pixel.
+    for (const core::ClipCheck& clip : check.clips) CHECK(std::abs(clip.marker_px - 12.0) < 1.0);
+  }
+}
+
 TEST_CASE("what is found is said once, and in the words of the folder that it is about") {
   core::ClipCheck clip = seen_in(0, 264);
   clip.jumps = 1;
@@ -193,7 +211,7 @@ TEST_CASE("free motion against the stated launch is a finding that names the cli
   CHECK(of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}).empty());
   const auto turned = of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}, -1);
   REQUIRE(turned.size() == 2);
-  CHECK(turned[0].severity == core::Severity::change);
+  CHECK(turned[0].severity == core::Severity::unusable);
   CHECK(turned[0].about == "up-0");
   // It turns at v = 0, in closed form; the first smoothing knows that to some frames of 5 ms.
   const double turn_s = std::log1p(0.6 * kSlope.k_1_s / kSlope.a0(-1)) / kSlope.k_1_s;
@@ -226,7 +244,7 @@ TEST_CASE("masses a hundred times apart are a finding that names the heavy clips
   const auto clip = [](double mass_kg) { return tests::clip_setup(core::Launched::down, 4.3, mass_kg); };
   const auto grams = of_setups({clip(0.318), clip(221.0), clip(0.415)}, {track, track, track});
   REQUIRE(grams.size() == 1);
-  CHECK(grams[0].severity == core::Severity::change);
+  CHECK(grams[0].severity == core::Severity::unusable);
   CHECK_THAT(grams[0].found, Catch::Matchers::Contains("down-1 (221)") && Catch::Matchers::Contains("down-0 (0.318)"));
   CHECK(of_setups({clip(0.01), clip(0.9)}, {track, track}).empty());
 }

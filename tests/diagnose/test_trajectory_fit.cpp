@@ -166,3 +166,31 @@ TEST_CASE("a track with a known force and one without free motion are not fitted
   results.clips[0].forced = false;
   CHECK(diagnose::with_trajectory_fits(results).configurations[0].k_over_m_1_s.why == "no free motion");
 }
+
+TEST_CASE("what is stated wrong is noted beside the fit of the whole motion as it is beside lines") {
+  std::mt19937 random(6);
+  const Pair pair(5e-5, random);
+  core::AnalysisResults results;
+  results.gravity_m_s2 = kGravity;
+  for (const core::FreeBlock* block : {&pair.up, &pair.down}) {
+    core::ClipResult clip;
+    clip.name = block == &pair.up ? "up" : "down";
+    clip.noise_autocovariance_m2 = {25e-10};
+    clip.blocks = {*block};
+    results.clips.push_back(clip);
+  }
+  core::ConfigurationResult light, heavy;
+  light.mass_kg = 0.335;
+  heavy.mass_kg = 335.0;
+  light.clips = heavy.clips = {"up", "down"};
+  light.incline_deg = heavy.incline_deg = std::asin(kLaw[1] / kGravity) * 57.29577951308232;
+  results.configurations = {light, heavy};
+  const auto fitted = diagnose::with_trajectory_fits(results).configurations;
+  CHECK(fitted[0].notes.empty());
+  REQUIRE(fitted[1].notes.size() == 1);
+  CHECK(fitted[1].notes[0].find("grams") != std::string::npos);
+  results.gravity_m_s2 *= 1.6;
+  const auto notes = diagnose::with_trajectory_fits(results).configurations[0].notes;
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("incline_deg says") != std::string::npos);
+}
