@@ -78,11 +78,11 @@ void analyze(const AnalyzeOptions& options) {
                         "the estimator trajectory (lines leave positions off the motion out anyway)"}));
   }
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
+  const fs::path out = output_folder(options.common, "analyze", folders.front());
   refuse_scenarios(options.experiments);
   check_file_options(options, folders);
   const std::string title = title_of(folders, options.bare);
   report::check_gnuplot();
-  const fs::path out = output_folder(options.common, "analyze", folders.front());
   check_writable(out);
   base::StagedOutput staged(out);
 

@@ -27,9 +27,9 @@ struct CharacterizeOptions {
 };
 
 void characterize(const CharacterizeOptions& options) {
+  const fs::path out = output_folder(options.common, "characterize", options.folder);
   const core::FlatFieldFolder folder = core::read_flat_field_folder(options.folder);
   report::check_gnuplot();
-  const fs::path out = output_folder(options.common, "characterize", options.folder);
   check_writable(out);
   base::StagedOutput staged(out);
 

@@ -45,10 +45,10 @@ std::vector<core::Preview> previews_of(const core::Experiment& experiment, const
 }
 
 void check(const CheckOptions& options) {
+  const fs::path out = output_folder(options.common, "check", options.folder);
   refuse_scenarios({options.folder});
   const core::Experiment experiment = core::read_experiment(options.folder, options.outside);
   report::check_gnuplot();
-  const fs::path out = output_folder(options.common, "check", options.folder);
   check_writable(out);
   base::StagedOutput staged(out);
   ProgressDisplay display(options.common.quiet, options.common.verbose);

@@ -79,8 +79,8 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
 }
 
 void plan(const DiagnoseCommand& options) {
-  if (!options.no_page) report::check_gnuplot();
   const fs::path out = output_folder(options.common, "diagnose", options.experiments.front());
+  if (!options.no_page) report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);
   ProgressDisplay display(options.common.quiet, options.common.verbose);
@@ -97,13 +97,13 @@ void plan(const DiagnoseCommand& options) {
 
 void diagnose(const DiagnoseCommand& options) {
   if (options.plan) return plan(options);
-  refuse_scenarios(options.experiments);
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
+  const fs::path out = output_folder(options.common, "diagnose", folders.front());
+  refuse_scenarios(options.experiments);
   std::string title = core::read_experiment(folders.front(), options.outside).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
   if (!options.twin.empty()) check_own_file(options.twin, "--twin", diagnose::kTwinHead);
   if (!options.no_page) report::check_gnuplot();
-  const fs::path out = output_folder(options.common, "diagnose", folders.front());
   check_writable(out);
   base::StagedOutput staged(out);
 

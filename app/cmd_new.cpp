@@ -41,7 +41,7 @@ void make_new(const NewOptions& options) {
   if (where.out.empty()) {
     throw CommandLineError(base::describe({"", 0, "FOLDER", "nothing", "the name of a new folder"}));
   }
-  const fs::path folder = output_folder(where, "new", where.out);
+  const fs::path folder = named_folder(where, "new", where.out);
   check_free(folder);
   const std::string name = folder.filename().string();
   const std::string toml = core::experiment_template(name);

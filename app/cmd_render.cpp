@@ -27,7 +27,7 @@ struct RenderCommandOptions {
 
 void render_command(const RenderCommandOptions& options) {
   const render::Scenario scenario = render::read_scenario(options.scenario);
-  const fs::path out = output_folder(options.common, "render", options.scenario);
+  const fs::path out = named_folder(options.common, "render", options.scenario);
   const fs::path truth = truth_beside(out);
   check_replaceable(out, truth);
   check_writable(out);

@@ -62,13 +62,24 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
   command.add_flag("-v,--verbose", options.verbose, "Say how long each stage took")->excludes(quiet);
 }
 
-fs::path output_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
+fs::path named_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
   const fs::path wanted = options.out.empty() ? fs::path("glidelab-out") / fmt::format("{}-{}", command, name_of(input))
                                               : fs::path(options.out);
   std::error_code error;  // what cannot be resolved (a file in the way) shows where the folder is made
   const fs::path resolved = fs::weakly_canonical(fs::absolute(wanted), error);
   const fs::path folder = error ? fs::absolute(wanted).lexically_normal() : resolved;
   return folder.has_filename() ? folder : folder.parent_path();
+}
+
+fs::path output_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
+  const fs::path folder = named_folder(options, command, input);
+  for (const char* const recording : {"experiment.toml", "characterize.toml"}) {
+    std::error_code ignored;  // what cannot be looked into shows where the folder is written
+    if (!fs::exists(folder / recording, ignored)) continue;
+    throw CommandLineError(base::describe({folder.string(), 0, "--out", fmt::format("a recording ({})", recording),
+                                           "another folder, or a new one inside it"}));
+  }
+  return folder;
 }
 
 fs::path truth_beside(const fs::path& experiment) {

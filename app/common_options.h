@@ -42,6 +42,11 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
                         const std::string& seed_help);
 
 /// --out, or glidelab-out/<command>-<name of input>; absolute, links resolved, no trailing slash.
+std::filesystem::path named_folder(const CommonOptions& options, std::string_view command,
+                                   const std::filesystem::path& input);
+
+/// The same, for results. CommandLineError where it holds a recording (experiment.toml, characterize.toml): results do
+/// not go among what they are made of. A folder inside it may take them.
 std::filesystem::path output_folder(const CommonOptions& options, std::string_view command,
                                     const std::filesystem::path& input);
 

@@ -106,6 +106,40 @@ TEST_CASE("a relative --out with .. ends where the shell would end it, and leave
   CHECK(names_in(temp / "a/b").empty());
 }
 
+TEST_CASE("results do not go among what they are made of, by whatever name the folder is called") {
+  const tests::TempDir temp;
+  fs::create_directories(temp / "track/clips");
+  base::write_file(temp / "track/experiment.toml", "no TOML =\n");  // nothing is read before
+  fs::create_directories(temp / "camera");
+  base::write_file(temp / "camera/characterize.toml", "no TOML =\n");
+  fs::create_directory_symlink("track", temp / "link");
+  const std::vector<std::string> before = names_in(temp / "track");
+  for (const char* name : {"track", "track/", "track/.", "track/clips/..", "link", "./link/../track"}) {
+    for (const char* command : {"analyze", "check", "diagnose"}) {
+      const tests::ProcessResult refused = tests::glidelab({command, "track", "-o", name}, temp.path());
+      INFO(command << " -o " << name << ": " << refused.err);
+      CHECK(refused.status == 2);
+      CHECK(says(refused, "--out: found a recording (experiment.toml)"));
+      CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+    }
+  }
+  CHECK(tests::glidelab({"diagnose", "track", "--plan", "-o", "track"}, temp.path()).status == 2);
+  CHECK(tests::glidelab({"characterize", "camera", "-o", "camera"}, temp.path()).status == 2);
+  CHECK(tests::glidelab({"explore", "-o", "camera"}, temp.path()).status == 2);
+  CHECK(names_in(temp / "track") == before);
+  CHECK(names_in(temp / "camera") == std::vector<std::string>{"characterize.toml"});
+  CHECK(names_in(temp.path()) == std::vector<std::string>{"camera", "link", "track"});
+}
+
+TEST_CASE("results may go into a folder of their own inside the recording's, as the default does there") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "r");
+  CHECK(tests::glidelab({"analyze", "r", "-q", "-o", "r/results"}, temp.path()).status == 0);
+  CHECK(fs::exists(temp / "r/results/results.json"));
+  CHECK(tests::glidelab({"analyze", ".", "-q"}, temp / "r").status == 0);
+  CHECK(fs::exists(temp / "r/glidelab-out/analyze-r/results.json"));
+}
+
 TEST_CASE("experiment.toml reaches outside its folder with --allow-outside only") {
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");
