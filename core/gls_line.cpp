@@ -10,6 +10,7 @@
 
 #include "core/estimate.h"
 #include "core/gls_nodes.h"
+#include "core/jackknife.h"
 #include "core/line_fit.h"
 
 namespace glidelab::core {
@@ -166,22 +167,13 @@ void set_random_part(const Fit& fit, LineUncertainty& parts) {
 /// Delete-one-piece jackknife, where it gives more (line_fit.h).
 void compare_with_jackknife(const Fit& fit, LineUncertainty& parts) {
   if (fit.pieces().size() < kFewestPieces) return;
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  const auto n = static_cast<double>(fit.pieces().size());
+  std::vector<Eigen::Vector2d> moved;
   for (const Fit::Piece& piece : fit.pieces()) {
     const Eigen::Matrix2d rest = fit.information() - piece.design.transpose() * piece.design;
     if (!(rest.determinant() > 1e-9 * fit.information().determinant())) return;  // one piece holds the line alone
-    const Eigen::Vector2d moved = rest.inverse() * (piece.design.transpose() * piece.rho);
-    covariance += moved * moved.transpose() * ((n - 1.0) / n);
+    moved.push_back(rest.inverse() * (piece.design.transpose() * piece.rho));
   }
-  if (covariance(1, 1) <= chi2_ratio_limit(n - 1.0) * parts.var_a0 &&
-      covariance(0, 0) <= chi2_ratio_limit(n - 1.0) * parts.var_k) {
-    return;
-  }
-  parts.var_k = std::max(covariance(0, 0), parts.var_k);
-  parts.cov = covariance(0, 1);
-  parts.var_a0 = std::max(covariance(1, 1), parts.var_a0);
-  parts.degrees = n - 2.0;
+  widen_by_jackknife(moved, parts);
 }
 
 void set_shared_parts(const Fit& fit, const Motion& motion, const GlsInput& input, LineUncertainty& parts) {

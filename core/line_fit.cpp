@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/estimate.h"
+#include "core/jackknife.h"
 #include "core/quantile.h"
 
 namespace glidelab::core {
@@ -150,18 +151,7 @@ void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& norma
     from = to;
   }
   if (without.size() < kFewestStretches) return;
-  const auto n = static_cast<double>(without.size());
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& moved : without) covariance += moved * moved.transpose() * ((n - 1.0) / n);
-  if (covariance(1, 1) <= chi2_ratio_limit(n - 1.0) * parts.var_a0 &&
-      covariance(0, 0) <= chi2_ratio_limit(n - 1.0) * parts.var_k) {
-    return;
-  }
-  parts.var_k = std::max(covariance(0, 0), parts.var_k);
-  parts.cov = covariance(0, 1);
-  parts.var_a0 = std::max(covariance(1, 1), parts.var_a0);
-  parts.degrees = n - 2.0;
-  parts.jackknife = true;
+  if (widen_by_jackknife(without, parts)) parts.jackknife = true;
 }
 
 }  // namespace
