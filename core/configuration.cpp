@@ -1,7 +1,5 @@
-// Clips of one configuration joined: one line for each direction through the points of all of them, and equation (13).
+// Clips of one configuration joined: equation (13) from the lines through the points of all of them (joint_line.h).
 #include <fmt/format.h>
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +7,7 @@
 #include <numbers>
 
 #include "core/estimate.h"
-#include "core/law_bias.h"
+#include "core/joint_line.h"
 #include "core/line_fit.h"
 #include "core/phase_diagram.h"
 #include "core/stated_values.h"
@@ -17,143 +15,9 @@
 namespace glidelab::core {
 namespace {
 
-struct Member {
-  const ClipSetup* setup;
-  const ClipResult* clip;
-};
-
 double degrees_of(double rad) {
   const double degrees = rad * 180.0 / std::numbers::pi;
   return std::round(degrees * 1e9) / 1e9 + 0.0;  // 4, not 4.000000000000001; + 0.0: no -0
-}
-
-Eigen::Matrix2d random_part(const LineUncertainty& parts) {
-  Eigen::Matrix2d covariance;
-  covariance << parts.var_k, parts.cov, parts.cov, parts.var_a0;
-  return covariance;
-}
-
-/// One direction of one clip: the weight of its line (the moments of its points, or the line's inverse covariance), and
-/// the line.
-struct Part {
-  LineFit line;
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  std::vector<double> v, a;
-};
-
-enum class LawBiasIs { kept, taken_off };
-
-std::vector<Part> parts_of(const std::vector<Member>& members, int direction, LineMethod lines, LawBiasIs bias) {
-  std::vector<Part> parts;
-  for (const Member& member : members) {
-    for (const LineFit& line : member.clip->segments) {
-      if (line.direction != direction) continue;
-      Part part;
-      part.line = bias == LawBiasIs::kept ? line : without_law_bias(line);
-      for (const MotionPoint& point : member.clip->motion) {
-        if (point.left_out != LeftOut::used || (point.v_m_s > 0.0 ? 1 : -1) != direction) continue;
-        part.v.push_back(point.v_m_s);
-        part.a.push_back(point.a_m_s2 - point.force_n / member.setup->mass_kg);
-        const Eigen::Vector2d design(-point.v_m_s, 1.0);
-        part.normal += design * design.transpose();
-      }
-      const Eigen::Matrix2d random = random_part(line.parts);
-      if (lines == LineMethod::generalised && random.determinant() > 0.0) part.normal = random.inverse();
-      parts.push_back(std::move(part));
-    }
-  }
-  return parts;
-}
-
-/// How much more the clips' own lines scatter about the joint one than their uncertainty allows: chi^2 per degree of
-/// freedom, where that is more than chance makes it. (Widening by every chi^2 above 1 makes two right lines'
-/// standard deviation 17 % too large on average.)
-double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
-  if (parts.size() < 2) return 1.0;
-  double chi2 = 0.0;
-  for (const Part& part : parts) {
-    Eigen::Matrix2d covariance = random_part(part.line.parts);
-    for (const LineShift& shift : shared_shifts(part.line)) {
-      const Eigen::Vector2d both(shift.k, shift.a0);
-      covariance += both * both.transpose();
-    }
-    if (!(covariance.determinant() > 0.0)) return 1.0;
-    const Eigen::Vector2d off = Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value) - joint;
-    chi2 += off.dot(covariance.inverse() * off);
-  }
-  const double freedom = 2.0 * static_cast<double>(parts.size() - 1);
-  return chi2 > freedom * chi2_ratio_limit(freedom) ? chi2 / freedom : 1.0;
-}
-
-double squared_correlation(const std::vector<Part>& parts) {
-  double n = 0.0, mean_v = 0.0, mean_a = 0.0, vv = 0.0, va = 0.0, aa = 0.0;
-  for (const Part& part : parts) {
-    for (std::size_t i = 0; i < part.v.size(); ++i) {  // Welford's update: no cancellation
-      n += 1.0;
-      const double dv = part.v[i] - mean_v, da = part.a[i] - mean_a;
-      mean_v += dv / n;
-      mean_a += da / n;
-      vv += dv * (part.v[i] - mean_v);
-      va += dv * (part.a[i] - mean_a);
-      aa += da * (part.a[i] - mean_a);
-    }
-  }
-  return vv > 0.0 && aa > 0.0 ? va * va / (vv * aa) : 0.0;
-}
-
-/// Least squares through the points of all parts; ordinary: every point with the same weight. The parts' noise is
-/// independent: cov = N^-1 (sum N_c cov_c N_c) N^-1 with the normal matrices N_c of the parts.
-LineFit join(const std::vector<Part>& parts, int direction) {
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero(), random = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d line = Eigen::Vector2d::Zero(), smoothing = line, mass = line;
-  std::vector<Eigen::Vector2d> calibration;
-  double var_a0 = 0.0, var2_per_degree = 0.0;
-  LineFit joint;
-  joint.direction = direction;
-  joint.from_v_m_s = parts.front().line.from_v_m_s;
-  joint.to_v_m_s = parts.front().line.to_v_m_s;
-  for (const Part& part : parts) {
-    const LineUncertainty& of = part.line.parts;
-    normal += part.normal;
-    line += part.normal * Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value);
-    random += part.normal * random_part(of) * part.normal;
-    const LineShift law = of.law ? of.law->shift : LineShift{};
-    smoothing += part.normal * Eigen::Vector2d(of.smoothing_k + law.k, of.smoothing_a0 + law.a0);
-    mass += part.normal * Eigen::Vector2d(of.mass_k, of.mass_a0);
-    const double share = part.normal(1, 1) * part.normal(1, 1) * of.var_a0;
-    var_a0 += share;
-    var2_per_degree += share * share / of.degrees;
-    joint.points += part.line.points;
-    joint.from_v_m_s = std::min(joint.from_v_m_s, part.line.from_v_m_s);
-    joint.to_v_m_s = std::max(joint.to_v_m_s, part.line.to_v_m_s);
-    joint.parts.scale_relative = std::max(joint.parts.scale_relative, of.scale_relative);
-    if (calibration.size() < of.calibration.size()) calibration.resize(of.calibration.size(), Eigen::Vector2d::Zero());
-    for (std::size_t mode = 0; mode < of.calibration.size(); ++mode) {
-      calibration[mode] += part.normal * Eigen::Vector2d(of.calibration[mode].k, of.calibration[mode].a0);
-    }
-  }
-  const Eigen::Matrix2d inverse = normal.inverse();
-  const Eigen::Vector2d solution = inverse * line;
-  const Eigen::Matrix2d covariance = inverse * random * inverse * excess_scatter(parts, solution);
-  joint.k_over_m_1_s.value = solution[0];
-  joint.a0_m_s2.value = solution[1];
-  joint.parts.var_k = covariance(0, 0);
-  joint.parts.var_a0 = covariance(1, 1);
-  joint.parts.cov = covariance(0, 1);
-  // Welch and Satterthwaite: degrees of freedom of a sum of variances.
-  joint.parts.degrees = var2_per_degree > 0.0 ? std::max(1.0, var_a0 * var_a0 / var2_per_degree)
-                                              : std::numeric_limits<double>::infinity();
-  joint.parts.smoothing_k = (inverse * smoothing)[0];
-  joint.parts.smoothing_a0 = (inverse * smoothing)[1];
-  joint.parts.mass_k = (inverse * mass)[0];
-  joint.parts.mass_a0 = (inverse * mass)[1];
-  for (const Eigen::Vector2d& sum : calibration) {
-    const Eigen::Vector2d shift = inverse * sum;
-    joint.parts.calibration.push_back({shift[0], shift[1]});
-  }
-  joint.r2 = squared_correlation(parts);
-  complete_line(joint);
-  return joint;
 }
 
 /// The mean of the directions' K/m, each weighted by one over its variance. Where the two lie further apart than three
@@ -222,15 +86,6 @@ void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_
   result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus);
 }
 
-std::vector<LineFit> join_lines(const std::vector<Member>& members, LineMethod lines, LawBiasIs bias) {
-  std::vector<LineFit> joined;
-  for (const int direction : {-1, 1}) {
-    const std::vector<Part> parts = parts_of(members, direction, lines, bias);
-    if (!parts.empty()) joined.push_back(join(parts, direction));
-  }
-  return joined;
-}
-
 void recover(const std::vector<LineFit>& lines, double gravity_m_s2, ConfigurationResult& result) {
   result.k_over_m_1_s = mean_k(lines);
   result.v_lim_m_s = limit_velocity(lines);
@@ -251,9 +106,9 @@ void set_correction(const Quantity& as_fitted, Quantity& recovered) {
 }
 
 /// Where there is no line because the motion that it needs went against the stated launch, that is why.
-void tell_launch(const std::vector<Member>& members, ConfigurationResult& result) {
+void tell_launch(const std::vector<MemberClip>& members, ConfigurationResult& result) {
   std::string told, told_of_limit;
-  for (const Member& member : members) {
+  for (const MemberClip& member : members) {
     const std::optional<AgainstLaunch>& against = member.clip->against_launch;
     if (!against || !against->until_s) continue;
     if (std::any_of(result.lines.begin(), result.lines.end(),
@@ -271,13 +126,13 @@ void tell_launch(const std::vector<Member>& members, ConfigurationResult& result
   if (!result.k_over_m_1_s.estimate) result.k_over_m_1_s.why += told;
 }
 
-ConfigurationResult join_members(const std::vector<Member>& members, double gravity_m_s2, LineMethod lines) {
+ConfigurationResult join_members(const std::vector<MemberClip>& members, double gravity_m_s2, LineMethod lines) {
   ConfigurationResult result;
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
   result.group = members.front().setup->group;
   bool biased = false;
-  for (const Member& member : members) {
+  for (const MemberClip& member : members) {
     result.clips.push_back(member.clip->name);
     if (const auto sd_rad = member.setup->incline_sd_rad) {
       result.incline_sd_deg = std::min(result.incline_sd_deg.value_or(90.0), degrees_of(*sd_rad));
@@ -306,19 +161,19 @@ ConfigurationResult join_members(const std::vector<Member>& members, double grav
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
                                                      const std::vector<ClipResult>& clips, double gravity_m_s2,
                                                      LineMethod lines) {
-  std::vector<std::vector<Member>> configurations;
+  std::vector<std::vector<MemberClip>> configurations;
   for (std::size_t i = 0; i < setups.size(); ++i) {
-    const auto same = [&](const std::vector<Member>& members) {
+    const auto same = [&](const std::vector<MemberClip>& members) {
       const ClipSetup& first = *members.front().setup;
       return first.mass_kg == setups[i].mass_kg && first.group == setups[i].group &&
              std::abs(first.incline_rad - setups[i].incline_rad) < kSameIncline_rad;
     };
     const auto found = std::find_if(configurations.begin(), configurations.end(), same);
-    std::vector<Member>& members = found != configurations.end() ? *found : configurations.emplace_back();
+    std::vector<MemberClip>& members = found != configurations.end() ? *found : configurations.emplace_back();
     members.push_back({&setups[i], &clips[i]});
   }
   std::vector<ConfigurationResult> results;
-  for (const std::vector<Member>& members : configurations) {
+  for (const std::vector<MemberClip>& members : configurations) {
     results.push_back(join_members(members, gravity_m_s2, lines));
   }
   note_statements(results, gravity_m_s2);
