@@ -5,7 +5,6 @@
 /// gain less than 15 in log likelihood, moderate ones 15 to 50, strong ones more.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,40 +13,9 @@
 #include <vector>
 
 #include "validate/blind_case.h"
+#include "validate/blind_verdict.h"
 
 namespace glidelab::validate {
-
-struct BlindNamed {
-  std::string id;
-  double probability = 0.0;
-  std::vector<std::string> equivalent_to;
-};
-
-struct BlindRanked {
-  std::vector<std::string> ids;  ///< one or two
-  double probability = 0.0;
-  double log_likelihood_gain = 0.0;
-  double parameters = 0.0;
-  std::optional<double> gap_after;
-};
-
-/// What a diagnosis.json says; "failed" with `why` where there is none.
-struct BlindVerdict {
-  std::string verdict;  ///< none, effect, unknown, failed
-  std::string why;
-  std::vector<BlindNamed> effects;
-  std::vector<BlindRanked> ranking;
-  std::vector<std::string> where;  ///< variables of the regions, the largest excess first
-  double none = 0.0, unknown = 0.0, points = 0.0;
-  double gap_before = 0.0, gap_after = 0.0, gap_error = 0.0;
-};
-
-/// InputError where the file is not a diagnosis.
-BlindVerdict read_blind_verdict(const std::filesystem::path& diagnosis_json);
-
-/// Takes effects that the folder itself tells of out of what a verdict names: what held them besides others counts for
-/// the others, what held them alone for none.
-void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict);
 
 struct BlindOutcome {
   std::size_t index = 0;
