@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "validate/blind_design.h"
@@ -26,6 +27,9 @@ struct BlindEffect {
   std::function<double(double size, double noise_sd_m, const std::vector<std::vector<double>>& speed_m_s)> gain;
   std::string variable;  ///< in which it lies: x_m, v_m_s, t_s, clip, mass_kg; for what is outside
 };
+
+/// An id, and what draws an effect of it.
+using DrawnEffect = std::pair<std::string, std::function<BlindEffect(const BlindDesign&, BlindRandom&)>>;
 
 /// Ids of effects.md that tracks can show.
 const std::vector<std::string>& library_effects();

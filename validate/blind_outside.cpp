@@ -241,8 +241,8 @@ BlindEffect lagging_tracker(const BlindDesign&, BlindRandom&) {
 
 }  // namespace
 
-const std::vector<OutsideEffect>& outside_library() {
-  static const std::vector<OutsideEffect> list = {
+const std::vector<DrawnEffect>& outside_library() {
+  static const std::vector<DrawnEffect> list = {
       {"rough_patch", rough_patch},
       {"cogging", cogging},
       {"rail_joint", rail_joint},

@@ -3,17 +3,12 @@
 /// They test whether a diagnosis knows when it does not know. None of them may ever be added to what it can name.
 #pragma once
 
-#include <functional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "validate/blind_effects.h"
 
 namespace glidelab::validate {
 
-using OutsideEffect = std::pair<std::string, std::function<BlindEffect(const BlindDesign&, BlindRandom&)>>;
-
-const std::vector<OutsideEffect>& outside_library();
+const std::vector<DrawnEffect>& outside_library();
 
 }  // namespace glidelab::validate
