@@ -76,7 +76,9 @@ void ProgressDisplay::erase_bar() {
 void ProgressDisplay::end_stage(Clock::time_point now) {
   if (!verbose_ || stage_.empty()) return;
   erase_bar();
-  fmt::print(stderr, "{}: took {:.2f} s\n", stage_, std::chrono::duration<double>(now - stage_start_).count());
+  const double processor_s = static_cast<double>(std::clock() - stage_clock_) / CLOCKS_PER_SEC;
+  fmt::print(stderr, "{}: took {:.2f} s, {:.3f} s of processor time\n", stage_,
+             std::chrono::duration<double>(now - stage_start_).count(), processor_s);
   stage_.clear();
 }
 
@@ -91,6 +93,7 @@ void ProgressDisplay::update(std::string_view stage, double fraction) {
     fraction_ = 0.0;
     tenths_printed_ = -1;
     stage_start_ = now;
+    stage_clock_ = std::clock();
     last_shown_ = {};
   }
   // Threads report in any order; what is done stays done.

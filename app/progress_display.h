@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -51,6 +52,7 @@ class ProgressDisplay {
   int tenths_printed_ = -1;
   bool bar_shown_ = false;
   Clock::time_point stage_start_;
+  std::clock_t stage_clock_ = 0;  ///< processor time of all threads when the stage began
   Clock::time_point last_shown_;
 };
 

@@ -58,14 +58,14 @@ def write_tracks(experiment, analysed, folder):
 
 
 def estimates(glidelab, folder):
-    """What each of Glidelab's estimators makes of the tracks: results.json and the seconds without the page."""
+    """What each of Glidelab's estimators makes of the tracks: results.json and the seconds of processor time without the page."""
     found = {}
     for estimator in ESTIMATORS:
         out = f"{folder}-{estimator}"
         said = run([glidelab, "analyze", folder, "-o", out, "--estimator", estimator, "-v"])
         with open(os.path.join(out, "results.json"), encoding="utf-8") as text:
             results = json.load(text)
-        stages = re.findall(r"^(.*): took ([\d.]+) s", said, re.M)
+        stages = re.findall(r"^(.*): took .*, ([\d.]+) s of processor time", said, re.M)
         found[estimator] = (results, sum(float(s) for name, s in stages if name != "writing the report"))
     return found
 

@@ -1,4 +1,4 @@
-"""The tables and the plot of bench/peers: peers.md, errors.csv, parameters.csv, peers.svg."""
+"""The tables and the plot of bench/peers: peers.md, readme.md (README's tables as they stand there), errors.csv, parameters.csv, peers.svg."""
 
 import csv
 import os
@@ -8,7 +8,7 @@ COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")  # Okabe and Ito, as the r
 
 
 def number(value, scale=1.0, digits=3):
-    return "–" if value is None else f"{scale * value:.{digits}g}"
+    return "–" if value is None else f"{float(f'{scale * value:.{digits}g}'):.6g}"  # 110, not 1.1e+02
 
 
 def with_sd(parameters, name, digits):
@@ -46,6 +46,44 @@ def recording_table(rows, configurations):
                 body.append([name, row["method"], with_sd(p, "k_over_m", 4), number(p["spread"], digits=2), with_sd(p, "mu", 3),
                              with_sd(p, "alpha_deg", 4), number(row["seconds"], digits=2)])
     return markdown(["clips", "method", "K/m (1/s)", "spread", "µ", "α (°)", "time (s)"], body)
+
+
+def in_readme(row):
+    """Settings that are best in hindsight are nobody's, and a method that gives nothing has no row."""
+    return row["setting"] is None and any(p["k_over_m"] is not None for p in row["parameters"])
+
+
+def readme_truth_table(scenario, rows):
+    body = []
+    for row in filter(in_readme, rows):
+        x, v, a, _ = row["errors"] or [None] * 4
+        off = row["off"]
+        body.append([row["method"], number(x, 1e6, 2), number(v, 1e3, 2), number(a, digits=2), number(off["k_over_m"], 100.0, 2),
+                     number(off["mu"], 1e4, 2), number(off["alpha_deg"], 1e3, 2), number(row["seconds"], digits=2)])
+    return markdown([f"{scenario}: errors of", "x (µm)", "v (mm/s)", "a (m/s²)", "K/m (%)", "µ (1e-4)", "α (0.001°)", "time (s)"], body)
+
+
+def readme_recording_table(recordings):
+    """A method a row, a recording a column: what its first configuration (of the block: each) comes to."""
+    def cell(rows, method):
+        row = next((row for row in rows if row["method"] == method), None)
+        if row is None or row["parameters"][0]["k_over_m"] is None:
+            return "–"
+        of = row["parameters"] if all(p["mu"] is None for p in row["parameters"]) else row["parameters"][:1]
+        texts = [with_sd(p, "k_over_m", 3) for p in of if p["k_over_m"] is not None]
+        texts += [with_sd(of[0], name, 3) for name in ("mu", "alpha_deg") if of[0][name] is not None]
+        return ", ".join(texts)
+
+    methods, header = [], ["K/m (1/s), µ, α (°)"]
+    for name, rows, configurations in recordings:
+        header.append(name + ("" if len(configurations) == 1 else f", {configurations[0]['clips'][0]}…"))
+        methods += [row["method"] for row in rows if row["method"] not in methods and in_readme(row)]
+    body = []
+    for method in methods:
+        taken = [row["seconds"] for _, rows, _ in recordings for row in rows if row["method"] == method]
+        seconds = None if None in taken or not taken else sum(taken)
+        body.append([method, *(cell(rows, method) for _, rows, _ in recordings), number(seconds, digits=2)])
+    return markdown([*header, "time (s)"], body)
 
 
 def plot(clips, path):
@@ -92,6 +130,8 @@ def write(out, clips, recordings):
         text += f"## {name}\n\n{recording_table(rows, configurations)}\n"
     with open(os.path.join(out, "peers.md"), "w", encoding="utf-8") as page:
         page.write(text)
+    with open(os.path.join(out, "readme.md"), "w", encoding="utf-8") as page:
+        page.write("\n".join([readme_truth_table(*one) for one in clips] + ([readme_recording_table(recordings)] if recordings else [])))
     write_csv(os.path.join(out, "errors.csv"),
               ["clips", "method", "setting", "x_m", "v_m_s", "a_m_s2", "a_all_frames_m_s2", "k_over_m_relative", "mu", "alpha_deg", "time_s"],
               [[scenario, row["method"], row["setting"], *(row["errors"] or [None] * 4), *row["off"].values(), row["seconds"]]

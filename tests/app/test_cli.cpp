@@ -211,7 +211,7 @@ TEST_CASE("with --verbose each stage's time is said, and --quiet with it is a co
   const tests::ProcessResult result = tests::glidelab({"simulate", "tiny.toml", "-v"}, temp.path());
   INFO(result.err);
   CHECK(result.status == 0);
-  static const std::regex kTook(R"(simulating: took [0-9]+\.[0-9]{2} s)");
+  static const std::regex kTook(R"(simulating: took [0-9]+\.[0-9]{2} s, [0-9]+\.[0-9]{3} s of processor time)");
   CHECK(std::regex_search(result.err, kTook));
 }
 

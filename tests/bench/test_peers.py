@@ -181,6 +181,13 @@ class Whole(unittest.TestCase):
             self.assertEqual(float(errors["a_m_s2"][errors["method"].index("Tracker")]), a)
             with open(os.path.join(place, "peers.md"), encoding="utf-8") as page:
                 self.assertIn("| Tracker |", page.read())
+            with open(os.path.join(place, "readme.md"), encoding="utf-8") as page:
+                lines = page.read().splitlines()
+            self.assertEqual(lines[2].split("|")[1].strip(), "Tracker")
+            self.assertEqual({line.count("|") for line in lines}, {9})
+            self.assertFalse(any("best" in line for line in lines))
+            recordings = tables.readme_recording_table([("made", rows, [{"clips": ["up"]}])]).splitlines()
+            self.assertEqual({line.count("|") for line in recordings}, {4})
             self.assertTrue(os.path.getsize(os.path.join(place, "peers.svg")) > 0)
 
 
