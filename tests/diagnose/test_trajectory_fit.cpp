@@ -123,9 +123,10 @@ TEST_CASE("motion in one direction determines K/m and the intercept, and says th
   CHECK(found.mu.why.find("0.68") != std::string::npos);  // 0.735 - 0.048 m/s², to 1e-3
 }
 
-TEST_CASE("both directions give alpha, mu and v_lim with intervals that hold the truth") {
-  std::mt19937 random(5);
-  const Pair pair(5e-5, random);
+namespace {
+
+/// Clips "up" and "down" with the noise of 50 um that the pair was made with; no configuration yet.
+core::AnalysisResults results_of(const Pair& pair) {
   core::AnalysisResults results;
   results.gravity_m_s2 = kGravity;
   for (const core::FreeBlock* block : {&pair.up, &pair.down}) {
@@ -135,6 +136,15 @@ TEST_CASE("both directions give alpha, mu and v_lim with intervals that hold the
     clip.blocks = {*block};
     results.clips.push_back(clip);
   }
+  return results;
+}
+
+}  // namespace
+
+TEST_CASE("both directions give alpha, mu and v_lim with intervals that hold the truth") {
+  std::mt19937 random(5);
+  const Pair pair(5e-5, random);
+  core::AnalysisResults results = results_of(pair);
   core::ConfigurationResult configuration;
   configuration.clips = {"up", "down"};
   results.configurations = {configuration};
@@ -170,15 +180,7 @@ TEST_CASE("a track with a known force and one without free motion are not fitted
 TEST_CASE("what is stated wrong is noted beside the fit of the whole motion as it is beside lines") {
   std::mt19937 random(6);
   const Pair pair(5e-5, random);
-  core::AnalysisResults results;
-  results.gravity_m_s2 = kGravity;
-  for (const core::FreeBlock* block : {&pair.up, &pair.down}) {
-    core::ClipResult clip;
-    clip.name = block == &pair.up ? "up" : "down";
-    clip.noise_autocovariance_m2 = {25e-10};
-    clip.blocks = {*block};
-    results.clips.push_back(clip);
-  }
+  core::AnalysisResults results = results_of(pair);
   core::ConfigurationResult light, heavy;
   light.mass_kg = 0.335;
   heavy.mass_kg = 335.0;
