@@ -187,6 +187,14 @@ std::string lines_of(const OverTime& of, int dashes, bool names) {
   return text;
 }
 
+/// Names beside each other in the legend, as many as its width holds.
+std::string key_of(const OverTime& of) {
+  constexpr std::size_t kLongClip = 10;
+  const bool narrow =
+      std::all_of(of.clips.begin(), of.clips.end(), [](const std::string& name) { return name.size() <= kLongClip; });
+  return fmt::format("set key maxcols {}\n", narrow ? 3 : 1);
+}
+
 }  // namespace
 
 std::string axis_of(const std::string& variable) {
@@ -235,7 +243,7 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
   }
   const OverTime light = over_time(curves, "brightness", {"light", {}, {"t (s)", "brightness, change (%)"}}, 100.0);
   if (!light.data.rows.empty()) {
-    const std::string script = std::string(kFrame) + kFromStart +
+    const std::string script = std::string(kFrame) + kFromStart + key_of(light) +
                                "set xlabel 'time t (s)'\nset ylabel 'brightness, change  (%)'\nplot " +
                                lines_of(light, 1, true) + "\n";
     plots.push_back(
@@ -248,8 +256,9 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
   const OverTime down = over_time(curves, "drift down", {"down", {}, {"t (s)", "downwards (px)"}}, 1.0);
   if (across.data.rows.empty() || down.data.rows.empty()) return plots;
   const std::string script =
-      std::string(kFrame) + kFromStart + "set xlabel 'time t (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot " +
-      lines_of(across, 1, true) + ", " + lines_of(down, 3, false) +
+      std::string(kFrame) + kFromStart + key_of(across) +
+      "set xlabel 'time t (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot " + lines_of(across, 1, true) + ", " +
+      lines_of(down, 3, false) +
       ", keyentry with lines lw 1.5 lc rgb '#000000' title 'to the right', keyentry with lines lw 1.5 dt 3 lc rgb "
       "'#000000' title 'downwards'\n";
   plots.push_back({Drawing{script, std::vector{across.data, down.data}},
