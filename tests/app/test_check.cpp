@@ -132,7 +132,8 @@ TEST_CASE("views without the pattern are named, and too few of them make the rec
 TEST_CASE("a rate that is not the file's is told, and a clip that is not there is wrong input") {
   const Recording recording(scenario());
   recording.replace("frame_rate_hz = 100.0", "frame_rate_hz = 240.0");
-  const json check = recording.check(0);
+  const json check = recording.check(4);  // 2.4 times the speed is 5.76 times the acceleration
+  CHECK(finds(check, "unusable", "incline_deg says 4"));
   CHECK(finds(check, "change", "the file says 100 frames a second, experiment.toml 240"));
   fs::remove(recording.temp / "r/clips/up.mkv");
   const tests::ProcessResult gone = tests::glidelab({"check", "r"}, recording.temp.path());
@@ -163,7 +164,7 @@ TEST_CASE("a codec that leaves a slow marker where it was for a frame loses no f
 TEST_CASE("a marker that is not there is a finding of its clip, and names from files stay text") {
   const Recording recording(scenario());
   recording.replace("name = \"up\"", "name = \"<script>alert(1)<x>\"");
-  recording.replace("diameter_m = 0.04", "diameter_m = 0.4");
+  recording.replace("diameter_m = 0.04", "diameter_m = 3.0");  // also a tenth of it is not there
   const json check = recording.check(4);
   CHECK(check.at("clips").at(0).contains("failure"));
   const std::string page = base::read_file(recording.temp / "out/report.html");
