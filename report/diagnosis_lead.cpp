@@ -12,6 +12,10 @@ namespace {
 /// taken as they are, or where it is open.
 std::string consequence(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == "effect") {
+    const bool lost_only = diagnosis.effects.size() == 1 && diagnosis.effects.front().id == "dropped_frames" &&
+                           diagnosis.effects.front().equivalent_to.empty();
+    if (lost_only)
+      return " An analysis of these data says which losses it finds, and puts the times behind them right.";
     return " An analysis of these data leaves that out: its K/m, µ and inclination are those of a law without it, and "
            "may be off by more than they state.";
   }

@@ -8,6 +8,7 @@
 #include "report/blind_targets.h"
 #include "report/camera_report.h"
 #include "report/check_report.h"
+#include "report/diagnosis_lead.h"
 #include "report/diagnosis_report.h"
 #include "report/plan_report.h"
 #include "report/text_table.h"
@@ -181,4 +182,16 @@ TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and 
   camera.full_well_e.value = 10000.0;
   CHECK(tells(report::camera_report(camera), "by 7 electrons (3.5 codes)"));
   CHECK(tells(report::camera_report(camera), "full at 10000 electrons, where it wavers by 1 %"));  // 1 / sqrt(10^4)
+}
+
+TEST_CASE("an analysis leaves an effect out, but puts lost frames right") {
+  diagnose::Diagnosis diagnosis;
+  diagnosis.verdict = "effect";
+  diagnosis.effects.emplace_back().id = "quadratic_drag";
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") != std::string::npos);
+  diagnosis.effects[0].id = "dropped_frames";
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") == std::string::npos);
+  CHECK(report::diagnosis_meaning(diagnosis).find("puts the times behind them right") != std::string::npos);
+  diagnosis.effects.emplace_back().id = "quadratic_drag";
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") != std::string::npos);
 }
