@@ -1,243 +1,27 @@
 #include "validate/sweep_database.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <set>
-
-#include "base/errors.h"
-#include "validate/sweep_design.h"
+#include "validate/sweep_merge.h"
 
 namespace glidelab::validate {
-namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTables = R"sql(
-CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE "schema" ("table" TEXT, "column" TEXT, unit TEXT, meaning TEXT, PRIMARY KEY ("table", "column")) WITHOUT ROWID;
-CREATE TABLE result (run INTEGER, configuration TEXT, estimator TEXT, quantity TEXT, truth REAL, value REAL, sd REAL,
-                     low95 REAL, high95 REAL, least_sd REAL, why TEXT, uncorrected REAL,
-                     PRIMARY KEY (run, configuration, estimator, quantity)) WITHOUT ROWID;
-CREATE TABLE clip (run INTEGER, clip TEXT, estimator TEXT, frames INTEGER, detected INTEGER, bandwidth_s REAL,
-                   position_noise_m REAL, r2_up REAL, r2_down REAL, a_rms_error_m_s2 REAL,
-                   PRIMARY KEY (run, clip, estimator)) WITHOUT ROWID;
-CREATE TABLE timing (run INTEGER PRIMARY KEY, wall_s REAL);
-INSERT INTO "schema" VALUES
- ('run', 'run', '', 'number of the run, from 0'), ('run', 'point', '', 'combination of values: run / replicates'),
- ('run', 'replicate', '', 'which of the runs of its point'), ('run', 'seed', '', 'of all random numbers of the run'),
- ('run', 'status', '', 'done or failed'), ('run', 'why', '', 'why a run failed'),
- ('result', 'run', '', 'number of the run'), ('clip', 'run', '', 'number of the run'),
- ('timing', 'run', '', 'number of the run'), ('clip', 'clip', '', 'its name in the scenario'),
- ('result', 'configuration', '', 'its name in the scenario'), ('result', 'estimator', '', 'how it was analysed'),
- ('result', 'quantity', '', 'what was recovered, with its unit: k_over_m_1_s, mu, alpha_deg, v_lim_m_s'),
- ('result', 'truth', 'of the quantity', 'what the scenario put in; null where it has no such thing'),
- ('result', 'value', 'of the quantity', 'as recovered; null where the data do not determine it'),
- ('result', 'sd', 'of the quantity', 'standard deviation as the analysis states it'),
- ('result', 'low95', 'of the quantity', 'lower end of the stated 95 % interval'),
- ('result', 'high95', 'of the quantity', 'upper end of the stated 95 % interval'),
- ('result', 'least_sd', 'of the quantity', 'Cramer-Rao bound of the standard deviation; of tracks only'),
- ('result', 'why', '', 'why there is no value'),
- ('result', 'uncorrected', 'of the quantity', 'value before the smoothing''s bias was taken off; null where none was'),
- ('clip', 'estimator', '', 'how it was analysed'), ('clip', 'frames', '', 'of the clip'),
- ('clip', 'detected', '', 'frames in which the marker was found'),
- ('clip', 'bandwidth_s', 's', 'standard deviation of the smoothing kernel'),
- ('clip', 'position_noise_m', 'm', 'standard deviation of a position, as estimated'),
- ('clip', 'r2_up', '', 'of the line a(v) for v < 0'), ('clip', 'r2_down', '', 'of the line a(v) for v > 0'),
- ('clip', 'a_rms_error_m_s2', 'm/s^2', 'root mean square of a(t) minus the truth, over the points that count'),
- ('timing', 'wall_s', 's', 'wall time of the run on its thread');
-)sql";
-
-/// A key's unit is the end of its name.
-std::string unit_of_key(const std::string& key) {
-  static const std::vector<std::pair<const char*, const char*>> kUnits = {{"_over_m_1_s", "1/s"},
-                                                                          {"_m_s2", "m/s^2"},
-                                                                          {"_n_s_m", "N s/m"},
-                                                                          {"_e_s", "e-/s"},
-                                                                          {"_photons_s", "1/s"},
-                                                                          {"_m_s", "m/s"},
-                                                                          {"_kbit_s", "kbit/s"},
-                                                                          {"_kg_m", "kg/m"},
-                                                                          {"_kg", "kg"},
-                                                                          {"_deg", "deg"},
-                                                                          {"_hz", "Hz"},
-                                                                          {"_px", "px"},
-                                                                          {"_ppm", "1e-6"},
-                                                                          {"_s", "s"},
-                                                                          {"_m", "m"},
-                                                                          {"_n", "N"},
-                                                                          {"_e", "e-"}};
-  const std::size_t index = key.rfind('[');
-  const std::string bare = key.back() == ']' && index != std::string::npos ? key.substr(0, index) : key;
-  for (const auto& [ending, unit] : kUnits) {
-    if (bare.ends_with(ending)) return unit;
-  }
-  return {};
-}
-
-std::string run_table(const Sweep& sweep) {
-  std::string sql =
-      "CREATE TABLE run (run INTEGER PRIMARY KEY, point INTEGER NOT NULL, replicate INTEGER NOT NULL, seed INTEGER NOT "
-      "NULL, status TEXT NOT NULL, why TEXT";
-  for (const Axis& axis : sweep.axes) sql += ", " + sql_name(axis.name);
-  return sql + ")";
-}
-
-std::vector<std::pair<std::string, std::string>> identity_of(const Sweep& sweep, const std::string& version) {
-  std::vector<std::pair<std::string, std::string>> entries = {{"format", "2"},
-                                                              {"program version", version},
-                                                              {"sweep", sweep.name},
-                                                              {"sweep file's text", sweep.text},
-                                                              {"scenario's text", sweep.scenario_text},
-                                                              {"seed", fmt::format("{}", sweep.seed)},
-                                                              {"runs", fmt::format("{}", run_count(sweep))}};
-  for (std::size_t i = 0; i < sweep.camera_files.size(); ++i) {
-    entries.emplace_back(fmt::format("camera file {}", i + 1), sweep.camera_files[i]);
-  }
-  return entries;
-}
-
-std::string shorten(const std::string& text) {
-  constexpr std::size_t kShown = 60;
-  if (text.find('\n') != std::string::npos) return "another text";
-  return fmt::format("\"{}\"", text.size() > kShown ? text.substr(0, kShown) + "…" : text);
-}
-
-/// InputError where the database is not one of this sweep.
-void check_identity(Database& database, const std::vector<std::pair<std::string, std::string>>& expected) {
-  std::vector<std::pair<std::string, std::string>> found;
-  SqlStatement tables = database.prepare("SELECT count(*) FROM sqlite_master WHERE name IN ('sweep', 'run', 'result')");
-  tables.step();
-  if (tables.integer(0) == 3) found = sweep_entries(database);
-  for (const auto& wanted : expected) {
-    const auto entry =
-        std::find_if(found.begin(), found.end(), [&](const auto& pair) { return pair.first == wanted.first; });
-    if (entry != found.end() && entry->second == wanted.second) continue;
-    throw base::InputError(base::Issue{
-        database.file().string(), 0, wanted.first, entry == found.end() ? "nothing" : shorten(entry->second),
-        fmt::format("{}: a database goes on with the sweep and the program that began it; give another --out",
-                    wanted.second.find('\n') == std::string::npos ? shorten(wanted.second) : "that of this sweep")});
-  }
-}
-
-/// InputError where a row is of no run of the sweep, or of one that has another seed there.
-void check_runs(Database& database, const Sweep& sweep) {
-  const std::uint64_t count = run_count(sweep);
-  const auto refuse = [&](std::int64_t run, const std::string& found, const std::string& expected) {
-    throw base::InputError(base::Issue{database.file().string(), 0, fmt::format("run {}", run), found, expected});
-  };
-  SqlStatement runs = database.prepare("SELECT run, seed FROM run");
-  while (runs.step()) {
-    const std::int64_t run = runs.integer(0);
-    if (run < 0 || static_cast<std::uint64_t>(run) >= count) {
-      refuse(run, "no run of this sweep", fmt::format("the runs 0 to {}", count - 1));
-    }
-    const std::uint64_t seed = seed_of(sweep, static_cast<std::uint64_t>(run));
-    if (static_cast<std::uint64_t>(runs.integer(1)) == seed) continue;
-    refuse(run, fmt::format("the seed {}", runs.integer(1)), fmt::format("{}, which is that of this run", seed));
-  }
-  for (const char* const table : {"result", "clip", "timing"}) {
-    SqlStatement stray =
-        database.prepare(fmt::format("SELECT run FROM {} WHERE run NOT IN (SELECT run FROM run) LIMIT 1", table));
-    if (stray.step()) refuse(stray.integer(0), fmt::format("rows in {} alone", table), "a row in run as well");
-  }
-}
-
-/// Its first column is the run.
-struct TableOfRuns {
-  const char* name;
-  int columns;
-};
-
-/// All rows of single runs, in the order of their keys.
-class RowsOfRun {
- public:
-  RowsOfRun(Database& database, const std::vector<TableOfRuns>& tables) : tables_(tables) {
-    for (const TableOfRuns& table : tables) {
-      select_.push_back(
-          database.prepare(fmt::format("SELECT * FROM {} WHERE run = ?1 ORDER BY 1, 2, 3, 4", table.name)));
-    }
-  }
-  /// The other has the same rows of the run.
-  bool same(std::int64_t run, RowsOfRun& other) {
-    bool all = true;
-    for (std::size_t t = 0; t < tables_.size() && all; ++t) {
-      SqlStatement &a = select_[t], &b = other.select_[t];
-      a.bind(1, run);
-      b.bind(1, run);
-      for (bool more = true; more && all;) {
-        more = a.step();
-        all = more == b.step() && (!more || a.same_row(b, tables_[t].columns));
-      }
-      a.reset();
-      b.reset();
-    }
-    return all;
-  }
-
- private:
-  std::vector<TableOfRuns> tables_;
-  std::vector<SqlStatement> select_;
-};
-
-bool has_run(const fs::path& file, std::int64_t run) {
-  Database database(file, Database::Mode::read);
-  return database.prepare("SELECT 1 FROM run WHERE run = ?1").bind(1, run).step();
-}
-
-}  // namespace
-
-std::vector<std::pair<std::string, std::string>> sweep_entries(Database& database) {
-  std::vector<std::pair<std::string, std::string>> entries;
-  SqlStatement select = database.prepare("SELECT key, value FROM sweep ORDER BY key");
-  while (select.step()) entries.emplace_back(select.text(0), select.text(1));
-  return entries;
-}
-
-WriterLock::WriterLock(const fs::path& database) {
-  const std::string name = database.string() + "-lock";
-  file_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (file_ < 0) base::throw_system_error(name, "cannot be made", errno);
-  if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-  const int error = errno;
-  ::close(file_);
-  if (error == EWOULDBLOCK) {
-    throw base::EnvironmentError(
-        fmt::format("{}: another process is filling it; wait for it, or give another --out", database.string()));
-  }
-  base::throw_system_error(name, "cannot be locked", error);
-}
-
-WriterLock::~WriterLock() {
-  ::close(file_);  // the file stays: to remove it would let two processes lock two files of one name
-}
-
 SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std::string& version, const Shard& shard)
-    : lock_(file), database_(file, Database::Mode::create), identity_(identity_of(sweep, version)), sweep_(sweep) {
+    : lock_(file), database_(file, Database::Mode::create), entries_(entries_of(sweep, version)), sweep_(sweep) {
   SqlStatement any = database_.prepare("SELECT count(*) FROM sqlite_master");
   any.step();
   const bool empty = any.integer(0) == 0;
   any.reset();
-  identity_.emplace_back("shard", fmt::format("{}/{}", shard.index, shard.count));
+  entries_.emplace_back("shard", fmt::format("{}/{}", shard.index, shard.count));
   if (empty) {
     database_.run("PRAGMA journal_mode = WAL");
     Transaction transaction(database_);
-    database_.run(kTables);
-    database_.run(run_table(sweep));
-    SqlStatement column = database_.prepare("INSERT INTO \"schema\" VALUES ('run', ?1, ?2, ?3)");
-    for (const Axis& axis : sweep.axes) {
-      column.bind(1, axis.name).bind(2, axis.choices.empty() ? unit_of_key(axis.keys.front()) : "");
-      column.bind(3, fmt::format("varied: {}", fmt::join(axis.keys, ", "))).run();
-    }
-    SqlStatement entry = database_.prepare("INSERT INTO sweep VALUES (?1, ?2)");
-    for (const auto& [key, value] : identity_) entry.bind(1, key).bind(2, value).run();
+    make_tables(database_, sweep, entries_);
     transaction.commit();
   } else {
-    check_identity(database_, identity_);
+    check_entries(database_, entries_);
   }
   database_.run("PRAGMA synchronous = NORMAL");  // a killed process loses nothing; a power cut at most the last runs
   std::string marks;
@@ -301,58 +85,9 @@ void SweepDatabase::add(const RunRecord& record, double wall_s) {
 }
 
 void SweepDatabase::take(const std::vector<fs::path>& others) {
-  for (const fs::path& other : others) {  // what is no database of this sweep is said before anything is taken
-    std::error_code error;
-    if (!fs::is_regular_file(other, error)) {
-      throw base::InputError(base::Issue{other.string(), 0, "", "no such file", "a database of this sweep"});
-    }
-    Database there(other, Database::Mode::read);
-    std::vector<std::pair<std::string, std::string>> expected = identity_;
-    expected.pop_back();  // of any shard
-    check_identity(there, expected);
-    check_runs(there, sweep_);
-  }
-  Transaction transaction(database_);
-  const std::vector<TableOfRuns> tables = {
-      {"run", 6 + static_cast<int>(sweep_.axes.size())}, {"result", 12}, {"clip", 10}};
-  for (std::size_t which = 0; which < others.size(); ++which) {
-    Database there(others[which], Database::Mode::read);
-    RowsOfRun here_rows(database_, tables), there_rows(there, tables);
-    SqlStatement known = database_.prepare("SELECT 1 FROM run WHERE run = ?1");
-    std::set<std::int64_t> alike;
-    SqlStatement runs = there.prepare("SELECT run FROM run");
-    while (runs.step()) {
-      const std::int64_t run = runs.integer(0);
-      const bool twice = known.bind(1, run).step();
-      known.reset();
-      if (!twice) continue;
-      if (!here_rows.same(run, there_rows)) {
-        const auto before = others.begin() + static_cast<std::ptrdiff_t>(which);
-        const auto first =
-            std::find_if(others.begin(), before, [&](const fs::path& other) { return has_run(other, run); });
-        const fs::path& has = first == before ? database_.file() : *first;
-        throw base::InputError(base::Issue{others[which].string(), 0, fmt::format("run {}", run),
-                                           fmt::format("other results than {} has of it", has.string()),
-                                           "the same; leave one of the two out, or give another --out"});
-      }
-      alike.insert(run);
-    }
-    runs.reset();
-    const auto copy = [&](const TableOfRuns& table) {
-      std::string marks = "?1";
-      for (int i = 2; i <= table.columns; ++i) marks += fmt::format(", ?{}", i);
-      SqlStatement add = database_.prepare(fmt::format("INSERT INTO {} VALUES ({})", table.name, marks));
-      SqlStatement rows = there.prepare(fmt::format("SELECT * FROM {}", table.name));
-      while (rows.step()) {
-        if (alike.contains(rows.integer(0))) continue;
-        for (int i = 0; i < table.columns; ++i) add.bind_column(i + 1, rows, i);
-        add.run();
-      }
-    };
-    for (const TableOfRuns& table : tables) copy(table);
-    copy({"timing", 2});
-  }
-  transaction.commit();
+  SweepEntries of_any_shard = entries_;
+  of_any_shard.pop_back();  // the shard
+  take_over(database_, sweep_, of_any_shard, others);
 }
 
 double bytes_of(const RunRecord& record) {

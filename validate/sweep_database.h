@@ -14,7 +14,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +21,8 @@
 #include "validate/sqlite.h"
 #include "validate/sweep.h"
 #include "validate/sweep_run.h"
+#include "validate/sweep_tables.h"
+#include "validate/writer_lock.h"
 
 namespace glidelab::validate {
 
@@ -29,18 +30,6 @@ namespace glidelab::validate {
 struct Shard {
   std::uint64_t index = 1, count = 1;
   bool has(std::uint64_t run) const { return run % count == index - 1; }
-};
-
-/// What is held for as long as a process writes a database. EnvironmentError where another one does.
-class WriterLock {
- public:
-  explicit WriterLock(const std::filesystem::path& database);
-  ~WriterLock();
-  WriterLock(const WriterLock&) = delete;
-  WriterLock& operator=(const WriterLock&) = delete;
-
- private:
-  int file_ = -1;
 };
 
 class SweepDatabase {
@@ -65,15 +54,12 @@ class SweepDatabase {
  private:
   WriterLock lock_;
   Database database_;
-  std::vector<std::pair<std::string, std::string>> identity_;
+  SweepEntries entries_;  // the shard is the last
   Sweep sweep_;
   std::optional<SqlStatement> add_run_, add_result_, add_clip_, add_timing_;
 };
 
 /// Bytes that the rows of a run take, roughly: for the estimate before a sweep.
 double bytes_of(const RunRecord& record);
-
-/// The sweep that a database is of, for who has only the database: name and value of each entry of the table `sweep`.
-std::vector<std::pair<std::string, std::string>> sweep_entries(Database& database);
 
 }  // namespace glidelab::validate
