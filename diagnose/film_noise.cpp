@@ -1,190 +1,28 @@
 #include "diagnose/film_noise.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "base/dense.h"
+#include "core/median.h"
 #include "diagnose/effect_scan.h"
+#include "diagnose/noise_likelihood.h"
+#include "diagnose/score_space.h"
 #include "diagnose/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr std::size_t kMostPoints = 1920;  // of all motions: more add nothing to a handful of numbers
 constexpr std::size_t kFewestPoints = 80;  // of all motions
-constexpr std::size_t kFewestInChunk = 24;
-constexpr double kOwn = 0.3;           // motions differ by so much, in the logarithm of s
-constexpr double kMostOff = 8.0;       // standard deviations off the neighbours
-constexpr double kWaveShows = 5.0;     // log evidence
-constexpr double kBeyondDoubt = 5.0;   // log evidence
-constexpr double kLeastJitter = 1e-5;  // s; a hundredth of a short exposure
-constexpr double kWorth = 1.0;         // log likelihood that one more part of the noise must gain
-
-// Sine and cosine, with time and its square: a frequency between two that are tried is half a radian off at the ends of
-// such points at most, of which these leave half a percent; a size that grows across the picture is in them.
-constexpr Eigen::Index kWaveColumns = 6;
-
-/// Points that are taken together, and frames from bump to bump of what is set aside as slow. A codec that makes
-/// pictures out of those before hands its errors on: what lasts for up to a dozen frames must be left to be seen.
-struct Slow {
-  std::size_t chunk = 80;
-  double knot = 10.0;
-};
-constexpr Slow kNew, kHandedOn{160, 30.0};
-
-// Of such a codec, measured on clips with nothing wrong whose truth is known (H.264 of crf 14 to 18, seeds 3000 to
-// 8000, tracked positions less the true ones): neighbours correlate by 0.15 to 0.35, every other frame by 0.3 to 0.4,
-// the fourth by 0.1 to 0.3, the eighth by 0 to 0.15. That is a part that lasts, 0.8 of s, for some five frames; clips
-// differ by a factor of about 1.6. The positions themselves have the last word.
-constexpr double kLasts = 0.8, kLastsFactor = 0.5;  // over s; in its logarithm
+constexpr double kWaveShows = 5.0;         // log evidence
+constexpr double kBeyondDoubt = 5.0;       // log evidence
+constexpr double kLeastJitter = 1e-5;      // s; a hundredth of a short exposure
+constexpr double kWorth = 1.0;             // log likelihood that one more part of the noise must gain
 
 // It also codes anew what moves and leaves what rests as it was: its errors grow with the speed as those of uneven
 // times do. Measured on clips with nothing wrong by two renderers (H.264 of crf 14 to 23, 60 to 240 frames a second, 25
 // experiments): at top speed 0.4 to 1.5 of s, and twice 2 and 5, where a marker moves by two pixels a frame at most.
 constexpr double kCodecMoves = 1.0, kCodecMovesFactor = 0.8;  // over s; in its logarithm
-
-struct Chunk {
-  std::size_t motion = 0;
-  SeenFrames frames;
-  Eigen::MatrixXd slow;  // orthonormal or not: what is projected out
-  Eigen::VectorXd off_px;
-};
-
-/// Frames of a motion that are no outliers, in stretches. Beside a wave, the fit's errors by the place between pixels
-/// have taken up some of it, and are set aside as well.
-void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double wave_hz, const Slow& slow,
-                std::vector<Chunk>& chunks) {
-  const TrackedMotion& motion = set.motions[i];
-  const SeenFrames all = seen_frames(motion, set.clips[motion.clip].frame_rate_hz);
-  const std::size_t points = motion.t_s.size(), parts = std::max<std::size_t>(1, points / slow.chunk);
-  for (std::size_t part = 0; part < parts; ++part) {
-    Chunk chunk;
-    chunk.motion = i;
-    std::vector<double> off, t;
-    std::vector<std::vector<double>> pixel(motion.shared_m.size() -
-                                           std::min(motion.shared_m.size(), motion.first_pixel_mode));
-    for (std::size_t p = points * part / parts; p < points * (part + 1) / parts; ++p) {
-      const bool inside = p >= 2 && p + 2 < points;
-      const bool lost = inside && std::abs(neighbour_residual(motion.t_s, motion.x_m, p)) > kMostOff * motion.sd_of(p);
-      if (motion.outlier[p] != 0 || lost) continue;
-      chunk.frames.along_px.push_back(all.along_px[p]);
-      chunk.frames.frame.push_back(all.frame[p]);
-      chunk.frames.v_px_s.push_back(all.v_px_s[p]);
-      t.push_back(motion.t_s[p]);
-      for (std::size_t m = 0; m < pixel.size(); ++m) {
-        pixel[m].push_back(motion.shared_m[motion.first_pixel_mode + m][p] / motion.m_per_px);
-      }
-      off.push_back(fit.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p) / motion.m_per_px);
-    }
-    if (off.size() < kFewestInChunk) continue;
-    const auto n = std::ssize(off);
-    chunk.off_px = Eigen::Map<const Eigen::VectorXd>(off.data(), n);
-    const double first = chunk.frames.frame.front(), span = chunk.frames.frame.back() - first;
-    const auto bumps = static_cast<Eigen::Index>(std::ceil(span / slow.knot)) + 1;
-    const double width = span / static_cast<double>(bumps - 1);
-    const Eigen::Index of_wave = wave_hz > 0.0 ? kWaveColumns : 0;
-    const Eigen::Index of_pixels = wave_hz > 0.0 ? static_cast<Eigen::Index>(pixel.size()) : 0;
-    chunk.slow = Eigen::MatrixXd::Zero(n, bumps + of_wave + of_pixels);
-    for (Eigen::Index p = 0; p < n; ++p) {
-      const auto q = static_cast<std::size_t>(p);
-      for (Eigen::Index b = 0; b < bumps; ++b) {
-        const double z = (chunk.frames.frame[q] - first) / width - static_cast<double>(b);
-        chunk.slow(p, b) = std::exp(-0.5 * z * z);
-      }
-      for (Eigen::Index w = 0; w < of_wave; ++w) {
-        const double phase = kTurn * wave_hz * t[q], along = 2.0 * (t[q] - t.front()) / (t.back() - t.front()) - 1.0;
-        chunk.slow(p, bumps + w) = (w % 2 == 0 ? std::sin(phase) : std::cos(phase)) * std::pow(along, w / 2);
-      }
-      for (Eigen::Index m = 0; m < of_pixels; ++m) {
-        chunk.slow(p, bumps + of_wave + m) = pixel[static_cast<std::size_t>(m)][q];
-      }
-    }
-    chunks.push_back(std::move(chunk));
-  }
-}
-
-/// What is left of a motion under a shape: the residuals' square over unit s, their number, log |V| and the like.
-struct Left {
-  double square = 0.0, freedom = 0.0, logs = 0.0;
-};
-
-struct Likelihood {
-  double value = -std::numeric_limits<double>::infinity();
-  double white_px = 0.0;
-  std::vector<double> own_px;  // s of each motion
-};
-
-class NoiseLikelihood {
- public:
-  NoiseLikelihood(std::vector<Chunk> chunks, std::size_t motions, double pilot_px, bool handed_on)
-      : chunks_(std::move(chunks)), motions_(motions), pilot_px_(pilot_px), handed_on_(handed_on) {}
-
-  /// What is known beforehand of such a file's noise, as a log likelihood.
-  double known(const NoiseShape& shape) const {
-    if (!handed_on_) return 0.0;
-    constexpr double kAsGoodAsNone = 0.1;
-    return -0.5 * std::pow(std::log(std::max(shape.lasting, kAsGoodAsNone) / kLasts) / kLastsFactor, 2);
-  }
-
-  /// With what is known beforehand.
-  Likelihood of(const NoiseShape& shape) const {
-    std::vector<Left> left(motions_);
-    for (const Chunk& chunk : chunks_) add(chunk, shape, left[chunk.motion]);
-    Likelihood found;
-    double log_s = std::log(pilot_px_);
-    std::vector<double> own(motions_, log_s);
-    for (int round = 0; round < 8; ++round) {
-      double mean = 0.0, many = 0.0;
-      for (std::size_t i = 0; i < motions_; ++i) {
-        own[i] = log_s;
-        if (left[i].freedom <= 0.0) continue;
-        // Newton's steps for the largest of -freedom log s_i - square/(2 s_i²) - (log(s_i/s)/kOwn)²/2.
-        for (int step = 0; step < 12; ++step) {
-          const double over = left[i].square * std::exp(-2.0 * own[i]);
-          const double slope = -left[i].freedom + over - (own[i] - log_s) / (kOwn * kOwn);
-          own[i] += std::clamp(slope / (2.0 * over + 1.0 / (kOwn * kOwn)), -0.5, 0.5);
-        }
-        mean += own[i];
-        many += 1.0;
-      }
-      if (many > 0.0) log_s = mean / many;
-    }
-    found.value = known(shape);
-    for (std::size_t i = 0; i < motions_; ++i) {
-      found.value -= left[i].freedom * own[i] + 0.5 * left[i].square * std::exp(-2.0 * own[i]) + 0.5 * left[i].logs +
-                     0.5 * std::pow((own[i] - log_s) / kOwn, 2);
-      found.own_px.push_back(std::exp(own[i]));
-    }
-    found.white_px = std::exp(log_s);
-    return found;
-  }
-
- private:
-  void add(const Chunk& chunk, const NoiseShape& shape, Left& left) const {
-    const Eigen::Index n = chunk.off_px.size(), k = chunk.slow.cols();
-    const Eigen::MatrixXd lower = base::cholesky_lower(covariance_of(chunk.frames, shape, pilot_px_));
-    Eigen::MatrixXd both(n, k + 1);
-    both << chunk.slow, chunk.off_px;
-    both = base::solve_lower(lower, both);
-    left.logs += 2.0 * lower.diagonal().array().log().sum();
-    Eigen::MatrixXd normal = base::transposed_product(both, both);
-    normal.diagonal().head(k).array() *= 1.0 + 1e-10;
-    // The last pivot's square is what the slow columns leave of the residuals; the others' make log |B'V^-1 B|.
-    const Eigen::MatrixXd factor = base::cholesky_lower(normal);
-    left.square += factor(k, k) * factor(k, k);
-    for (Eigen::Index c = 0; c < k; ++c) left.logs += 2.0 * std::log(factor(c, c));
-    left.freedom += static_cast<double>(n - k);
-  }
-
-  std::vector<Chunk> chunks_;
-  std::size_t motions_;
-  double pilot_px_;
-  bool handed_on_;
-};
 
 struct Dial {
   double NoiseShape::*member;
@@ -304,18 +142,9 @@ bool find_film_noise(TrackSet& set, const MotionFit& fit) {
     for (const double v : seen_frames(motion, 1.0).v_px_s) top_px_s = std::max(top_px_s, std::abs(v));
   }
   if (points < kFewestPoints) return false;
-  std::vector<Chunk> chunks;
-  const double wave_hz = wave_frequency(set, fit);
-  const Slow& slow = set.handed_on ? kHandedOn : kNew;
-  for (std::size_t i = 0; i < set.motions.size(); ++i) add_chunks(set, fit, i, wave_hz, slow, chunks);
+  std::vector<NoiseChunk> chunks = noise_chunks(set, fit, wave_frequency(set, fit));
   if (chunks.empty()) return false;
-  if (const std::size_t most = kMostPoints / slow.chunk; chunks.size() > most) {
-    std::vector<Chunk> some;
-    for (std::size_t k = 0; k < most; ++k) some.push_back(chunks[k * chunks.size() / most]);
-    chunks = std::move(some);
-  }
-  std::nth_element(sds.begin(), sds.begin() + std::ssize(sds) / 2, sds.end());
-  const double pilot_px = sds[sds.size() / 2];
+  const double pilot_px = core::median_of(std::move(sds));
   const NoiseLikelihood likelihood(std::move(chunks), set.motions.size(), pilot_px, set.handed_on);
 
   const std::vector<double> sizes = {0.25, 0.5, 0.75, 1.1, 1.6, 2.4, 3.6, 5.4};

@@ -2,13 +2,12 @@
 /// how much grows with the speed.
 ///
 /// Restricted maximum likelihood: those amplitudes and lengths that make most likely what the positions hold besides
-/// everything slow (bumps ten frames apart are projected out, and, where one shows, a wave with what the fit made of
-/// it), so that neither the usual model nor what it lacks goes in. The white part may differ between motions by some
-/// 30 %.
+/// everything slow (noise_chunks.h: bumps are projected out, and, where one shows, a wave with what the fit made of
+/// it), so that neither the usual model nor what it lacks goes in. The white part may differ between motions by some 30
+/// %.
 #pragma once
 
 #include "diagnose/motion_fit.h"
-#include "diagnose/score_space.h"
 
 namespace glidelab::diagnose {
 

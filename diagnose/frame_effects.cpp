@@ -1,12 +1,12 @@
 #include "diagnose/frame_effects.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <utility>
 
-#include "base/dense.h"
+#include "core/median.h"
+#include "diagnose/leftover.h"
 #include "diagnose/speed_noise.h"
 
 namespace glidelab::diagnose {
@@ -15,95 +15,7 @@ namespace {
 constexpr double kMostScatter = 6.0;        // standard deviations
 constexpr std::size_t kFewestScatter = 50;  // points from which a scatter's shape tells anything
 constexpr double kMostAside = 0.2;
-constexpr double kBeyondDoubt = 5.0;                         // log evidence
-constexpr std::array kPointsABump = {14.0, 10.0, 7.0, 5.0};  // of the smooth curve
-constexpr double kFewestBumps = 4.0;
-constexpr double kOff = 5.0;  // standard deviations
-constexpr double kTwoSd = 2.0;
-
-struct Leftover {
-  std::vector<double> over_sd;  // all points of a motion, outliers too, each over its own noise
-  std::vector<double> v;
-};
-
-/// What a least-squares curve of bumps, one to so many points, leaves of `r`; outliers do not count. Bumps stand before
-/// the first point and behind the last as well: without them the curve would bend away there.
-Eigen::VectorXd left_by_curve(const TrackedMotion& data, const Eigen::VectorXd& r, double points_a_bump,
-                              Eigen::Index& bumps) {
-  const Eigen::Index n = r.size();
-  const auto parts = static_cast<Eigen::Index>(std::max(kFewestBumps, static_cast<double>(n) / points_a_bump)) - 1;
-  const double span = data.t_s.back() - data.t_s.front(), width = span / static_cast<double>(parts);
-  bumps = parts + 3;
-  Eigen::MatrixXd basis(n, bumps);
-  for (Eigen::Index p = 0; p < n; ++p) {
-    for (Eigen::Index b = 0; b < bumps; ++b) {
-      const double z = (data.t_s[static_cast<std::size_t>(p)] - data.t_s.front()) / width - static_cast<double>(b - 1);
-      basis(p, b) = std::abs(z) < 4.0 ? std::exp(-0.5 * z * z) : 0.0;
-    }
-  }
-  Eigen::VectorXd rest = r;
-  std::vector<char> out = data.outlier;
-  for (int round = 0; round < 3; ++round) {
-    Eigen::MatrixXd kept = basis;
-    Eigen::VectorXd of = r;
-    for (Eigen::Index p = 0; p < n; ++p) {
-      if (!out[static_cast<std::size_t>(p)]) continue;
-      kept.row(p).setZero();
-      of[p] = 0.0;
-    }
-    Eigen::MatrixXd normal = base::transposed_product(kept, kept);
-    normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();
-    rest = r - base::product(basis, base::solve_positive(normal, base::transposed_product(kept, of)));
-    for (Eigen::Index p = 0; p < n; ++p) {
-      const auto q = static_cast<std::size_t>(p);
-      out[q] = std::abs(rest[p]) * data.sd_m > kOff * data.sd_of(q) ? 1 : 0;
-    }
-  }
-  return rest;
-}
-
-/// Whether neighbours err alike by more than chance makes; a single one that is far off says nothing of that.
-bool lasts(const TrackedMotion& data, const Eigen::VectorXd& rest) {
-  double products = 0.0, squares = 0.0, pairs = 0.0;
-  const auto clipped = [&](Eigen::Index p) {
-    const double wider = data.sd_of(static_cast<std::size_t>(p)) / data.sd_m;
-    return std::clamp(rest[p] / wider, -kOff, kOff);
-  };
-  for (Eigen::Index p = 0; p + 1 < rest.size(); ++p) {
-    if (data.outlier[static_cast<std::size_t>(p)] || data.outlier[static_cast<std::size_t>(p) + 1]) continue;
-    products += clipped(p) * clipped(p + 1);
-    squares += 0.5 * (clipped(p) * clipped(p) + clipped(p + 1) * clipped(p + 1));
-    pairs += 1.0;
-  }
-  return pairs > 0.0 && products * std::sqrt(pairs) > kTwoSd * squares;
-}
-
-/// What a smooth curve leaves of the residuals, in units of the noise. It is as fine as it must be: what the law lacks
-/// by hundreds of deviations shows a coarse one's own error, first of all at the clip's ends.
-Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
-  const TrackedMotion& data = set.motions[i];
-  const Moved moved = move(model_of(set, *fit.layout, fit.at, i), data.t_s,
-                           fit.late.empty() ? std::span<const double>() : std::span(fit.late[i]));
-  const std::vector<double> shared = shared_errors(set, *fit.layout, fit.at, i, moved.x_m);
-  const auto n = static_cast<Eigen::Index>(data.t_s.size());
-  Eigen::VectorXd r(n), rest;
-  for (Eigen::Index p = 0; p < n; ++p) {
-    const auto q = static_cast<std::size_t>(p);
-    r[p] = (data.x_m[q] - moved.x_m[q] - shared[q]) / data.sd_m;
-  }
-  Eigen::Index bumps = 0;
-  for (const double points : kPointsABump) {
-    rest = left_by_curve(data, r, points, bumps);
-    if (!lasts(data, rest)) break;
-  }
-  const double taken = std::sqrt(1.0 - std::min(0.5, static_cast<double>(bumps) / static_cast<double>(n)));
-  Leftover left;
-  left.v = moved.v_m_s;
-  for (Eigen::Index p = 0; p < n; ++p) {
-    left.over_sd.push_back(rest[p] * data.sd_m / data.sd_of(static_cast<std::size_t>(p)) / taken);
-  }
-  return left;
-}
+constexpr double kBeyondDoubt = 5.0;  // log evidence
 
 }  // namespace
 
@@ -117,8 +29,8 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const TrackedMotion& motion = set.motions[i];
     const Leftover left = leftover_of(set, fit, i);
-    for (std::size_t p = 0; p < left.v.size(); ++p) {
-      if (std::abs(left.over_sd[p]) < kMostScatter) scatter.add(motion, p, left.over_sd[p], left.v[p]);
+    for (std::size_t p = 0; p < left.v_m_s.size(); ++p) {
+      if (std::abs(left.over_sd[p]) < kMostScatter) scatter.add(motion, p, left.over_sd[p], left.v_m_s[p]);
     }
   }
   const SpeedNoise noise = find_speed_noise(set, scatter, 1.0);
@@ -128,6 +40,14 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
 namespace {
 
 constexpr std::size_t kSpeedPoints = 61;  // that give the scatter at a speed: known to a seventh
+
+constexpr double kMedianOfNormal = 0.6745;  // of |z|, z of standard deviation 1
+constexpr double kLeastScatter = 0.05;      // of the noise: positions may have been put where the curve is
+
+/// Standard deviation of values by the median of their sizes.
+double scatter_of(std::vector<double> sizes) {
+  return std::max(core::median_of(std::move(sizes)) / kMedianOfNormal, kLeastScatter);
+}
 
 /// Scatter of values by how fast the marker moves (median of the nearest in speed), over that of all of them.
 std::vector<double> scatter_by_speed(const std::vector<double>& over_sd, const std::vector<double>& v) {
@@ -140,8 +60,7 @@ std::vector<double> scatter_by_speed(const std::vector<double>& over_sd, const s
     const std::size_t from = std::min(k - std::min(k, many / 2), order.size() - many);
     std::vector<double> near;
     for (std::size_t j = from; j < from + many; ++j) near.push_back(std::abs(over_sd[order[j]]));
-    std::nth_element(near.begin(), near.begin() + std::ssize(near) / 2, near.end());
-    scatter[order[k]] = std::max(near[near.size() / 2] / 0.6745, 0.05);
+    scatter[order[k]] = scatter_of(std::move(near));
   }
   return scatter;
 }
@@ -158,11 +77,10 @@ TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const Leftover left = leftover_of(set, fit, i);
     over_sd.insert(over_sd.end(), left.over_sd.begin(), left.over_sd.end());
-    v.insert(v.end(), left.v.begin(), left.v.end());
+    v.insert(v.end(), left.v_m_s.begin(), left.v_m_s.end());
     std::vector<double> size;
     for (const double r : left.over_sd) size.push_back(std::abs(r));
-    std::nth_element(size.begin(), size.begin() + std::ssize(size) / 2, size.end());
-    scatter.resize(over_sd.size(), std::max(size[size.size() / 2] / 0.6745, 0.05));
+    scatter.resize(over_sd.size(), scatter_of(std::move(size)));
   }
   if (set.pictures) scatter = scatter_by_speed(over_sd, v);
   TailResiduals residuals;

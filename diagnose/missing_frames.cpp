@@ -7,19 +7,14 @@
 #include <vector>
 
 #include "base/dense.h"
-#include "core/lost_frames.h"
 #include "core/median.h"
+#include "diagnose/plain_losses.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kAround = 5;  // points on each side that show a loss by themselves
-constexpr Eigen::Index kFewestAround = 7;
-constexpr double kPlain = 14.0;             // log likelihood that such a loss gains
-constexpr double kFits = 4.0, kMuch = 0.3;  // what it may leave: of the noise's squares, or of what was left before
-constexpr int kMostTogether = 5;            // frames lost at one place
-constexpr double kClear = 12.0;             // log likelihood that a missing frame must gain
-constexpr int kMostMissing = 60;
+constexpr double kClear = 12.0;   // log likelihood that a missing frame must gain
+constexpr int kMostMissing = 60;  // of those that only the whole fit shows: rounds of one more in each motion
 constexpr double kNearOne = 0.5;  // frames
 constexpr int kRounds = 8;
 constexpr std::size_t kMoreInOneMotion = 4;
@@ -78,80 +73,6 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
     if (gain > best.gain) best = {gain, i, f, step, std::move(c)};
   }
   return best;
-}
-
-/// Sum of squares that a parabola leaves of the positions around point f, all from f on later by `shift_s`; the number
-/// of points in `points`.
-double parabola_rest(const TrackedMotion& data, const std::vector<double>& late_s, std::size_t f, double shift_s,
-                     std::size_t& points) {
-  const std::size_t from = f - std::min(f, kAround), to = std::min(data.x_m.size(), f + kAround);
-  const double unit = data.t_s[to - 1] - data.t_s[from];
-  Eigen::MatrixXd basis(static_cast<Eigen::Index>(to - from), 3);
-  Eigen::VectorXd x(basis.rows());
-  Eigen::Index row = 0;
-  for (std::size_t p = from; p < to; ++p) {
-    if (data.outlier[p]) continue;
-    const double t = (data.t_s[p] + late_s[p] - late_s[f] + (p >= f ? shift_s : 0.0) - data.t_s[f]) / unit;
-    basis.row(row) << 1.0, t, t * t;
-    x[row++] = data.x_m[p] - data.x_m[f];
-  }
-  points = static_cast<std::size_t>(row);
-  if (row < kFewestAround) return 0.0;
-  const Eigen::MatrixXd used = basis.topRows(row);
-  const Eigen::VectorXd y = x.head(row);
-  const Eigen::VectorXd by =
-      base::solve_positive(base::transposed_product(used, used), base::transposed_product(used, y));
-  return (y - base::product(used, by)).squaredNorm();
-}
-
-/// Frames that are missing for all to see: around such a place the positions make a parabola only if all from there on
-/// are later by whole frames. The clearest first, as one may hide another near by.
-Lateness plain_losses(const TrackSet& set, std::size_t& count) {
-  Lateness late;
-  for (const TrackedMotion& motion : set.motions) {
-    const double step_s = 1.0 / set.clips[motion.clip].frame_rate_hz;
-    std::vector<double> late_s(motion.x_m.size(), 0.0);
-    for (int found = 0; found < kMostMissing; ++found) {
-      double clearest = kPlain;
-      std::size_t place = 0;
-      int lost = 0;
-      for (std::size_t f = 2; f + 2 <= motion.x_m.size(); ++f) {
-        if (motion.t_s[f] - motion.t_s[f - 1] > 1.5 * step_s) continue;  // the stamps tell of it
-        const double square = motion.sd_of(f) * motion.sd_of(f);
-        std::size_t points = 0;
-        const double without = parabola_rest(motion, late_s, f, 0.0, points) / square;
-        for (int k = 1; k <= kMostTogether; ++k) {
-          const double with = parabola_rest(motion, late_s, f, k * step_s, points) / square;
-          const bool fits = with < std::max(kFits * static_cast<double>(points), kMuch * without);
-          const double gain = 0.5 * (without - with);
-          if (!fits || gain <= clearest) continue;
-          clearest = gain;
-          place = f;
-          lost = k;
-        }
-      }
-      if (lost == 0) break;
-      for (std::size_t p = place; p < late_s.size(); ++p) late_s[p] += lost * step_s;
-      count += static_cast<std::size_t>(lost);
-    }
-    late.push_back(std::move(late_s));
-  }
-  return late;
-}
-
-/// Those that the analysis finds, clip by clip.
-Lateness analysed_losses(const TrackSet& set, std::size_t& count) {
-  Lateness late;
-  for (const TrackedMotion& motion : set.motions) {
-    const TrackedClip& clip = set.clips[motion.clip];
-    const double step_s = 1.0 / clip.frame_rate_hz;
-    const auto of_clip = [&](double t) { return core::put_right(t, clip.lost, step_s) - t; };
-    std::vector<double> late_s;
-    for (const double t : motion.t_s) late_s.push_back(of_clip(t) - of_clip(motion.t_s.front()));
-    count += static_cast<std::size_t>(std::lround(late_s.back() / step_s));
-    late.push_back(std::move(late_s));
-  }
-  return late;
 }
 
 /// How many frames are lost before each point of a motion, as the fit has its path: of all such sequences that never
@@ -289,22 +210,21 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
     points += static_cast<double>(motion.t_s.size());
   }
   // Each way of looking sees what another misses where losses are close together: the likeliest end counts.
-  std::size_t plain = 0, analysed = 0;
-  const Lateness by_parabolas = plain_losses(set, plain), by_analysis = analysed_losses(set, analysed);
+  const LostBefore by_parabolas = plain_losses(set), by_analysis = analysed_losses(set);
   const MissingFrames nothing = found;
   MissingFrames all = nothing;
-  const auto try_out = [&](const Lateness& late, std::size_t count) {
-    if (count == 0) return;
+  const auto try_out = [&](const LostBefore& lost) {
+    if (lost.count == 0) return;
     MissingFrames seen = nothing;
-    seen.fit = fit_motions(set, fit.effects, fit.at, late);
-    seen.count = count;
-    if (!lowers(seen.fit, count, nothing)) return;
+    seen.fit = fit_motions(set, fit.effects, fit.at, lost.late);
+    seen.count = lost.count;
+    if (!lowers(seen.fit, seen.count, nothing)) return;
     MissingFrames more = with_hidden(set, seen);
-    if (lowers(seen.fit, count, found)) found = std::move(seen);
+    if (lowers(seen.fit, seen.count, found)) found = std::move(seen);
     if (lowers(more.fit, more.count, all)) all = std::move(more);
   };
-  try_out(by_parabolas, plain);
-  if (by_analysis != by_parabolas) try_out(by_analysis, analysed);
+  try_out(by_parabolas);
+  if (by_analysis.late != by_parabolas.late) try_out(by_analysis);
   if (found.count == 0) all = with_hidden(set, nothing);
   // What no single jump shows counts only where it leaves nothing: many a curve looks like a row of losses.
   if (all.fit.cost < kNothingLeft * points) found = std::move(all);

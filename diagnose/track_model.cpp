@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include "diagnose/track_stride.h"
+
 namespace glidelab::diagnose {
 namespace {
 
@@ -19,73 +21,6 @@ constexpr int kMostLeaving = 40;         // steps to the instant at which fricti
 constexpr double kSameTime_s = 1e-13;    // to this
 constexpr double kStiff = 0.1;           // of the longest step: from there on a motion takes no more
 constexpr double kMostSteps = 1e5;       // than these
-constexpr double kRounding_s = 1e-15;    // of times of some seconds
-
-struct State {
-  double x = 0.0, v = 0.0;
-};
-
-/// Between two instants that one step joins: the polynomial of fifth order through place, speed and acceleration.
-class Stride {
- public:
-  Stride(const State& from, double a_from, const State& to, double a_to, double length_s)
-      : from_(from),
-        to_(to),
-        v_(from.v * length_s),
-        a_(0.5 * a_from * length_s * length_s),
-        by_length_(1.0 / length_s) {
-    const double rest = to.x - from.x - v_ - a_, slope = to.v * length_s - v_ - 2.0 * a_;
-    const double bend = 0.5 * (a_to - a_from) * length_s * length_s;
-    c3_ = 10.0 * rest - 4.0 * slope + bend;
-    c4_ = -15.0 * rest + 7.0 * slope - 2.0 * bend;
-    c5_ = 6.0 * rest - 3.0 * slope + bend;
-  }
-
-  State at(double since_s) const {
-    const double u = since_s * by_length_;
-    return {from_.x + u * (v_ + u * (a_ + u * (c3_ + u * (c4_ + u * c5_)))),
-            (v_ + u * (2.0 * a_ + u * (3.0 * c3_ + u * (4.0 * c4_ + u * 5.0 * c5_)))) * by_length_};
-  }
-
-  const State& to() const { return to_; }
-
- private:
-  State from_, to_;
-  double v_, a_, by_length_;  // of the place's powers of the part that is gone
-  double c3_ = 0.0, c4_ = 0.0, c5_ = 0.0;
-};
-
-/// sin(omega t + phase) at instants that follow each other by equal steps, without a sine for each.
-class Wave {
- public:
-  Wave(double hz, double phase) : omega_(2.0 * std::numbers::pi * hz), phase_(phase) {}
-
-  /// At t, t + h/2 and t + h.
-  std::array<double, 3> over(double t, double h) {
-    if (std::abs(t - t_) > kRounding_s) {
-      sin_ = std::sin(omega_ * t + phase_);
-      cos_ = std::cos(omega_ * t + phase_);
-    }
-    if (std::abs(h - h_) > kRounding_s) {
-      half_sin_ = std::sin(0.5 * omega_ * h);
-      half_cos_ = std::cos(0.5 * omega_ * h);
-      h_ = h;
-    }
-    std::array<double, 3> values{sin_, 0.0, 0.0};
-    for (std::size_t i = 1; i < values.size(); ++i) {
-      values[i] = sin_ * half_cos_ + cos_ * half_sin_;
-      cos_ = cos_ * half_cos_ - sin_ * half_sin_;
-      sin_ = values[i];
-    }
-    t_ = t + h;
-    return values;
-  }
-
- private:
-  double omega_, phase_;
-  double t_ = std::numeric_limits<double>::infinity(), sin_ = 0.0, cos_ = 0.0;  // where the last step ended
-  double h_ = std::numeric_limits<double>::infinity(), half_sin_ = 0.0, half_cos_ = 0.0;
-};
 
 class Mover {
  public:

@@ -9,6 +9,7 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
+#include "core/median.h"
 #include "diagnose/trajectory_uncertainty.h"
 #include "sim/track_sensitivity.h"
 
@@ -202,10 +203,8 @@ RobustFit fit_robustly(const std::vector<FitBlock>& blocks, int free, Found foun
     fit.left_out = 0;
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       const Eigen::VectorXd off = linearise(blocks[b], fit.found.at.common, fit.found.at.starts[b]).residual.cwiseAbs();
-      std::vector<double> sorted(off.begin(), off.end());
-      const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-      std::nth_element(sorted.begin(), middle, sorted.end());
-      const double scale = std::max(kNormalMad * *middle, std::sqrt(kLeastVariance));
+      const double middle = core::median_of({off.begin(), off.end()});
+      const double scale = std::max(kNormalMad * middle, std::sqrt(kLeastVariance));
       const double shrink = std::min(1.0, scale * scale / variance_of(blocks[b]));
       fit.blocks[b] = blocks[b];
       for (double& gamma : fit.blocks[b].autocovariance_m2) gamma *= shrink;

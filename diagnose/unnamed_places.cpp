@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/median.h"
 #include "diagnose/unnamed_shape.h"
 
 namespace glidelab::diagnose {
@@ -195,10 +196,9 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   }
   const double range = x.high - x.low;
   if (ways.empty() || !(range > 0.0)) return family;
-  std::nth_element(ways.begin(), ways.begin() + std::ssize(ways) / 2, ways.end());
   // Half of all frames lie closer than this: two of them a turn at least; and no more looks than kMostSwings.
   const double step = 0.3 / range;
-  const double highest = std::min(0.5 / std::max(ways[ways.size() / 2], 1e-9), kMostSwings * step);
+  const double highest = std::min(0.5 / std::max(core::median_of(std::move(ways)), 1e-9), kMostSwings * step);
   std::vector<double> logs;
   const auto try_swing = [&](double f) {
     SpreadEvidence evidence;

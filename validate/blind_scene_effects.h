@@ -2,13 +2,7 @@
 /// experiment.toml says of it, or in the pictures; and some that are in no list.
 ///
 /// Strength of what displaces positions is the log likelihood of blind_strength.h, the noise being the bound that the
-/// camera's noise sets. What moves no position has
-///
-///     gain = z²/2,   z = size / what a picture may show where nothing is wrong,
-///
-/// for exposure_blur a smear of 0.4 of the stated exposure's or 0.2 px, for rolling_shutter a shear of 0.02 px over the
-/// marker's height at its fastest, for light_flicker 0.2 % of the light (1 % in a lossy file), for light_gradient 10 %
-/// a metre, for compression the codec's quantiser against three times the noise of a pixel, in codes.
+/// camera's noise sets. What moves no position has that of blind_picture_effects.h.
 #pragma once
 
 #include <optional>
