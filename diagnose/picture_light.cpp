@@ -10,7 +10,7 @@
 #include "base/number_text.h"
 #include "core/block_steps.h"
 #include "diagnose/picture_file.h"
-#include "diagnose/picture_scene.h"
+#include "diagnose/series_wave.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -72,7 +72,7 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
     if (!curve.at.empty()) evidence.curves.push_back(std::move(curve));
     for (Series& band : bands) series.push_back(std::move(band));
   }
-  const Wave wave = strongest_wave(series);
+  const SeriesWave wave = strongest_wave(series);
   if (!(wave.f_hz > 0.0)) return;
   const core::CameraSettings& camera = clips.front().camera;
   const double f_hz = flicker_of_mains(wave.f_hz, wave.sd_hz, camera.frame_rate_hz);

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/block_steps.h"
-#include "diagnose/picture_scene.h"
 #include "diagnose/score_space.h"
+#include "diagnose/series_wave.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -82,7 +82,7 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
     }
   }
   if (series.empty()) return;
-  const Wave wave = strongest_wave(series);
+  const SeriesWave wave = strongest_wave(series);
   PictureFinding finding = finding_of("camera_motion");
   const bool shakes = wave.log_evidence > kSeenInPictures && wave.amplitude > least_px;
   const double drift_sd = std::hypot(drift.sd, least_px);

@@ -77,7 +77,7 @@ class Mover {
   }
 
   /// To t_end by one step, where that is short enough and nothing happens on the way: no turn, no hand that lets go.
-  std::optional<Stride> stride(const State& s, double t, double t_end) {
+  std::optional<Stride> stride(const PlaceAndSpeed& s, double t, double t_end) {
     const EffectValues& e = m_.effects;
     const bool pushed = e.push_m_s2 != 0.0 && t < e.release_s;
     if (m_.known != nullptr || direction_ == 0 || (pushed && e.release_s < t_end)) return {};
@@ -90,7 +90,7 @@ class Mover {
   double longest_step() const { return step_; }
 
   /// To t_end, by way of the known force's samples: it has corners there. `stretch`: true over stated time.
-  State advance(State s, double t, double t_end, double stretch) {
+  PlaceAndSpeed advance(PlaceAndSpeed s, double t, double t_end, double stretch) {
     while (m_.known != nullptr && t < t_end) {
       const double until = std::min(t_end, hold_force_at(t, stretch));
       s = advance_forced(s, t, until);
@@ -114,7 +114,7 @@ class Mover {
     return sample_ < at.size() ? stretch * at[sample_] : std::numeric_limits<double>::infinity();
   }
 
-  State advance_forced(State s, double t, double t_end) {
+  PlaceAndSpeed advance_forced(PlaceAndSpeed s, double t, double t_end) {
     const double release = m_.effects.release_s;
     if (m_.effects.push_m_s2 != 0.0 && t < release && release < t_end) {
       s = advance_smooth(s, t, release, true);
@@ -123,7 +123,7 @@ class Mover {
     return advance_smooth(s, t, t_end, t < release);
   }
 
-  State advance_smooth(State s, double t, double t_end, bool pushed) {
+  PlaceAndSpeed advance_smooth(PlaceAndSpeed s, double t, double t_end, bool pushed) {
     pushed_ = pushed && m_.effects.push_m_s2 != 0.0;
     const int parts = std::max(1, static_cast<int>(std::ceil((t_end - t) / step_ - 1e-9)));
     const double h = (t_end - t) / parts;
@@ -132,11 +132,11 @@ class Mover {
   }
 
   struct Step {
-    State end;
+    PlaceAndSpeed end;
     double a_start = 0.0, wave_end = 0.0;
   };
 
-  Step rk4(const State& s, double t, double h) {
+  Step rk4(const PlaceAndSpeed& s, double t, double h) {
     const std::array<double, 3> wave = m_.effects.shake_m_s2 == 0.0 ? std::array<double, 3>{} : wave_.over(t, h);
     const double a1 = slide(s.x, s.v, t, wave[0]);
     const double v2 = s.v + 0.5 * h * a1;
@@ -150,14 +150,14 @@ class Mover {
             wave[2]};
   }
 
-  State advance_part(State s, double t, double h) {
+  PlaceAndSpeed advance_part(PlaceAndSpeed s, double t, double h) {
     for (int turn = 0; turn < kMostTurns && h > 0.0; ++turn) {
       if (direction_ == 0 && !leave(s, t, h)) return s;
-      const State next = rk4(s, t, h).end;
+      const PlaceAndSpeed next = rk4(s, t, h).end;
       if (next.v * direction_ >= 0.0 || !std::isfinite(next.v)) return next;
       // v = 0 on the way: the time by regula falsi, then Newton's steps.
       double at = h * std::abs(s.v) / (std::abs(s.v) + std::abs(next.v));
-      State stop = s;
+      PlaceAndSpeed stop = s;
       for (int i = 0; i < 6; ++i) {
         const Step step = rk4(s, t, at);
         stop = step.end;
@@ -176,7 +176,7 @@ class Mover {
 
   /// At rest friction takes up what acts, up to its limit either way. False: it holds for all of h. Else t and h go on
   /// to where it gives way, and the direction is that in which the glider leaves.
-  bool leave(const State& s, double& t, double& h) {
+  bool leave(const PlaceAndSpeed& s, double& t, double& h) {
     const auto up = [&](double at) { return driving(s.x, kBarely, at) - friction(0.0); };
     const auto down = [&](double at) { return -driving(s.x, -kBarely, at) - friction(0.0); };
     const auto beyond = [&](double at) { return std::max(up(at), down(at)); };
@@ -209,7 +209,7 @@ class Mover {
 
   const TrackModel& m_;
   double sin_, weight_, cos_, by_inertia_;
-  Wave wave_;
+  SineSteps wave_;
   double step_ = kLongestStep;
   int direction_ = 0;
   bool pushed_ = false;
@@ -238,7 +238,7 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   moved.v_m_s.reserve(times_s.size());
   if (times_s.empty()) return moved;
   Mover mover(model);
-  State s{model.x0_m, model.v0_m_s};
+  PlaceAndSpeed s{model.x0_m, model.v0_m_s};
   mover.start(s.v);
   const double stretch = 1.0 + model.effects.rate_error;
   double t = stretch * times_s.front();
@@ -248,7 +248,7 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     at[i] = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + model.effects.line_s * rows;
     at[i] = std::max(at[i], i > 0 ? at[i - 1] : t);
   }
-  const auto add = [&](const State& state) {
+  const auto add = [&](const PlaceAndSpeed& state) {
     moved.x_m.push_back(seen(model, state.x, times_s[moved.x_m.size()]));
     moved.v_m_s.push_back(state.v);
   };

@@ -10,14 +10,14 @@
 namespace glidelab::diagnose {
 
 /// Place in m and speed in m/s.
-struct State {
+struct PlaceAndSpeed {
   double x = 0.0, v = 0.0;
 };
 
 /// Between two instants that one step joins: the polynomial of fifth order through place, speed and acceleration.
 class Stride {
  public:
-  Stride(const State& from, double a_from, const State& to, double a_to, double length_s)
+  Stride(const PlaceAndSpeed& from, double a_from, const PlaceAndSpeed& to, double a_to, double length_s)
       : from_(from),
         to_(to),
         v_(from.v * length_s),
@@ -30,24 +30,24 @@ class Stride {
     c5_ = 6.0 * rest - 3.0 * slope + bend;
   }
 
-  State at(double since_s) const {
+  PlaceAndSpeed at(double since_s) const {
     const double u = since_s * by_length_;
     return {from_.x + u * (v_ + u * (a_ + u * (c3_ + u * (c4_ + u * c5_)))),
             (v_ + u * (2.0 * a_ + u * (3.0 * c3_ + u * (4.0 * c4_ + u * 5.0 * c5_)))) * by_length_};
   }
 
-  const State& to() const { return to_; }
+  const PlaceAndSpeed& to() const { return to_; }
 
  private:
-  State from_, to_;
+  PlaceAndSpeed from_, to_;
   double v_, a_, by_length_;  // of the place's powers of the part that is gone
   double c3_ = 0.0, c4_ = 0.0, c5_ = 0.0;
 };
 
 /// sin(omega t + phase) at instants that follow each other by equal steps, without a sine for each.
-class Wave {
+class SineSteps {
  public:
-  Wave(double hz, double phase) : omega_(2.0 * std::numbers::pi * hz), phase_(phase) {}
+  SineSteps(double hz, double phase) : omega_(2.0 * std::numbers::pi * hz), phase_(phase) {}
 
   /// At t, t + h/2 and t + h.
   std::array<double, 3> over(double t, double h) {

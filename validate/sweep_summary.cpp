@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "validate/failure_kinds.h"
 #include "validate/sweep_design.h"
 #include "validate/sweep_groups.h"
 
@@ -61,25 +62,28 @@ std::vector<AccelerationError> accelerations_of(Database& database, const std::v
   return all;
 }
 
-/// "6 runs with camera.frame_rate_hz = 120: …": what is wrong with a scenario names it at first.
+/// "6 runs with camera.frame_rate_hz = 120: …": what is wrong with a scenario names it at first. Of runs whose reasons
+/// differ in their numbers the first is shown.
 std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
   constexpr std::size_t kShown = 5;
+  FailureKinds reasons;
+  SqlStatement select = database.prepare("SELECT why FROM run WHERE status = 'failed' ORDER BY run");
+  while (select.step()) reasons.add(select.text(0));
+  const std::vector<FailureKind> kinds = reasons.by_number();
+  const std::string file = sweep.scenario_file.string() + " with ";
   std::vector<std::string> failures;
-  std::uint64_t kinds = 0, others = failed;
-  SqlStatement reasons =
-      database.prepare("SELECT why, count(*) AS n FROM run WHERE status = 'failed' GROUP BY why ORDER BY n DESC, why");
-  for (; reasons.step(); ++kinds) {
-    if (kinds >= kShown) continue;
-    const std::string why = reasons.text(0), file = sweep.scenario_file.string() + " with ";
-    const char* const runs = reasons.integer(1) == 1 ? "run" : "runs";
-    failures.push_back(why.starts_with(file)
-                           ? fmt::format("{} {} with {}", reasons.integer(1), runs, why.substr(file.size()))
-                           : fmt::format("{} {}: {}", reasons.integer(1), runs, why));
-    others -= static_cast<std::uint64_t>(reasons.integer(1));
+  std::uint64_t others = failed;
+  for (std::size_t k = 0; k < std::min(kinds.size(), kShown); ++k) {
+    const FailureKind& kind = kinds[k];
+    const bool names = kind.example.starts_with(file);
+    const std::string why = with_rounded_numbers(names ? kind.example.substr(file.size()) : kind.example);
+    failures.push_back(fmt::format("{} {}{}{}{}", kind.runs, kind.runs == 1 ? "run" : "runs",
+                                   kind.one_text ? "" : ", one of them", names ? " with " : ": ", why));
+    others -= kind.runs;
   }
-  if (kinds > kShown) {
-    failures.push_back(fmt::format("and {} more {} ({} {})", kinds - kShown, kinds - kShown == 1 ? "kind" : "kinds",
-                                   others, others == 1 ? "run" : "runs"));
+  if (const std::size_t more = kinds.size() - failures.size(); more > 0) {
+    failures.push_back(fmt::format("and {} more {} ({} {})", more, more == 1 ? "kind" : "kinds", others,
+                                   others == 1 ? "run" : "runs"));
   }
   return failures;
 }

@@ -84,7 +84,8 @@ struct ConfigurationSummary {
 struct SweepSummary {
   std::string name;
   std::uint64_t runs = 0, planned = 0, failed = 0;
-  std::vector<std::string> failures;                 ///< the five commonest reasons, with how often; how many more
+  /// The five commonest kinds of reasons (failure_kinds.h), with how often and one of each; how many more.
+  std::vector<std::string> failures;
   double cpu_s = 0.0;                                ///< wall time of all runs on their threads
   std::vector<Series> overall;                       ///< each of one group
   std::vector<ConfigurationSummary> configurations;  ///< by their names; empty where the scenario has one

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "catch.h"
-#include "diagnose/picture_scene.h"
+#include "diagnose/series_wave.h"
 #include "diagnose/picture_shape.h"
 #include "diagnose/picture_sway.h"
 

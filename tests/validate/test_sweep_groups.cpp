@@ -1,6 +1,8 @@
 /// What may be compared where some runs of a sweep have no answer.
 #include "validate/sweep_groups.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -152,16 +154,38 @@ TEST_CASE("Of more than five kinds of failures the page says how many more there
     validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
     for (std::uint64_t run = 0; run < 20; ++run) {  // kind k: of 2 runs, the last of the rest
       const std::uint64_t kind = std::min(run / 2, kinds - 1);
-      database.add({run, 0, run, run, {50.0}, true, "reason " + std::to_string(kind), {}, {}}, 0.1);
+      database.add({run, 0, run, run, {50.0}, true, std::string("reason ") + static_cast<char>('a' + kind), {}, {}},
+                   0.1);
     }
     return validate::summarize(sweep, database.database()).failures;
   };
   const std::vector<std::string> eight = failures(8);  // 7 of two runs and one of 6
   REQUIRE(eight.size() == 6);
-  CHECK(eight[0] == "6 runs: reason 7");
+  CHECK(eight[0] == "6 runs: reason h");
   CHECK(eight[5] == "and 3 more kinds (6 runs)");
   CHECK(failures(6).back() == "and 1 more kind (2 runs)");
   CHECK(failures(5).size() == 5);
+}
+
+TEST_CASE(
+    "Failures of one cause are one kind whatever its numbers, and the page shows one of them with short numbers") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(
+      dir.path(), "replicates = 20", tests::kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [50]\n"));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  const std::string file = sweep.scenario_file.string();
+  for (std::uint64_t run = 0; run < 20; ++run) {
+    const double size = 1.0 / (3.0 + static_cast<double>(run));
+    const std::string why = run < 12   ? fmt::format("no root between {} and 7", size)
+                            : run < 18 ? fmt::format("{} with camera.frame_rate_hz = {}: too fast", file, size)
+                            : run < 19 ? "no marker"
+                                       : fmt::format("{} with camera.frame_rate_hz = 50: no light", file);
+    database.add({run, 0, run, run, {50.0}, true, why, {}, {}}, 0.1);
+  }
+  CHECK(validate::summarize(sweep, database.database()).failures ==
+        std::vector<std::string>{"12 runs, one of them: no root between 0.3333 and 7",
+                                 "6 runs, one of them with camera.frame_rate_hz = 0.06667: too fast",
+                                 "1 run with camera.frame_rate_hz = 50: no light", "1 run: no marker"});
 }
 
 TEST_CASE("The error of a(t) beside the best possible one is given of each configuration apart") {

@@ -14,14 +14,14 @@ struct Series {
   std::vector<double> t_s, value;
 };
 
-struct Wave {
+struct SeriesWave {
   double log_evidence = 0.0;
   double f_hz = 0.0, sd_hz = 0.0;
   double amplitude = 0.0, sd = 0.0;  ///< root mean square over the series
 };
 
 /// The strongest wave between 3 periods a series and half the sampling rate.
-Wave strongest_wave(const std::vector<Series>& series);
+SeriesWave strongest_wave(const std::vector<Series>& series);
 
 /// Amplitude at one frequency and its standard deviation (of a component), of one series.
 struct Amplitude {

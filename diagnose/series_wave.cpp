@@ -1,4 +1,4 @@
-#include "diagnose/picture_scene.h"
+#include "diagnose/series_wave.h"
 
 #include <Eigen/Core>
 
@@ -90,7 +90,7 @@ class Flat {
 
 }  // namespace
 
-Wave strongest_wave(const std::vector<Series>& all) {
+SeriesWave strongest_wave(const std::vector<Series>& all) {
   std::vector<Flat> series;
   double span = 0.0, rate = 0.0, shortest = std::numeric_limits<double>::infinity();
   for (const Series& one : all) {
@@ -104,7 +104,7 @@ Wave strongest_wave(const std::vector<Series>& all) {
     shortest = std::min(shortest, series.back().span());
     rate = std::max(rate, series.back().rate());
   }
-  Wave wave;
+  SeriesWave wave;
   if (series.empty()) return wave;
   const double lowest = kFewestPeriods / shortest, highest = 0.5 * rate;
   const auto many = std::min<std::size_t>(kMost, static_cast<std::size_t>(std::max(8.0, kFineness * span * highest)));
