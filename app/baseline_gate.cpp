@@ -19,13 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Under its final name only when it is whole.
-void write_whole(const fs::path& file, const std::string& text) {
-  const fs::path part = file.string() + ".part";
-  base::write_file(part, text);
-  fs::rename(part, file);
-}
-
 std::string table(const validate::Baseline& baseline) {
   std::vector<std::vector<std::string>> rows = {
       {"configuration", "estimator", "quantity", "answers", "mean error", "sd of errors", "covered", "efficiency"}};

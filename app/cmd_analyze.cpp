@@ -116,11 +116,17 @@ std::vector<std::string> rule_names() {
 
 std::string check_bandwidth(const std::string& text) {
   const std::vector<std::string> rules = rule_names();
-  double value = 0.0;
   if (std::find(rules.begin(), rules.end(), text) != rules.end()) return {};
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
+  if (check_above_0(text).empty()) return {};
   return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}{}", text, fmt::join(rules, ", "),
                      base::did_you_mean(text, rules));
+}
+
+std::string check_incline(const std::string& text) {
+  constexpr double kSteepest_deg = 89.9;
+  double value_deg = 0.0;
+  if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
+  return fmt::format("\"{0}\" is no number of degrees from -{1} to {1}", text, kSteepest_deg);
 }
 
 }  // namespace
@@ -163,10 +169,10 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("NAME|NUMBER");
   command->add_option("--mass", options->bare.mass_kg, "Of a file: mass of the glider in kilograms")
       ->type_name("KG")
-      ->check(CLI::PositiveNumber);
+      ->check(check_above_0);
   command->add_option("--incline", options->bare.incline_deg, "Of a file: inclination in degrees, as stated")
       ->type_name("DEG")
-      ->check(CLI::Range(-89.9, 89.9));
+      ->check(check_incline);
   add_allow_outside(*command, options->bare.outside);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted as by every command; an analysis draws no random numbers");

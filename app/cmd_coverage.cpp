@@ -34,12 +34,6 @@ struct CoverageCommand {
   std::vector<double> levels;  ///< in per cent
 };
 
-std::string check_bandwidth(const std::string& text) {
-  double value = 0.0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
-  return fmt::format("\"{}\" is no number of seconds above 0", text);
-}
-
 std::string check_level(const std::string& text) {
   double value = 0.0;
   if (CLI::detail::lexical_cast(text, value) && value > 0.0 && value < 100.0) return {};
@@ -130,7 +124,7 @@ void add_coverage(CLI::App& app, Command& chosen) {
                                ->add_option("--bandwidth", options->bandwidth_s,
                                             "Bandwidth of the phase diagram in seconds; default: chosen clip by clip")
                                ->type_name("SECONDS")
-                               ->check(check_bandwidth);
+                               ->check(check_above_0);
   add_common_options(*command, options->common, "glidelab-out/coverage-<name of the scenario file>",
                      "Seed of the noise; default: the scenario's");
   command->callback([options, bandwidth, noise, &chosen] {

@@ -41,15 +41,38 @@ struct DiagnoseCommand {
   bool no_page = false;
   std::string twin;
   bool plan = false;
-  double noise_m = 0.0;
+  std::optional<double> noise_m;  // of a plan
   core::OutsideFiles outside = core::OutsideFiles::refused;
 };
+
+/// A plan of folders that were recorded, and not of a scenario.
+bool of_recordings(const DiagnoseCommand& options) {
+  std::error_code ignored;  // what cannot be looked at is read as a scenario, which says what is wrong
+  return fs::is_directory(options.experiments.front(), ignored);
+}
+
+/// What no file need be read for.
+void check_plan(const DiagnoseCommand& options) {
+  if (of_recordings(options)) {
+    if (!options.noise_m) return;
+    throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "a noise beside a recording",
+                                           "none: the recorded positions tell their own"}));
+  }
+  if (options.experiments.size() > 1) {
+    throw CommandLineError(
+        base::describe({"", 0, "EXPERIMENT", fmt::format("{} of them, the first a file", options.experiments.size()),
+                        "with --plan one scenario, or folders"}));
+  }
+  if (!options.noise_m) {
+    throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "nothing",
+                                           "the noise of a position in metres: a scenario alone has none"}));
+  }
+}
 
 /// What is planned: a scenario's motions with noise, or folders that were recorded.
 diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& progress) {
   const fs::path first = options.experiments.front();
-  std::error_code ignored;
-  if (fs::is_directory(first, ignored)) {
+  if (of_recordings(options)) {
     const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
     std::vector<core::ClipSetup> setups;
     for (const fs::path& folder : folders) {
@@ -69,16 +92,13 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
         setups);
   }
   const render::Scenario scenario = render::read_scenario(first);
-  if (!(options.noise_m > 0.0)) {
-    throw CommandLineError(base::describe({first.string(), 0, "--noise-m", "nothing",
-                                           "the noise of a position in metres, above 0: a scenario alone has none"}));
-  }
   const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
-  const validate::MadeTracks made = validate::with_noise(validate::make_tracks(scenario, seed), options.noise_m, seed);
+  const validate::MadeTracks made = validate::with_noise(validate::make_tracks(scenario, seed), *options.noise_m, seed);
   return diagnose::plan_of(validate::analyze_tracks(made, std::optional<double>(), options.common.jobs), made.setups);
 }
 
 void plan(const DiagnoseCommand& options) {
+  check_plan(options);
   const fs::path out = output_folder(options.common, "diagnose", options.experiments.front());
   if (!options.no_page) report::check_gnuplot();
   check_writable(out);
@@ -102,7 +122,10 @@ void diagnose(const DiagnoseCommand& options) {
   refuse_scenarios(options.experiments);
   std::string title = core::read_experiment(folders.front(), options.outside).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
-  if (!options.twin.empty()) check_own_file(options.twin, "--twin", diagnose::kTwinHead);
+  if (!options.twin.empty()) {
+    check_file_writable(options.twin);
+    check_own_file(options.twin, "--twin", diagnose::kTwinHead);
+  }
   if (!options.no_page) report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);
@@ -126,7 +149,7 @@ void diagnose(const DiagnoseCommand& options) {
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
-  if (!options.twin.empty() && !diagnosis.twin.empty()) base::write_file(options.twin, diagnosis.twin);
+  if (!options.twin.empty() && !diagnosis.twin.empty()) write_whole(options.twin, diagnosis.twin);
 
   print_result(options.common.json ? report::diagnosis_json(diagnosis) : report::diagnosis_text(diagnosis));
   say(options.common, options.no_page ? fmt::format("diagnosis: {}", (out / "diagnosis.json").string())
@@ -155,31 +178,41 @@ void add_diagnose(CLI::App& app, Command& chosen) {
                    "Folders that hold an experiment.toml; several share the glider and the track")
       ->type_name("DIR")
       ->required();
-  command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")
-      ->type_name("EFFECT")
-      ->check(one_of(diagnose::effect_words()));
+  CLI::Option* without =
+      command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")
+          ->type_name("EFFECT")
+          ->check(one_of(diagnose::effect_words()));
+  CLI::Option* twin =
+      command
+          ->add_option("--twin", options->twin,
+                       "Write the fitted motions, with the effect that is named and the camera as far as it is known, "
+                       "as a scenario "
+                       "for simulate, render, validate; status 4 where the scenario cannot say all of it")
+          ->type_name("SCENARIO.toml")
+          ->check([](const std::string& text) {
+            return text.ends_with(".toml") ? std::string()
+                                           : fmt::format(
+                                                 "found \"{}\", expected the name of a scenario to write, "
+                                                 "NAME.toml",
+                                                 text);
+          });
+  CLI::Option* plan =
+      command
+          ->add_flag("--plan", options->plan,
+                     "Record nothing and judge nothing: say which effects these motions could show and tell apart; "
+                     "EXPERIMENT may be a scenario file")
+          ->excludes(without, twin);
   command
-      ->add_option(
-          "--twin", options->twin,
-          "Write the fitted motions, with the effect that is named and the camera as far as it is known, as a scenario "
-          "for simulate, render, validate; status 4 where the scenario cannot say all of it")
-      ->type_name("SCENARIO.toml")
-      ->check([](const std::string& text) {
-        return text.ends_with(".toml") ? std::string()
-                                       : fmt::format(
-                                             "found \"{}\", expected the name of a scenario to write, "
-                                             "NAME.toml",
-                                             text);
-      });
-  command->add_flag("--plan", options->plan,
-                    "Record nothing and judge nothing: say which effects these motions could show and tell apart; "
-                    "EXPERIMENT may be a scenario file");
-  command->add_option("--noise-m", options->noise_m,
-                      "With --plan and a scenario: standard deviation of a position's noise in metres");
+      ->add_option("--noise-m", options->noise_m,
+                   "With --plan and a scenario: standard deviation of a position's noise in metres")
+      ->type_name("METRES")
+      ->check(check_noise_m)
+      ->needs(plan);
   command->add_flag("--no-page", options->no_page, "Write diagnosis.json only, no report.html");
   add_allow_outside(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/diagnose-<name of the first folder>",
-                     "Of the noise beside a twin on the page; a diagnosis draws no random numbers");
+                     "Seed of a plan's noise, default the scenario's, and of the noise beside a twin on the page; a "
+                     "diagnosis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { diagnose(*options); }; });
 }
 

@@ -13,6 +13,7 @@
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "report/gnuplot.h"
+#include "report/json_numbers.h"
 #include "report/laws_report.h"
 #include "validate/law_film.h"
 #include "validate/law_study.h"
@@ -67,7 +68,7 @@ void laws(const LawsOptions& options) {
   staged.publish_files();
   display.clear();
   const std::string page = (out / "laws.html").string();
-  print_result(options.common.json ? fmt::format("{{\"laws\": {}}}\n", studies.size()) : page + "\n");
+  print_result(options.common.json ? report::json_text({{"laws", studies.size()}, {"page", page}}) : page + "\n");
 }
 
 }  // namespace

@@ -104,10 +104,10 @@ void add_pattern(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_option("--square-mm", options->square_mm, "Side of a square; default: the largest whole one that fits")
       ->type_name("MM")
-      ->check(CLI::PositiveNumber);
+      ->check(check_above_0);
   command->add_option("--marker-mm", options->markers_mm, "Diameters of the markers, a row each")
       ->type_name("MM")
-      ->check(CLI::PositiveNumber)
+      ->check(check_above_0)
       ->delimiter(',')
       ->default_str("8,12,16,24");
   add_common_options(*command, options->common, "glidelab-out/pattern-<paper>",

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -13,6 +12,7 @@
 #include "base/staged_output.h"
 #include "render/render_experiment.h"
 #include "render/scenario.h"
+#include "report/json_numbers.h"
 
 namespace glidelab::app {
 namespace {
@@ -49,9 +49,12 @@ void render_command(const RenderCommandOptions& options) {
   display.clear();
 
   if (options.common.json) {
-    const nlohmann::ordered_json document = {{"format", 1},  {"experiment", out.string()}, {"truth", truth.string()},
-                                             {"seed", seed}, {"clips", summary.clips},     {"frames", summary.frames}};
-    print_result(document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    print_result(report::json_text({{"format", 1},
+                                    {"experiment", out.string()},
+                                    {"truth", truth.string()},
+                                    {"seed", seed},
+                                    {"clips", summary.clips},
+                                    {"frames", summary.frames}}));
   } else {
     print_result(fmt::format("{} clips, {} frames\nexperiment: {}\ntruth: {}\n", summary.clips, summary.frames,
                              out.string(), truth.string()));

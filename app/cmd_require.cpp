@@ -93,17 +93,21 @@ void add_require(CLI::App& app, Command& chosen) {
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}))
       ->capture_default_str();
-  command->add_option("--runs", options->runs, "Rendered runs that confirm one camera, with --confirm clips")
-      ->type_name("N")
-      ->check(CLI::Range(2, 100000))
-      ->capture_default_str();
+  CLI::Option* runs =
+      command->add_option("--runs", options->runs, "Rendered runs that confirm one camera, with --confirm clips")
+          ->type_name("N")
+          ->check(CLI::Range(2, 100000))
+          ->capture_default_str();
   command->add_option("--track-runs", options->track_runs, "Runs as tracks that judge one camera")
       ->type_name("N")
       ->check(CLI::Range(2, 1000000))
       ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/require-<name of the sweep file>",
                      "Seed of the runs; default: the sweep's");
-  command->callback([options, &chosen] { chosen = [options] { require_command(*options); }; });
+  command->callback([options, runs, &chosen] {
+    if (runs->count() > 0 && options->confirm != "clips") throw CLI::RequiresError("--runs", "--confirm clips");
+    chosen = [options] { require_command(*options); };
+  });
 }
 
 }  // namespace glidelab::app

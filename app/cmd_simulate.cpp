@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -14,6 +13,7 @@
 #include "base/staged_output.h"
 #include "render/clip_motion.h"
 #include "render/scenario.h"
+#include "report/json_numbers.h"
 #include "report/text_table.h"
 #include "sim/simulate.h"
 
@@ -21,7 +21,7 @@ namespace glidelab::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using report::Json;
 
 struct SimulateOptions {
   CommonOptions common;
@@ -89,7 +89,7 @@ std::string as_json(const std::vector<SimulatedClip>& clips) {
                                  {"mode_changes", changes_json(clip.trajectory.changes, false)},
                                  {"dissipated_j", clip.trajectory.dissipated_j}});
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 std::string as_table(const std::vector<SimulatedClip>& clips) {

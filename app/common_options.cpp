@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <thread>
@@ -141,6 +142,24 @@ std::string check_whole_number(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc{} && end == text.data() + text.size()) return {};
   return fmt::format("\"{}\" is not a whole number from 0 to {}", text, std::numeric_limits<std::uint64_t>::max());
+}
+
+void write_whole(const fs::path& file, std::string_view text) {
+  const fs::path part = file.string() + ".part";
+  try {
+    base::write_file(part, text);
+    fs::rename(part, file);
+  } catch (...) {
+    std::error_code ignored;  // what is wrong with the file is what is said
+    fs::remove(part, ignored);
+    throw;
+  }
+}
+
+std::string check_above_0(const std::string& text) {
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
+  return fmt::format("\"{}\" is no number above 0", text);
 }
 
 std::string check_noise_m(const std::string& text) {

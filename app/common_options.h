@@ -71,6 +71,12 @@ void check_file_writable(const std::filesystem::path& file);
 /// For CLI11, which takes -1 for the largest unsigned number: why the text is none; empty where it is one.
 std::string check_whole_number(const std::string& text);
 
+/// Writes a file beside its final name and renames it: what stood there stays where that fails.
+void write_whole(const std::filesystem::path& file, std::string_view text);
+
+/// For CLI11, whose own checks take "nan": why the text is no finite number above 0; empty where it is one.
+std::string check_above_0(const std::string& text);
+
 /// For CLI11: why the text is no finite number of metres above 0 that a position's noise can be; empty where it is one.
 std::string check_noise_m(const std::string& text);
 

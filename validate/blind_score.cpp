@@ -31,7 +31,7 @@ const std::vector<std::string>& library_of(const BlindOutcome& outcome) {
 
 /// What a way of deciding says of one case: none, unknown, or names (the first first).
 struct Saying {
-  std::string word;  // none, unknown, effect
+  std::string word;  // none, unknown, effect, failed
   std::vector<std::string> names;
 };
 
@@ -58,12 +58,14 @@ const BlindRanked* most(const std::vector<BlindRanked>& ranking, std::size_t siz
 
 /// The effect whose refit lowers the residuals most; it always names one.
 Saying of_best_residual(const BlindVerdict& verdict) {
+  if (verdict.verdict == "failed") return {"failed", {}};
   const BlindRanked* best = most(verdict.ranking, 1, "", 0.0);
   return best == nullptr ? Saying{"none", {}} : Saying{"effect", best->ids};
 }
 
 /// Forward selection by Schwarz's criterion: one effect if it lowers it, a second one if that lowers it further.
 Saying of_stepwise_bic(const BlindVerdict& verdict) {
+  if (verdict.verdict == "failed") return {"failed", {}};
   const double price = 0.5 * std::log(std::max(2.0, verdict.points));
   const auto value = [&](const BlindRanked& one) { return one.log_likelihood_gain - price * one.parameters; };
   const BlindRanked* first = most(verdict.ranking, 1, "", price);
@@ -192,7 +194,8 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
     count(score.exact[strength], !verdict.effects.empty() && verdict.effects.front().id == outcome.causes.front().id);
     if (outcome.left_out) {
       const std::string said = verdict_without(outcome);
-      for (const char* word : {"unknown", "equivalent", "none", "another name", "another name, probability over 0.8"}) {
+      for (const char* word :
+           {"unknown", "equivalent", "none", "another name", "another name, probability over 0.8", "failed"}) {
         count(score.left_out[word], said == word);
       }
       const auto variables = variables_of(outcome.causes.front().id);

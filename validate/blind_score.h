@@ -72,11 +72,12 @@ struct BlindScore {
   BlindShare where;                              ///< outside and unknown: the true variable among the regions
   BlindShare where_first;                        ///< outside and unknown: it is that of the first one
   std::vector<ReliabilityBin> reliability;
-  double calibration_error = 0.0;              ///< expected: mean |stated - right| over cases
-  std::vector<double> shrink_of_oracle;        ///< single, strong: shrink over the true effect's own, each case
-  BlindShare shrunk;                           ///< of these: at least 0.95
-  std::map<std::string, BlindShare> left_out;  ///< unknown, equivalent, none, name, sure name: of those left out
-  BlindShare left_out_where;                   ///< unknown of those: the first region is in a variable of the effect
+  double calibration_error = 0.0;        ///< expected: mean |stated - right| over cases
+  std::vector<double> shrink_of_oracle;  ///< single, strong: shrink over the true effect's own, each case
+  BlindShare shrunk;                     ///< of these: at least 0.95
+  std::map<std::string, BlindShare>
+      left_out;               ///< unknown, equivalent, none, name, sure name, failed: of those left out
+  BlindShare left_out_where;  ///< unknown of those: the first region is in a variable of the effect
   std::vector<ConfusionRow> confusion;
   std::size_t failed = 0;
 };

@@ -59,14 +59,31 @@ void check_same_run(const BlindOptions& options, const fs::path& out) {
                                      "the seed and effect of this run, " + wanted.dump() + ", or an empty folder"});
 }
 
-BlindVerdict verdict_in(const fs::path& file, const std::string& failure) {
-  if (!failure.empty()) {
-    BlindVerdict failed;
-    failed.verdict = "failed";
-    failed.why = failure;
-    return failed;
+constexpr const char* kDiagnosis = "diagnosis.json";  // in the folder of a diagnosis,
+constexpr const char* kFailure = "failure.txt";       // and what is there where it failed
+
+bool is_diagnosed(const fs::path& folder) {
+  return fs::exists(folder / kDiagnosis) || fs::exists(folder / kFailure);
+}
+
+void diagnose_into(const fs::path& folder, const Diagnoser& diagnose, const fs::path& experiment,
+                   const std::vector<std::string>& without) {
+  fs::create_directories(folder);
+  const std::string failure = diagnose(experiment, folder, without);
+  if (!failure.empty()) base::write_file(folder / kFailure, failure);
+}
+
+/// Less what the folder itself tells of.
+BlindVerdict verdict_in(const fs::path& folder, const std::vector<std::string>& told) {
+  BlindVerdict verdict;
+  if (fs::exists(folder / kFailure)) {
+    verdict.verdict = "failed";
+    verdict.why = base::read_file(folder / kFailure);
+  } else {
+    verdict = read_blind_verdict(folder / kDiagnosis);
   }
-  return read_blind_verdict(file);
+  set_aside(told, verdict);
+  return verdict;
 }
 
 /// A case of either sort.
@@ -103,10 +120,10 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
   const Made one = make_case(options, out, index, render);
   const std::string name = fmt::format("{:04d}", index);
   const fs::path folder = out / "cases" / name, diagnosis = out / "diagnoses" / name;
-  const fs::path truth = out / "truth" / (name + ".json"), failure_file = diagnosis / "failure.txt";
+  const fs::path truth = out / "truth" / (name + ".json");
   const bool leaves_out = options.leave_out && one.kind == BlindKind::single;
   const fs::path without = diagnosis / "left-out";
-  const bool done = fs::exists(truth) && (fs::exists(diagnosis / "diagnosis.json") || fs::exists(failure_file));
+  const bool done = fs::exists(truth) && is_diagnosed(diagnosis);
   if (done && base::read_file(truth) != one.truth_json) {
     throw base::InputError(base::Issue{truth.string(), 0, "", "a case of another version of this program",
                                        "an empty folder, or the version that made it"});
@@ -115,27 +132,17 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
     fs::remove_all(folder);
     fs::remove_all(diagnosis);
     one.write(folder);
-    fs::create_directories(diagnosis);
-    const std::string failure = diagnose(folder, diagnosis, {});
-    if (!failure.empty()) base::write_file(failure_file, failure);
+    diagnose_into(diagnosis, diagnose, folder, {});
   }
-  if (leaves_out && !fs::exists(without / "diagnosis.json")) {
-    fs::create_directories(without);
-    diagnose(folder, without, {one.causes.front().id});
-  }
+  if (leaves_out && !is_diagnosed(without)) diagnose_into(without, diagnose, folder, {one.causes.front().id});
   if (!done) {
     base::StagedOutput staged(out / "truth");
     base::write_file(staged.dir() / truth.filename(), one.truth_json);
     staged.publish_files();
   }
   BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.pictures};
-  outcome.verdict =
-      verdict_in(diagnosis / "diagnosis.json", fs::exists(failure_file) ? base::read_file(failure_file) : "");
-  set_aside(one.told, outcome.verdict);
-  if (leaves_out && fs::exists(without / "diagnosis.json")) {
-    outcome.left_out = read_blind_verdict(without / "diagnosis.json");
-    set_aside(one.told, *outcome.left_out);
-  }
+  outcome.verdict = verdict_in(diagnosis, one.told);
+  if (leaves_out) outcome.left_out = verdict_in(without, one.told);
   return outcome;
 }
 

@@ -3,7 +3,8 @@
 ///
 ///     OUT/run.json                     what was asked for; a run with other seeds or effects is refused
 ///     OUT/cases/0012/                  the experiment folder: all that the diagnosing process is told of
-///     OUT/diagnoses/0012/              diagnosis.json, diagnosis-left-out.json
+///     OUT/diagnoses/0012/              diagnosis.json, or failure.txt where it could not be diagnosed
+///     OUT/diagnoses/0012/left-out/     the same of the diagnosis without the case's effect
 ///     OUT/truth/0012.json              written after the diagnosis
 ///
 /// With pictures a case is rendered in OUT/making-0012/, which is gone before the diagnosis begins.

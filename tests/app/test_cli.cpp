@@ -5,6 +5,7 @@
 
 #include "base/staged_output.h"
 #include "catch.h"
+#include "made_track.h"
 #include "run_process.h"
 #include "temp_dir.h"
 #include "test_paths.h"
@@ -84,6 +85,18 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
       {"render", "a.toml", "--no-such-option"},
       {"diagnose", "folder", "--without", "quadratic_darg"},
       {"analyze", "folder", "--robust"},
+      {"analyze", "track.csv", "--mass", "nan"},
+      {"analyze", "track.csv", "--mass", "0"},
+      {"analyze", "track.csv", "--incline", "nan"},
+      {"pattern", "--square-mm", "nan"},
+      {"pattern", "--square-mm", "0"},
+      {"pattern", "--marker-mm", "8,nan"},
+      {"require", "a.toml", "--target", "mu=1", "--runs", "20"},
+      {"diagnose", "folder", "--noise-m", "1e-5"},
+      {"diagnose", "--plan", "folder", "--without", "stribeck"},
+      {"diagnose", "--plan", "folder", "--twin", "twin.toml"},
+      {"diagnose", "--plan", "a.toml", "--noise-m", "nan"},
+      {"diagnose", "--plan", "a.toml", "--noise-m", "-1"},
       {"require", "a.toml", "--target", "mu"},
       {"new"},
       {"new", "a", "-o", "b"},
@@ -303,6 +316,23 @@ TEST_CASE("a plan of a scenario wants its noise on the command line") {
   const tests::ProcessResult result = tests::glidelab({"diagnose", "--plan", "tiny.toml"}, temp.path());
   CHECK(result.status == 2);
   CHECK(result.err.find("--noise-m: found nothing") != std::string::npos);
+}
+
+TEST_CASE("a plan takes one scenario, or recordings without a noise of the command line") {
+  const tests::TempDir temp;
+  base::write_file(temp / "tiny.toml", tests::tiny_scenario());
+  const tests::ProcessResult two =
+      tests::glidelab({"diagnose", "--plan", "tiny.toml", "other.toml", "--noise-m", "1e-5", "--no-page"}, temp.path());
+  INFO(two.err);
+  CHECK(two.status == 2);
+  CHECK(two.err.find("EXPERIMENT: found 2 of them, the first a file") != std::string::npos);
+  tests::write_track_experiment(temp / "made");
+  const tests::ProcessResult noise =
+      tests::glidelab({"diagnose", "--plan", "made", "--noise-m", "1e-5", "--no-page"}, temp.path());
+  INFO(noise.err);
+  CHECK(noise.status == 2);
+  CHECK(noise.err.find("--noise-m: found a noise beside a recording") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
 }
 
 TEST_CASE("an output folder that is a link to nothing is called one, and so is what it would lie in") {

@@ -366,3 +366,14 @@ TEST_CASE("a file that an option names is replaced only where that option wrote 
     CHECK(base::read_file(temp / "own.toml") == own);
   }
 }
+
+TEST_CASE("a twin's place that cannot be written is said before the diagnosis") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const tests::ProcessResult result =
+      tests::glidelab({"diagnose", "made", "-q", "--no-page", "--twin", "nowhere/twin.toml"}, temp.path());
+  INFO(result.err);
+  CHECK(result.status == 3);
+  CHECK(says(result, "twin.toml: cannot be written"));
+  CHECK_FALSE(fs::exists(temp / "glidelab-out"));
+}

@@ -226,3 +226,13 @@ TEST_CASE("a score counts names, alarms and what was not recognised") {
   // Stated 0.9 four times, right three times; 0.6 wrong; 0.5 right: (4 |0.9 - 0.75| + 0.6 + 0.5)/6.
   CHECK(std::abs(score.calibration_error - (4.0 * 0.15 + 0.6 + 0.5) / 6.0) < 1e-6);  // as std::to_string has it
 }
+
+TEST_CASE("a case that could not be diagnosed is right by no method, though nothing was withheld in it") {
+  const auto score = validate::score_blind({outcome(validate::BlindKind::none, "", 0.0, "failed", "", 0.0)});
+  REQUIRE(score.methods.size() == 4);  // the last picks at random
+  for (std::size_t m = 0; m < 3; ++m) {
+    INFO(score.methods[m].name);
+    CHECK(score.methods[m].none.of == 1);
+    CHECK(score.methods[m].none.yes == 0);
+  }
+}

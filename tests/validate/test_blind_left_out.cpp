@@ -1,14 +1,25 @@
 #include "validate/blind_left_out.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "base/staged_output.h"
 #include "catch.h"
+#include "temp_dir.h"
 #include "validate/blind_effects.h"
+#include "validate/run_blind.h"
 
 using namespace glidelab;
+namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kNothingFound =
+    R"({"format": 1, "verdict": "none", "points": 1000, "effects": [], "probability": {"none": 0.9, "unknown": 0.1},
+        "ranking": [], "where": {"regions": []}, "gap": null})";
 
 validate::BlindOutcome left_out(const std::string& effect, const std::string& verdict,
                                 const std::vector<std::string>& where = {}) {
@@ -63,4 +74,30 @@ TEST_CASE("only effects of the list have variables, and they are those of a diag
   CHECK(validate::variables_of("track_bow") == std::vector<std::string>{"x_m"});
   CHECK(validate::variables_of("scale_error").empty());
   CHECK(validate::variables_of("sagging_tripod").empty());
+}
+
+TEST_CASE("a case whose diagnosis without its effect failed counts as failed, and is not tried again") {
+  tests::TempDir temp;
+  std::size_t calls = 0;
+  const validate::Diagnoser diagnoser = [&](const fs::path&, const fs::path& out,
+                                            const std::vector<std::string>& without) -> std::string {
+    ++calls;
+    if (!without.empty()) return "made to fail";
+    base::write_file(out / "diagnosis.json", kNothingFound);
+    return "";
+  };
+  validate::BlindOptions options;
+  options.cases = 1;
+  options.only = "track_bow";
+  options.leave_out = true;
+  for (int run = 0; run < 2; ++run) {
+    const auto outcomes = validate::run_blind(options, temp / "out", diagnoser);
+    REQUIRE(outcomes.size() == 1);
+    REQUIRE(outcomes[0].left_out.has_value());
+    CHECK(outcomes[0].left_out->verdict == "failed");
+    CHECK(outcomes[0].left_out->why == "made to fail");
+    CHECK(validate::score_blind(outcomes).left_out.at("unknown").of == 1);
+    CHECK(validate::score_blind(outcomes).left_out.at("failed").yes == 1);
+  }
+  CHECK(calls == 2);
 }
