@@ -69,6 +69,12 @@ Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b) {
   return a.colPivHouseholderQr().solve(b);
 }
 
+Eigen::MatrixXd orthonormal_columns(const MatrixView& a, double alike) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(a);
+  factor.setThreshold(alike);
+  return factor.householderQ() * Eigen::MatrixXd::Identity(a.rows(), factor.rank());
+}
+
 SymmetricEigen symmetric_eigen(const MatrixView& a) {
   require_square("symmetric_eigen", a);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a);

@@ -37,6 +37,10 @@ Eigen::MatrixXd solve_lower(const MatrixView& lower, const MatrixView& b);
 /// X that minimises |A X - B|, by Householder's QR with column pivoting.
 Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b);
 
+/// An orthonormal basis of what A's columns span, by the same QR: a column that the others make up to `alike` of the
+/// longest adds nothing. Rows of A, and as many columns as A has rank.
+Eigen::MatrixXd orthonormal_columns(const MatrixView& a, double alike);
+
 /// A = V diag(values) V' of a symmetric A (its lower triangle), values ascending, vectors in columns.
 struct SymmetricEigen {
   Eigen::VectorXd values;

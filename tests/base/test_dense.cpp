@@ -94,6 +94,22 @@ TEST_CASE("eigenvalues come in ascending order with their vectors") {
   CHECK(largest(product(a, eigen.vectors) - eigen.vectors * eigen.values.asDiagonal()) < kRounding);
 }
 
+TEST_CASE("columns that share what they span count once, and their basis is orthonormal") {
+  // (1, 1, 0), (0, 1, 1), their sum but for a billionth, and nothing: a plane, whose normal is (1, -1, 1).
+  Eigen::MatrixXd a(3, 4);
+  a << 1, 0, 1, 0,  //
+      1, 1, 2, 0,   //
+      0, 1, 1.000000001, 0;
+  const Eigen::MatrixXd basis = orthonormal_columns(a, 1e-6);
+  REQUIRE(basis.cols() == 2);
+  CHECK(largest(transposed_product(basis, basis) - Eigen::MatrixXd::Identity(2, 2)) < kRounding);
+  Eigen::MatrixXd normal(3, 1);
+  normal << 1, -1, 1;
+  CHECK(largest(transposed_product(basis, normal)) < 1e-8);  // the third column is a billionth off the plane
+  CHECK(orthonormal_columns(a, 1e-12).cols() == 3);
+  CHECK(orthonormal_columns(Eigen::MatrixXd::Zero(3, 2), 1e-6).cols() == 0);
+}
+
 TEST_CASE("shapes that do not fit are named") {
   const Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2, 3);
   CHECK_THROWS_AS(product(a, a), std::invalid_argument);
