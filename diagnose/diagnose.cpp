@@ -10,12 +10,12 @@
 #include "core/analyze.h"
 #include "diagnose/driven_motions.h"
 #include "diagnose/edge_losses.h"
-#include "diagnose/film_noise.h"
 #include "diagnose/frame_effects.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/line_diagnosis.h"
 #include "diagnose/missing_frames.h"
 #include "diagnose/picture_evidence.h"
+#include "diagnose/position_noise.h"
 #include "diagnose/speed_noise.h"
 #include "diagnose/track_set.h"
 #include "diagnose/twin.h"
@@ -118,6 +118,19 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   }
 }
 
+/// Of tracks, whose pictures nobody sees here.
+void note_lasting_noise(TrackSet& set) {
+  const NoiseShape& shape = set.position_noise->shape;
+  if (set.pictures || !(shape.lasting > 0.0)) return;
+  const double lasting = shape.lasting * shape.lasting;
+  set.notes.push_back(fmt::format(
+      "Errors of positions that follow each other are alike (correlation {:.2f} from one frame to the next, {:.2f} to "
+      "the fourth), as a tracker's are that goes by its own last picture, or positions that were smoothed: they count "
+      "for fewer than they are.",
+      lasting / (1.0 + lasting) * std::exp(-1.0 / shape.lasting_frames),
+      lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)));
+}
+
 /// The noise of every position, by what single frames tell of it. Frames that are missing are taken out first: a jump
 /// is no noise and no outlier.
 void settle_noise(TrackSet& set) {
@@ -130,11 +143,12 @@ void settle_noise(TrackSet& set) {
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
   const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
   if (missing.count > 0 && set.pictures) refit();
-  if (find_film_noise(set, missing.fit)) {
+  if (find_position_noise(set, missing.fit)) {
     refit();
     set_tails_aside(set, missing.fit);
+    note_lasting_noise(set);
     for (TrackedMotion& motion : set.motions) {
-      whiten(motion, set.film_noise->shape, set.clips[motion.clip].frame_rate_hz);
+      whiten(motion, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
     }
     return;
   }

@@ -1,5 +1,6 @@
 /// What a change to the experiment would tell, before it is made: in the linear neighbourhood of a fit, the
-/// change's clip simulated by the track model, with noise as in the clips so far (white, or as film_noise.h has it).
+/// change's clip simulated by the track model, with noise as in the clips so far (white, or as position_noise.h has
+/// it).
 ///
 ///     split = 1/2 u' (1 + G C G')^-1 u,        C' = C - C G' (1 + G C G')^-1 G C
 ///

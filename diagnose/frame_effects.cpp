@@ -20,8 +20,8 @@ constexpr double kBeyondDoubt = 5.0;  // log evidence
 }  // namespace
 
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
-  if (set.film_noise) {
-    const FilmNoise& noise = *set.film_noise;
+  if (set.position_noise) {
+    const PositionNoise& noise = *set.position_noise;
     return {effect_index("timestamp_jitter"), noise.jitter_gain, noise.jitter_log_evidence, noise.jitter_s,
             noise.jitter_sd_s};
   }

@@ -96,7 +96,7 @@ TrackSet split_clip(const TrackSet& set) {
       const std::size_t from = n * static_cast<std::size_t>(k) / 4, to = n * static_cast<std::size_t>(k + 1) / 4;
       TrackedMotion part = some_points(motion, from, to);
       if (part.t_s.size() < 8) continue;
-      if (set.film_noise) whiten(part, set.film_noise->shape, set.clips[motion.clip].frame_rate_hz);
+      if (set.position_noise) whiten(part, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
       part.clip = split.clips.size();
       TrackedClip clip = set.clips[motion.clip];
       clip.name = fmt::format("{}, {:.2f} to {:.2f} s", clip.name, part.t_s.front(), part.t_s.back());

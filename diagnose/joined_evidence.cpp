@@ -159,9 +159,9 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
       }
       if (effect == codec && finding->stated && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
         // Of filmed noise that was measured by itself, no model goes in: what a fit leaves of a motion is no codec's.
-        if (set.film_noise) {
-          of_tracks = std::max(0.0, set.film_noise->lasting_log_evidence);
-          with.gain += set.film_noise->lasting_gain;
+        if (set.position_noise) {
+          of_tracks = std::max(0.0, set.position_noise->lasting_log_evidence);
+          with.gain += set.position_noise->lasting_gain;
         } else {
           const CorrelatedNoise noise = scan_correlation(set, comparison.fits[static_cast<std::size_t>(other.fit)]);
           of_tracks = std::max(0.0, noise.log_evidence);

@@ -114,9 +114,10 @@ void add_inclinations(const TrackSet& set, const SoFar& so, std::vector<Change>&
 
 /// The launches there are with another frame rate, and with half the exposure.
 void add_settings(const TrackSet& set, const SoFar& so, std::vector<Change>& changes) {
-  const bool scatters = set.film_noise ? set.film_noise->shape.jitter_s > 0.0
-                                       : std::any_of(set.motions.begin(), set.motions.end(),
-                                                     [](const TrackedMotion& motion) { return !motion.wider.empty(); });
+  const bool scatters = set.position_noise
+                            ? set.position_noise->shape.jitter_s > 0.0
+                            : std::any_of(set.motions.begin(), set.motions.end(),
+                                          [](const TrackedMotion& motion) { return !motion.wider.empty(); });
   for (const std::size_t group : so.groups) {
     for (const double v : {-so.fast_m_s, so.fast_m_s}) {
       for (const double mass : distinct({so.light_kg, so.heavy_kg})) {

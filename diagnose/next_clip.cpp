@@ -104,14 +104,15 @@ TrackSet with_clip(const TrackSet& set, const Change& change) {
   return one;
 }
 
-/// A filmed clip's as its pictures make it, uneven times and blur in proportion to the exposure; else as it grows with
-/// the speed so far.
+/// As it was measured, uneven times and blur in proportion to the exposure; white noise as it grows with the speed so
+/// far.
 void give_noise(const TrackSet& set, const MotionFit& fit, const Change& change, const Moved& moved,
                 TrackedMotion& motion) {
   const NoiseSoFar noise = noise_so_far(set, fit);
   motion.sd_m = noise.sd_m;
-  if (set.film_noise && !motion.along_px.empty() && !moved.x_m.empty()) {
-    NoiseShape shape = set.film_noise->shape;
+  const bool filmed = motion.m_per_px > 0.0;
+  if (set.position_noise && !(filmed && motion.along_px.empty()) && !moved.x_m.empty()) {
+    NoiseShape shape = set.position_noise->shape;
     shape.jitter_s *= change.clip->exposure;
     whiten(motion, shape, change.clip->rate_hz);
     return;

@@ -5,12 +5,15 @@
 #include <numbers>
 #include <utility>
 
+#include "base/dense.h"
+
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kMostPoints = 1920;  // of all motions: more add nothing to a handful of numbers
 constexpr std::size_t kFewestInChunk = 24;
+constexpr double kAlike = 1e-6;   // a slow wave is a sum of bumps but for less than this: it counts once
 constexpr double kMostOff = 8.0;  // standard deviations off the neighbours
 
 // Sine and cosine, with time and its square: a frequency between two that are tried is half a radian off at the ends of
@@ -49,7 +52,7 @@ void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double
       for (std::size_t m = 0; m < pixel.size(); ++m) {
         pixel[m].push_back(motion.shared_m[motion.first_pixel_mode + m][p] / motion.m_per_px);
       }
-      off.push_back(fit.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p) / motion.m_per_px);
+      off.push_back(fit.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p) / unit_m(motion));
     }
     if (off.size() < kFewestInChunk) continue;
     const auto n = std::ssize(off);
@@ -74,6 +77,7 @@ void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double
         chunk.slow(p, bumps + of_wave + m) = pixel[static_cast<std::size_t>(m)][q];
       }
     }
+    chunk.slow = base::orthonormal_columns(chunk.slow, kAlike);
     chunks.push_back(std::move(chunk));
   }
 }

@@ -67,8 +67,7 @@ NoiseLikelihood::Left NoiseLikelihood::with(const NoiseChunk& chunk, const Noise
   both << chunk.slow, chunk.off_px;
   both = base::solve_lower(lower, both);
   left.logs += 2.0 * lower.diagonal().array().log().sum();
-  Eigen::MatrixXd normal = base::transposed_product(both, both);
-  normal.diagonal().head(k).array() *= 1.0 + 1e-10;
+  const Eigen::MatrixXd normal = base::transposed_product(both, both);
   // The last pivot's square is what the slow columns leave of the residuals; the others' make log |B'V^-1 B|.
   const Eigen::MatrixXd factor = base::cholesky_lower(normal);
   left.square += factor(k, k) * factor(k, k);

@@ -54,7 +54,7 @@ Part part_of(const TrackSet& set, const MotionFit& fit, std::size_t mass, int di
       while (to < v.size() && v[to] * direction > 0.0) ++to;
       if (to - from < kFewestPoints) continue;
       TrackedMotion stretch = some_points(motion, from, to);
-      if (set.film_noise) whiten(stretch, set.film_noise->shape, set.clips[motion.clip].frame_rate_hz);
+      if (set.position_noise) whiten(stretch, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
       part.set.motions.push_back(std::move(stretch));
       Eigen::VectorXd own = fit.at.own[i];
       own[0] = x[from];

@@ -23,8 +23,8 @@ struct NoiseShape {
   double jitter_s = 0.0;
 };
 
-/// As positions show it by themselves (film_noise.h).
-struct FilmNoise {
+/// As positions show it by themselves (position_noise.h).
+struct PositionNoise {
   NoiseShape shape;
   double jitter_gain = 0.0, jitter_log_evidence = 0.0;  ///< of uneven times, against the likeliest noise without
   double jitter_s = 0.0, jitter_sd_s = 0.0;
@@ -97,7 +97,7 @@ struct TrackSet {
   bool lossy = false;      ///< at least one has been through a codec with loss,
   bool handed_on = false;  ///< and one that makes pictures out of those before:
   double held_m_s = 0.0;   ///< slower than this the marker may be held where it was (0: by none)
-  std::optional<FilmNoise> film_noise;
+  std::optional<PositionNoise> position_noise;
   std::vector<std::string> notes;
   /// Frames that the analysis took for hand or stop and that a motion could hold.
   std::size_t disputed = 0;

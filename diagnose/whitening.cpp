@@ -34,14 +34,18 @@ Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape,
   return covariance;
 }
 
+double unit_m(const TrackedMotion& motion) {
+  return motion.m_per_px > 0.0 ? motion.m_per_px : 1.0;
+}
+
 SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz) {
   SeenFrames frames;
-  if (!(motion.m_per_px > 0.0)) return frames;
-  frames.along_px = motion.along_px;
+  frames.along_px = motion.m_per_px > 0.0 ? motion.along_px : motion.x_m;
+  if (frames.along_px.empty()) return frames;
   for (std::size_t p = 0; p < motion.t_s.size(); ++p) {
     frames.frame.push_back(motion.t_s[p] * rate_hz);
     const std::size_t a = p - std::min<std::size_t>(p, 2), b = std::min(p + 2, motion.t_s.size() - 1);
-    frames.v_px_s.push_back((motion.along_px[b] - motion.along_px[a]) / (motion.t_s[b] - motion.t_s[a]));
+    frames.v_px_s.push_back((frames.along_px[b] - frames.along_px[a]) / (motion.t_s[b] - motion.t_s[a]));
   }
   return frames;
 }
@@ -49,8 +53,8 @@ SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz) {
 void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz) {
   motion.wider.clear();
   motion.whitening.clear();
-  if (!(motion.m_per_px > 0.0)) return;
   const SeenFrames all = seen_frames(motion, rate_hz);
+  if (all.along_px.empty()) return;
   const std::size_t points = motion.t_s.size(), stretches = (points + kStretch - 1) / kStretch;
   for (std::size_t s = 0; s < stretches; ++s) {
     const auto from = static_cast<std::ptrdiff_t>(points * s / stretches),
@@ -59,7 +63,7 @@ void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz) {
       return std::vector<double>(of.begin() + from, of.begin() + to);
     };
     Eigen::MatrixXd covariance =
-        covariance_of({part(all.along_px), part(all.frame), part(all.v_px_s)}, shape, motion.sd_m / motion.m_per_px);
+        covariance_of({part(all.along_px), part(all.frame), part(all.v_px_s)}, shape, motion.sd_m / unit_m(motion));
     const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
     for (Eigen::Index i = 0; i < sd.size(); ++i) {
       motion.wider.push_back(sd[i]);

@@ -1,4 +1,4 @@
-/// What neighbouring frames of a filmed clip share of their noise, as a covariance.
+/// What neighbouring frames of a clip share of their noise, as a covariance.
 ///
 /// Where the marker moves slowly, several frames see it on the same pixels, and err alike. Of two frames i, j of a
 /// motion, d their distance in the picture along it (px), n in frames, v the speed, over the white noise s:
@@ -6,9 +6,10 @@
 ///     cov / s² = [i = j]                       photons, read noise, rounding
 ///              + a² exp(-(d/l)²/2)             pixels that differ from each other (PRNU), at the marker's edges
 ///              + b² cos(2 pi d) exp(-d/L)      the place between two pixels, otherwise at places some L away
-///              + c² exp(-n/m)                  what a codec with loss makes of frames that follow each other
+///              + c² exp(-n/m)                  what a codec with loss, or a tracker, hands from frame to frame
 ///              + (v tau/s)² [i = j]            uneven times
 ///
+/// Of what was tracked elsewhere (no pixel is known) the unit of d is the metre, and a = b = 0.
 /// Motions are independent of each other in it, and so are stretches of 240 points: that clips pass over the same
 /// pixels is left out.
 #pragma once
@@ -29,7 +30,10 @@ struct SeenFrames {
 /// Covariance over s² of all these frames; `white_px` is s, for the jitter.
 Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape, double white_px);
 
-/// Of a motion; `rate_hz` its clip's. Empty positions where it was not filmed.
+/// What "px" is of this motion, in metres: a pixel, or, where it was not filmed, the metre itself.
+double unit_m(const TrackedMotion& motion);
+
+/// Of a motion; `rate_hz` its clip's. Empty where a filmed marker hardly moves.
 SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz);
 
 /// Sets `wider` and `whitening` for a motion whose sd_m (now s), outliers and along_px are set.

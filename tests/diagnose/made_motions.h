@@ -100,10 +100,11 @@ struct MadeExperiment {
   std::vector<core::ClipSetup> setups;
 };
 
-/// Analysed as the program does it, from the positions on.
+/// Analysed as the program does it, from the positions on. Errors of neighbouring positions correlate by `follows`, of
+/// the next but one by its square.
 inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, const MadeEffect& effect, unsigned seed,
                                       double noise_m = 3e-5, std::size_t frames = 150, double rate_hz = 100.0,
-                                      double incline_sd_deg = 0.05) {
+                                      double incline_sd_deg = 0.05, double follows = 0.0) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   MadeExperiment made;
@@ -120,11 +121,14 @@ inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, c
     core::TrackData track;
     track.frame_rate_hz = rate_hz;
     std::size_t frame = 0;
+    double error = 0.0, kept = 0.0;  // of the error before
     for (const double x : made_motion({}, launches[c], effect, frames, rate_hz)) {
       if (effect.lost && effect.lost(c, frame++)) continue;
       track.frame.push_back(track.t_s.size());
       track.t_s.push_back(static_cast<double>(track.t_s.size()) / rate_hz);
-      track.x_m.push_back(x + noise_m * normal(random));
+      error = kept * error + std::sqrt(1.0 - kept * kept) * normal(random);
+      kept = follows;
+      track.x_m.push_back(x + noise_m * error);
       if (effect.recorded) track.force_n.push_back(effect.recorded(track.t_s.back()));
     }
     track.frame_t_s = track.t_s;

@@ -1,4 +1,4 @@
-#include "diagnose/film_noise.h"
+#include "diagnose/position_noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "base/dense.h"
 #include "catch.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/noise_chunks.h"
 #include "diagnose/whitening.h"
 #include "made_motions.h"
 
@@ -115,10 +116,35 @@ TEST_CASE("whitening makes the unit matrix of the covariance, and colouring take
   const Eigen::VectorXd back = diagnose::coloured(motion, diagnose::whitened(motion, some));
   CHECK((back - some).cwiseAbs().maxCoeff() < 1e-10);
 
-  motion.m_per_px = 0.0;  // a track
+  motion.m_per_px = 1.0;  // its pixel is a metre, which is what a track's positions are in
+  motion.along_px = motion.x_m;
+  diagnose::whiten(motion, shape, 100.0);
+  const std::vector<Eigen::MatrixXd> metres = motion.whitening;
+  motion.m_per_px = 0.0;
+  motion.along_px.clear();
+  diagnose::whiten(motion, shape, 100.0);
+  REQUIRE(motion.whitening.size() == metres.size());
+  for (std::size_t s = 0; s < metres.size(); ++s) CHECK(motion.whitening[s] == metres[s]);
+
+  motion.m_per_px = 1e-3;  // filmed, and hardly moving: places are not known
   diagnose::whiten(motion, shape, 100.0);
   CHECK(motion.whitening.empty());
   CHECK(diagnose::whitened(motion, some) == some);
+}
+
+TEST_CASE("what is set aside beside a slow wave has each direction once") {
+  // Of 0.5 Hz: over 80 frames at 100 Hz half a period, which the bumps ten frames apart have as well.
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 1);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit fit = diagnose::fit_nominal(set);
+  const auto plain = diagnose::noise_chunks(set, fit, 0.0), waved = diagnose::noise_chunks(set, fit, 0.5);
+  REQUIRE(plain.size() == waved.size());
+  for (std::size_t c = 0; c < plain.size(); ++c) {
+    const Eigen::MatrixXd& slow = waved[c].slow;
+    const Eigen::MatrixXd unit = base::transposed_product(slow, slow);
+    CHECK((unit - Eigen::MatrixXd::Identity(slow.cols(), slow.cols())).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK(slow.cols() >= plain[c].slow.cols());
+  }
 }
 
 TEST_CASE("pixels that differ from each other are noise that slow frames share, and no effect") {
@@ -126,8 +152,8 @@ TEST_CASE("pixels that differ from each other are noise that slow frames share, 
   const tests::MadeExperiment made = filmed(pixels_that_differ(0.004, 3), 11);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const double white = chi2_of(set);
-  REQUIRE(diagnose::find_film_noise(set, diagnose::fit_nominal(set)));
-  const diagnose::FilmNoise& noise = *set.film_noise;
+  REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
+  const diagnose::PositionNoise& noise = *set.position_noise;
   CHECK(noise.shape.pixels > 0.75);  // 1.6 in truth: the field's mean square is 2/3 of its knots'
   CHECK(noise.shape.jitter_s == 0.0);
   CHECK(noise.jitter_log_evidence < 3.0);
@@ -140,13 +166,13 @@ TEST_CASE("pixels that differ from each other are noise that slow frames share, 
 TEST_CASE("white noise of filmed positions stays white") {
   const tests::MadeExperiment made = filmed([](double, double) { return 0.0; }, 12);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  REQUIRE(diagnose::find_film_noise(set, diagnose::fit_nominal(set)));
+  REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
   for (const auto& motion : set.motions) {
     // 0.002 px: 145 points know it to 6 %, and a part that is not there may have taken a tenth.
     CHECK(std::abs(motion.sd_of(70) / motion.m_per_px / 0.002 - 1.0) < 0.25);
   }
-  CHECK(set.film_noise->jitter_log_evidence < 3.0);
-  CHECK(set.film_noise->lasting_log_evidence == 0.0);  // not asked for: no file with loss
+  CHECK(set.position_noise->jitter_log_evidence < 3.0);
+  CHECK(set.position_noise->lasting_log_evidence == 0.0);  // not asked for: no file with loss
 }
 
 TEST_CASE("a camera that sways strongly makes no noise") {
@@ -154,7 +180,7 @@ TEST_CASE("a camera that sways strongly makes no noise") {
   const auto sway = [](double t_s) { return 0.4 * std::sin(2.0 * std::acos(-1.0) * 6.03 * t_s + 0.7); };
   const tests::MadeExperiment made = filmed([](double, double) { return 0.0; }, 15, sway);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  REQUIRE(diagnose::find_film_noise(set, diagnose::fit_nominal(set)));
+  REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
   for (const auto& motion : set.motions) CHECK(std::abs(motion.sd_of(70) / motion.m_per_px / 0.002 - 1.0) < 0.25);
 }
 
@@ -177,8 +203,8 @@ TEST_CASE("uneven times are told from errors that go with the place") {
   std::normal_distribution<double> normal(0.0, 4e-5);
   const tests::MadeExperiment made = filmed([&](double, double v) { return v * normal(random); }, 13);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  REQUIRE(diagnose::find_film_noise(set, diagnose::fit_nominal(set)));
-  const diagnose::FilmNoise& noise = *set.film_noise;
+  REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
+  const diagnose::PositionNoise& noise = *set.position_noise;
   CHECK(noise.jitter_log_evidence > 50.0);
   CHECK(std::abs(noise.jitter_s - 4e-5) < 5.0 * noise.jitter_sd_s + 6e-6);  // and half a step of the sizes tried
 }
@@ -191,11 +217,11 @@ TEST_CASE("in a file whose pictures are made of those before, noise that goes wi
     const tests::MadeExperiment made = filmed([&](double, double v) { return v * normal(random); }, 13);
     diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
     set.lossy = set.handed_on = handed_on;
-    REQUIRE(diagnose::find_film_noise(set, diagnose::fit_nominal(set)));
-    return *set.film_noise;
+    REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
+    return *set.position_noise;
   };
   CHECK(noise_of(1e-5, false).jitter_log_evidence > 10.0);
-  const diagnose::FilmNoise codecs = noise_of(1e-5, true);
+  const diagnose::PositionNoise codecs = noise_of(1e-5, true);
   CHECK(codecs.jitter_log_evidence < 1.0);
   CHECK(codecs.shape.jitter_s > 0.0);  // the fast positions are less certain all the same
   CHECK(noise_of(4e-5, true).jitter_log_evidence > 2.0);
@@ -212,12 +238,46 @@ TEST_CASE("a step in the picture beside uneven times is not given to these") {
   CHECK(diagnosis.unknown > 0.9);
 }
 
-TEST_CASE("what was not filmed keeps its noise") {
-  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 1);
-  diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  const double sd_m = set.motions.front().sd_m;
-  CHECK(!diagnose::find_film_noise(set, diagnose::fit_nominal(set)));
-  CHECK(!set.film_noise);
-  CHECK(set.motions.front().sd_m == sd_m);
-  CHECK(set.motions.front().whitening.empty());
+TEST_CASE("tracks whose noise is white keep it") {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, seed);
+    diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const double sd_m = set.motions.front().sd_m;
+    CHECK(!diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
+    CHECK(!set.position_noise);
+    CHECK(set.motions.front().sd_m == sd_m);
+    CHECK(set.motions.front().whitening.empty());
+  }
+}
+
+TEST_CASE("tracks whose errors last for frames have no gap, and keep no effect from its name") {
+  constexpr double kFollows = 0.4, kNoise = 1e-4;
+  const auto made_of = [](const tests::MadeEffect& effect, unsigned seed) {
+    return tests::made_experiment(tests::made_launches(), effect, seed, kNoise, 150, 100.0, 0.05, kFollows);
+  };
+  for (const unsigned seed : {21U, 22U, 23U}) {
+    const tests::MadeExperiment nothing = made_of({}, seed);
+    diagnose::TrackSet set = diagnose::track_set(nothing.results, nothing.setups, true);
+    const double white = chi2_of(set);
+    CHECK(white > 1.3);  // neighbours tell of the part that differs between them only
+    REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
+    // Of 1160 points a standard deviation of 0.04, and as much again for the noise, which is found from the same
+    // points.
+    CHECK(std::abs(chi2_of(set) - 1.0) < 0.2);
+    double mean = 0.0;  // of the logarithm; eight motions of some hundred independent errors know it to 3 %, sizes that
+    for (const auto& motion : set.motions) {  // are tried lie a factor of 1.5 apart
+      mean += std::log(motion.sd_of(70) / kNoise) / static_cast<double>(set.motions.size());
+    }
+    CHECK(std::abs(mean) < 0.25);
+    const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(nothing.results, nothing.setups, {});
+    CHECK(diagnosis.verdict == "none");
+    CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(),
+                      [](const std::string& note) { return note.find("follow each other") != std::string::npos; }));
+  }
+  // A track that is bent: 2 milliradians over half a metre.
+  const auto bow = [](double mass_kg, double x_m, double, double) { return mass_kg * 9.80665 * 0.004 * x_m; };
+  const tests::MadeExperiment bent = made_of({.force = bow}, 24);
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(bent.results, bent.setups, {});
+  REQUIRE(diagnosis.verdict == "effect");
+  CHECK(diagnosis.effects.front().id == "track_bow");
 }

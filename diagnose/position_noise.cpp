@@ -1,4 +1,4 @@
-#include "diagnose/film_noise.h"
+#include "diagnose/position_noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +66,7 @@ void climb(const NoiseLikelihood& likelihood, const std::vector<Dial>& dials, No
 }
 
 /// What the likeliest noise gains by its part that lasts, and the evidence over all sizes and lengths.
-void weigh_lasting(const NoiseLikelihood& likelihood, const Dial& lasting, FilmNoise& noise) {
+void weigh_lasting(const NoiseLikelihood& likelihood, const Dial& lasting, PositionNoise& noise) {
   NoiseShape shape = noise.shape;
   shape.lasting = 0.0;
   const double without = likelihood.of(shape).value - likelihood.known(shape);
@@ -92,7 +92,7 @@ struct OfSpeed {
 
 /// Uneven times, of any size alike, against the likeliest noise without, to which a codec's own errors belong. Returns
 /// the size that the positions have beyond doubt, whatever makes it; nullptr: none.
-const OfSpeed* weigh_speed(const std::vector<OfSpeed>& sizes, bool handed_on, FilmNoise& noise) {
+const OfSpeed* weigh_speed(const std::vector<OfSpeed>& sizes, bool handed_on, PositionNoise& noise) {
   if (sizes.empty()) return nullptr;
   std::vector<double> uneven, of_codec;
   const OfSpeed *likeliest = nullptr, *codecs = nullptr;
@@ -130,14 +130,16 @@ double wave_frequency(const TrackSet& set, const MotionFit& fit) {
 
 }  // namespace
 
-bool find_film_noise(TrackSet& set, const MotionFit& fit) {
+bool find_position_noise(TrackSet& set, const MotionFit& fit) {
+  const bool filmed =
+      std::any_of(set.motions.begin(), set.motions.end(), [](const TrackedMotion& of) { return of.m_per_px > 0.0; });
   std::size_t points = 0;
   std::vector<double> sds;
   double top_px_s = 0.0, step_s = 0.0;
   for (const TrackedMotion& motion : set.motions) {
-    if (motion.along_px.empty()) return false;
+    if (filmed && motion.along_px.empty()) return false;
     points += motion.t_s.size();
-    sds.push_back(motion.sd_m / motion.m_per_px);
+    sds.push_back(motion.sd_m / unit_m(motion));
     step_s = std::max(step_s, 1.0 / set.clips[motion.clip].frame_rate_hz);
     for (const double v : seen_frames(motion, 1.0).v_px_s) top_px_s = std::max(top_px_s, std::abs(v));
   }
@@ -148,15 +150,20 @@ bool find_film_noise(TrackSet& set, const MotionFit& fit) {
   const NoiseLikelihood likelihood(std::move(chunks), set.motions.size(), pilot_px, set.handed_on);
 
   const std::vector<double> sizes = {0.25, 0.5, 0.75, 1.1, 1.6, 2.4, 3.6, 5.4};
-  std::vector<Dial> dials = {{&NoiseShape::pixels, sizes, &NoiseShape::pixels_px, {0.25, 0.4, 0.7}},
-                             {&NoiseShape::phase, sizes, &NoiseShape::phase_px, {5.0, 20.0, 80.0}}};
+  std::vector<Dial> dials;
+  if (filmed) {
+    dials = {{&NoiseShape::pixels, sizes, &NoiseShape::pixels_px, {0.25, 0.4, 0.7}},
+             {&NoiseShape::phase, sizes, &NoiseShape::phase_px, {5.0, 20.0, 80.0}}};
+  }
   std::vector<double> lengths = {1.0, 2.0, 4.0};
   if (set.handed_on) lengths.push_back(8.0);
-  if (set.lossy) dials.push_back({&NoiseShape::lasting, sizes, &NoiseShape::lasting_frames, lengths});
-  FilmNoise noise;
+  const bool may_last = set.lossy || !filmed;
+  if (may_last) dials.push_back({&NoiseShape::lasting, sizes, &NoiseShape::lasting_frames, lengths});
+  PositionNoise noise;
   Likelihood best = likelihood.of(noise.shape);
   climb(likelihood, dials, noise.shape, best);
-  if (set.lossy) weigh_lasting(likelihood, dials.back(), noise);
+  if (may_last) weigh_lasting(likelihood, dials.back(), noise);
+  if (!filmed && noise.lasting_log_evidence < kBeyondDoubt) return false;
 
   // From what begins to show among so many points, in units of what s makes at top speed.
   const double unit = pilot_px / top_px_s;
@@ -182,10 +189,10 @@ bool find_film_noise(TrackSet& set, const MotionFit& fit) {
     noise.shape.jitter_s = chosen->jitter_s;
     best = chosen->likelihood;
   }
-  set.film_noise = noise;
+  set.position_noise = noise;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     TrackedMotion& motion = set.motions[i];
-    motion.sd_m = best.own_px[i] * motion.m_per_px;
+    motion.sd_m = best.own_px[i] * unit_m(motion);
     whiten(motion, noise.shape, set.clips[motion.clip].frame_rate_hz);
   }
   return true;
