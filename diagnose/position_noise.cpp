@@ -163,7 +163,11 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
   Likelihood best = likelihood.of(noise.shape);
   climb(likelihood, dials, noise.shape, best);
   if (may_last) weigh_lasting(likelihood, dials.back(), noise);
-  if (!filmed && noise.lasting_log_evidence < kBeyondDoubt) return false;
+  // What lasts for the longest that is tried may as well be what the model lacks: that is no noise.
+  const auto short_lived = [&](const NoiseShape& shape) {
+    return shape.lasting > 0.0 && shape.lasting_frames < lengths.back();
+  };
+  if (!filmed && (!short_lived(noise.shape) || noise.lasting_log_evidence < kBeyondDoubt)) return false;
 
   // From what begins to show among so many points, in units of what s makes at top speed.
   const double unit = pilot_px / top_px_s;
@@ -189,6 +193,7 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
     noise.shape.jitter_s = chosen->jitter_s;
     best = chosen->likelihood;
   }
+  if (!filmed && !short_lived(noise.shape)) return false;
   set.position_noise = noise;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     TrackedMotion& motion = set.motions[i];
