@@ -10,6 +10,7 @@
 #include "diagnose/hypothesis_fits.h"
 #include "diagnose/hypothesis_pairs.h"
 #include "diagnose/joined_evidence.h"
+#include "diagnose/losses_beside.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -177,6 +178,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
     }
   }
   add_pairs(set, space, left_out, work.at(0.5), comparison);
+  add_losses_beside(set, nominal, left_out, work.at(0.75), comparison);
   add_unnamed(set, work.at(0.8), comparison);
   const MotionFit& best = comparison.fits[static_cast<std::size_t>(comparison.left_fit)];
   for (const FrameEffect& frame : {scan_jitter(set, best), scan_tails(set, best)}) {
