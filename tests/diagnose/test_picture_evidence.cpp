@@ -165,7 +165,7 @@ TEST_CASE("A wave is found with its frequency, and white noise has none", "[pict
         series.value[k] += 0.8 * std::sin(2.0 * std::numbers::pi * 13.0 * series.t_s[k] + seed);
       }
     }
-    const diagnose::Wave wave = diagnose::strongest_wave(noise);
+    const diagnose::SeriesWave wave = diagnose::strongest_wave(noise);
     CHECK(wave.log_evidence > 3.0);
     // A fourth of a peak's width is the grid; 5 sd of the frequency, each series telling by itself.
     CHECK(std::abs(wave.f_hz - 13.0) < 0.25 / 1.25 + 5.0 * wave.sd_hz);
