@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -113,12 +114,17 @@ bool is_open(Eigen::Index quantity, double sd, double of_all) {
   return !(quantity == kMu ? sd < kOpenMu : sd < kOpenK * std::abs(of_all));
 }
 
+bool late(const MotionFit& fit) {
+  return std::any_of(fit.late.begin(), fit.late.end(), [](const std::vector<double>& of) { return of.back() > 0.0; });
+}
+
 }  // namespace
 
 std::vector<GapOfParameter> parameter_gaps(const TrackSet& set, const MotionFit& nominal, const MotionFit* after) {
   std::vector<GapOfParameter> of_drag, of_mu;
   const Eigen::MatrixXd of_all = common_covariance(nominal);
-  const bool same = after != nullptr && after->effects.empty();
+  // Missing frames are no effect of a fit but in its times.
+  const bool same = after != nullptr && after->effects.empty() && !late(*after);
   for (std::size_t mass = 0; mass < set.masses.size(); ++mass) {
     for (const int direction : {0, 1, -1}) {
       if (direction == 0 && set.masses.size() < 2) continue;

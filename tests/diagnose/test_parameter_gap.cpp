@@ -7,6 +7,7 @@
 
 #include "catch.h"
 #include "diagnose/made_motions.h"
+#include "diagnose/missing_frames.h"
 
 using namespace glidelab;
 
@@ -66,6 +67,26 @@ TEST_CASE("a friction that does not grow with the load shows between the masses,
     CHECK(std::abs(*gap->z_before) > 10.0);
     CHECK(std::abs(*gap->z_after) < 4.0);
   }
+}
+
+TEST_CASE("lost frames that are known leave no gap between the masses and directions") {
+  // Two in each clip, a way of 5 to 10 mm each time at fifty times the noise.
+  const auto lost = [](std::size_t clip, std::size_t frame) { return (frame + 7 * clip) % 60 == 20; };
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {.lost = lost}, 5, 2e-4);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const diagnose::MissingFrames missing = diagnose::find_missing_frames(set, nominal);
+  REQUIRE(missing.count > 10);
+  double before = 0.0;
+  std::size_t seen = 0;
+  for (const auto& gap : diagnose::parameter_gaps(set, nominal, &missing.fit)) {
+    if (!gap.z_before || !gap.z_after) continue;
+    ++seen;
+    before = std::max(before, std::abs(*gap.z_before));
+    CHECK(std::abs(*gap.z_after) < 4.0);  // six of them: once in three thousand runs
+  }
+  CHECK(seen >= 4);
+  CHECK(before > 10.0);
 }
 
 TEST_CASE("z of a part against the whole is a standard normal deviate where nothing is missing") {
