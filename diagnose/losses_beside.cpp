@@ -12,20 +12,47 @@ namespace {
 
 constexpr std::size_t kLeaders = 4;  // effects, of those alone and of those beside known losses
 
+/// An explanation, and where frames are missing beside it.
+struct Beside {
+  Hypothesis of;
+  MissingFrames missing;
+};
+
+/// The likeliest explanations of losses and one effect that were fitted.
+std::vector<Hypothesis> pairs_with(std::size_t dropped, const Comparison& comparison) {
+  std::vector<Hypothesis> pairs = leaders_of(comparison, 2, comparison.all.size());
+  std::erase_if(pairs, [&](const Hypothesis& pair) {
+    return std::find(pair.effects.begin(), pair.effects.end(), dropped) == pair.effects.end();
+  });
+  pairs.resize(std::min(pairs.size(), kLeaders));
+  return pairs;
+}
+
 /// The likeliest effects other than losses, alone and beside these.
-std::vector<std::size_t> likeliest_beside(const Comparison& comparison, std::size_t dropped) {
+std::vector<std::size_t> likeliest_beside(std::size_t dropped, const std::vector<Hypothesis>& pairs,
+                                          const Comparison& comparison) {
   std::vector<std::size_t> effects;
   const auto add = [&](std::size_t effect) {
     if (effect != dropped && std::find(effects.begin(), effects.end(), effect) == effects.end())
       effects.push_back(effect);
   };
   for (const Hypothesis& one : leaders_of(comparison, 1, kLeaders + 1)) add(one.effects.front());
-  std::size_t beside = 0;
-  for (const Hypothesis& pair : leaders_of(comparison, 2, comparison.all.size())) {
-    const auto& [a, b] = std::pair(pair.effects[0], pair.effects[1]);
-    if ((a == dropped || b == dropped) && beside++ < kLeaders) add(a == dropped ? b : a);
+  for (const Hypothesis& pair : pairs) {
+    for (const std::size_t effect : pair.effects) add(effect);
   }
   return effects;
+}
+
+/// Along the fit of an effect without any losses.
+Beside beside_effect(const TrackSet& set, const MotionFit& nominal, std::size_t effect, const Comparison& comparison) {
+  if (const Hypothesis* fitted = find(comparison, {effect})) {
+    return {*fitted, find_missing_frames(set, comparison.fits[static_cast<std::size_t>(fitted->fit)])};
+  }
+  const auto scan = std::find_if(comparison.scans.begin(), comparison.scans.end(),
+                                 [&](const EffectScan& of) { return of.effect == effect; });
+  if (scan == comparison.scans.end() || scan->values.empty()) return {};
+  const Found found = fit_more(set, nominal, *scan, Hypothesis{});
+  return {found.hypothesis, find_missing_frames(set, found.fit)};
 }
 
 }  // namespace
@@ -35,35 +62,30 @@ void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std:
   const std::size_t dropped = effect_index("dropped_frames");
   if (without.contains(dropped)) return;
   if (comparison.missing.count + plain_losses(set).count + analysed_losses(set).count == 0) return;
-  const std::vector<std::size_t> effects = likeliest_beside(comparison, dropped);
-  std::vector<Hypothesis> alone(effects.size());
-  std::vector<MissingFrames> missing(effects.size());
-  base::for_each_parallel(effects.size(), work.jobs, [&](std::size_t i) {
+  const std::vector<Hypothesis> pairs = pairs_with(dropped, comparison);
+  const std::vector<std::size_t> effects = likeliest_beside(dropped, pairs, comparison);
+  std::vector<Beside> beside(pairs.size() + effects.size());
+  base::for_each_parallel(beside.size(), work.jobs, [&](std::size_t i) {
     work.look();
-    if (const Hypothesis* fitted = find(comparison, {effects[i]})) {
-      alone[i] = *fitted;
-      missing[i] = find_missing_frames(set, comparison.fits[static_cast<std::size_t>(fitted->fit)]);
+    if (i >= pairs.size()) {
+      beside[i] = beside_effect(set, nominal, effects[i - pairs.size()], comparison);
       return;
     }
-    const auto scan = std::find_if(comparison.scans.begin(), comparison.scans.end(),
-                                   [&](const EffectScan& of) { return of.effect == effects[i]; });
-    if (scan == comparison.scans.end() || scan->values.empty()) return;
-    Found found = fit_more(set, nominal, *scan, Hypothesis{});
-    alone[i] = found.hypothesis;
-    missing[i] = find_missing_frames(set, found.fit);
+    // A wave's phase jumps with each loss: it is found where these are known, and others along it.
+    beside[i] = {pairs[i], find_more_missing_frames(set, comparison.fits[static_cast<std::size_t>(pairs[i].fit)])};
   });
   double likeliest = comparison.missing.count > 0 ? comparison.missing.effect.log_evidence : 0.0;
-  for (std::size_t i = 0; i < effects.size(); ++i) {
-    if (missing[i].count == 0) continue;
+  for (Beside& one : beside) {
+    if (one.missing.count == 0) continue;
     Found both;
-    both.fit = missing[i].fit;
-    both.hypothesis = alone[i];
-    both.hypothesis.effects = {dropped, effects[i]};
-    both.hypothesis.gain += missing[i].effect.gain;
-    both.hypothesis.log_evidence += missing[i].effect.log_evidence;
+    both.fit = one.missing.fit;
+    both.hypothesis = one.of;
+    if (one.of.effects.size() == 1) both.hypothesis.effects.push_back(dropped);
+    both.hypothesis.gain += one.missing.effect.gain;
+    both.hypothesis.log_evidence += one.missing.effect.log_evidence;
     if (both.hypothesis.log_evidence > likeliest) {
       likeliest = both.hypothesis.log_evidence;
-      comparison.missing = std::move(missing[i]);
+      comparison.missing = std::move(one.missing);
     }
     add(comparison, std::move(both));
   }

@@ -197,6 +197,27 @@ MissingFrames with_hidden(const TrackSet& set, MissingFrames all) {
   return all;
 }
 
+double points_of(const TrackSet& set) {
+  double points = 0.0;
+  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+  return points;
+}
+
+/// Where each one is costs the logarithm of the places; the fraction, evenly over its logarithm from 1e-4 to 0.1.
+double penalty_of(std::size_t count, double points) {
+  const double share = static_cast<double>(count) / points;
+  return -static_cast<double>(count) * std::log(share) + points * share + std::log(7.0);
+}
+
+/// What stands of it as an effect, `gain` better than without.
+void describe(double gain, double penalty, double points, MissingFrames& found) {
+  const auto count = static_cast<double>(found.count);
+  found.effect.gain = gain;
+  found.effect.log_evidence = gain - penalty;
+  found.effect.value = count / points;
+  found.effect.sd = std::sqrt(count) / points;
+}
+
 }  // namespace
 
 MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
@@ -204,11 +225,8 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
   found.effect.effect = effect_index("dropped_frames");
   found.fit = fit;
   found.fit.late.clear();
-  double points = 0.0;
-  for (const TrackedMotion& motion : set.motions) {
-    found.fit.late.emplace_back(motion.t_s.size(), 0.0);
-    points += static_cast<double>(motion.t_s.size());
-  }
+  const double points = points_of(set);
+  for (const TrackedMotion& motion : set.motions) found.fit.late.emplace_back(motion.t_s.size(), 0.0);
   // Each way of looking sees what another misses where losses are close together: the likeliest end counts.
   const LostBefore by_parabolas = plain_losses(set), by_analysis = analysed_losses(set);
   const MissingFrames nothing = found;
@@ -229,14 +247,24 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
   // What no single jump shows counts only where it leaves nothing: many a curve looks like a row of losses.
   if (all.fit.cost < kNothingLeft * points) found = std::move(all);
   if (found.count == 0) return found;
-  // Where each one is costs the logarithm of the places; the fraction, evenly over its logarithm from 1e-4 to 0.1.
-  const double share = static_cast<double>(found.count) / points;
-  const double penalty = -static_cast<double>(found.count) * std::log(share) + points * share + std::log(7.0);
-  found.effect.gain = 0.5 * (fit.cost - found.fit.cost);
-  found.effect.log_evidence = found.effect.gain - penalty;
-  found.effect.value = share;
-  found.effect.sd = std::sqrt(static_cast<double>(found.count)) / points;
+  describe(0.5 * (fit.cost - found.fit.cost), penalty_of(found.count, points), points, found);
   return found;
+}
+
+MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& with_losses) {
+  MissingFrames known;
+  known.effect.effect = effect_index("dropped_frames");
+  known.fit = with_losses;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const double rate_hz = set.clips[set.motions[i].clip].frame_rate_hz;
+    known.count += static_cast<std::size_t>(std::lround(with_losses.late.at(i).back() * rate_hz));
+  }
+  const double points = points_of(set);
+  MissingFrames all = with_hidden(set, known);
+  if (!lowers(all.fit, all.count, known) || all.fit.cost >= kNothingLeft * points) all = known;
+  describe(0.5 * (with_losses.cost - all.fit.cost), penalty_of(all.count, points) - penalty_of(known.count, points),
+           points, all);
+  return all;
 }
 
 }  // namespace glidelab::diagnose

@@ -20,4 +20,8 @@ struct MissingFrames {
 };
 MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit);
 
+/// Those that a fit with losses in its times, one at least, hides: its own and these. The effect's gain and evidence
+/// are what the further ones add.
+MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& with_losses);
+
 }  // namespace glidelab::diagnose
