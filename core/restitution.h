@@ -16,38 +16,13 @@
 #include <opencv2/core.hpp>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/calibrate.h"
 #include "core/experiment.h"
+#include "core/plane_fit.h"
 
 namespace glidelab::core {
-
-/// X_CP: p_C = rotation * p_P + shift.
-struct PlanePose {
-  cv::Matx33d rotation = cv::Matx33d::eye();
-  cv::Vec3d shift;
-};
-
-struct PlaneFit {
-  PlanePose pose;                          ///< of the first plane view
-  std::vector<Eigen::Vector3d> in_plane;   ///< each view's pattern in the first one's frame: turn [rad], X, Y [m]
-  Eigen::Matrix<double, 6, 6> covariance;  ///< of (turn vector, shift) of `pose`, the camera held
-  double rms_m = 0.0;                      ///< of the corners, restituted, against the pattern (one coordinate)
-  double rms_px = 0.0;                     ///< the same in the picture
-};
-
-/// Pose of the pattern in one or more plane views, with the camera held. `correlated_px`: of the corners' errors, what
-/// neighbours have in common (CornerNoise); the independent part is taken from the residuals.
-PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
-                   double correlated_px = 0.0);
-
-/// A sentence where the plane views' corners lie further from where the camera of all views and one plane put them than
-/// three times the corners' own noise (views differ in sharpness and tilt, and their noise with them), and than 0.05 px
-/// (what is below is small beside it); `group` names the views.
-std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
-                                        const std::string& group);
 
 /// The way from pixels to the plane with an error of `sds` standard deviations in one independent direction.
 struct RestitutionMode {
