@@ -32,15 +32,8 @@ std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corne
 /// The order above, for corners that run row by row from any corner of the board in any direction.
 BoardCorners orient_board(const cv::Mat& grey, cv::Size inner_corners, const std::vector<cv::Point2f>& corners);
 
-/// Least-squares fit of two crossing edges around each corner:
-///
-///     I(p) = (1 + h . d) (b + a (2 E1 - 1) (2 E2 - 1)),   d = p - c,   Ei = pixel_edge(ni . d, ni, s)
-///
-/// with the corner c, the edges' normals n1, n2, the lens's blur s, and the light's slope h. The pixel's square is
-/// averaged over exactly for each edge alone (core/pixel_edge.h), so that a sharp picture does not pull the corner
-/// towards some phases of the pixels; where both edges cross one pixel it is exact to second order for right angles. A
-/// blur of another shape keeps the picture point-symmetric about c and so does not move it. Where the fit fails the
-/// corner stays and is counted in `unrefined`.
+/// Each corner by a fit of two crossing edges (corner_fit.h). Where the fit fails the corner stays and is counted in
+/// `unrefined`.
 BoardCorners refine_board(const cv::Mat& grey, BoardCorners board);
 
 }  // namespace glidelab::core
