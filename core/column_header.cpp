@@ -6,6 +6,8 @@
 #include <array>
 #include <utility>
 
+#include "core/file_names.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -107,12 +109,6 @@ std::optional<double> metres_per(std::string_view unit) {
 
 std::optional<double> seconds_per(std::string_view unit) {
   return factor(kTimes, unit);
-}
-
-std::string lower(std::string_view text) {
-  std::string small(text);
-  for (char& c : small) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return small;
 }
 
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {

@@ -14,9 +14,6 @@ namespace glidelab::core {
 std::optional<double> metres_per(std::string_view unit);
 std::optional<double> seconds_per(std::string_view unit);
 
-/// Letters in lower case (ASCII only).
-std::string lower(std::string_view text);
-
 /// `width` columns without values. The header's lines, first to last: of runs (where all its fields speak of a run, a
 /// set or "latest"), of names, of short names (ignored), of units; each but the names may be missing.
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 #include "base/errors.h"
 #include "base/strict_toml.h"
-#include "core/frame_source.h"
+#include "core/file_names.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
@@ -23,13 +22,6 @@ std::vector<std::string> folder_names(const fs::path& folder) {
   }
   std::sort(names.begin(), names.end(), natural_less);
   return names;
-}
-
-std::string lower_extension(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
 }
 
 /// The frames of one set. What is wrong goes into `issues`, so that a user sees all of it at once.

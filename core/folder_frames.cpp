@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
+#include "core/file_names.h"
 #include "core/frame_parts.h"
 #include "core/picture.h"
 
@@ -21,10 +21,7 @@ class FolderFrames final : public FrameSource {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
       if (name.starts_with('.') || !entry.is_regular_file()) continue;
-      std::string ending = entry.path().extension().string();
-      std::transform(ending.begin(), ending.end(), ending.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      if (kPictures.contains(ending)) {
+      if (kPictures.contains(lower_extension(entry.path()))) {
         files_.push_back(entry.path());
       } else {
         ++others_;

@@ -27,6 +27,9 @@ struct Frame {
   DrawPixels draw = {};  ///< of next_in_parts(): grey holds nothing but what was drawn with it; else empty
 };
 
+/// Rates are stated rounded (239.76 as 240), 0.1 %; one that is further off, relative, is another one.
+inline constexpr double kRateRounding = 1.5e-3;
+
 /// What a video file says of how it was written and of its times, and frames that came twice. Of a folder of frames,
 /// and of frames from elsewhere, nothing is known.
 struct FileFacts {
@@ -71,8 +74,5 @@ std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& file, cons
 /// How an analysis comes by a clip's frames: open_frames, or what gives the same from elsewhere.
 using FrameOpener = std::function<std::unique_ptr<FrameSource>(
     const std::filesystem::path& file, const CameraSettings& camera, bool with_color, std::optional<cv::Size> size)>;
-
-/// Orders names as people number files: "2.png" before "10.png".
-bool natural_less(const std::string& a, const std::string& b);
 
 }  // namespace glidelab::core

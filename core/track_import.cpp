@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "core/column_header.h"
 #include "core/column_table.h"
+#include "core/file_names.h"
 #include "core/track_csv.h"
 
 namespace glidelab::core {

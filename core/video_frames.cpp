@@ -2,28 +2,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <opencv2/videoio.hpp>
 #include <set>
 
+#include "core/file_names.h"
 #include "core/frame_parts.h"
+#include "core/median.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
 
 namespace {
 
+// Matroska rounds stamps to 1 ms, so that a regular clip's steps differ by up to that.
+constexpr double kStampRounding_s = 1.05e-3;
+
 /// By the four letters that FFmpeg gives; nothing for others.
-std::optional<bool> is_lossy(std::string codec) {
-  std::transform(codec.begin(), codec.end(), codec.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+std::optional<bool> is_lossy(const std::string& letters) {
+  const std::string codec = lower(letters);
   static const std::set<std::string> kLossy{"mjpg", "h264", "avc1", "x264", "hevc", "hvc1", "hev1", "vp80",
                                             "vp90", "vp09", "av01", "mp4v", "fmp4", "xvid", "divx", "mpg1",
                                             "mpg2", "apcn", "apch", "apcs", "ap4h", "wmv3", "dvsd"};
-  static const std::set<std::string> kLossless{"ffv1", "i420", "yv12", "y800", "grey", "huffyuv",
-                                               "hfyu", "ffvh", "ulrg", "uly0", "uly2", "dib ",
-                                               "raw ", "bgr0", "rgb0", "bgra", "yuy2"};
+  static const std::set<std::string> kLossless{"ffv1", "i420", "yv12", "y800", "grey", "hfyu", "ffvh", "ulrg",
+                                               "uly0", "uly2", "dib ", "raw ", "bgr0", "rgb0", "bgra", "yuy2"};
   if (kLossy.contains(codec)) return true;
   if (kLossless.contains(codec)) return false;
   return std::nullopt;
@@ -75,8 +77,7 @@ class VideoFrames final : public FrameSource {
 
   std::vector<std::string> notes() const override {
     std::vector<std::string> notes;
-    // Rates are stated rounded (239.76 as 240), 0.1 %; what is further off plays at another speed than it was filmed.
-    if (stated_rate_hz_ > 0.0 && std::abs(stated_rate_hz_ / camera_.frame_rate_hz - 1.0) > 1.5e-3) {
+    if (stated_rate_hz_ > 0.0 && std::abs(stated_rate_hz_ / camera_.frame_rate_hz - 1.0) > kRateRounding) {
       notes.push_back(fmt::format(
           "the container says {:.6g} frames per second, the experiment {:.6g}; {}", stated_rate_hz_,
           camera_.frame_rate_hz,
@@ -145,17 +146,14 @@ class VideoFrames final : public FrameSource {
     std::vector<double> steps;
     for (std::size_t i = 1; i < stamps_s_.size(); ++i) steps.push_back(stamps_s_[i] - stamps_s_[i - 1]);
     if (steps.size() < 2) return;
-    std::vector<double> sorted = steps;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    median_step_s_ = sorted[sorted.size() / 2];
+    median_step_s_ = median_of(steps);
     longest_step_s_ = *std::max_element(steps.begin(), steps.end());
     if (longest_step_s_ <= 0.0) return;  // a container without stamps
-    // Matroska rounds stamps to 1 ms, so that a regular clip's steps differ by up to that.
-    const double tolerance_s = std::max(1.05e-3, 0.05 * median_step_s_);
+    const double tolerance_s = std::max(kStampRounding_s, 0.05 * median_step_s_);
     for (const double step : steps) {
       const double slots = step / median_step_s_;
       // Whole frame times, as a slot that was left out makes them; a camera that films slower makes any.
-      if (slots > 1.5 && std::abs(slots - std::round(slots)) < 0.1 + 1.05e-3 / median_step_s_) {
+      if (slots > 1.5 && std::abs(slots - std::round(slots)) < 0.1 + kStampRounding_s / median_step_s_) {
         missing_ += static_cast<std::size_t>(std::lround(slots)) - 1;
       }
     }

@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "catch.h"
+#include "core/file_names.h"
 #include "core/picture.h"
 #include "small_clip.h"
 #include "temp_dir.h"
