@@ -3,190 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <set>
 
-#include "base/errors.h"
 #include "base/parallel.h"
 #include "core/camera_and_planes.h"
-#include "core/even_times.h"
-#include "core/frame_source.h"
-#include "core/marker_track.h"
 #include "core/mode_axis.h"
 #include "core/motion_axis.h"
 #include "core/plumb.h"
-#include "core/scene_watch.h"
+#include "core/seen_clip.h"
 #include "core/track_csv.h"
 
 namespace glidelab::core {
-namespace fs = std::filesystem;
-
 namespace {
 
 constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track up to a few degrees"
-
-// A marker whose brightness nobody states: of the frames from its first to its last, in how many a good one is seen;
-// and in how many times as many as a bright one a dark one must be.
-constexpr double kWellSeen = 0.9, kFarBetter = 1.2;
+constexpr double kMoves = 0.5;                                   // marker diameters from end to end
 
 int downhill_of(const Experiment& experiment, const std::string& name) {
   const GroupSetup* group = group_of(experiment, name);
   return group != nullptr && group->downhill ? *group->downhill : experiment.track.downhill;
-}
-
-/// What one clip's pictures say, in pixels.
-struct SeenClip {
-  TrackedMarker marker;
-  std::vector<double> frame_t_s;
-  cv::Size size;
-  std::vector<std::string> notes;
-  std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
-  bool dark_marker = false;
-
-  bool moves() const {
-    return std::any_of(marker.sightings.begin(), marker.sightings.end(), [&](const MarkerSighting& sighting) {
-      const MarkerSighting& first = marker.sightings.front();
-      return std::hypot(sighting.u_px - first.u_px, sighting.v_px - first.v_px) > 1.5 * first.radius_px;
-    });
-  }
-  /// In most frames from the first sighting to the last, of something that moves.
-  bool well_seen() const {
-    if (!moves()) return false;
-    const std::size_t span = marker.sightings.back().frame - marker.sightings.front().frame + 1;
-    return static_cast<double>(marker.sightings.size()) > kWellSeen * static_cast<double>(span);
-  }
-};
-
-/// Counts frames over all clips for the progress.
-class FrameCounter {
- public:
-  FrameCounter(const base::Progress& progress, std::size_t clips) : progress_(progress), clips_(clips) {}
-  /// Tells how far all clips are, this clip's share having grown by `share`.
-  void add(double share) {
-    double now = done_.load();
-    while (!done_.compare_exchange_weak(now, now + share)) {
-    }
-    progress_("frames", std::min(1.0, (now + share) / static_cast<double>(clips_)));
-  }
-
- private:
-  const base::Progress& progress_;
-  std::size_t clips_;
-  std::atomic<double> done_ = 0.0;
-};
-
-/// The marker's image in each frame, from the fits that found it.
-std::vector<MarkerLook> looks_of(const TrackedMarker& marker, const std::vector<double>& frame_t_s) {
-  std::vector<MarkerLook> looks;
-  for (std::size_t i = 0; i < marker.fits.size(); ++i) {
-    const MarkerFit& fit = marker.fits[i];
-    const cv::Vec3d& m = fit.shape;
-    const double determinant = m[0] * m[2] - m[1] * m[1];
-    if (!(determinant > 0.0)) continue;  // a centroid has no outline
-    // An ellipse |M d| = 1 has the moments M^-2 / 4.
-    const double a = m[2] / determinant, b = -m[1] / determinant, c = m[0] / determinant;
-    const std::size_t frame = marker.sightings[i].frame;
-    looks.push_back({frame, frame_t_s[frame], fit.centre.x, fit.centre.y, fit.moments[0] - fit.moments[2],
-                     0.25 * b * (a + c), 0.25 * (b * b + c * c), fit.blur_px, fit.amplitude, fit.background,
-                     fit.slope_u, fit.slope_v});
-  }
-  return looks;
-}
-
-/// Times of an even camera instead of its rounded stamps.
-void put_even(SeenClip& seen) {
-  std::optional<EvenTimes> even = even_times(seen.frame_t_s);
-  if (!even) return;
-  seen.notes.push_back(
-      fmt::format("the container's time stamps are whole multiples of {:.4g} ms, and frames at an even distance of "
-                  "{:.6g} ms (to {:.0f} parts in a million) explain them all: these times count",
-                  even->tick_s * 1e3, even->step_s * 1e3, std::ceil(even->half_width_s / even->step_s * 1e6)));
-  seen.frame_t_s = std::move(even->t_s);
-}
-
-SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
-                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
-  const bool with_color = signal_kind(marker) == SignalKind::colored;
-  const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
-  const Restitution& restitution = setting.restitutions.at(clip.group);
-  // Where no ray belongs to a pixel (far outside the calibrated field) the marker is as large as elsewhere.
-  double usual_px = 0.0;
-  const auto radius_at = [&](cv::Point2d pixel) {
-    const auto radius = restitution.marker_radius_px(pixel);
-    if (radius) usual_px = usual_px == 0.0 ? *radius : usual_px;
-    return radius.value_or(usual_px == 0.0 ? 5.0 : usual_px);
-  };
-  MarkerTracker tracker(clip.file, marker, radius_at);
-  SeenClip seen;
-  const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
-  constexpr std::size_t kTellEvery = 10;
-  std::optional<SceneWatch> scene;
-  if (look_at_scene) {
-    scene.emplace(source->facts().lossy.value_or(false));
-    seen.pictures = std::make_shared<PictureRecord>();
-  }
-  while (const auto frame = look_at_scene ? source->next() : source->next_in_parts()) {
-    seen.size = frame->grey.size();
-    seen.frame_t_s.push_back(frame->t_s);
-    tracker.add(*frame);
-    if (scene) {
-      scene->add(frame->grey, frame->t_s);
-      seen.pictures->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
-    }
-    if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
-  }
-  seen.marker = tracker.finish();
-  seen.notes = source->notes();
-  if (experiment.camera->time == TimeSource::container) put_even(seen);
-  if (scene) {
-    const FileFacts facts = source->facts();
-    seen.pictures->width_px = seen.size.width;
-    seen.pictures->height_px = seen.size.height;
-    seen.pictures->codec = facts.codec;
-    seen.pictures->lossy = facts.lossy;
-    seen.pictures->stamps_missing = facts.stamps_missing;
-    seen.pictures->marker = looks_of(seen.marker, seen.frame_t_s);
-    scene->finish(*seen.pictures);
-  }
-  seen.notes.insert(seen.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
-  return seen;
-}
-
-/// As the marker's colour says; without one by its brightness: the disc is bright, or, where such a one is hardly seen
-/// and a dark one well, dark.
-SeenClip look_at(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                 const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
-  const auto look = [&](const MarkerSetup& marker) {
-    return look_for(marker, experiment, clip, setting, open, look_at_scene, counter);
-  };
-  if (experiment.marker->color_bgr) return look(*experiment.marker);
-  std::optional<SeenClip> bright;
-  std::optional<NoMarker> no_bright;
-  try {
-    bright = look(*experiment.marker);
-    if (bright->well_seen()) return *std::move(bright);
-  } catch (const NoMarker& nothing) {
-    no_bright = nothing;
-  }
-  MarkerSetup dark = *experiment.marker;
-  dark.color_bgr = cv::Vec3b(0, 0, 0);
-  try {
-    SeenClip seen = look(dark);
-    const double others = bright && bright->moves() ? static_cast<double>(bright->marker.sightings.size()) : 0.0;
-    if (seen.well_seen() && static_cast<double>(seen.marker.sightings.size()) > kFarBetter * others) {
-      seen.dark_marker = true;
-      seen.notes.emplace_back(
-          "the marker is darker than its surroundings, as color = \"#101010\" in [marker] would say");
-      return seen;
-    }
-  } catch (const base::InputError&) {
-    // No single dark one either: what there is of the bright one is what counts.
-  }
-  if (no_bright) throw NoMarker(*no_bright);
-  return *std::move(bright);
 }
 
 struct PlanePoint {
@@ -236,6 +72,90 @@ void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string
   }
 }
 
+/// The line along which the group's marker moves; a marker that rests leaves noise only, which has no direction.
+MotionAxis axis_through(const std::vector<cv::Point2d>& places, double diameter_m, int downhill) {
+  cv::Point2d low(1e300, 1e300), high(-1e300, -1e300);
+  for (const cv::Point2d& place : places) {
+    low = {std::min(low.x, place.x), std::min(low.y, place.y)};
+    high = {std::max(high.x, place.x), std::max(high.y, place.y)};
+  }
+  const bool moves = !places.empty() && cv::norm(high - low) > kMoves * diameter_m;
+  return moves ? MotionAxis::through(places, downhill) : MotionAxis::along_x(downhill);
+}
+
+/// Tracks of the clips of one group, which share the plane of motion and its line.
+class GroupTracks {
+ public:
+  GroupTracks(const Experiment& experiment, const CameraAndPlanes& setting, std::string name,
+              const std::vector<SeenClip>& seen)
+      : experiment_(experiment),
+        setting_(setting),
+        name_(std::move(name)),
+        restitution_(setting.restitutions.at(name_)),
+        downhill_(downhill_of(experiment, name_)),
+        seen_(seen),
+        points_(seen.size()) {}
+
+  void add_to(PictureResults& results) {
+    std::vector<cv::Point2d> all;
+    for (const std::size_t i : clips()) {
+      points_[i] = restituted(seen_[i], restitution_);
+      for (const PlanePoint& point : points_[i]) all.push_back(point.place);
+    }
+    const MotionAxis axis = axis_through(all, experiment_.marker->diameter_m, downhill_);
+    const std::vector<ModeAxis> modes = mode_axes(restitution_, axis, all, downhill_);
+    const auto of_camera = static_cast<std::size_t>(
+        std::count_if(modes.begin(), modes.end(), [](const ModeAxis& mode) { return mode.mode.of_camera; }));
+    results.modes = std::max(results.modes, of_camera);
+    for (const std::size_t i : clips()) {
+      results.tracks[i] = track_from(seen_[i], points_[i], axis, *experiment_.camera, restitution_);
+      add_shared(axis, modes, of_camera, points_[i], results.modes, results.tracks[i]);
+      add_notes(axis, results.tracks[i].notes);
+    }
+    const GroupSetup* group = group_of(experiment_, name_);
+    const std::optional<PlumbSetup>& plumb = group != nullptr && group->plumb ? group->plumb : experiment_.plumb;
+    if (plumb) results.plumbs.push_back({name_, plumb_angle(*plumb, restitution_, axis, setting_.size, modes)});
+    results.modes += modes.size() - of_camera;
+  }
+
+ private:
+  /// Of the group, made of pictures.
+  std::vector<std::size_t> clips() const {
+    std::vector<std::size_t> of_group;
+    for (std::size_t i = 0; i < experiment_.clips.size(); ++i) {
+      if (!experiment_.clips[i].file.empty() && experiment_.clips[i].group == name_) of_group.push_back(i);
+    }
+    return of_group;
+  }
+
+  /// What the modes do to the track: the camera's come first, then, behind those of the groups before, this plane's
+  /// own.
+  void add_shared(const MotionAxis& axis, const std::vector<ModeAxis>& modes, std::size_t of_camera,
+                  const std::vector<PlanePoint>& points, std::size_t modes_before, TrackData& track) const {
+    std::vector<cv::Point2d> places;
+    for (const PlanePoint& point : points) places.push_back(point.place);
+    for (const ModeAxis& mode : modes) {
+      if (track.shared_m.size() == of_camera) track.shared_m.resize(modes_before);
+      track.shared_m.push_back(mode.displacement(restitution_, axis, places));
+    }
+  }
+
+  void add_notes(const MotionAxis& axis, std::vector<std::string>& notes) const {
+    note_axis(axis, experiment_.calibration.has_value(), notes);
+    if (experiment_.scale && experiment_.scale->px_per_m_sd == 0.0) {
+      notes.emplace_back("the scale is taken as exact (px_per_m_sd is 0 or not given)");
+    }
+  }
+
+  const Experiment& experiment_;
+  const CameraAndPlanes& setting_;
+  std::string name_;
+  const Restitution& restitution_;
+  int downhill_;
+  const std::vector<SeenClip>& seen_;
+  std::vector<std::vector<PlanePoint>> points_;  ///< of each clip of the group
+};
+
 }  // namespace
 
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress,
@@ -260,49 +180,11 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, pictures.size());
   base::for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
-    seen[pictures[k]] = look_at(experiment, experiment.clips[pictures[k]], setting, open, look_at_scene, counter);
+    seen[pictures[k]] = see_clip(experiment, experiment.clips[pictures[k]], setting, open, look_at_scene, counter);
   });
 
   for (const auto& [name, restitution] : setting.restitutions) {
-    std::vector<std::vector<PlanePoint>> points(experiment.clips.size());
-    std::vector<cv::Point2d> all;
-    for (const std::size_t i : pictures) {
-      if (experiment.clips[i].group != name) continue;
-      points[i] = restituted(seen[i], restitution);
-      for (const PlanePoint& point : points[i]) all.push_back(point.place);
-    }
-    const int downhill = downhill_of(experiment, name);
-    // A marker that rests leaves noise only, which has no direction.
-    cv::Point2d low(1e300, 1e300), high(-1e300, -1e300);
-    for (const cv::Point2d& place : all) {
-      low = {std::min(low.x, place.x), std::min(low.y, place.y)};
-      high = {std::max(high.x, place.x), std::max(high.y, place.y)};
-    }
-    const bool moves = !all.empty() && cv::norm(high - low) > 0.5 * experiment.marker->diameter_m;
-    const MotionAxis axis = moves ? MotionAxis::through(all, downhill) : MotionAxis::along_x(downhill);
-    const std::vector<ModeAxis> modes = mode_axes(restitution, axis, all, downhill);
-    const auto camera_modes = static_cast<std::size_t>(
-        std::count_if(modes.begin(), modes.end(), [](const ModeAxis& mode) { return mode.mode.of_camera; }));
-    results.modes = std::max(results.modes, camera_modes);
-    for (const std::size_t i : pictures) {
-      if (experiment.clips[i].group != name) continue;
-      results.tracks[i] = track_from(seen[i], points[i], axis, *experiment.camera, restitution);
-      std::vector<cv::Point2d> places;
-      for (const PlanePoint& point : points[i]) places.push_back(point.place);
-      std::vector<std::vector<double>>& shared = results.tracks[i].shared_m;
-      for (const ModeAxis& mode : modes) {
-        if (shared.size() == camera_modes) shared.resize(results.modes);  // the groups before have their own
-        shared.push_back(mode.displacement(restitution, axis, places));
-      }
-      note_axis(axis, experiment.calibration.has_value(), results.tracks[i].notes);
-      if (experiment.scale && experiment.scale->px_per_m_sd == 0.0) {
-        results.tracks[i].notes.emplace_back("the scale is taken as exact (px_per_m_sd is 0 or not given)");
-      }
-    }
-    const GroupSetup* group = group_of(experiment, name);
-    const std::optional<PlumbSetup>& plumb = group != nullptr && group->plumb ? group->plumb : experiment.plumb;
-    if (plumb) results.plumbs.push_back({name, plumb_angle(*plumb, restitution, axis, setting.size, modes)});
-    results.modes += modes.size() - camera_modes;
+    GroupTracks(experiment, setting, name, seen).add_to(results);
   }
   for (const std::size_t i : pictures) results.fits[i] = std::move(seen[i].marker.fits);
   results.calibration = setting.calibration;
