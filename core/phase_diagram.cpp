@@ -9,6 +9,7 @@
 
 #include "core/bandwidth.h"
 #include "core/bandwidth_rule.h"
+#include "core/clip_frames.h"
 #include "core/free_blocks.h"
 #include "core/free_motion.h"
 #include "core/gls_line.h"
@@ -26,129 +27,8 @@
 namespace glidelab::core {
 namespace {
 
-/// Points that follow each other and are smoothed together: a stretch, or what lies between two of them.
-struct Piece {
-  std::size_t first = 0, count = 0;
-};
-
-std::vector<Piece> pieces_of(const std::vector<FreeStretch>& stretches, std::size_t points) {
-  std::vector<Piece> pieces;
-  std::size_t next = 0;
-  for (const FreeStretch& stretch : stretches) {
-    if (stretch.first > next) pieces.push_back({next, stretch.first - next});
-    pieces.push_back({stretch.first, stretch.count});
-    next = stretch.first + stretch.count;
-  }
-  if (points > next) pieces.push_back({next, points - next});
-  return pieces;
-}
-
-/// The track's shared errors, of every frame.
-std::vector<std::vector<double>> of_frames(const TrackData& track) {
-  std::vector<std::vector<double>> shared_m(track.shared_m.size());
-  for (std::size_t mode = 0; mode < shared_m.size(); ++mode) {
-    if (track.shared_m[mode].empty()) continue;
-    shared_m[mode].resize(track.frame_t_s.size(), 0.0);
-    for (std::size_t i = 0; i < track.frame.size(); ++i) shared_m[mode][track.frame[i]] = track.shared_m[mode][i];
-  }
-  return shared_m;
-}
-
-/// Every frame of the clip, smoothed with the points of its own piece, `left_out` not yet set.
-std::vector<MotionPoint> smooth_frames(const TrackData& track, const Motion& motion,
-                                       const std::vector<FreeStretch>& stretches, const PositionNoise& noise,
-                                       double bandwidth_s, double mass_kg) {
-  std::vector<MotionPoint> frames(track.frame_t_s.size());
-  for (std::size_t f = 0; f < frames.size(); ++f) frames[f].t_s = track.frame_t_s[f];
-  for (std::size_t i = 0; i < track.t_s.size(); ++i) {
-    frames[track.frame[i]].t_s = track.t_s[i];  // of the marker's row, with a rolling shutter
-    frames[track.frame[i]].measured_m = track.x_m[i];
-  }
-  RowVariance variance(noise.autocovariance);
-  std::size_t f = 0;
-  for (const Piece& piece : pieces_of(stretches, motion.t_s.size())) {
-    const std::span t = std::span(motion.t_s).subspan(piece.first, piece.count);
-    const std::span x = std::span(motion.x_m).subspan(piece.first, piece.count);
-    const std::span y = std::span(motion.y_m).subspan(piece.first, piece.count);
-    const LocalCubic cubic(t, bandwidth_s);
-    while (f < frames.size() && frames[f].t_s < t.front()) ++f;
-    for (; f < frames.size() && frames[f].t_s <= t.back(); ++f) {
-      const auto row = cubic.row(frames[f].t_s);
-      if (!row) continue;
-      MotionPoint& frame = frames[f];
-      const SmoothedPoint of_x = weighted_sums(*row, x);
-      frame.smoothed = true;
-      frame.x_m = of_x.x_m;
-      frame.v_m_s = of_x.v_m_s;
-      frame.a_m_s2 = of_x.a_m_s2;
-      frame.sd_x_m = std::sqrt(variance.of_x(*row));
-      frame.sd_v_m_s = std::sqrt(variance.of_v(*row));
-      frame.sd_a_m_s2 = std::sqrt(variance.of_a(*row));
-      if (motion.forced) frame.force_n = mass_kg * (of_x.a_m_s2 - weighted_sums(*row, y).a_m_s2);
-    }
-  }
-  return frames;
-}
-
-void mark_frames(const TrackData& track, const Motion& motion, const FreeMotion& free,
-                 const std::vector<StretchPoint>& points, std::vector<MotionPoint>& frames) {
-  for (MotionPoint& frame : frames) frame.left_out = LeftOut::no_marker;
-  for (const std::size_t f : track.frame) frames[f].left_out = LeftOut::outlier;  // unless it is among the kept
-  for (std::size_t i = 0; i < track.force_n.size(); ++i) frames[track.frame[i]].applied_n = track.force_n[i];
-  for (std::size_t i = 0; i < motion.t_s.size(); ++i) {
-    frames[track.frame[motion.point[i]]].left_out = free.reason[i];
-  }
-  for (const StretchPoint& point : points) {
-    frames[track.frame[motion.point[point.point]]].left_out = point.left_out;
-  }
-}
-
-std::vector<LeftOutInterval> intervals_of(const std::vector<MotionPoint>& frames) {
-  std::vector<LeftOutInterval> intervals;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    if (frames[f].left_out == LeftOut::used) continue;
-    if (f == 0 || frames[f].left_out != frames[f - 1].left_out) {
-      intervals.push_back({frames[f].t_s, frames[f].t_s, 0, frames[f].left_out});
-    }
-    intervals.back().to_s = frames[f].t_s;
-    ++intervals.back().frames;
-  }
-  return intervals;
-}
-
-std::vector<Stretch> used_stretches(const Motion& motion, const std::vector<FreeStretch>& free,
-                                    const std::vector<StretchPoint>& points) {
-  std::vector<Stretch> stretches;
-  for (const FreeStretch& stretch : free) {
-    stretches.push_back(
-        {motion.t_s[stretch.first], motion.t_s[stretch.first + stretch.count - 1], stretch.direction, 0});
-  }
-  for (const StretchPoint& point : points) stretches[point.stretch].points += point.left_out == LeftOut::used;
-  std::erase_if(stretches, [](const Stretch& stretch) { return stretch.points == 0; });
-  return stretches;
-}
-
-void note_findings(const Motion& motion, std::size_t outliers, const PositionNoise& noise, ClipResult& clip) {
-  if (outliers > 0) {
-    clip.notes.push_back(
-        fmt::format("{} of {} positions lie off the motion and are left out", outliers, outliers + motion.t_s.size()));
-  }
-  if (noise.autocovariance.size() > 1) {
-    clip.notes.push_back(
-        fmt::format("the noise of neighbouring positions is correlated ({:.2f}); the intervals allow for it",
-                    noise.autocovariance[1] / noise.autocovariance[0]));
-  }
-  for (const LineFit& line : clip.segments) {
-    if (std::isinf(line.parts.degrees)) continue;
-    clip.notes.push_back(
-        fmt::format("v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; "
-                    "its intervals are widened",
-                    line.direction > 0 ? ">" : "<", line.parts.scatter));
-  }
-}
-
 /// Replaces the clip's lines by generalised ones, which may exist where the others do not, and the other way round.
-void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput& input, ClipResult& clip) {
+void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput input, ClipResult& clip) {
   const std::vector<FreePiece> pieces = free_pieces(motion, free, input.bandwidth_s, input.autocovariance);
   const std::vector<LineFit> ordinary = std::exchange(clip.segments, {});
   for (const int direction : {-1, 1}) {
@@ -201,6 +81,53 @@ BandwidthChoice by_rule(const std::string& name, const Motion& motion, const Fre
   return {free.pilot_bandwidth_s, "that of the first smoothing: the motion is too short for the rule " + name, 0.0};
 }
 
+/// That of the options, or as they have it chosen.
+BandwidthChoice bandwidth_of(const Motion& motion, const FreeMotion& free, const MotionOptions& options) {
+  if (options.bandwidth_s) return {*options.bandwidth_s, "given", 0.0};
+  const PositionNoise noise = noise_at(motion, free.stretches, free.pilot_bandwidth_s);
+  return options.bandwidth_rule.empty() ? choose_bandwidth(motion, free.stretches, noise, free.pilot_bandwidth_s)
+                                        : by_rule(options.bandwidth_rule, motion, free, noise);
+}
+
+/// What the lines of a clip rest on beside its points.
+struct LineWeights {
+  std::vector<double> law_m_s2;  ///< f(v(t)) of the first smoothing
+  std::vector<double> factors;   ///< of each point's noise; empty: all 1
+};
+
+/// The line of each direction that has one, by least squares.
+std::vector<LineFit> ordinary_lines(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights) {
+  const std::vector<double> bias = smoothing_bias(clip.motion, clip.free.stretches, weights.law_m_s2, clip.points);
+  std::vector<LineFit> lines;
+  for (const int direction : {-1, 1}) {
+    LineInput input = line_input(clip.motion, clip.points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
+    input.noise_factor = weights.factors;
+    input.calibration = calibration_shifts(clip.motion, input, clip.track.shared_m);
+    auto line = fit_line(direction, input, clip.noise.autocovariance, clip.track.scale_sd_relative);
+    if (!line) continue;
+    line->parts.law = law_bias(input, *line, clip.noise.autocovariance);
+    if (line->parts.law) {
+      line->parts.smoothing_k = line->parts.smoothing_a0 = 0.0;
+      complete_line(*line);
+    }
+    lines.push_back(std::move(*line));
+  }
+  return lines;
+}
+
+GlsInput gls_input(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights) {
+  GlsInput input;
+  input.bandwidth_s = clip.bandwidth_s;
+  input.autocovariance = clip.noise.autocovariance;
+  input.noise_factor = weights.factors;
+  input.scale_sd_relative = clip.track.scale_sd_relative;
+  input.mass_kg = setup.mass_kg;
+  input.mass_sd_kg = setup.mass_sd_kg;
+  input.law_m_s2 = weights.law_m_s2;
+  input.shared_m = clip.track.shared_m;
+  return input;
+}
+
 std::vector<LostFrames> lost_frames(const TrackData& track, double mass_kg) {
   return find_lost_frames(track, motion_of(track, mass_kg));
 }
@@ -229,6 +156,38 @@ void note_lost_frames(const std::vector<LostFrames>& lost, LostFrameTimes times,
       times == LostFrameTimes::put_right ? "the times behind are put right" : "the times are left as they are"));
 }
 
+void note_findings(const Motion& motion, std::size_t outliers, const std::vector<double>& factors, LineMethod lines,
+                   ClipResult& clip) {
+  const std::vector<double>& covariance_m2 = clip.noise_autocovariance_m2;
+  if (outliers > 0) {
+    clip.notes.push_back(
+        fmt::format("{} of {} positions lie off the motion and are left out", outliers, outliers + motion.t_s.size()));
+  }
+  if (covariance_m2.size() > 1) {
+    clip.notes.push_back(
+        fmt::format("the noise of neighbouring positions is correlated ({:.2f}); the intervals allow for it",
+                    covariance_m2[1] / covariance_m2[0]));
+  }
+  for (const LineFit& line : clip.segments) {
+    if (std::isinf(line.parts.degrees)) continue;
+    clip.notes.push_back(
+        fmt::format("v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; "
+                    "its intervals are widened",
+                    line.direction > 0 ? ">" : "<", line.parts.scatter));
+  }
+  if (!factors.empty()) {
+    const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+    clip.notes.push_back(fmt::format(
+        "the noise of a position grows with the speed: {:.2g} mm at the slowest, {:.2g} mm at the fastest; the lines' "
+        "intervals allow for it",
+        1e3 * *least * clip.position_noise_m, 1e3 * *most * clip.position_noise_m));
+  }
+  if (clip.rounding_m && lines == LineMethod::ordinary) {
+    clip.notes.push_back(
+        fmt::format("positions are rounded to {:.3g} m and often repeat: the noise is not random", *clip.rounding_m));
+  }
+}
+
 }  // namespace
 
 ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const MotionOptions& options) {
@@ -242,6 +201,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   clip.detected = track.t_s.size();
   clip.frame_rate_hz = track.frame_rate_hz;
   clip.sightings = track.sightings;
+  clip.scale_sd_relative = track.scale_sd_relative;
   clip.notes = track.notes;
   note_lost_frames(clip.lost_frames, options.lost_frames, clip.notes);
 
@@ -249,82 +209,40 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   const std::vector<std::size_t> outliers = find_outliers(measured);
   const Motion motion = without(measured, outliers);
   const FreeMotion free = find_free_motion(motion, setup);
+  clip.forced = motion.forced;
   clip.against_launch = free.against_launch;
   if (free.against_launch) clip.notes.push_back(sentence(*free.against_launch));
-  if (options.bandwidth_s) {
-    clip.bandwidth_s = *options.bandwidth_s;
-    clip.bandwidth_method = "given";
-  } else {
-    const PositionNoise first = noise_at(motion, free.stretches, free.pilot_bandwidth_s);
-    const BandwidthChoice choice = options.bandwidth_rule.empty()
-                                       ? choose_bandwidth(motion, free.stretches, first, free.pilot_bandwidth_s)
-                                       : by_rule(options.bandwidth_rule, motion, free, first);
-    clip.bandwidth_s = choice.bandwidth_s;
-    clip.bandwidth_method = choice.method;
-  }
+
+  const BandwidthChoice choice = bandwidth_of(motion, free, options);
+  clip.bandwidth_s = choice.bandwidth_s;
+  clip.bandwidth_method = choice.method;
   const PositionNoise noise = noise_at(motion, free.stretches, clip.bandwidth_s);
   clip.position_noise_m = noise.sd_m;
   clip.noise_autocovariance_m2 = noise.autocovariance;
   clip.rounding_m = coarse_rounding(motion, noise);
-  const std::vector<double> factors = noise_factors(motion, free.stretches, clip.bandwidth_s);
-  clip.scale_sd_relative = track.scale_sd_relative;
-  clip.forced = motion.forced;
   clip.blocks = free_blocks(motion, free.stretches, track.shared_m, clip.bandwidth_s);
 
   const std::vector<StretchPoint> points = smooth_stretches(motion, free.stretches, clip.bandwidth_s);
-  const std::vector<double> law = pilot_law(motion, free.stretches, law_bandwidth(motion, free.pilot_bandwidth_s));
-  const std::vector<double> bias = smoothing_bias(motion, free.stretches, law, points);
-  for (const int direction : {-1, 1}) {
-    LineInput input = line_input(motion, points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
-    input.noise_factor = factors;
-    input.calibration = calibration_shifts(motion, input, track.shared_m);
-    auto line = fit_line(direction, input, noise.autocovariance, track.scale_sd_relative);
-    if (!line) continue;
-    line->parts.law = law_bias(input, *line, noise.autocovariance);
-    if (line->parts.law) {
-      line->parts.smoothing_k = line->parts.smoothing_a0 = 0.0;
-      complete_line(*line);
-    }
-    clip.segments.push_back(std::move(*line));
-  }
-  if (options.lines == LineMethod::generalised) {
-    GlsInput input;
-    input.bandwidth_s = clip.bandwidth_s;
-    input.autocovariance = noise.autocovariance;
-    input.noise_factor = factors;
-    input.scale_sd_relative = track.scale_sd_relative;
-    input.mass_kg = setup.mass_kg;
-    input.mass_sd_kg = setup.mass_sd_kg;
-    input.law_m_s2 = law;
-    input.shared_m = track.shared_m;
-    if (clip.rounding_m) {
-      clip.notes.push_back(fmt::format(
-          "positions are rounded to {:.3g} m and often repeat: the error of that lasts over frames, and generalised "
-          "lines, which weigh points by the covariance of their noise, are not fitted; the ordinary ones stand in "
-          "their place",
-          *clip.rounding_m));
-    } else {
-      generalise_lines(motion, free, input, clip);
-    }
+  const SmoothedClip smoothed{track, motion, free, noise, points, clip.bandwidth_s, setup.mass_kg};
+  const LineWeights weights{pilot_law(motion, free.stretches, law_bandwidth(motion, free.pilot_bandwidth_s)),
+                            noise_factors(motion, free.stretches, clip.bandwidth_s)};
+  clip.segments = ordinary_lines(smoothed, setup, weights);
+  if (options.lines == LineMethod::generalised && clip.rounding_m) {
+    clip.notes.push_back(fmt::format(
+        "positions are rounded to {:.3g} m and often repeat: the error of that lasts over frames, and generalised "
+        "lines, which weigh points by the covariance of their noise, are not fitted; the ordinary ones stand in "
+        "their place",
+        *clip.rounding_m));
+  } else if (options.lines == LineMethod::generalised) {
+    generalise_lines(motion, free, gls_input(smoothed, setup, weights), clip);
   }
   clip.v_lim_m_s = recovered_limit(clip.segments);
-  clip.motion = smooth_frames(track, motion, free.stretches, noise, clip.bandwidth_s, setup.mass_kg);
-  mark_frames(track, motion, free, points, clip.motion);
-  clip.shared_m = of_frames(track);
+
+  clip.motion = frames_of(smoothed);
+  clip.shared_m = shared_of_frames(track);
   clip.left_out = intervals_of(clip.motion);
-  clip.stretches = used_stretches(motion, free.stretches, points);
-  note_findings(motion, outliers.size(), noise, clip);
-  if (!factors.empty()) {
-    const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
-    clip.notes.push_back(fmt::format(
-        "the noise of a position grows with the speed: {:.2g} mm at the slowest, {:.2g} mm at the fastest; the lines' "
-        "intervals allow for it",
-        1e3 * *least * noise.sd_m, 1e3 * *most * noise.sd_m));
-  }
-  if (clip.rounding_m && options.lines == LineMethod::ordinary) {
-    clip.notes.push_back(
-        fmt::format("positions are rounded to {:.3g} m and often repeat: the noise is not random", *clip.rounding_m));
-  }
+  clip.stretches = used_stretches(smoothed);
+  note_findings(motion, outliers.size(), weights.factors, options.lines, clip);
   return clip;
 }
 
