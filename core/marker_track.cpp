@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "core/marker_method.h"
 
 namespace glidelab::core {
 namespace {
@@ -21,23 +22,6 @@ constexpr std::size_t kRestFrames = 12;      // after which a path that has not 
 constexpr std::size_t kMovingFrames = 10;    // in which five radii are a motion
 constexpr std::size_t kFewestSightings = 5;  // fewer in a row are noise
 constexpr double kSmallestRadiusPx = 1.2;
-constexpr double kLargestElongation = 4.0;  // a streak of motion may be long
-
-double frames_between(std::size_t from, std::size_t to) {
-  return static_cast<double>(to) - static_cast<double>(from);
-}
-
-/// How far from its first place a path must get to count as moving.
-double least_travel(double radius_px) {
-  return std::max(1.5 * radius_px, 5.0);
-}
-
-/// The same thing, as far as size and brightness go.
-bool is_like(double radius_px, double amplitude, const MarkerFit& fit) {
-  const double size = fit.radius_px / radius_px;
-  const double brightness = fit.amplitude / amplitude;
-  return size > 0.7 && size < 1.4 && brightness > 0.5 && brightness < 2.0 && fit.elongation < kLargestElongation;
-}
 
 bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
   return std::any_of(places.begin(), places.end(),
@@ -45,26 +29,6 @@ bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, doubl
 }
 
 }  // namespace
-
-cv::Point2d MarkerTracker::Path::velocity() const {
-  if (seen.size() < 2) return {0.0, 0.0};
-  const Seen& last = seen.back();
-  const Seen& before = seen[seen.size() - std::min<std::size_t>(seen.size(), 4)];
-  return (last.fit.centre - before.fit.centre) / frames_between(before.frame, last.frame);
-}
-
-cv::Point2d MarkerTracker::Path::predict(std::size_t frame) const {
-  return seen.back().fit.centre + velocity() * frames_between(seen.back().frame, frame);
-}
-
-void MarkerTracker::Path::push(const Seen& sighting) {
-  // Perspective changes size and brightness slowly; a single frame counts little.
-  const double weight = 1.0 / static_cast<double>(std::min<std::size_t>(seen.size() + 1, 20));
-  radius_px += weight * (sighting.fit.radius_px - radius_px);
-  amplitude += weight * (sighting.fit.amplitude - amplitude);
-  seen.push_back(sighting);
-  travel_px = std::max(travel_px, cv::norm(sighting.fit.centre - seen.front().fit.centre));
-}
 
 MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at)
     : clip_(std::move(clip)),
@@ -74,18 +38,6 @@ MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, Rad
 
 base::Issue MarkerTracker::issue(std::string found, std::string expected) const {
   return {clip_.string(), 0, "marker", std::move(found), std::move(expected)};
-}
-
-std::optional<MarkerFit> MarkerTracker::measure(const Signal& signal, const MarkerGuess& guess, Method method) const {
-  std::optional<MarkerFit> fit;
-  if (method == Method::uniform || method == Method::undecided) fit = fit_marker(signal, guess, Surface::uniform);
-  if (method == Method::shaded) fit = fit_marker(signal, guess, Surface::shaded);
-  // A thing that is known by its hue may have any shape.
-  if (method == Method::centroid || (!fit && method == Method::undecided && kind_ == SignalKind::colored)) {
-    fit = centroid_of_marker(signal, guess);
-  }
-  if (fit && fit->amplitude < least_contrast(kind_)) return std::nullopt;
-  return fit;
 }
 
 /// Where a path's thing is in the next frame: fitted where it should be, or looked for around there.
@@ -102,8 +54,8 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
     guess.shape = last.shape;
   }
   if (!is_new && !is_near_any(taken, expected, 0.5 * path.radius_px)) {
-    const auto fit = measure(signal, guess, path.method);
-    if (fit && is_like(path.radius_px, path.amplitude, *fit)) return Found{guess, *fit};
+    const auto fit = measure_marker(signal, guess, path.method, kind_);
+    if (fit && path.is_like(*fit)) return Found{guess, *fit};
   }
   // Nothing is known of a new path's speed; a known one changes little from frame to frame, but may bounce.
   const double lost = std::abs(frames_between(path.seen.back().frame, frame)) - 1.0;
@@ -125,8 +77,8 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
   for (const Blob& blob : blobs) {
     if (is_near_any(taken, blob.centre, 0.7 * path.radius_px)) continue;
     guess.centre = blob.centre;
-    const auto fit = measure(signal, guess, path.method);
-    if (!fit || !is_like(path.radius_px, path.amplitude, *fit)) continue;
+    const auto fit = measure_marker(signal, guess, path.method, kind_);
+    if (!fit || !path.is_like(*fit)) continue;
     if (is_near_any(taken, fit->centre, 0.7 * path.radius_px)) continue;
     return Found{guess, *fit};
   }
@@ -135,7 +87,7 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
 
 void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const {
   path.push({frame, found.fit, radius_at_(found.fit.centre)});
-  if (path.method != Method::undecided) return;
+  if (path.method != MarkerMethod::undecided) return;
   const int reach = static_cast<int>(std::ceil(2.2 * found.guess.radius_px + 6.0));
   const cv::Rect box =
       cv::Rect(static_cast<int>(std::lround(found.fit.centre.x)) - reach,
@@ -145,14 +97,14 @@ void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, 
   MarkerGuess guess = found.guess;
   guess.centre = found.fit.centre - cv::Point2d(box.x, box.y);
   path.samples.push_back({frame, Signal{signal.values(box).clone()}, box.tl(), guess});
-  if (path.samples.size() >= kSamples) choose_method(path);
+  if (path.samples.size() >= kSamples) choose_method(path, kind_, radius_at_);
 }
 
 std::vector<cv::Point2d> MarkerTracker::places_at(std::size_t frame) const {
   std::vector<cv::Point2d> places;
   for (const Path& path : paths_) {
     const auto at = std::lower_bound(path.seen.begin(), path.seen.end(), frame,
-                                     [](const Seen& seen, std::size_t wanted) { return seen.frame < wanted; });
+                                     [](const MarkerSeen& seen, std::size_t wanted) { return seen.frame < wanted; });
     if (at != path.seen.end() && at->frame == frame) places.push_back(at->fit.centre);
   }
   return places;
@@ -202,9 +154,9 @@ void MarkerTracker::follow_back(Path& path) const {
     }
   }
   std::reverse(back.seen.begin(), back.seen.end());
-  const std::vector<Seen> seen = back.seen;
+  const std::vector<MarkerSeen> seen = back.seen;
   path.seen.clear();
-  for (const Seen& sighting : seen) path.push(sighting);
+  for (const MarkerSeen& sighting : seen) path.push(sighting);
 }
 
 /// Something of the right size that is seen moving in this frame; null where there is nothing yet.
@@ -212,7 +164,7 @@ const MarkerTracker::Path* MarkerTracker::mover(std::size_t frame) const {
   const Path* best = nullptr;
   for (const Path& path : paths_) {
     if (path.ended || path.asleep || path.seen.back().frame != frame || path.seen.size() < kMovingFrames) continue;
-    if (path.travel_px < 5.0 * path.radius_px || std::abs(std::log(size_ratio(path))) > 0.3) continue;
+    if (path.travel_px < 5.0 * path.radius_px || std::abs(std::log(path.size_ratio())) > 0.3) continue;
     if (best == nullptr || path.amplitude > best->amplitude) best = &path;
   }
   return best;
@@ -239,14 +191,14 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
         is_near_any(sleeping, blob.centre, 0.7 * guess.radius_px)) {
       continue;
     }
-    const auto fit = measure(signal, guess, Method::undecided);
+    const auto fit = measure_marker(signal, guess, MarkerMethod::undecided, kind_);
     if (!fit || fit->elongation > kLargestElongation || is_near_any(known, fit->centre, 0.7 * guess.radius_px))
       continue;
     known.push_back(fit->centre);
     // A path that has just lost its thing takes up what is found near where that should be.
     const auto loser = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
       return !path.ended && !path.asleep && path.seen.back().frame < frame && path.seen.size() >= kFewestSightings &&
-             is_like(path.radius_px, path.amplitude, *fit) &&
+             path.is_like(*fit) &&
              cv::norm(path.predict(frame) - fit->centre) < 4.0 * path.radius_px + 2.0 * cv::norm(path.velocity());
     });
     if (loser != paths_.end()) {
@@ -272,7 +224,7 @@ void MarkerTracker::put_to_sleep(std::size_t frame) {
     }
   }
   const auto rank = [&](const Path* path) {
-    return std::abs(std::log(size_ratio(*path))) - 0.2 * std::log(path->amplitude);
+    return std::abs(std::log(path->size_ratio())) - 0.2 * std::log(path->amplitude);
   };
   std::stable_sort(resting.begin(), resting.end(), [&](const Path* a, const Path* b) { return rank(a) < rank(b); });
   for (std::size_t i = something_moves ? 0 : kAwake; i < resting.size(); ++i) resting[i]->asleep = true;

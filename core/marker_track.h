@@ -10,11 +10,9 @@
 
 #include <opencv2/core.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,13 +21,11 @@
 #include "core/experiment.h"
 #include "core/frame_source.h"
 #include "core/marker.h"
+#include "core/marker_path.h"
 #include "core/marker_search.h"
 #include "core/results.h"
 
 namespace glidelab::core {
-
-/// Expected radius of the marker's image at a pixel.
-using RadiusAt = std::function<double(cv::Point2d)>;
 
 /// Nothing in the clip is like the marker.
 class NoMarker : public base::InputError {
@@ -54,36 +50,7 @@ class MarkerTracker {
   TrackedMarker finish();
 
  private:
-  enum class Method { undecided, uniform, shaded, centroid };
-
-  struct Seen {
-    std::size_t frame = 0;
-    MarkerFit fit;
-    double expected_px = 0.0;  ///< radius that the marker should have there
-
-    double size() const { return fit.radius_px / std::max(expected_px, 1e-3); }
-  };
-  /// A window around a sighting, kept until the method is chosen.
-  struct Sample {
-    std::size_t frame = 0;
-    Signal window;
-    cv::Point corner;
-    MarkerGuess guess;
-  };
-  struct Path {
-    std::vector<Seen> seen;
-    std::vector<Sample> samples;
-    Method method = Method::undecided;
-    bool ended = false;
-    bool asleep = false;  ///< rests, and is looked at only when the whole picture is searched
-    double radius_px = 0.0;
-    double amplitude = 0.0;
-    double travel_px = 0.0;  ///< largest distance from the first place
-
-    cv::Point2d velocity() const;  ///< pixels a frame, over the last few sightings
-    cv::Point2d predict(std::size_t frame) const;
-    void push(const Seen& sighting);
-  };
+  using Path = MarkerPath;
   struct Found {
     MarkerGuess guess;
     MarkerFit fit;
@@ -93,7 +60,6 @@ class MarkerTracker {
     Signal signal;
   };
 
-  std::optional<MarkerFit> measure(const Signal& signal, const MarkerGuess& guess, Method method) const;
   std::optional<Found> find_again(const Signal& signal, std::size_t frame, const Path& path,
                                   const std::vector<cv::Point2d>& taken) const;
   void accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const;
@@ -107,10 +73,8 @@ class MarkerTracker {
   bool is_time_to_search(const Signal& signal, const Frame& frame) const;
   std::vector<cv::Point2d> places_at(std::size_t frame) const;
 
-  void choose_method(Path& path) const;
-  void join_pieces();
-  double size_ratio(const Path& path) const;  ///< of the radii seen and expected
-  bool is_place_of_another(const Path& path, const Seen& sighting) const;
+  TrackedMarker undisturbed(const Path& path) const;
+  bool is_place_of_another(const Path& path, const MarkerSeen& sighting) const;
   std::size_t choose_path(std::vector<std::string>& notes) const;
   std::size_t path_at_start() const;
   std::size_t resting_path(std::vector<std::string>& notes) const;
