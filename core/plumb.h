@@ -1,15 +1,11 @@
 /// The plumb line in a picture, and the inclination of the line of motion against it.
 ///
-/// A thread is a thin dark or bright line in the region given. Row by row (column by column where it runs more along
-/// the picture's rows) its places are found as what stands out from both sides; the straight line (after the lens's
-/// distortion is undone) that most of them lie on is the thread. It is then fitted as a whole
-/// (core/thread_fit.h). A plumb line is parallel to the plane of motion, so that its direction, restituted to
-/// that plane, does not depend on how far before or behind the plane it hangs.
+/// A plumb line (found by core/thread_search.h) is parallel to the plane of motion, so that its direction, restituted
+/// to that plane, does not depend on how far before or behind the plane it hangs.
 #pragma once
 
 #include <opencv2/core.hpp>
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -20,18 +16,6 @@
 #include "core/results.h"
 
 namespace glidelab::core {
-
-/// The thread's middle in each row (or column) in which it is seen, and the same with the thread turned by one standard
-/// deviation of its direction; pixels. Empty where there is no thread.
-struct ThreadInPicture {
-  std::vector<cv::Point2d> points;
-  std::vector<cv::Point2d> turned;
-  std::size_t rows = 0;  ///< that the fit rests on
-};
-
-/// `straight` undoes the lens.
-ThreadInPicture find_thread(const cv::Mat& grey, cv::Rect region,
-                            const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight);
 
 /// alpha = asin(axis . down), positive downhill, down being the thread's direction towards the picture's lower edge.
 /// Its standard deviation joins the thread's, the axis's and what the modes, each an error of one standard deviation of
