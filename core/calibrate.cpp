@@ -10,30 +10,14 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
-#include "base/parallel.h"
-#include "core/picture.h"
 #include "core/pose_elimination.h"
 
 namespace glidelab::core {
-namespace fs = std::filesystem;
-
 namespace {
 
 constexpr double kSignificantOne = 9.0;      // chi^2 of one degree of freedom at 0.27 %: three standard deviations
 constexpr double kSignificantPair = 11.829;  // the same of two: -2 log(0.0027)
-constexpr std::size_t kFewestViews = 3;      // two give no more than the focal length
-constexpr double kOutlierPx = 0.2;
-constexpr double kOutlierRatio = 5.0;
-
-std::vector<cv::Point3f> pattern_points(cv::Size grid, double square_m) {
-  std::vector<cv::Point3f> points;
-  for (int j = 0; j < grid.height; ++j) {
-    for (int i = 0; i < grid.width; ++i) {
-      points.emplace_back(static_cast<float>(i * square_m), static_cast<float>(j * square_m), 0.0F);
-    }
-  }
-  return points;
-}
+constexpr double kUncertainFocal = 0.02;     // of the focal length: a standard deviation that is worth a note
 
 struct OpenCvCalibration {
   cv::Mat matrix;
@@ -45,11 +29,17 @@ struct OpenCvCalibration {
   double rms_px = 0.0;
 };
 
+/// In single precision, as OpenCV takes them.
+std::vector<cv::Point3f> points_for_opencv(cv::Size grid, double square_m) {
+  const std::vector<cv::Point3d> points = pattern_points(grid, square_m);
+  return {points.begin(), points.end()};
+}
+
 OpenCvCalibration run_opencv(const std::vector<const BoardView*>& views, cv::Size size, double square_m, int flags) {
   std::vector<std::vector<cv::Point3f>> objects;
   std::vector<std::vector<cv::Point2f>> images;
   for (const BoardView* view : views) {
-    objects.push_back(pattern_points(view->corners.grid, square_m));
+    objects.push_back(points_for_opencv(view->corners.grid, square_m));
     images.emplace_back(view->corners.points.begin(), view->corners.points.end());
   }
   OpenCvCalibration found;
@@ -83,7 +73,7 @@ Uncertainty uncertainty_of(const OpenCvCalibration& found, const std::vector<con
   for (std::size_t i = 0; i < views.size(); ++i) {
     const BoardCorners& corners = views[i]->corners;
     std::vector<cv::Point3d> points;
-    for (const cv::Point3f& point : pattern_points(corners.grid, square_m)) points.emplace_back(point);
+    for (const cv::Point3f& point : points_for_opencv(corners.grid, square_m)) points.emplace_back(point);
     std::vector<cv::Point2d> projected;
     cv::Mat derivative;  // rows u, v of each point; columns turn, shift, f, c, k1, k2, p1, p2, k3
     cv::projectPoints(points, found.turns[i], found.shifts[i], found.matrix, found.distortion, projected, derivative);
@@ -180,98 +170,36 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
   return fit;
 }
 
-std::string names_of(const std::vector<fs::path>& files) {
-  std::vector<std::string> names;
-  for (const fs::path& file : files) names.push_back(file.filename().string());
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
 }  // namespace
 
-BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_corners, int jobs) {
-  std::vector<fs::path> unique;
-  for (const fs::path& file : files) {
-    if (std::find(unique.begin(), unique.end(), file) == unique.end()) unique.push_back(file);
-  }
-  std::vector<std::optional<BoardCorners>> corners(unique.size());
-  std::vector<cv::Size> sizes(unique.size());
-  base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
-    const cv::Mat grey = read_grey_picture(unique[i]);
-    sizes[i] = grey.size();
-    corners[i] = find_board(grey, inner_corners);
-  });
-  BoardViews found;
-  for (std::size_t i = 0; i < unique.size(); ++i) {
-    if (i == 0) found.picture_size = sizes[0];
-    if (sizes[i] != found.picture_size) {
-      throw base::InputError(base::Issue{unique[i].string(), 0, "",
-                                         fmt::format("{} x {} pixels", sizes[i].width, sizes[i].height),
-                                         fmt::format("{} x {} pixels, as {}", found.picture_size.width,
-                                                     found.picture_size.height, unique[0].filename().string())});
-    }
-    if (corners[i]) {
-      found.views.push_back({unique[i], std::move(*corners[i])});
-    } else {
-      found.without.push_back(unique[i]);
-    }
-  }
-  return found;
+bool follows_badly(const CornerNoise& noise) {
+  return noise.correlated_px > std::max(2.0 * kLeastCorrelatedPx, 0.5 * noise.white_px);
 }
 
-std::vector<const BoardView*> checked_views(const BoardViews& boards) {
-  if (boards.views.size() < kFewestViews) {
-    const fs::path any =
-        boards.views.empty() ? boards.without.empty() ? fs::path() : boards.without.front() : boards.views.front().file;
-    throw base::InputError(
-        base::Issue{any.parent_path().string(), 0, "calibration.views",
-                    fmt::format("{} pictures with a visible pattern{}", boards.views.size(),
-                                boards.without.empty() ? "" : fmt::format(" (none in {})", names_of(boards.without))),
-                    "at least 3, with all inner corners in sight"});
-  }
-  std::vector<const BoardView*> views;
-  for (const BoardView& view : boards.views) views.push_back(&view);
-  return views;
-}
-
-std::vector<const BoardView*> without_outliers(const std::vector<const BoardView*>& views,
-                                               const std::vector<double>& errors_px, std::vector<std::string>& notes) {
-  std::vector<double> sorted = errors_px;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double limit_px = std::max(kOutlierPx, kOutlierRatio * sorted[sorted.size() / 2]);
-  std::vector<const BoardView*> kept;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (errors_px[i] <= limit_px) {
-      kept.push_back(views[i]);
-    } else {
-      notes.push_back(fmt::format("{} is off the fit of the camera by {:.3g} px and left out",
-                                  views[i]->file.filename().string(), errors_px[i]));
-    }
-  }
-  return kept.size() >= kFewestViews ? kept : views;
-}
-
-void add_notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used, Calibration& calibration) {
+std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
+                                        const Calibration& calibration) {
+  std::vector<std::string> notes;
   if (!boards.without.empty()) {
-    calibration.notes.push_back("no pattern in sight in " + names_of(boards.without));
+    notes.push_back("no pattern in sight in " + names_of(boards.without));
   }
   std::size_t unrefined = 0;
   for (const BoardView* view : used) unrefined += view->corners.unrefined;
   if (unrefined > 0) {
-    calibration.notes.push_back(
-        fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
+    notes.push_back(fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
   }
-  if (calibration.noise.correlated_px > std::max(2.0 * kLeastCorrelatedPx, 0.5 * calibration.noise.white_px)) {
-    calibration.notes.push_back(fmt::format(
+  if (follows_badly(calibration.noise)) {
+    notes.push_back(fmt::format(
         "neighbouring corners are off together by {:.2g} px (each alone by {:.2g} px): a bent pattern, or a "
         "lens that the model does not follow; the uncertainties allow for it",
         calibration.noise.correlated_px, calibration.noise.white_px));
   }
   const double sd_fx = std::sqrt(calibration.covariance(0, 0));
-  if (sd_fx > 0.02 * calibration.camera.fx) {
-    calibration.notes.push_back(
+  if (sd_fx > kUncertainFocal * calibration.camera.fx) {
+    notes.push_back(
         fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
                     calibration.camera.fx, sd_fx));
   }
+  return notes;
 }
 
 Calibration calibrate_camera(const BoardViews& boards, double square_m) {
@@ -279,9 +207,10 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   std::vector<const BoardView*> used = checked_views(boards);
   SupportedFit fit = fit_supported_terms(used, boards.picture_size, square_m);
   const std::vector<double> errors(fit.found.view_error.begin<double>(), fit.found.view_error.end<double>());
-  const std::vector<const BoardView*> kept = without_outliers(used, errors, calibration.notes);
-  if (kept.size() < used.size()) {
-    used = kept;
+  KeptViews kept = without_outliers(used, errors);
+  calibration.notes = std::move(kept.notes);
+  if (kept.views.size() < used.size()) {
+    used = std::move(kept.views);
     fit = fit_supported_terms(used, boards.picture_size, square_m);
   }
   const OpenCvCalibration& found = fit.found;
@@ -299,7 +228,7 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   calibration.model = fit.model;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();
-  add_notes_on_views(boards, used, calibration);
+  for (std::string& note : notes_on_views(boards, used, calibration)) calibration.notes.push_back(std::move(note));
   return calibration;
 }
 

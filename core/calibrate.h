@@ -22,33 +22,15 @@
 
 #include <Eigen/Core>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/board_views.h"
 #include "core/camera_model.h"
-#include "core/chessboard.h"
 #include "core/corner_map.h"
 #include "core/corner_noise.h"
-#include "core/experiment.h"
 
 namespace glidelab::core {
-
-struct BoardView {
-  std::filesystem::path file;
-  BoardCorners corners;
-};
-
-/// What the pictures of the pattern gave.
-struct BoardViews {
-  std::vector<BoardView> views;                ///< in the order asked for, without those that failed
-  std::vector<std::filesystem::path> without;  ///< pictures in which no whole board was seen
-  cv::Size picture_size;
-};
-
-/// Finds the board in every file (each once, even if it is named twice), `jobs` at a time. InputError for a file that
-/// is no picture or of another size than the first.
-BoardViews find_board_views(const std::vector<std::filesystem::path>& files, cv::Size inner_corners, int jobs);
 
 struct Calibration {
   CameraModel camera;
@@ -62,16 +44,13 @@ struct Calibration {
   std::vector<std::string> notes;
 };
 
-/// The views with a board; InputError that names the pictures without one where there are fewer than three.
-std::vector<const BoardView*> checked_views(const BoardViews& boards);
-
-/// Without those whose error is above 0.2 px and five times the median's (one that is off pulls all parameters), with a
-/// note of each; all of them where fewer than three would be left.
-std::vector<const BoardView*> without_outliers(const std::vector<const BoardView*>& views,
-                                               const std::vector<double>& errors_px, std::vector<std::string>& notes);
+/// Whether neighbouring corners are off together by more than their own noise explains: a bent pattern, or a lens that
+/// the model does not follow.
+bool follows_badly(const CornerNoise& noise);
 
 /// What a reader should know of the views that were used, and of how they fit.
-void add_notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used, Calibration& calibration);
+std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
+                                        const Calibration& calibration);
 
 /// At least three views with a visible board; else InputError that names the pictures without one. A view whose error
 /// is above 0.2 px and five times the median's is left out (with a note).

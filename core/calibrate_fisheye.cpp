@@ -26,10 +26,7 @@ std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Si
   std::vector<std::vector<cv::Point3d>> objects;
   std::vector<std::vector<cv::Point2d>> images;
   for (const BoardView* view : views) {
-    objects.emplace_back();
-    for (int j = 0; j < view->corners.grid.height; ++j) {
-      for (int i = 0; i < view->corners.grid.width; ++i) objects.back().emplace_back(i * square_m, j * square_m, 0.0);
-    }
+    objects.push_back(pattern_points(view->corners.grid, square_m));
     images.emplace_back(view->corners.points.begin(), view->corners.points.end());
   }
   constexpr std::array<int, 4> kFixing{cv::fisheye::CALIB_FIX_K4, cv::fisheye::CALIB_FIX_K3, cv::fisheye::CALIB_FIX_K2,
@@ -67,13 +64,11 @@ Eigen::VectorXd projected(const CameraModel& camera, const cv::Vec3d& turn, cons
   cv::Rodrigues(turn, rotation);
   Eigen::VectorXd pixels(2 * grid.area());
   Eigen::Index row = 0;
-  for (int j = 0; j < grid.height; ++j) {
-    for (int i = 0; i < grid.width; ++i) {
-      const cv::Vec3d p = rotation * cv::Vec3d(i * square_m, j * square_m, 0.0) + shift;
-      const cv::Point2d pixel = camera.to_pixel({p[0] / p[2], p[1] / p[2]});
-      pixels[row++] = pixel.x;
-      pixels[row++] = pixel.y;
-    }
+  for (const cv::Point3d& point : pattern_points(grid, square_m)) {
+    const cv::Vec3d p = rotation * cv::Vec3d(point) + shift;
+    const cv::Point2d pixel = camera.to_pixel({p[0] / p[2], p[1] / p[2]});
+    pixels[row++] = pixel.x;
+    pixels[row++] = pixel.y;
   }
   return pixels;
 }
@@ -141,15 +136,14 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
   // puts it right.
   const std::optional<Fit> first = fit_of(views, nullptr);
   if (!first) return std::nullopt;
-  std::vector<std::string> unused;
   const std::optional<Fit> most =
-      fit_of(without_outliers(views, view_errors_px(*first, views, square_m), unused), nullptr);
+      fit_of(without_outliers(views, view_errors_px(*first, views, square_m)).views, nullptr);
   if (!most) return std::nullopt;
   const CameraModel& guess = most->camera;
   const std::optional<Fit> all = fit_of(views, &guess);
   if (!all) return std::nullopt;
-  std::vector<std::string> notes;
-  views = without_outliers(views, view_errors_px(*all, views, square_m), notes);
+  KeptViews kept = without_outliers(views, view_errors_px(*all, views, square_m));
+  views = std::move(kept.views);
   for (int fixed = 0;; ++fixed) {
     const std::optional<Fit> found = run_opencv(views, boards.picture_size, square_m, fixed, &guess);
     if (!found) return std::nullopt;
@@ -172,8 +166,8 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     calibration.rests = corner_map(boards.picture_size, rests);
     calibration.covariance.topLeftCorner(free_terms, free_terms) = uncertainty.covariance;
     calibration.views_used = views.size();
-    calibration.notes = std::move(notes);
-    add_notes_on_views(boards, views, calibration);
+    calibration.notes = std::move(kept.notes);
+    for (std::string& note : notes_on_views(boards, views, calibration)) calibration.notes.push_back(std::move(note));
     calibration.model = fmt::format("fisheye: {}", fixed == 4   ? std::string("no terms")
                                                    : fixed == 3 ? std::string("k1")
                                                                 : fmt::format("k1 to k{}", 4 - fixed));
@@ -186,8 +180,7 @@ Calibration calibrate_any_lens(const BoardViews& boards, double square_m) {
   const CameraModel& camera = found.camera;
   constexpr double kWide = 0.8;  // focal lengths
   const bool wide = std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy) > kWide;
-  const bool follows = found.noise.correlated_px <= std::max(2.0 * kLeastCorrelatedPx, 0.5 * found.noise.white_px);
-  if (!wide && follows) return found;
+  if (!wide && !follows_badly(found.noise)) return found;
   std::optional<Calibration> fisheye = calibrate_fisheye(boards, square_m);
   if (!fisheye || fisheye->views_used < found.views_used) return found;
   const double coordinates = 2.0 * static_cast<double>(found.views_used * boards.views.front().corners.points.size());

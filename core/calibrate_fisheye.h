@@ -15,11 +15,13 @@ namespace glidelab::core {
 /// OpenCV finds no such camera.
 std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
 
+/// Twice the logarithm of the likelihoods' ratio from which on a lens is taken as a fisheye.
+inline constexpr double kDecisive = 100.0;
+
 /// Brown-Conrady, or a fisheye where that explains the corners decisively better: n log(rms² / rms²) > kDecisive over n
 /// coordinates (twice the logarithm of the likelihoods' ratio; both have as many terms, and neighbouring corners, some
 /// ten together, err alike). A fisheye is tried where the picture's corner is more than 0.8 focal lengths off the axis,
 /// or neighbouring corners show that Brown-Conrady does not follow the lens.
-inline constexpr double kDecisive = 100.0;
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m);
 
 }  // namespace glidelab::core
