@@ -1,11 +1,14 @@
-/// Words that the findings of a check share.
+/// What the findings of a check share: words, and a book for those about one thing.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "core/recording_check.h"
 
 namespace glidelab::core {
 
@@ -22,5 +25,18 @@ inline std::string list_of(const std::vector<std::string>& names) {
   if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
   return text;
 }
+
+/// Collects what is found about one thing; `findings` outlive it.
+class FindingBook {
+ public:
+  FindingBook(std::vector<Finding>& findings, std::string about) : findings_(findings), about_(std::move(about)) {}
+  void add(Severity severity, std::string found, std::string advice = {}) {
+    findings_.push_back({severity, about_, std::move(found), std::move(advice)});
+  }
+
+ private:
+  std::vector<Finding>& findings_;
+  std::string about_;
+};
 
 }  // namespace glidelab::core
