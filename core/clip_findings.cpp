@@ -54,7 +54,7 @@ void judge_times(const Experiment& experiment, const ClipCheck& clip, FindingBoo
         "record to a faster disk or in a smaller format, and say time = \"container\" if the file has true stamps");
   }
   if (clip.repeated + clip.stalls > 0) {
-    const double share = static_cast<double>(clip.repeated) / frames;
+    const double share = static_cast<double>(std::max(clip.repeated, clip.stalls)) / frames;
     book.add(share > kWorstRepeated ? Severity::unusable : Severity::change,
              clip.stalls > 0
                  ? fmt::format("the marker stands still for a frame {} in mid-motion, and {} of {} frames are "

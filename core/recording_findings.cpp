@@ -35,7 +35,7 @@ void judge_pattern(const PatternCheck& pattern, FindingBook book) {
   }
   if (!pattern.calibration) return;
   const CalibrationResult& camera = *pattern.calibration;
-  if (pattern.views.size() < kEnoughViews) {
+  if (camera.views_used < kEnoughViews) {
     book.add(Severity::change, fmt::format("the camera rests on {} views", camera.views_used),
              "take a dozen, tilted to all sides, near and far");
   }
