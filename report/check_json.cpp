@@ -41,6 +41,7 @@ Json clip_json(const core::ClipCheck& clip) {
   json["frames"] = clip.frames;
   json["seen"] = clip.seen;
   put(json, "frame_rate_hz", clip.frame_rate_hz);
+  put(json, "way_m", clip.way_m);
   put(json, "top_speed_m_s", clip.top_speed_m_s);
   put(json, "position_noise_m", clip.position_noise_m, "too few points");
   json["notes"] = clip.notes;
