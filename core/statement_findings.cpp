@@ -66,12 +66,11 @@ void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clip
     contradicts = contradicts || (size_off(clip) > kSizeContradicts && likely_blur_px(clip) <= kSharp * clip.marker_px);
   }
   if (worst == nullptr) return;
-  const std::string length = experiment.scale ? "the two points of [scale]" : "square_m";
+  const std::string length = experiment.scale ? "[scale]" : "square_m";
   findings.push_back(
       {contradicts ? Severity::unusable : Severity::change, list_of(names),
        fmt::format("the marker is {:.3g} px wide, and diameter_m and {} make it {:.3g} px: {:.0f} % off",
-                   worst->marker_px, experiment.scale ? "[scale]" : "square_m", worst->marker_expected_px,
-                   100.0 * std::expm1(size_off(*worst))),
+                   worst->marker_px, length, worst->marker_expected_px, 100.0 * std::expm1(size_off(*worst))),
        fmt::format("measure diameter_m and {} again: one length is wrong, and if it is not diameter_m all speeds and "
                    "accelerations are with it",
                    length)});
@@ -138,26 +137,61 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
 }
 
 /// A hand rests or pushes before the glider goes its way; free motion turns.
-void judge_launch(const Experiment& experiment, const ClipCheck& clip, std::vector<Finding>& findings) {
-  if (!clip.against_launch || clip.against_launch->share < kAgainstLaunch) return;
-  const AgainstLaunch& against = *clip.against_launch;
-  if (against.until_s && !against.at_a_turn) return;
-  const auto setup = std::find_if(experiment.clips.begin(), experiment.clips.end(),
-                                  [&](const ClipSetup& of) { return of.name == clip.name; });
-  if (setup == experiment.clips.end()) return;
-  const GroupSetup* group = group_of(experiment, setup->group);
-  const bool own = group != nullptr && group->downhill;
-  const int downhill = own ? *group->downhill : experiment.track.downhill;
-  const std::string launched = setup->launched == Launched::up     ? "up"
-                               : setup->launched == Launched::down ? "down"
-                                                                   : "released";
+bool moves_against_launch(const ClipCheck& clip) {
+  if (!clip.against_launch || clip.against_launch->share < kAgainstLaunch) return false;
+  return !clip.against_launch->until_s || clip.against_launch->at_a_turn;
+}
+
+/// The two keys that say where the launch went, of one clip.
+struct StatedLaunch {
+  bool own_downhill = false;  ///< of its [group], not of [track]
+  std::string sentence;       ///< "launched = "up" and downhill = "+X""
+};
+
+StatedLaunch stated_launch(const Experiment& experiment, const ClipSetup& clip) {
+  const GroupSetup* group = group_of(experiment, clip.group);
+  StatedLaunch stated{group != nullptr && group->downhill.has_value(), {}};
+  const int downhill = stated.own_downhill ? *group->downhill : experiment.track.downhill;
+  const std::string launched = clip.launched == Launched::up     ? "up"
+                               : clip.launched == Launched::down ? "down"
+                                                                 : "released";
+  stated.sentence = fmt::format("launched = \"{}\" and downhill = \"{}\"", launched, downhill > 0 ? "+X" : "-X");
+  return stated;
+}
+
+/// One finding for all clips, with the worst of them: one wrong key in [track] turns them all.
+void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& clips, std::vector<Finding>& findings) {
+  std::vector<std::string> names;
+  const ClipCheck* worst = nullptr;
+  StatedLaunch of_worst;
+  bool own = false, shared = false;  // where the downhill stands that these clips go by
+  for (const ClipCheck& clip : clips) {
+    const auto setup = std::find_if(experiment.clips.begin(), experiment.clips.end(),
+                                    [&](const ClipSetup& of) { return of.name == clip.name; });
+    if (setup == experiment.clips.end() || !moves_against_launch(clip)) continue;
+    StatedLaunch stated = stated_launch(experiment, *setup);
+    names.push_back(clip.name);
+    (stated.own_downhill ? own : shared) = true;
+    if (worst != nullptr && clip.against_launch->share <= worst->against_launch->share) continue;
+    worst = &clip;
+    of_worst = std::move(stated);
+  }
+  if (worst == nullptr) return;
+  const bool many = names.size() > 1;
+  const std::string whose =
+      many ? fmt::format("{} of {} clips move freely against their launch; most of all {}: ", names.size(),
+                         clips.size(), worst->name)
+           : "";
   findings.push_back(
-      {Severity::unusable, clip.name,
-       fmt::format("{}, as launched = \"{}\" and downhill = \"{}\" say; that is {} of its free motion",
-                   sentence(against), launched, downhill > 0 ? "+X" : "-X", percent(against.share)),
-       fmt::format("see which of the two is wrong: launched of this clip, or downhill in [{}]; if neither is, start_s "
-                   "says where the hand lets go",
-                   own ? "[group]" : "track")});
+      {Severity::unusable, list_of(names),
+       fmt::format("{}{}, as {} say; that is {} of its free motion", whose, sentence(*worst->against_launch),
+                   of_worst.sentence, percent(worst->against_launch->share)),
+       fmt::format("see which of the two is wrong: launched of {}, or downhill in {}; if neither is, "
+                   "start_s says where the hand lets go",
+                   many ? "these clips" : "this clip",
+                   own && shared ? "[track] or [group]"
+                   : own         ? "[group]"
+                                 : "[track]")});
 }
 
 }  // namespace
@@ -177,7 +211,7 @@ std::vector<Finding> statement_findings(const Experiment& experiment, const Reco
   judge_size(experiment, check.clips, findings);
   judge_way(experiment, check.clips, findings);
   judge_incline(experiment, check, findings);
-  for (const ClipCheck& clip : check.clips) judge_launch(experiment, clip, findings);
+  judge_launch(experiment, check.clips, findings);
   return findings;
 }
 
