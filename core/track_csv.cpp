@@ -33,7 +33,20 @@ void check_times(const base::CsvTable& table, const std::vector<double>& t_s) {
   }
 }
 
-/// The first line that is neither empty nor a comment has a name `t_s`.
+bool has_field(std::string_view line, std::string_view name) {
+  while (!line.empty()) {
+    const auto end = line.find_first_of(",;\t");
+    std::string_view field = line.substr(0, end);
+    line.remove_prefix(end == std::string_view::npos ? line.size() : end + 1);
+    constexpr std::string_view kAround = " \r\"";
+    field.remove_prefix(std::min(field.find_first_not_of(kAround), field.size()));
+    field = field.substr(0, field.find_last_not_of(kAround) + 1);
+    if (field == name) return true;
+  }
+  return false;
+}
+
+/// The first line that is neither empty nor a comment has a field `t_s`.
 bool has_own_header(const std::filesystem::path& file) {
   const std::string text = base::read_file(file);
   std::string_view rest = text;
@@ -44,7 +57,7 @@ bool has_own_header(const std::filesystem::path& file) {
     rest.remove_prefix(newline == std::string_view::npos ? rest.size() : newline + 1);
     const auto first = line.find_first_not_of(" \t\r");
     if (first == std::string_view::npos || line[first] == '#') continue;
-    return line.find("t_s") != std::string_view::npos;
+    return has_field(line, "t_s");
   }
   return true;  // an empty file: its error is the plain one
 }

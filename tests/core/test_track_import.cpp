@@ -111,6 +111,11 @@ TEST_CASE("two columns without a header are time and place, and a byte-order mar
   check_motion(Made("zeit_ms,weg_mm\n" + rows("{0}00,{1}0\n")).read());
 }
 
+TEST_CASE("a name that only contains t_s, as zeit_s, is another program's and imported") {
+  check_motion(Made("zeit_s,weg_mm\n" + rows("0.{0},{1}0\n")).read());
+  check_motion(Made("t_sec,x_mm\n" + rows("0.{0},{1}0\n")).read());
+}
+
 TEST_CASE("downhill towards -x turns the sign of an imported track") {
   const Made made("t (s),x (m)\n" + rows("0.{0},{1}\n"));
   CHECK(core::import_track(made.file, "", -1).x_m[3] == -9.0);
