@@ -135,7 +135,8 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
   for (const MemberClip& member : members) {
     result.clips.push_back(member.clip->name);
     if (const auto sd_rad = member.setup->incline_sd_rad) {
-      result.incline_sd_deg = std::min(result.incline_sd_deg.value_or(90.0), degrees_of(*sd_rad));
+      const double sd_deg = degrees_of(*sd_rad);
+      result.incline_sd_deg = std::min(result.incline_sd_deg.value_or(sd_deg), sd_deg);
     }
     for (const LineFit& line : member.clip->segments) biased = biased || line.parts.law.has_value();
   }

@@ -107,6 +107,14 @@ TEST_CASE("a configuration of one direction has K/m, and null for mu and alpha w
   CHECK_FALSE(none.v_lim_m_s.estimate);
 }
 
+TEST_CASE("an inclination stated as not known, with more than 90 degrees, keeps its standard deviation") {
+  ClipSetup unknown = kDown;
+  unknown.incline_sd_rad = 120.0 / kDegrees;
+  const auto result = join({unknown}, {clip_on({{1, 2.0, 0.6, 0.01, 0.002}})});
+  REQUIRE(result.incline_sd_deg);
+  CHECK(*result.incline_sd_deg == Approx(120.0).epsilon(1e-12));  // degrees to radians and back
+}
+
 TEST_CASE("a line that is missing because the motion went against the stated launch says so, for what needs it alone") {
   ClipResult clip = clip_on({{-1, 2.0, 0.6, 0.01, 0.002}});
   clip.against_launch = AgainstLaunch{1, 0.542, 0.4, true};
