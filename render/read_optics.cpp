@@ -67,7 +67,7 @@ void read_camera(const TomlTable& root, Scenario& scenario) {
     recording.frame_rate_hz = table.number_or("frame_rate_hz", recording.frame_rate_hz, {1e-3, 1e5, false, false});
     recording.exposure_s =
         table.number_or("exposure_s", std::min(recording.exposure_s, 1.0 / recording.frame_rate_hz), base::above(0.0));
-    if (recording.exposure_s > 1.0 / recording.frame_rate_hz * (1.0 + 1e-9)) {
+    if (recording.exposure_s > longest_exposure_s(recording.frame_rate_hz)) {
       table.reject("exposure_s", fmt::format("{}", recording.exposure_s),
                    fmt::format("at most the frame time, {} s", 1.0 / recording.frame_rate_hz));
     }

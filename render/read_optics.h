@@ -11,4 +11,9 @@ namespace glidelab::render {
 /// table's file.
 void read_optics(const base::TomlTable& root, Scenario& scenario);
 
+/// The frame time, and a billionth for what a rate's and a time's decimals round.
+inline double longest_exposure_s(double frame_rate_hz) {
+  return (1.0 + 1e-9) / frame_rate_hz;
+}
+
 }  // namespace glidelab::render

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "render/read_optics.h"
 #include "render/scene.h"
 
 namespace glidelab::render {
@@ -123,11 +124,12 @@ void read_container(const TomlTable& table, Scenario& scenario) {
 void check_clock(const TomlTable& table, const Scenario& scenario) {
   const Recording& recording = scenario.recording;
   const ClockSetup& clock = recording.clock;
-  const double frame_s = 1.0 / (recording.frame_rate_hz * (1.0 + 1e-6 * clock.rate_error_ppm));
-  const double free_s = frame_s * (1.0 + 1e-9) - recording.exposure_s - 2.0 * kLargestJitter * clock.jitter_s;
-  if (free_s < 0.0) {
+  const double rate_hz = recording.frame_rate_hz * (1.0 + 1e-6 * clock.rate_error_ppm);
+  const double free_s = longest_exposure_s(rate_hz) - recording.exposure_s - 2.0 * kLargestJitter * clock.jitter_s;
+  const bool refused = recording.exposure_s > longest_exposure_s(recording.frame_rate_hz);  // of [camera] already
+  if (free_s < 0.0 && !refused) {
     table.reject(clock.jitter_s > 0.0 ? "jitter_s" : "rate_error_ppm",
-                 fmt::format("exposures of {} s every {} s that overlap", recording.exposure_s, frame_s),
+                 fmt::format("exposures of {} s every {} s that overlap", recording.exposure_s, 1.0 / rate_hz),
                  "exposures that do not, with a jitter of up to 5.9 standard deviations each");
   }
   const Container container = scenario.compression.container.value_or(usual_container(scenario.codec));

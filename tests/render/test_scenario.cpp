@@ -52,6 +52,16 @@ std::string message(const std::string& sections, const std::string& motions = kM
 
 }  // namespace
 
+TEST_CASE("An exposure longer than the frame time is one error, with a clock that has a jitter as well") {
+  const std::string camera = "[camera]\nframe_rate_hz = 200.0\nexposure_s = 0.006\n";
+  for (const std::string clock : {"rate_error_ppm = 50.0\n", "jitter_s = 1e-5\n"}) {
+    const std::string text = message(camera + "[clock]\n" + clock);
+    CHECK_THAT(text, Catch::Contains("frame time") && !Catch::Contains("overlap"));
+  }
+  CHECK_THAT(message("[camera]\nframe_rate_hz = 200.0\nexposure_s = 0.005\n[clock]\njitter_s = 1e-5\n"),
+             Catch::Contains("overlap"));
+}
+
 TEST_CASE("The paper's scenarios read, with the camera that is written there") {
   for (const char* name : {"level", "inclined"}) {
     const Scenario scenario = read_scenario(fmt::format("{}/scenarios/paper/{}.toml", tests::kSourceDir, name));
