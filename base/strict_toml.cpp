@@ -72,13 +72,7 @@ TomlFile TomlFile::load(const std::filesystem::path& path) {
 TomlFile TomlFile::parse(std::string_view text, std::string shown_as) {
   auto document = std::make_shared<Document>();
   document->name = std::move(shown_as);
-  try {
-    document->tree = toml::parse(text, document->name);
-  } catch (const toml::parse_error& error) {
-    const auto at = error.source().begin;
-    throw InputError(Issue{document->name, static_cast<int>(at.line), fmt::format("column {}", at.column),
-                           fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
-  }
+  document->tree = parsed_toml(text, document->name);
   document->nodes.push_back(
       std::make_shared<TomlTable::Node>(TomlTable::Node{document.get(), &document->tree, "", 1, {}, {}, {}}));
   return TomlFile(std::move(document));

@@ -1,7 +1,9 @@
 /// What lies behind a TomlFile and its TomlTables: the parsed document, and of each table that was handed out which
-/// keys were asked for. Private to base/: strict_toml.cpp and toml_table.cpp include it.
+/// keys were asked for; and the parse of its text. Private to base/: strict_toml.cpp, toml_table.cpp and toml_set.cpp
+/// include it.
 #pragma once
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <map>
@@ -42,6 +44,17 @@ struct TomlTable::Node {
   /// The value cannot be read.
   void reject(std::string_view key, const toml::node* found, std::string expected);
 };
+
+/// InputError, in the file `shown_as`, where the text is no TOML.
+inline toml::table parsed_toml(std::string_view text, const std::string& shown_as) {
+  try {
+    return toml::parse(text, shown_as);
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw InputError(Issue{shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
+                           fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
+  }
+}
 
 /// The file that a value comes from.
 inline std::string file_of(const toml::node& node, const std::string& otherwise) {

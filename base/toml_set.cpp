@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "base/toml_node.h"
 
 namespace glidelab::base {
 namespace {
@@ -130,13 +131,14 @@ class Setter {
     return indices;
   }
 
-  /// How many values were put in; of a path through several tables, at least one has to take it.
+  /// Of a path through several tables, at least one has to take the value.
   void into(toml::table& table, const std::vector<Step>& steps, std::vector<std::string>& places) const {
     if (through(table, steps, 0, "", places) == 0) {
       fail("nothing that it picks", "a path that leads to one key of the scenario or more");
     }
   }
 
+  /// How many values were put in.
   std::size_t through(toml::table& table, const std::vector<Step>& steps, std::size_t at, const std::string& before,
                       std::vector<std::string>& places) const {
     const Step& step = steps[at];
@@ -184,26 +186,6 @@ class Setter {
   const TomlAssignment& assignment_;
 };
 
-}  // namespace
-
-std::string toml_text(const TomlScalar& value) {
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  return fmt::format("\"{}\"", std::get<std::string>(value));
-}
-
-namespace {
-
-toml::table parsed(std::string_view toml, const std::string& shown_as) {
-  try {
-    return toml::parse(toml, shown_as);
-  } catch (const toml::parse_error& error) {
-    const auto at = error.source().begin;
-    throw InputError(Issue{shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
-                           fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
-  }
-}
-
 std::string text_of(const toml::table& tree) {
   std::ostringstream text;
   text << tree << '\n';
@@ -212,11 +194,33 @@ std::string text_of(const toml::table& tree) {
 
 }  // namespace
 
+std::string toml_string(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (code < 0x20 || code == 0x7f) {
+      quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(code));
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + '"';
+}
+
+std::string toml_text(const TomlScalar& value) {
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  return toml_string(std::get<std::string>(value));
+}
+
 std::string with_missing(std::string_view toml, const std::string& shown_as, std::string_view others,
                          const std::string& others_shown_as, const std::vector<TomlSection>& sections,
                          std::string_view taken_out) {
-  toml::table tree = parsed(toml, shown_as);
-  const toml::table more = parsed(others, others_shown_as);
+  toml::table tree = parsed_toml(toml, shown_as);
+  const toml::table more = parsed_toml(others, others_shown_as);
   for (const TomlSection& section : sections) {
     const toml::table* from = more.get_as<toml::table>(section.name);
     if (from == nullptr) continue;
@@ -235,13 +239,13 @@ std::string with_missing(std::string_view toml, const std::string& shown_as, std
 
 std::string with_values(std::string_view toml, const std::string& shown_as,
                         const std::vector<TomlAssignment>& assignments) {
-  toml::table tree = parsed(toml, shown_as);
+  toml::table tree = parsed_toml(toml, shown_as);
   for (const TomlAssignment& assignment : assignments) Setter(shown_as, assignment).apply(tree);
   return text_of(tree);
 }
 
 std::vector<std::string> reached_by(std::string_view toml, const std::string& shown_as, const std::string& path) {
-  toml::table tree = parsed(toml, shown_as);
+  toml::table tree = parsed_toml(toml, shown_as);
   return Setter(shown_as, TomlAssignment{path, 0.0}).apply(tree);
 }
 

@@ -24,6 +24,9 @@ struct TomlAssignment {
   std::optional<TomlScalar> value;  ///< nothing: the key is taken out, wherever it stands
 };
 
+/// A TOML basic string of UTF-8 text: in quotes, with what must not stand in one escaped.
+std::string toml_string(std::string_view text);
+
 /// "0.001", "true", "\"global\"": a whole number has no decimal point, so that it serves for integers as well.
 std::string toml_text(const TomlScalar& value);
 

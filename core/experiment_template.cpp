@@ -2,25 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "base/toml_set.h"
+
 namespace glidelab::core {
 namespace {
-
-/// A TOML basic string.
-std::string toml_string(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (code < 0x20 || code == 0x7f) {
-      quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(code));
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + '"';
-}
 
 constexpr std::string_view kToml =
     R"(# Lengths are in metres, times in seconds, angles in degrees, masses in kilograms.
@@ -129,7 +114,7 @@ Then, before you put anything away:
 }  // namespace
 
 std::string experiment_template(std::string_view name) {
-  return fmt::format("format = 1\nname = {}\n\n{}", toml_string(name), kToml);
+  return fmt::format("format = 1\nname = {}\n\n{}", base::toml_string(name), kToml);
 }
 
 std::string experiment_readme(std::string_view name) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/toml_set.h"
 #include "render/clip_motion.h"
 #include "render/scene.h"
 #include "sim/truth.h"
@@ -20,19 +21,6 @@ std::string number(double value) {
   std::string text = fmt::format("{:.12g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<int>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
 }
 
 const char* word_of(sim::Launched launched) {
@@ -157,7 +145,7 @@ std::string experiment_toml(const Scenario& scenario) {
   };
   const auto table = [&](std::string_view name) { text += fmt::format("\n{}\n", name); };
   line("format", "1");
-  line("name", quoted(scenario.motion.name));
+  line("name", base::toml_string(scenario.motion.name));
   line("gravity_m_s2", number(scenario.motion.gravity_m_s2));
   table("[camera]");
   line("frame_rate_hz", number(scenario.recording.frame_rate_hz));
@@ -188,15 +176,15 @@ std::string experiment_toml(const Scenario& scenario) {
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {
       table("[[clip]]");
-      line("name", quoted(motion.name));
-      line("file", quoted("clips/" + file_name_of(scenario.codec, scenario.compression, motion.name)));
+      line("name", base::toml_string(motion.name));
+      line("file", base::toml_string("clips/" + file_name_of(scenario.codec, scenario.compression, motion.name)));
       line("mass_kg", number(configuration.body.mass_kg));
       line("incline_deg", number(configuration.stated_incline_rad * kDegPerRad));
       if (configuration.stated_incline_sd_rad > 0.0) {
         line("incline_sd_deg", number(configuration.stated_incline_sd_rad * kDegPerRad));
       }
-      line("launched", quoted(word_of(motion.launched)));
-      line("group", quoted(configuration.group));
+      line("launched", base::toml_string(word_of(motion.launched)));
+      line("group", base::toml_string(configuration.group));
     }
   }
   return text;

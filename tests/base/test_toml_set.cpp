@@ -86,6 +86,14 @@ TEST_CASE("A whole number serves for integers and for numbers, and a fraction ke
   CHECK(file.root().number("x") == 0.1 + 0.2);
 }
 
+TEST_CASE("A text with a quote, a backslash, a line break or a control character reads back as it was") {
+  const std::string text =
+      "a\"b\\c\nd\x01\x7f"
+      "e";
+  base::TomlFile file = base::TomlFile::parse("name = " + base::toml_text(text), "t.toml");
+  CHECK(file.root().text("name") == text);
+}
+
 TEST_CASE("A path that leads nowhere is an error that names it") {
   using Catch::Matchers::Contains;
   CHECK_THAT(message("group.name"), Contains("group.name") && Contains("of which there are 2"));

@@ -14,6 +14,7 @@
 #include "base/csv.h"
 #include "base/errors.h"
 #include "base/staged_output.h"
+#include "base/strict_toml.h"
 #include "catch.h"
 #include "core/experiment.h"
 #include "render/folders.h"
@@ -162,6 +163,13 @@ TEST_CASE("An experiment folder holds what the contract says, and the analysis r
     CAPTURE(secret);
     CHECK(text.find(secret) == std::string::npos);
   }
+}
+
+TEST_CASE("A name with a control character reads back from experiment.toml as it was") {
+  Scenario scenario = small_scenario();
+  scenario.motion.name = "a\x7f\"b\"";
+  base::TomlFile file = base::TomlFile::parse(experiment_toml(scenario), "experiment.toml");
+  CHECK(file.root().text("name") == scenario.motion.name);
 }
 
 TEST_CASE("The truth folder holds the motion at mid-exposure, and the parameters where the law has them") {
