@@ -43,13 +43,6 @@ Eigen::MatrixXd inverse_positive(const MatrixView& a) {
   return solve_positive(a, Eigen::MatrixXd::Identity(a.rows(), a.cols()));
 }
 
-std::optional<Eigen::MatrixXd> regular_inverse(const MatrixView& a) {
-  require_square("regular_inverse", a);
-  const Eigen::FullPivLU<Eigen::MatrixXd> factor(a);
-  if (!factor.isInvertible()) return std::nullopt;
-  return factor.inverse();
-}
-
 Eigen::MatrixXd cholesky_lower(const MatrixView& a) {
   require_square("cholesky_lower", a);
   const Eigen::LLT<Eigen::MatrixXd> factor(a);

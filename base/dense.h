@@ -7,8 +7,6 @@
 
 #include <Eigen/Core>
 
-#include <optional>
-
 namespace glidelab::base {
 
 using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
@@ -24,9 +22,6 @@ Eigen::MatrixXd solve_positive(const MatrixView& a, const MatrixView& b);
 
 /// Inverse of a symmetric positive definite matrix; only its lower triangle is read.
 Eigen::MatrixXd inverse_positive(const MatrixView& a);
-
-/// Inverse of a square matrix; nothing where its rank is not full to rounding (pivots below eps n of the largest).
-std::optional<Eigen::MatrixXd> regular_inverse(const MatrixView& a);
 
 /// L of A = L L' for a symmetric positive definite A; NumericalError where a pivot is not positive.
 Eigen::MatrixXd cholesky_lower(const MatrixView& a);

@@ -63,17 +63,6 @@ TEST_CASE("a matrix that is not positive definite has no Cholesky factor") {
   CHECK_THROWS_AS(cholesky_lower(a), NumericalError);
 }
 
-TEST_CASE("a regular matrix has an inverse and a singular one has none") {
-  Eigen::MatrixXd a(2, 2);
-  a << 1, 2, 3, 4;
-  Eigen::MatrixXd inverse(2, 2);
-  inverse << -2, 1, 1.5, -0.5;
-  REQUIRE(regular_inverse(a));
-  CHECK(largest(*regular_inverse(a) - inverse) < kRounding);
-  a << 1, 2, 2, 4;
-  CHECK_FALSE(regular_inverse(a));
-}
-
 TEST_CASE("a straight line through points off it has the closed form's slope and intercept") {
   // x = -1, 0, 1; y = 0, 2, 1: slope (1 - 0)/2, intercept the mean.
   Eigen::MatrixXd a(3, 2);
