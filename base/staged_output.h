@@ -12,7 +12,7 @@ namespace glidelab::base {
 
 class StagedOutput {
  public:
-  /// Makes `<parent>/<name>.part-<pid>-<n>`; EnvironmentError where that cannot be written.
+  /// Makes `<parent>/<name>.part-<place>-<pid>-<n>`; EnvironmentError where that cannot be written.
   explicit StagedOutput(std::filesystem::path final_dir);
   ~StagedOutput();
   StagedOutput(const StagedOutput&) = delete;
