@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/bandwidth_scan.h"
 #include "core/line_fit.h"
 #include "core/line_input.h"
 #include "core/stretch_points.h"
@@ -14,13 +15,11 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLeastSteps = 1.2;      // of the time step: a kernel narrower than that holds fewer than five points
-constexpr double kRatio = 1.1;           // from one bandwidth of the grid to the next
-constexpr double kQuiet = 0.0125;        // noise of a over its standard deviation along the line
-constexpr double kSteep = 3.0;           // standard deviations of K/m that make a line one to be seen
-constexpr double kBiasAllowed = 0.0035;  // of the lines' size, for the sake of quieter points
-constexpr double kNoiseAllowed = 1.25;   // growth of the lines' variance, for the sake of quieter points
-constexpr double kShareOfTime = 0.1;     // of the free time that a direction needs to have a say
+constexpr double kQuiet = 0.0125;            // noise of a over its standard deviation along the line
+constexpr double kSteep = 3.0;               // standard deviations of K/m that make a line one to be seen
+constexpr double kBiasAllowed = 0.0035;      // of the lines' size, for the sake of quieter points
+constexpr double kNoiseAllowed = 1.25;       // growth of the lines' variance, for the sake of quieter points
+constexpr double kShareOfTime = 0.1;         // of the free time that a direction needs to have a say
 constexpr double kPointsPerBandwidth = 3.0;  // points closer together say the same
 
 double time_of(const Motion& motion, const FreeStretch& stretch) {
@@ -116,10 +115,6 @@ class Scan {
   double longest_s_ = 0.0;
 };
 
-}  // namespace
-
-namespace {
-
 /// Weighted least squares of a = a0 - k v; a constant where v hardly varies.
 struct Law {
   double k = 0.0, a0 = 0.0;
@@ -167,7 +162,7 @@ std::vector<double> pilot_law(const Motion& motion, const std::vector<FreeStretc
 }
 
 double law_bandwidth(const Motion& motion, double pilot_bandwidth_s) {
-  return std::max(0.5 * pilot_bandwidth_s, kLeastSteps * motion.step_s);
+  return std::max(0.5 * pilot_bandwidth_s, kLeastBandwidthSteps * motion.step_s);
 }
 
 BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStretch>& stretches,
@@ -178,8 +173,8 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
   if (stretches.empty()) return choice;
   Scan scan(motion, stretches, noise, pilot_bandwidth_s);
   std::vector<Errors> tried;
-  for (double h = kLeastSteps * motion.step_s; scan.has_directions() && 2.0 * kKernelMargin * h < scan.longest_s();
-       h *= kRatio) {
+  for (double h = kLeastBandwidthSteps * motion.step_s;
+       scan.has_directions() && 2.0 * kKernelMargin * h < scan.longest_s(); h *= kBandwidthRatio) {
     if (const auto errors = scan.at(h)) tried.push_back(*errors);
   }
   if (tried.empty()) return choice;

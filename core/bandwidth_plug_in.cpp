@@ -67,7 +67,7 @@ FourthDerivative fourth_derivative(const MotionPart& part, double noise_variance
 std::optional<BandwidthPick> PlugIn::choose(const BandwidthProblem& problem) const {
   const BandwidthScan scan(problem);
   if (scan.grid().empty()) return {};
-  const double white = scan.low_frequency_variance();
+  const double white = sum_over_lags(problem.noise.autocovariance);
   FourthDerivative all;
   for (const MotionPart& part : problem.parts) {
     const FourthDerivative of = fourth_derivative(part, white);

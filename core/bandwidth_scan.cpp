@@ -6,10 +6,8 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLeastSteps = 1.2;  // of the time step: a kernel narrower than that holds fewer than five points
-constexpr double kRatio = 1.1;       // from one bandwidth of the grid to the next
-constexpr double kMostPart = 0.2;    // of the longest part, that a bandwidth may be
-constexpr double kTrim = 0.1;        // of each part at each end
+constexpr double kMostPart = 0.2;  // of the longest part, that a bandwidth may be
+constexpr double kTrim = 0.1;      // of each part at each end
 constexpr std::size_t kEnough = 400;
 
 }  // namespace
@@ -22,7 +20,8 @@ BandwidthScan::BandwidthScan(const BandwidthProblem& problem) : problem_(problem
     longest = std::max(longest, part.t_s.back() - part.t_s.front());
     points += part.t_s.size();
   }
-  for (double h = kLeastSteps * problem.step_s; h > 0.0 && h <= kMostPart * longest; h *= kRatio) grid_.push_back(h);
+  for (double h = kLeastBandwidthSteps * problem.step_s; h > 0.0 && h <= kMostPart * longest; h *= kBandwidthRatio)
+    grid_.push_back(h);
   const std::size_t stride = points / kEnough + 1;
   for (std::size_t p = 0; p < problem.parts.size(); ++p) {
     const std::size_t n = problem.parts[p].t_s.size();
@@ -38,13 +37,6 @@ std::vector<LocalPolynomial> BandwidthScan::smoothers(double bandwidth_s, Kernel
   options.bandwidth_s = bandwidth_s;
   for (const MotionPart& part : problem_.parts) made.emplace_back(part.t_s, options);
   return made;
-}
-
-double BandwidthScan::low_frequency_variance() const {
-  const std::vector<double>& gamma = problem_.noise.autocovariance;
-  double sum = 0.0;
-  for (std::size_t lag = 0; lag < gamma.size(); ++lag) sum += (lag == 0 ? 1.0 : 2.0) * gamma[lag];
-  return sum;
 }
 
 std::optional<std::size_t> least(const std::vector<double>& criterion) {

@@ -11,6 +11,9 @@
 
 namespace glidelab::core {
 
+inline constexpr double kLeastBandwidthSteps = 1.2;  ///< time steps; a narrower kernel holds fewer than five points
+inline constexpr double kBandwidthRatio = 1.1;       ///< from one bandwidth that is tried to the next
+
 /// A point of a part, by its index there.
 struct Probe {
   std::size_t part = 0;
@@ -21,7 +24,7 @@ class BandwidthScan {
  public:
   explicit BandwidthScan(const BandwidthProblem& problem);
 
-  /// From 1.2 time steps to a fifth of the longest part, each 1.1 times the one before.
+  /// From kLeastBandwidthSteps time steps to a fifth of the longest part.
   const std::vector<double>& grid() const { return grid_; }
   /// At most some 400 in all parts, evenly; a tenth of each part at both ends is left out, where kernels are not
   /// complete and their variance would rule the criterion.
@@ -33,9 +36,6 @@ class BandwidthScan {
 
   double time(const Probe& probe) const { return problem_.parts[probe.part].t_s[probe.point]; }
   double position(const Probe& probe) const { return problem_.parts[probe.part].x_m[probe.point]; }
-
-  /// The sum of the autocovariance over all lags: what white noise would have to be to act alike on a wide kernel.
-  double low_frequency_variance() const;
 
  private:
   const BandwidthProblem& problem_;

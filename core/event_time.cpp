@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/noise.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -114,9 +116,7 @@ std::optional<EventTime> estimate_event(std::span<const double> t_s, std::span<c
   if (last > 1e-4) return {};
   const bool right_signs = kind == EventKind::stops ? p[2] != 0.0 : p[2] * p[4] > 0.0;
   if (!right_signs) return {};
-  double variance = 0.0;
-  for (std::size_t lag = 0; lag < autocovariance.size(); ++lag)
-    variance += (lag == 0 ? 1.0 : 2.0) * autocovariance[lag];
+  const double variance = sum_over_lags(autocovariance);
   const Matrix6 inverse = normal.ldlt().solve(Matrix6::Identity());
   EventTime event;
   event.t_s = near_s + window_s * p[1];

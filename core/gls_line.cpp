@@ -12,6 +12,7 @@
 #include "core/gls_nodes.h"
 #include "core/jackknife.h"
 #include "core/line_fit.h"
+#include "core/line_sums.h"
 
 namespace glidelab::core {
 namespace {
@@ -203,24 +204,18 @@ void set_shared_parts(const Fit& fit, const Motion& motion, const GlsInput& inpu
 
 /// Squared correlation of v and a, and the range of v, over the nodes.
 void describe_points(const std::vector<LineNodes>& pieces, LineFit& line) {
-  double n = 0.0, v = 0.0, a = 0.0, vv = 0.0, va = 0.0, aa = 0.0;
+  PairCorrelation correlation;
   line.from_v_m_s = std::numeric_limits<double>::infinity();
   line.to_v_m_s = -line.from_v_m_s;
   for (const LineNodes& nodes : pieces) {
     line.points += nodes.piece().count;
-    for (int j = 0; j < nodes.count(); ++j) {  // Welford's update
-      n += 1.0;
-      const double dv = nodes.v()[j] - v, da = nodes.a()[j] - a;
-      v += dv / n;
-      a += da / n;
-      vv += dv * (nodes.v()[j] - v);
-      va += dv * (nodes.a()[j] - a);
-      aa += da * (nodes.a()[j] - a);
+    for (int j = 0; j < nodes.count(); ++j) {
+      correlation.add(nodes.v()[j], nodes.a()[j]);
       line.from_v_m_s = std::min(line.from_v_m_s, nodes.v()[j]);
       line.to_v_m_s = std::max(line.to_v_m_s, nodes.v()[j]);
     }
   }
-  line.r2 = vv > 0.0 && aa > 0.0 ? va * va / (vv * aa) : 0.0;
+  line.r2 = correlation.squared();
 }
 
 }  // namespace

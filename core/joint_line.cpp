@@ -9,6 +9,7 @@
 #include "core/estimate.h"
 #include "core/law_bias.h"
 #include "core/line_fit.h"
+#include "core/line_sums.h"
 
 namespace glidelab::core {
 namespace {
@@ -70,19 +71,11 @@ double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joi
 }
 
 double squared_correlation(const std::vector<Part>& parts) {
-  double n = 0.0, mean_v = 0.0, mean_a = 0.0, vv = 0.0, va = 0.0, aa = 0.0;
+  PairCorrelation correlation;
   for (const Part& part : parts) {
-    for (std::size_t i = 0; i < part.v.size(); ++i) {  // Welford's update: no cancellation
-      n += 1.0;
-      const double dv = part.v[i] - mean_v, da = part.a[i] - mean_a;
-      mean_v += dv / n;
-      mean_a += da / n;
-      vv += dv * (part.v[i] - mean_v);
-      va += dv * (part.a[i] - mean_a);
-      aa += da * (part.a[i] - mean_a);
-    }
+    for (std::size_t i = 0; i < part.v.size(); ++i) correlation.add(part.v[i], part.a[i]);
   }
-  return vv > 0.0 && aa > 0.0 ? va * va / (vv * aa) : 0.0;
+  return correlation.squared();
 }
 
 /// Least squares through the points of all parts; ordinary: every point with the same weight. The parts' noise is

@@ -9,6 +9,7 @@
 
 #include "core/estimate.h"
 #include "core/jackknife.h"
+#include "core/line_sums.h"
 #include "core/quantile.h"
 
 namespace glidelab::core {
@@ -45,18 +46,9 @@ LineShift shift_by(const LineInput& input, const Eigen::Matrix2d& inverse, const
 }
 
 double squared_correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  double mean_x = 0.0, mean_y = 0.0;
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    mean_x += x[j] / static_cast<double>(x.size());
-    mean_y += y[j] / static_cast<double>(x.size());
-  }
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    xx += (x[j] - mean_x) * (x[j] - mean_x);
-    xy += (x[j] - mean_x) * (y[j] - mean_y);
-    yy += (y[j] - mean_y) * (y[j] - mean_y);
-  }
-  return xx > 0.0 && yy > 0.0 ? xy * xy / (xx * yy) : 0.0;
+  PairCorrelation correlation;
+  for (std::size_t j = 0; j < x.size(); ++j) correlation.add(x[j], y[j]);
+  return correlation.squared();
 }
 
 /// L Sigma L' for the rows L_k, L_a0 over all positions.

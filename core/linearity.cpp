@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/line_sums.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -39,24 +41,17 @@ Measured linearity_error(const Evidence& evidence, const FlatFieldFolder& folder
     levels.push_back({*folder.flats[i].exposure_s, mean_dn, scatter(flat)});
   }
   Measured result;
-  double w = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  LineSums line;
   for (const ExposedLevel& level : levels) {
-    const double weight = 1.0 / (level.mean_dn * level.mean_dn);
-    w += weight;
-    x += weight * level.exposure_s;
-    y += weight * level.mean_dn;
-    xx += weight * level.exposure_s * level.exposure_s;
-    xy += weight * level.exposure_s * level.mean_dn;
+    line.add(1.0 / (level.mean_dn * level.mean_dn), level.exposure_s, level.mean_dn);
   }
-  const double determinant = w * xx - x * x;
-  if (levels.size() < 3 || !(determinant > 1e-9 * w * xx)) {
+  if (levels.size() < 3 || !line.is_regular(1e-9)) {
     result.why =
         "it needs three or more levels, 5 to 95 % of saturation, made by different exposures to one light "
         "(exposures_s)";
     return result;
   }
-  const double slope = (w * xy - x * y) / determinant;
-  const double intercept = (xx * y - x * xy) / determinant;
+  const double slope = line.slope(), intercept = line.intercept();
   const auto count = static_cast<double>(levels.size());
   double sum = 0.0;
   double variance = 0.0;

@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t kFewestResiduals = 20;
 constexpr std::size_t kFewestForCorrelation = 60;
-constexpr double kCompleteKernel = 3.0;  // bandwidths from an end at which the variance of a is within 20 % of inside
 
 double autocorrelation(const std::vector<double>& filter, std::size_t lag) {
   double sum = 0.0;
@@ -148,8 +147,14 @@ double pilot_noise(std::span<const double> t_s, std::span<const double> x_m) {
   return std::max(sd, rounding_step(x_m) / std::sqrt(12.0));
 }
 
+double sum_over_lags(const std::vector<double>& autocovariance) {
+  double sum = 0.0;
+  for (std::size_t lag = 0; lag < autocovariance.size(); ++lag) sum += (lag == 0 ? 1.0 : 2.0) * autocovariance[lag];
+  return sum;
+}
+
 PositionNoise estimate_noise(const std::vector<NoisePiece>& pieces, double at_least_m) {
-  PositionNoise noise{at_least_m, {at_least_m * at_least_m}, 0};
+  PositionNoise noise{at_least_m, {at_least_m * at_least_m}};
   std::size_t points = 0;
   std::vector<double> steps;
   for (const NoisePiece& piece : pieces) {
@@ -163,7 +168,6 @@ PositionNoise estimate_noise(const std::vector<NoisePiece>& pieces, double at_le
   const auto lags = static_cast<std::size_t>(
       std::clamp(std::ceil(3.0 * bandwidth / step), 4.0, std::max(4.0, static_cast<double>(points) / 10.0)));
   const Residuals residuals = residuals_of(pieces, lags);
-  noise.residuals = residuals.count;
   if (residuals.count < kFewestResiduals) return noise;
   std::vector<double> passed(std::max(filter.size(), lags + 1), 0.0);
   for (std::size_t lag = 0; lag < filter.size(); ++lag) passed[lag] = autocorrelation(filter, lag);

@@ -23,8 +23,14 @@ double rounding_step(std::span<const double> x_m);
 struct PositionNoise {
   double sd_m = 0.0;
   std::vector<double> autocovariance;  ///< at lags of 0, 1, … points; a single number where the noise is white
-  std::size_t residuals = 0;           ///< that it rests on
 };
+
+/// The sum of the autocovariance over all lags, of both signs: what white noise would have to be to act alike on
+/// everything that is wide beside the correlation.
+double sum_over_lags(const std::vector<double>& autocovariance);
+
+/// Bandwidths from an end of the points at which a kernel is complete: the variance of a is within 20 % of inside.
+inline constexpr double kCompleteKernel = 3.0;
 
 /// One part of the motion with its smoother, over the same times.
 struct NoisePiece {

@@ -4,29 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/line_sums.h"
+
 namespace glidelab::core {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-/// Sums of a weighted straight line.
-struct LineSums {
-  double w = 0.0;
-  double x = 0.0;
-  double y = 0.0;
-  double xx = 0.0;
-  double xy = 0.0;
-  void add(double weight, double at, double value) {
-    w += weight;
-    x += weight * at;
-    y += weight * value;
-    xx += weight * at * at;
-    xy += weight * at * value;
-  }
-  double determinant() const { return w * xx - x * x; }
-  double slope() const { return (w * xy - x * y) / determinant(); }
-  double intercept() const { return (xx * y - x * xy) / determinant(); }
-};
 
 bool is_out(std::size_t cell, std::optional<std::size_t> without_tile) {
   return without_tile && cell / 4 == *without_tile;
@@ -59,8 +42,7 @@ void dark_level(const Evidence& evidence, std::optional<std::size_t> without_til
   for (std::size_t d = 0; d < evidence.darks.size(); ++d) {
     if (evidence.exposure_s[d]) sums.add(1.0, *evidence.exposure_s[d], mean_of(evidence.darks[d], without_tile));
   }
-  // Relative to sum xx, rounding alone leaves about 1e-16 where all exposures are the same.
-  if (evidence.darks.size() > 1 && sums.determinant() > 1e-9 * sums.w * sums.xx) {
+  if (evidence.darks.size() > 1 && sums.is_regular(1e-9)) {
     numbers.dark_slope_dn_s = sums.slope();
     numbers.offset_dn = sums.intercept();
   } else {

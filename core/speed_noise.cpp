@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/line_sums.h"
+
 namespace glidelab::core {
 namespace {
 
-constexpr double kCompleteKernel = 3.0;  // bandwidths from an end beyond which residuals are taken
 constexpr std::size_t kFewest = 40;
 constexpr int kPasses = 4;
 constexpr double kLeastShare = 0.1;  // of the mean variance that is left at any speed: a line has no floor of its own
@@ -19,21 +20,15 @@ struct Line {
 Line fit(const std::vector<double>& z, const std::vector<double>& y, double mean) {
   Line line{mean, 0.0, 0.0};
   for (int pass = 0; pass < kPasses; ++pass) {
-    double w = 0.0, wz = 0.0, wy = 0.0, wzz = 0.0, wzy = 0.0;
+    LineSums sums;
     for (std::size_t i = 0; i < z.size(); ++i) {
       const double expected = std::max(line.a + line.b * z[i], kLeastShare * mean);
-      const double weight = 1.0 / (2.0 * expected * expected);
-      w += weight;
-      wz += weight * z[i];
-      wy += weight * y[i];
-      wzz += weight * z[i] * z[i];
-      wzy += weight * z[i] * y[i];
+      sums.add(1.0 / (2.0 * expected * expected), z[i], y[i]);
     }
-    const double determinant = w * wzz - wz * wz;
-    if (!(determinant > 1e-12 * w * wzz)) return {mean, 0.0, 0.0};
-    line.b = (w * wzy - wz * wy) / determinant;
-    line.a = (wy - line.b * wz) / w;
-    line.sd_b = std::sqrt(w / determinant);
+    if (!sums.is_regular(1e-12)) return {mean, 0.0, 0.0};
+    line.b = sums.slope();
+    line.a = (sums.y - line.b * sums.x) / sums.w;
+    line.sd_b = std::sqrt(sums.w / sums.determinant());
   }
   return line;
 }
