@@ -15,10 +15,6 @@
 
 namespace glidelab::core {
 
-/// Coefficients of var a = c s^2 dt / h^5 and of bias a = c h^2 x'''' (see above): 3 / (8 sqrt(pi)) and 1/2.
-inline constexpr double kAccelerationVariance = 0.21157109383040862;
-inline constexpr double kAccelerationBias = 0.5;
-
 /// The smoother of one set of times, which rise strictly; bandwidth above 0 (asserted).
 class LocalCubic : public LocalPolynomial {
  public:

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "catch.h"
+#include "core/kernel_constants.h"
 
 using namespace glidelab::core;
 
@@ -138,8 +139,8 @@ TEST_CASE("the variance of x, v and a for white noise is that of the closed form
   const double root_pi = std::sqrt(std::numbers::pi);
   CHECK(noise_variance(weights->x, white) == Approx(4.0 * 27.0 / (32.0 * root_pi) * dt / h).epsilon(1e-4));
   CHECK(noise_variance(weights->v, white) == Approx(4.0 * 55.0 / (64.0 * root_pi) * dt / std::pow(h, 3)).epsilon(1e-4));
-  CHECK(noise_variance(weights->a, white) == Approx(4.0 * kAccelerationVariance * dt / std::pow(h, 5)).epsilon(1e-4));
-  CHECK(kAccelerationVariance == Approx(3.0 / (8.0 * root_pi)).epsilon(1e-14));
+  CHECK(noise_variance(weights->a, white) == Approx(4.0 * kGaussianA.variance * dt / std::pow(h, 5)).epsilon(1e-4));
+  CHECK(kGaussianA.variance == Approx(3.0 / (8.0 * root_pi)).epsilon(1e-14));
 }
 
 TEST_CASE("the bias of x, v and a is that of the closed form where the next derivative is constant") {
@@ -149,7 +150,7 @@ TEST_CASE("the bias of x, v and a is that of the closed form where the next deri
   const auto quintic = sampled(t, [](double time) { return std::pow(time, 5) / 120.0; });
   const LocalCubic cubic(t, h);
   // At t = 0 all derivatives but the one are zero; the cut at 6 h takes some 1e-5 of the kernel's moments.
-  CHECK(cubic.smooth(quartic)[150]->a_m_s2 == Approx(kAccelerationBias * h * h).epsilon(1e-4));
+  CHECK(cubic.smooth(quartic)[150]->a_m_s2 == Approx(kGaussianA.bias * h * h).epsilon(1e-4));
   CHECK(cubic.smooth(quartic)[150]->x_m == Approx(-std::pow(h, 4) / 8.0).epsilon(1e-4));
   CHECK(cubic.smooth(quintic)[150]->v_m_s == Approx(-std::pow(h, 4) / 8.0).epsilon(1e-4));
 }
