@@ -33,13 +33,13 @@ class EmpiricalBias : public BandwidthRule {
   std::optional<BandwidthPick> choose(const BandwidthProblem& problem) const override;
 };
 
+inline constexpr double kIciWidth = 1.25;
 /// Intersection of confidence intervals (Goldenshluger and Nemirovski 1997; Katkovnik 1999): at each point the widest h
 /// for which all a(t; h') ± kIciWidth sd(h'), h' <= h, have a value in common. Local: h varies along the motion. Theory
 /// gives the width's order, not its value: with bias ~ h^2 and sd ~ h^-2.5 (their ratio at the best h is
 /// sqrt(5)/2) the intervals, their noise apart, part at the best h for a width of 0.17, and at 1.6 times it for 1.25;
 /// but narrow ones part by chance long before. 1.25 was chosen on a glider that slows down
 /// (tests/core/test_bandwidth_rule.cpp), and serves other motions there.
-inline constexpr double kIciWidth = 1.25;
 class IntersectionOfIntervals : public BandwidthRule {
  public:
   std::optional<BandwidthPick> choose(const BandwidthProblem& problem) const override;

@@ -1,14 +1,15 @@
-/// Rules that choose the bandwidth of the local cubic from data, by name.
+/// Rules that choose the bandwidth of the local cubic from data, by name: what each makes least, and its source.
 ///
-/// | name | least of | source | assumes |
-/// |---|---|---|---|
-/// | `cv` | error of each position predicted by the others | Stone 1974 | white noise |
-/// | `gcv` | n RSS / (n - tr S)^2 | Craven and Wahba 1979 | white noise |
-/// | `cv-correlated` | RSS of a kernel with K(0) = 0, then a factor | De Brabanter et al. 2011 (JMLR 12) | correlation
-/// short beside h | | `rsc` | local residual variance · (1 + 4 V) | Fan and Gijbels 1995 | white noise | | `plug-in` |
-/// h^9 = 1.058 s^2 dt / mean(x''''^2) | Ruppert, Sheather, Wand 1995 | x'''' from a global fit of order 6 | | `ebbs` |
-/// variance + bias^2 of a, the bias from how a changes with h | Ruppert 1997 | bias of a goes as h^2 | | `ici` | at
-/// every point: the widest whose confidence intervals all meet | Goldenshluger, Nemirovski 1997 | known noise |
+///  - `cv`: error of each position predicted by the others. Stone 1974. Assumes white noise.
+///  - `gcv`: n RSS / (n - tr S)^2. Craven and Wahba 1979. Assumes white noise.
+///  - `cv-correlated`: RSS of a kernel with K(0) = 0, then a factor. De Brabanter et al. 2011 (JMLR 12). Assumes a
+///    correlation that is short beside h.
+///  - `rsc`: local residual variance (1 + 4 V). Fan and Gijbels 1995. Assumes white noise.
+///  - `plug-in`: h^9 = 1.058 s^2 dt / mean(x''''^2). Ruppert, Sheather, Wand 1995. Takes x'''' from a global fit of
+///    order 6.
+///  - `ebbs`: variance + bias^2 of a, the bias from how a changes with h. Ruppert 1997. Assumes that it goes as h^2.
+///  - `ici`: at every point the widest h whose confidence intervals all meet. Goldenshluger, Nemirovski 1997. Assumes
+///    known noise.
 ///
 /// `cv`, `gcv`, `cv-correlated` and `rsc` look at x; their h is converted to that for a by the constants of
 /// kernel_constants.h (`cv`: times 0.867, `rsc`: times 0.829), which holds where x'''' varies little over the kernel.

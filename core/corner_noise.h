@@ -9,9 +9,9 @@
 ///
 /// Both sizes follow from two moments of the residuals r = M e left by fitting the views' poses (M takes out what a
 /// pose can): the sum of squares, and the sum of products of neighbours along rows and columns. The correlated part
-/// counts where the products exceed those of white noise by two standard deviations, and never below kLeastCorrelated:
-/// on painted, sharp boards 0.0016 px of smooth error was seen to remain where they lie along the pixels' rows, and
-/// less than 0.0005 px elsewhere.
+/// counts where the products exceed those of white noise by two standard deviations, and never below
+/// kLeastCorrelatedPx: on painted, sharp boards 0.0016 px of smooth error was seen to remain where they lie along the
+/// pixels' rows, and less than 0.0005 px elsewhere.
 #pragma once
 
 #include <Eigen/Core>

@@ -3,8 +3,8 @@
 /// Coulomb friction makes a jump where v = 0: at a reversal from a_minus to a_plus, at a stop to zero. x and v are
 /// continuous, so about the event t*, with u = t - t*,
 ///
-///     x = x* + a_minus u^2/2 + j_minus u^3/6   (u < 0),      x = x* + a_plus u^2/2 + j_plus u^3/6   (u > 0; 0 at a
-///     stop)
+///     u < 0:  x = x* + a_minus u^2/2 + j_minus u^3/6
+///     u > 0:  x = x* + a_plus u^2/2 + j_plus u^3/6       (at a stop both are 0)
 ///
 /// is fitted by least squares to the points within a window on both sides. It is linear but for t*, which is found by
 /// Gauss and Newton's method from the given start. Both sides' a come out as well: one-sided, with v(t*) = 0 built in.

@@ -1,6 +1,6 @@
 /// The experiment folder as plain data: what a person with a track, a glider and a camera has on disk.
 ///
-/// The form of experiment.toml is a contract with other programs (README, "The experiment folder"). Angles are
+/// The form of experiment.toml is a contract with other programs (experiment_template.h explains its keys). Angles are
 /// converted to radians where the file is read; every length is in metres, every time in seconds.
 #pragma once
 

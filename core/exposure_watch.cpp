@@ -3,9 +3,9 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kPixelStep = 4;
-constexpr std::size_t kFrameStep = 5;
-constexpr double kBright = 0.999;
+constexpr int kPixelStep = 4;          // rows, and columns, from one pixel looked at to the next
+constexpr std::size_t kFrameStep = 5;  // frames
+constexpr double kBright = 0.999;      // share of the pixels that are darker
 
 }  // namespace
 

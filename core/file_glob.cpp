@@ -24,7 +24,6 @@ std::vector<fs::path> files_matching(const fs::path& folder, std::string_view pa
       for (fs::directory_iterator entry(place, ignored), end; entry != end; entry.increment(ignored)) {
         const fs::path name = entry->path().filename();
         if (::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0) deeper.push_back(place / name);
-        if (ignored) break;
       }
     }
     found = std::move(deeper);

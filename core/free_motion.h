@@ -9,8 +9,7 @@
 ///    point is not free where its a is off that line by more than a quarter of the line's own size AND by more than the
 ///    noise and the common scatter of the points allow (five standard deviations). Before the first free stretch that
 ///    is the hand, later a stop. What deviates less is left in: it is physics, not handling.
-///  - A stretch of duration T determines its acceleration with a standard deviation that goes with T^(-5/2). One that
-///  is
+///  - A stretch of duration T determines its acceleration with a standard deviation that goes with T^(-5/2). What is
 ///    four times worse than the longest of its direction (T below 0.57 of it) is left out: least squares gives all
 ///    points one weight, so its points would add noise and no information.
 ///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. A

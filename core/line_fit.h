@@ -60,8 +60,8 @@ struct LineInput {
 
 enum class Misfit { widens, ignored };
 
-/// Nothing where there are fewer than kFewestLinePoints points or all v are one.
 inline constexpr std::size_t kFewestLinePoints = 5;
+/// Nothing where there are fewer than kFewestLinePoints points or all v are one.
 std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
                                 double scale_sd_relative, Misfit misfit = Misfit::widens);
 

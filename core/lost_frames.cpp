@@ -18,7 +18,7 @@ constexpr std::size_t kBefore = 4, kBehind = 4;  // positions that a cubic goes 
 constexpr std::size_t kFewestBehind = 2;         // where another loss follows soon
 constexpr std::size_t kFewest = 6;               // of both
 constexpr int kMostPoints = kBefore + 1 + kBehind;
-constexpr double kEvidence = 50.0;
+constexpr double kEvidence = 50.0;      // variances by which a loss lessens the sum of squares
 constexpr double kExplained = 4.0;      // standard deviations of the noise that residuals may have
 constexpr double kOfWay = 0.1;          // of a frame's way that they may be: a law that changes at a reversal
 constexpr double kOfFrame = 1.0 / 7.0;  // that the jump may be from a whole number of frames
@@ -26,7 +26,7 @@ constexpr double kMarkerMissing = 2.0;  // frames without a marker that a window
 constexpr double kUniform = 0.1;        // of the step
 constexpr double kUnit = 1.0 / static_cast<double>(kBefore);  // of a step: keeps the design's columns alike
 constexpr int kTurnRounds = 4;                                // to the place of a turn
-constexpr Eigen::Index kFewestAtTurn = 7;
+constexpr Eigen::Index kFewestAtTurn = 7;                     // points
 
 bool is_uniform(const std::vector<double>& t_s, double step_s) {
   for (std::size_t i = 1; i < t_s.size(); ++i) {

@@ -8,11 +8,11 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kNeighbours = 10;
+constexpr std::size_t kNeighbours = 10;  // on both sides
 constexpr int kAllowedAmongNeighbours = 2;
-constexpr std::size_t kOneSide = 5;
-constexpr double kThreshold = 6.0;
-constexpr double kAgreement = 3.0;  // standard deviations
+constexpr std::size_t kOneSide = 5;  // neighbours
+constexpr double kThreshold = 6.0;   // standard deviations
+constexpr double kAgreement = 3.0;   // standard deviations
 
 struct Prediction {
   double off = 0.0;        // of the point from the neighbours' cubic

@@ -10,15 +10,15 @@ namespace glidelab::core {
 /// The sign of v, and the rest, of every point come from this.
 struct Pilot {
   double bandwidth_s = 0.0;
-  std::vector<double> x_m;     ///< as measured where it is not smoothed
-  std::vector<double> v_m_s;   ///< of x
-  std::vector<double> a_m_s2;  ///< of y: without the known force
-  std::vector<double> sd_v_m_s;
-  std::vector<double> sd_a_m_s2;  ///< infinite where the kernel holds too few points; v and a are zero there
-  double top_speed_m_s = 0.0;     ///< 95 % quantile of |v|
+  std::vector<double> x_m;       ///< as measured where it is not smoothed
+  std::vector<double> v_m_s;     ///< of x
+  std::vector<double> a_m_s2;    ///< of y: without the known force
+  std::vector<double> sd_v_m_s;  ///< both infinite where the kernel holds too few points; v and a are zero there
+  std::vector<double> sd_a_m_s2;
+  double top_speed_m_s = 0.0;  ///< 95 % quantile of |v|
 };
 
-inline constexpr double kStillShare = 0.005;
+inline constexpr double kStillShare = 0.005;  ///< of the top speed
 
 /// |v| below this is no motion: five standard deviations of v, or 0.5 % of the top speed.
 double still_below(const Pilot& pilot, std::size_t point);

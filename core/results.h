@@ -225,12 +225,12 @@ struct CalibrationResult {
   std::string experiment;
   double rms_px = 0.0;
   std::vector<double> camera_matrix;  ///< 9 numbers, row by row
-  std::vector<double> distortion;     ///< k1, k2, p1, p2, k3
-  std::vector<double> sd;             ///< of fx, fy, cx, cy, k1, k2, p1, p2, k3; 0 for a term that is fixed
+  std::vector<double> distortion;     ///< k1, k2, p1, p2, k3; a fisheye's k1 to k4
+  std::vector<double> sd;             ///< of fx, fy, cx, cy, then `distortion`; 0 for a term that is fixed
   std::string model;                  ///< which terms the views support, and why
   double restitution_rms_m = 0.0;     ///< of the plane views' corners, restituted, against the pattern
   double plane_rms_px = 0.0;          ///< the same in the picture, one coordinate
-  double plane_expected_px = 0.0;     ///< what the corners' noise and the camera's own uncertainty explain of it
+  double plane_expected_px = 0.0;     ///< what the corners' noise explains of it
   std::size_t views_used = 0;
   CornerMap rests;                 ///< what the camera's fit leaves of the corners, over the picture
   std::vector<std::string> notes;  ///< views without a visible pattern, …

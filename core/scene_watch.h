@@ -24,9 +24,10 @@
 
 namespace glidelab::core {
 
-inline constexpr int kPatchSide = 24;           ///< px
-inline constexpr double kPatchNoise = 0.1;      ///< codes: rounding, blurred
-inline constexpr double kPatchSofter = 0.2873;  ///< noise of a pixel after the blur: sum of its weights' squares
+inline constexpr int kPatchSide = 24;       ///< px
+inline constexpr double kPatchNoise = 0.1;  ///< codes: rounding, blurred
+inline constexpr double kPatchSofter =
+    0.2873;  ///< noise of a pixel after the blur: sum of one direction's squared weights
 
 class SceneWatch {
  public:

@@ -96,12 +96,11 @@ LeastSquaresFit<kParameters> fit_from(const std::vector<ThreadRow>& rows, const 
 }
 
 /// The best of several starts: width and blur make two valleys where the thread is sharp.
-std::optional<LeastSquaresFit<kParameters>> fit_best(const std::vector<ThreadRow>& rows, const Setting& setting,
-                                                     double shift, double turn) {
+std::optional<LeastSquaresFit<kParameters>> fit_best(const std::vector<ThreadRow>& rows, const Setting& setting) {
   std::optional<LeastSquaresFit<kParameters>> best;
   for (const double blur : {0.12, 0.4, 1.0}) {
     Vector start;
-    start << shift, turn, std::log(setting.width_px), std::log(blur);
+    start << 0.0, 0.0, std::log(setting.width_px), std::log(blur);
     const auto found = fit_from(rows, setting, start);
     if (found.stop != FitStop::converged && found.stop != FitStop::iterations) continue;
     if (!(found.rms > 0.0) || (best && best->rms <= found.rms)) continue;
@@ -143,7 +142,7 @@ std::optional<ThreadFit> fit_thread(const std::vector<ThreadRow>& all, double sl
     double lever2 = 0.0;
     for (const ThreadRow& row : rows) lever2 += std::pow(row.row - setting.mean_row, 2);
     setting.lever = std::sqrt(std::max(lever2 / static_cast<double>(rows.size()), 1e-12));
-    found = fit_best(rows, setting, 0.0, 0.0);
+    found = fit_best(rows, setting);
     if (!found) return std::nullopt;
     setting.noise2 = found->rms * found->rms;
     if (pass == 1) break;

@@ -6,8 +6,7 @@
 /// from the force at v -> 0, F0:
 ///   * F0 against the direction: it does, and v = 0 is a root. The variable is w = v.
 ///   * F0 along the direction: it does not; no root. w = v.
-///   * F0 = 0 (a level track without Coulomb friction): only where some force falls no faster than |v|^p with p < 1;
-///   then
+///   * F0 = 0 (a level track without Coulomb friction): only where a force falls no faster than |v|^p, p < 1. Then
 ///     w = |v|^(1-p), which goes through 0 at a finite rate. Else |v| falls for ever, and w = ln |v| keeps it accurate
 ///     and its sign sure, so that rounding never makes a false root.
 /// Where w = v, a term with an infinite slope at rest is a straight line between 0 and `least_speed_m_s`, a little
