@@ -1,9 +1,10 @@
 /// Renders what stands still, once for each set-up, by ray casting in a fragment shader.
 ///
-/// A pixel is the mean of the radiance over its square: 64 rays through the exact inverse of the lens where anything
-/// changes within the pixel or its neighbours, 4 where all is even (found by a first pass). The 64 are a Hammersley
-/// set, so that an edge along rows or columns has 64 levels too; the chessboard is moreover filtered over each ray's
-/// own share of the pixel, so that its edges are exact to about 1e-3 of their contrast.
+/// A pixel is the mean of the radiance over its square, by rays through the exact inverse of the lens: 4 where all is
+/// even (found by a first pass), and where it changes within the pixel or its neighbours 16, or 64 at edges. They are
+/// the first points of the Sobol sequence, so that an edge along rows or columns has 64 levels too; the chessboard is
+/// moreover filtered over each ray's own share of the pixel, so that its edges are exact to about 1e-3 of their
+/// contrast.
 #pragma once
 
 #include <functional>
