@@ -9,8 +9,7 @@ namespace glidelab::render {
 namespace {
 
 PhiloxCounter words_of(std::size_t slot, std::uint64_t seed, std::uint32_t stream) {
-  return philox({static_cast<std::uint32_t>(slot), 0, stream, 3},
-                {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)});
+  return philox({static_cast<std::uint32_t>(slot), 0, stream, 3}, philox_key(seed));
 }
 
 }  // namespace
@@ -21,10 +20,7 @@ FrameClock::FrameClock(const ClockSetup& setup, double frame_rate_hz, std::uint6
 double FrameClock::jitter_s(std::size_t slot) const {
   if (slot == 0 || setup_.jitter_s == 0.0) return 0.0;
   const PhiloxCounter words = words_of(slot, seed_, stream_);
-  float z0 = 0.0f;
-  float z1 = 0.0f;
-  normal_pair(words[0], words[1], z0, z1);
-  return setup_.jitter_s * static_cast<double>(z0);
+  return setup_.jitter_s * static_cast<double>(normal_pair(words[0], words[1]).z0);
 }
 
 double FrameClock::between_s(std::size_t from, std::size_t to) const {
@@ -40,7 +36,7 @@ double FrameClock::stamp_s(std::size_t slot) const {
 FrameFate FrameClock::fate(std::size_t slot) const {
   const double out_of_order = setup_.dropped_fraction + setup_.duplicated_fraction;
   if (slot == 0 || out_of_order == 0.0) return FrameFate::recorded;
-  const double u = (words_of(slot, seed_, stream_)[2] + 0.5) / 4294967296.0;
+  const double u = uniform_of(words_of(slot, seed_, stream_)[2]);
   return u < setup_.dropped_fraction ? FrameFate::dropped
          : u < out_of_order          ? FrameFate::duplicated
                                      : FrameFate::recorded;

@@ -44,12 +44,16 @@ inline PolarPair polar_pair(std::uint32_t word0, std::uint32_t word1) {
   return {square, sine_of_turns(0.25f - away), std::copysign(sine_of_turns(folded), turns)};
 }
 
+struct NormalPair {
+  float z0;
+  float z1;
+};
+
 /// Two normal deviates of two words (Box and Muller).
-inline void normal_pair(std::uint32_t word0, std::uint32_t word1, float& z0, float& z1) {
+inline NormalPair normal_pair(std::uint32_t word0, std::uint32_t word1) {
   const PolarPair pair = polar_pair(word0, word1);
   const float radius = std::sqrt(pair.square);
-  z0 = radius * pair.cosine;
-  z1 = radius * pair.sine;
+  return {radius * pair.cosine, radius * pair.sine};
 }
 
 }  // namespace glidelab::render

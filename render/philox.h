@@ -32,4 +32,13 @@ constexpr PhiloxCounter philox(PhiloxCounter counter, PhiloxKey key) {
   return counter;
 }
 
+constexpr PhiloxKey philox_key(std::uint64_t seed) {
+  return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)};
+}
+
+/// A uniform number of a word, in steps of 2^-32, above 0 and below 1.
+constexpr double uniform_of(std::uint32_t word) {
+  return (word + 0.5) / 4294967296.0;
+}
+
 }  // namespace glidelab::render

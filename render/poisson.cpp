@@ -2,17 +2,9 @@
 
 #include <cmath>
 
+#include "render/philox.h"
+
 namespace glidelab::render {
-namespace {
-
-constexpr double kWord = 1.0 / 4294967296.0;  // 2^-32
-
-double uniform(std::uint32_t word) {
-  return (word + 0.5) * kWord;
-}
-
-}  // namespace
-
 PoissonTable::PoissonTable(int largest_mean) {
   for (int mean = 0; mean < largest_mean; ++mean) {
     Distribution distribution;
@@ -20,8 +12,8 @@ PoissonTable::PoissonTable(int largest_mean) {
     for (int k = 0;; ++k) {
       sum += mean == 0 ? (k == 0 ? 1.0 : 0.0) : std::exp(k * std::log(mean) - mean - std::lgamma(k + 1.0));
       distribution.below.push_back(sum);
-      // The rest is below the resolution of a word; the last entry takes it.
-      if (k > mean && sum > 1.0 - 0.25 * kWord) break;
+      // The rest is below a quarter of a word's resolution; the last entry takes it.
+      if (k > mean && sum > 1.0 - 0.5 * uniform_of(0)) break;
       if (k > mean + 20.0 * std::sqrt(mean + 1.0) + 20.0) break;
     }
     distribution.below.back() = 1.0;
@@ -37,12 +29,12 @@ PoissonTable::PoissonTable(int largest_mean) {
 int PoissonTable::draw(double mean, std::uint32_t whole_word, std::uint32_t rest_word) const {
   const int whole = static_cast<int>(mean);
   const Distribution& distribution = whole_.at(static_cast<std::size_t>(whole));
-  const double u = uniform(whole_word);
+  const double u = uniform_of(whole_word);
   int count = distribution.guide[whole_word >> 24];
   while (distribution.below[static_cast<std::size_t>(count)] < u) ++count;
   const double rest = mean - whole;
   double term = std::exp(-rest);
-  double v = uniform(rest_word) - term;
+  double v = uniform_of(rest_word) - term;
   for (int k = 1; v > 0.0 && k < 40; ++k) {  // beyond 40 the probability is below 1e-47
     term *= rest / k;
     v -= term;

@@ -87,11 +87,9 @@ const PoissonTable& poisson_table() {
 
 /// The exact path for one pixel.
 int exact_code(const Sensor& sensor, double mean_e, double own_e, std::uint32_t pixel, const NoiseKey& key,
-               const PhiloxKey& philox_key) {
-  const PhiloxCounter words = philox({pixel, key.frame, key.stream, 1}, philox_key);
-  float z_read = 0.0f;
-  float z_shot = 0.0f;
-  normal_pair(words[2], words[3], z_read, z_shot);
+               const PhiloxKey& words_key) {
+  const PhiloxCounter words = philox({pixel, key.frame, key.stream, 1}, words_key);
+  const auto [z_read, z_shot] = normal_pair(words[2], words[3]);
   double electrons = 0.0;
   if (mean_e < static_cast<double>(kNormalMean)) {
     electrons = poisson_table().draw(mean_e, words[0], words[1]);
@@ -137,8 +135,7 @@ class RowReader {
         key_(key),
         simd_(simd),
         pattern_(pattern),
-        noise_{
-            key.frame, key.stream, {static_cast<std::uint32_t>(key.seed), static_cast<std::uint32_t>(key.seed >> 32)}},
+        noise_{key.frame, key.stream, philox_key(key.seed)},
         groups_in_row_((expected_e.width + kGroup - 1) / kGroup),
         words_(static_cast<std::size_t>(groups_in_row_) * kGroup) {
     const double well = sensor.full_well_e;
