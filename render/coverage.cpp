@@ -1,5 +1,9 @@
 #include "render/coverage.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <stdexcept>
 
 namespace glidelab::render {

@@ -10,6 +10,7 @@ namespace glidelab::render {
 namespace {
 
 // The glider, as figure 5 of the paper shows it: a body of 13 cm with magnets at its ends and weights on top.
+// Metres and kilograms.
 constexpr double kGliderLength = 0.130;
 constexpr double kGliderTop = 0.018;      // above the marker's centre
 constexpr double kGliderBottom = -0.034;  // below it: the skirt hides the upper edge of the track
@@ -196,7 +197,7 @@ std::optional<PixelRect> plumb_region(const Scenario& scenario) {
   const Camera& camera = scenario.camera;
   const PlumbLine line = plumb_line(*scenario.plumb, camera);
   const TrackFrame frame = track_frame(scenario.track, scenario.motion.configurations.front().body.incline_rad);
-  constexpr double kClearOfTrack = 0.05;
+  constexpr double kClearOfTrack = 0.05;  // m
   const double low_y = line.x_m * std::tan(frame.turn_rad) + kClearOfTrack;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
   Eigen::Vector2d high = Eigen::Vector2d::Constant(-1e9);

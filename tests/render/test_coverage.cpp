@@ -1,5 +1,6 @@
 #include "render/coverage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -20,6 +21,16 @@ double by_points(const std::vector<PixelLine>& lines) {
     inside += in_all ? 1 : 0;
   }
   return inside / 160'000.0;
+}
+
+/// The part of the pixel on the inner side of one line, in closed form.
+double half_plane_coverage(const PixelLine& line) {
+  const double a = std::max(std::abs(line.gx), std::abs(line.gy));
+  const double b = std::min(std::abs(line.gx), std::abs(line.gy));
+  const double t = std::abs(line.s);
+  const double corner = std::max(0.5 * (a + b) - t, 0.0);  // where the line cuts a corner off: a triangle
+  const double beyond = t <= 0.5 * (a - b) ? 0.5 - t / a : corner * corner / std::max(2.0 * a * b, 1e-300);
+  return line.s > 0.0 ? 1.0 - beyond : beyond;
 }
 
 }  // namespace
