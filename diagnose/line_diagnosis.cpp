@@ -167,7 +167,16 @@ GapSizes gap_of(const std::vector<TableLine>& lines, double g, const LineSolutio
       mean += line.a0_m_s2;
       count += 1.0;
     }
-    const double degrees = std::asin(std::clamp(mean / count / g, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    const double intercept = mean / count;
+    if (!(std::abs(intercept) <= g)) {
+      gap.parameters.push_back({"alpha_deg", "stated", fmt::format("{} deg", incline)});
+      notes.push_back(
+          fmt::format("Lines stated at {} degrees have a mean intercept of {:.3g} m/s², more than gravity ({:.6g} "
+                      "m/s²): no inclination has it.",
+                      incline, intercept, g));
+      continue;
+    }
+    const double degrees = std::asin(intercept / g) * 180.0 / std::numbers::pi;
     const double z = (degrees - incline) / kReadAngle;
     gap.parameters.push_back({"alpha_deg", "stated", fmt::format("{} deg", incline), z, z});
     notes.push_back(fmt::format(

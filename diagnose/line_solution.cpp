@@ -12,8 +12,10 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kLeastLeft = 1e-6;    // of lines without any scatter: log of K/m, and m/s²
-constexpr double kSettled = 1e-9;      // relative change of a scatter from turn to turn
+constexpr double kLeastLeft = 1e-6;                     // of lines without any scatter: log of K/m, and m/s²
+constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
+constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
+constexpr int kMostTurns = 50;
 constexpr double kLeastUnseen = 0.05;  // part of a line that its own prediction must not see
 
 std::string impossible(const LineTerm& term, double size) {
@@ -79,11 +81,11 @@ LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& term
   }
   y << data.log_k, data.a0;
   LineSolution s;
-  s.sd_k = 0.02;
-  s.sd_a = 0.01;
+  s.sd_k = kFirstSd_k;
+  s.sd_a = kFirstSd_a;
   Eigen::VectorXd weight(2 * n), off, fit;
   Eigen::MatrixXd inverse;
-  for (int turn = 0; turn < 50; ++turn) {
+  for (int turn = 0; turn < kMostTurns; ++turn) {
     weight << Eigen::VectorXd::Constant(n, 1.0 / s.sd_k), Eigen::VectorXd::Constant(n, 1.0 / s.sd_a);
     const Eigen::MatrixXd wx = weight.asDiagonal() * x;
     Eigen::MatrixXd normal = base::transposed_product(wx, wx);

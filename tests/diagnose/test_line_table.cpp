@@ -255,3 +255,22 @@ TEST_CASE("the paper's twelve lines: a friction force or the smoothing's bias, a
   CHECK(diagnosis.unknown > 0.2);
   CHECK(diagnosis.summary.find("even the best") != std::string::npos);
 }
+
+TEST_CASE("published lines that are steeper than gravity state no inclination, and a note says why") {
+  std::vector<diagnose::TableLine> lines = tests::lines_with({}, 3);
+  for (diagnose::TableLine& line : lines) {
+    if (line.incline_deg > 0.0) line.a0_m_s2 += 12.0;
+  }
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose_lines(lines, tests::kLineGravity);
+  REQUIRE(diagnosis.gap);
+  std::size_t level = 0, steep = 0;
+  for (const diagnose::GapOfParameter& of : diagnosis.gap->parameters) {
+    if (of.group == "0 deg") level += of.z_before.has_value();
+    if (of.group == "4 deg") steep += !of.z_before && !of.z_after;
+  }
+  CHECK(level == 1);
+  CHECK(steep == 1);
+  CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const std::string& note) {
+    return note.find("12.7 m/s², more than gravity") != std::string::npos;
+  }));
+}
