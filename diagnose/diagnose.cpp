@@ -29,6 +29,10 @@ namespace {
 constexpr std::size_t kFewestPositions = 40;  // all clips together: fewer carry no verdict beside four parameters
 constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
 constexpr double kContradiction = 5.0;        // standard deviations between two statements
+constexpr double kAtStart_s = 0.2;            // a motion that begins later is not the launch
+constexpr std::size_t kFirstPoints = 8;       // that show which way it begins,
+constexpr double kOtherWay = 10.0;            // by so many standard deviations of a position
+constexpr double kMisfit = 1.5;               // chi² a point from which on the motion counts as not explained
 
 std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
   std::vector<std::size_t> effects;
@@ -107,11 +111,11 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
     const bool stated_way = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
-    if (!stated_way || motion.t_s.front() > 0.2) continue;
-    const std::size_t some = std::min<std::size_t>(8, motion.x_m.size() - 1);
+    if (!stated_way || motion.t_s.front() > kAtStart_s) continue;
+    const std::size_t some = std::min<std::size_t>(kFirstPoints, motion.x_m.size() - 1);
     const double way = motion.x_m[some] - motion.x_m.front();
     const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;
-    if (way * stated < -10.0 * motion.sd_m) {
+    if (way * stated < -kOtherWay * motion.sd_m) {
       set.notes.push_back(fmt::format("Clip {} is stated as launched {}, and begins the other way.", setup.name,
                                       stated < 0.0 ? "up" : "down"));
     }
@@ -190,10 +194,13 @@ double misfit(const TrackSet& set, const Comparison& comparison) {
 
 /// What the analysis made of the same clips.
 void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion>& measured) {
+  std::vector<std::string> names;
+  for (const core::ClipResult& clip : results.clips) names.push_back(clip.name);
+  names = twin_clip_names(names);
   for (MeasuredMotion& one : measured) {
-    for (const core::ClipResult& clip : results.clips) {
-      if (twin_clip_name(clip.name) != one.clip) continue;
-      for (const core::MotionPoint& point : clip.motion) {
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      if (names[c] != one.clip) continue;
+      for (const core::MotionPoint& point : results.clips[c].motion) {
         if (!point.smoothed || point.left_out != core::LeftOut::used) continue;
         one.v_m_s.push_back(point.v_m_s);
         one.a_m_s2.push_back(point.a_m_s2);
@@ -223,7 +230,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     return [&progress, from, to](double part) { progress("weighing explanations", from + part * (to - from)); };
   };
   Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.1, 0.5));
-  if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > 1.5)) {
+  if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > kMisfit)) {
     // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
     TrackSet trimmed = track_set(results, setups, false);
     std::size_t points = 0;

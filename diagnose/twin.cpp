@@ -92,7 +92,8 @@ std::string head(const Twin& twin, const std::vector<std::string>& assumed, cons
 }
 
 std::string configuration(const TrackSet& set, const MotionFit& fit, const Place& place,
-                          const std::vector<std::size_t>& motions, double from_m, double readout_s) {
+                          const std::vector<std::size_t>& motions, const std::vector<std::string>& names, double from_m,
+                          double readout_s) {
   const TrackGroup& group = set.groups[place.group];
   const TrackModel model = model_of(set, *fit.layout, fit.at, motions.front());
   std::string text = fmt::format(
@@ -100,7 +101,7 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
       "{:.9g}\n"
       "group = \"{}\"\n",
       place.group + 1, place.mass + 1, model.mass_kg, model.alpha_rad * kDegrees, group.stated_rad * kDegrees,
-      twin_clip_name(group.name));
+      twin_name(group.name));
   for (const InclineStatement& statement : group.statements) {
     if (statement.against == "stated")
       text += fmt::format("stated_incline_sd_deg = {:.9g}\n", statement.sd_rad * kDegrees);
@@ -113,7 +114,7 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
     text += fmt::format(
         "[[configuration.clip]]\nname = \"{}\"\nlaunched = \"{}\"\nx0_m = {:.12g}\nv0_m_s = {:.12g}\nduration_s = "
         "{:.9g}\n",
-        twin_clip_name(set.clips[motion.clip].name),
+        names[motion.clip],
         own[1] < 0.0   ? "up"
         : own[1] > 0.0 ? "down"
                        : "released",
@@ -122,12 +123,49 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
   return text;
 }
 
+std::vector<std::string> clip_names_of(const TrackSet& set) {
+  std::vector<std::string> names;
+  for (const TrackedClip& clip : set.clips) names.push_back(clip.name);
+  return twin_clip_names(names);
+}
+
+/// What of the data the twin's file has otherwise, besides its camera: a scenario has one frame rate, and a clip one
+/// motion.
+std::vector<std::string> assumed_of_clips(const TrackSet& set, const Twin& twin, double rate_hz) {
+  std::vector<std::string> assumed;
+  const bool rates = std::any_of(set.motions.begin(), set.motions.end(), [&](const TrackedMotion& motion) {
+    return set.clips[motion.clip].frame_rate_hz != rate_hz;
+  });
+  if (rates) assumed.push_back(fmt::format("{:.6g} frames a second, the first clip's, for all clips", rate_hz));
+  for (const auto& [clip, start_s] : twin.clips) {
+    const auto motions = std::count_if(set.motions.begin(), set.motions.end(),
+                                       [of = clip](const TrackedMotion& motion) { return motion.clip == of; });
+    if (motions > 1) {
+      assumed.push_back(
+          fmt::format("of clip {} its first stretch of motion alone, of {}", clip_names_of(set)[clip], motions));
+    }
+  }
+  return assumed;
+}
+
 }  // namespace
 
-std::string twin_clip_name(const std::string& name) {
+std::string twin_name(const std::string& name) {
   std::string plain;
   for (const char c : name) plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' ? c : '-';
   return plain.empty() ? "clip" : plain;
+}
+
+std::vector<std::string> twin_clip_names(const std::vector<std::string>& names) {
+  std::vector<std::string> twins;
+  for (const std::string& name : names) {
+    const std::string plain = twin_name(name);
+    std::string own = plain;
+    for (int k = 2; std::find(twins.begin(), twins.end(), own) != twins.end(); ++k)
+      own = fmt::format("{}-{}", plain, k);
+    twins.push_back(std::move(own));
+  }
+  return twins;
 }
 
 Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
@@ -154,13 +192,16 @@ Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<Diagno
   twin.lacks = lacks_of_forces(set, first, effects, nameless);
   twin.lacks.insert(twin.lacks.end(), seen.lacks.begin(), seen.lacks.end());
 
-  twin.toml = head(twin, view.assumed, seen.notes);
+  std::vector<std::string> assumed = assumed_of_clips(set, twin, rate_hz);
+  assumed.insert(assumed.end(), view.assumed.begin(), view.assumed.end());
+  twin.toml = head(twin, assumed, seen.notes);
   twin.toml += fmt::format(
       "format = 1\nname = \"twin\"\ngravity_m_s2 = {:.9g}\n\n[camera]\nframe_rate_hz = {:.9g}\nexposure_s = {:.9g}\n",
       set.gravity_m_s2, rate_hz, seen.exposure_s);
   twin.toml += camera_keys(filming, view) + seen.sections + scene_sections(filming, view);
+  const std::vector<std::string> names = clip_names_of(set);
   for (const auto& [place, motions] : places) {
-    twin.toml += configuration(set, fit, place, motions, twin.from_m, seen.readout_s);
+    twin.toml += configuration(set, fit, place, motions, names, twin.from_m, seen.readout_s);
   }
   return twin;
 }

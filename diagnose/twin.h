@@ -34,7 +34,10 @@ struct Twin {
 Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
              const std::optional<Filming>& filming);
 
-/// As a clip is called in the twin's file: what is no letter, digit, "-" or "_" is "-".
-std::string twin_clip_name(const std::string& name);
+/// As a clip or a group is called in the twin's file: what is no letter, digit, "-" or "_" is "-".
+std::string twin_name(const std::string& name);
+
+/// Of all clips, in order: a name that comes out as one before has a number behind it, "---" and "----2".
+std::vector<std::string> twin_clip_names(const std::vector<std::string>& names);
 
 }  // namespace glidelab::diagnose

@@ -98,12 +98,12 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
   return parameters;
 }
 
-/// Parameters that a hypothesis adds to the nominal model.
+/// Parameters that a hypothesis adds to the nominal model: those that a fit of it has, and those of what no fit shows.
 std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, const Hypothesis& hypothesis) {
-  std::size_t count = 0;
+  const ParameterLayout with(set, hypothesis.effects), nominal(set, {});
+  std::size_t count = with.globals().size() - nominal.globals().size() + with.own().size() * set.motions.size();
   for (const std::size_t e : hypothesis.effects) {
     const EffectInfo& info = effect_list()[e];
-    for (const EffectParameter& parameter : info.parameters) count += parameter.own ? set.motions.size() : 1;
     if (info.search == Search::frames) count += 1 + comparison.missing.count;
     if (info.search == Search::pictures) ++count;
     if (info.search == Search::noise) count += info.id == "heavy_tailed_noise" ? 2 : 1;
@@ -177,12 +177,15 @@ std::vector<NamedExplanation> named_explanations(const Comparison& comparison) {
 
 /// Of the clips that the twin repeats, from their first motion's start on.
 std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
+  std::vector<std::string> names;
+  for (const TrackedClip& clip : set.clips) names.push_back(clip.name);
+  names = twin_clip_names(names);
   std::vector<MeasuredMotion> measured;
   for (const auto& [clip, start_s] : twin.clips) {
     const auto motion = std::find_if(set.motions.begin(), set.motions.end(),
                                      [&, at = clip](const TrackedMotion& one) { return one.clip == at; });
     MeasuredMotion& one = measured.emplace_back();
-    one.clip = twin_clip_name(set.clips[clip].name);
+    one.clip = names[clip];
     one.start_s = start_s;
     one.noise_m = motion->sd_m;
     one.bandwidth_s = set.clips[clip].bandwidth_s;

@@ -129,6 +129,21 @@ TEST_CASE("a nominal experiment has nothing missing, and its gap is at the floor
   }
 }
 
+TEST_CASE("the parameters that an explanation is said to add are those that its fit has") {
+  const auto made = tests::made_experiment(tests::made_launches(), {}, 5);
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  const auto added = [&](const std::string& id) -> std::size_t {
+    const auto ranked =
+        std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const auto& one) { return one.id == id; });
+    return ranked == diagnosis.ranking.end() ? 0 : ranked->parameters;
+  };
+  // Tracks tell nothing of a camera that turns: its sway has a size and a frequency, and a phase in each of 8 motions.
+  CHECK(added("camera_motion") == 2 + 8);
+  CHECK(added("base_vibration") == 2 + 8);
+  CHECK(added("stribeck") == 2);
+  CHECK(added("timestamp_jitter") == 1);
+}
+
 TEST_CASE("a force that nobody listed is unknown, and the place where it acts is named") {
   // A rough patch: extra friction between 0.10 and 0.22 m.
   const tests::MadeEffect patch = {[](double m, double x, double v, double) {

@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "base/staged_output.h"
 #include "catch.h"
@@ -49,6 +52,34 @@ TEST_CASE("a twin moves as the data do, to their noise") {
   CHECK(std::sqrt(square) < 1.12 * noise);
 }
 
+TEST_CASE("a twin says that it has one frame rate, and one stretch of a clip, where the data have more") {
+  auto made = tests::made_experiment(tests::made_launches(), kDrag, 11);
+  const std::string whole = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2}).twin;
+  CHECK(whole.find("stretch") == std::string::npos);
+  CHECK(whole.find("# Assumed: 100 frames") == std::string::npos);
+  for (std::size_t k = 60; k < 90; ++k) {  // nobody saw the marker for 0.3 s
+    core::MotionPoint& point = made.results.clips[0].motion[k];
+    point.measured_m.reset();
+    point.left_out = core::LeftOut::no_marker;
+  }
+  made.results.clips[1].frame_rate_hz = 100.001;
+  const std::string twin = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2}).twin;
+  CHECK(twin.find("# Assumed: of clip clip0 its first stretch of motion alone, of 2.\n") != std::string::npos);
+  CHECK(twin.find("# Assumed: 100 frames a second, the first clip's, for all clips.\n") != std::string::npos);
+}
+
+TEST_CASE("clips whose names have no letter that a scenario takes are still clips of their own in a twin") {
+  auto made = tests::made_experiment(tests::made_launches(), kDrag, 11);
+  const std::vector<std::string> names = {"上", "下", "上下", "---", "a b", "a-b", "a-b-2", "c"};
+  for (std::size_t c = 0; c < names.size(); ++c) made.setups[c].name = made.results.clips[c].name = names[c];
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  const auto twins = validate::twin_motions(diagnosis, 1);  // reads the twin's scenario
+  std::set<std::string> clips;
+  for (const auto& motion : twins) clips.insert(motion.clip);
+  CHECK(clips == std::set<std::string>{"---", "----2", "------", "----3", "a-b", "a-b-2", "a-b-2-2", "c"});
+  for (const auto& motion : twins) CHECK(motion.v_m_s.size() > 20);  // each with the speeds of its own clip
+}
+
 TEST_CASE("a twin says which effect a scenario cannot express") {
   const tests::MadeEffect bow = {[](double m, double x, double, double) { return m * 9.8 * 0.01 * x; }, {}};
   const auto made = tests::made_experiment(tests::made_launches(), bow, 7);
@@ -82,7 +113,7 @@ TEST_CASE("each force that a scenario has moves the twin as the fit's own model 
     for (std::size_t i = 0; i < set.motions.size(); ++i) {
       const diagnose::TrackedMotion& motion = set.motions[i];
       const auto at = std::find_if(tracks.setups.begin(), tracks.setups.end(), [&](const auto& setup) {
-        return setup.name == diagnose::twin_clip_name(set.clips[motion.clip].name);
+        return setup.name == diagnose::twin_name(set.clips[motion.clip].name);
       });
       REQUIRE(at != tracks.setups.end());
       const auto& x_m = tracks.tracks[static_cast<std::size_t>(at - tracks.setups.begin())].x_m;
