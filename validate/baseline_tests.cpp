@@ -17,6 +17,14 @@ using boost::math::cdf;
 using boost::math::complement;
 using boost::math::quantile;
 
+bool same(const ErrorRecord& a, const ErrorRecord& b) {
+  return a.configuration == b.configuration && a.estimator == b.estimator && a.quantity == b.quantity;
+}
+
+std::string name_of(const ErrorRecord& record) {
+  return fmt::format("{} {} {}", record.configuration, record.estimator, record.quantity);
+}
+
 /// One-sided p that the mean now is no larger, by Welch's t test. Each side: mean, standard deviation, number.
 struct Side {
   double mean, sd, count;
@@ -60,17 +68,24 @@ BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) 
   if (then.noise_m != now.noise_m) {
     reject("noise_m", fmt::format("{}", now.noise_m), fmt::format("{} as in the baseline", then.noise_m));
   }
+  for (const ErrorRecord& after : now.records) {
+    if (std::any_of(then.records.begin(), then.records.end(), [&](const auto& of) { return same(of, after); }))
+      continue;
+    reject(name_of(after).c_str(), "nothing in the baseline", "a quantity of both");
+  }
+  for (const SmoothingRecord& after : now.smoothing) {
+    const auto same_clip = [&](const SmoothingRecord& of) { return of.clip == after.clip; };
+    if (std::any_of(then.smoothing.begin(), then.smoothing.end(), same_clip)) continue;
+    reject(after.clip.c_str(), "nothing in the baseline", "a clip of both");
+  }
   BaselineComparison comparison;
   constexpr std::size_t kTestsEach = 4, kTestsOfClip = 2;
   comparison.tests = kTestsEach * then.records.size() + kTestsOfClip * then.smoothing.size();
   const double level = comparison.significance / static_cast<double>(comparison.tests);
   for (const ErrorRecord& before : then.records) {
-    const auto found = std::find_if(now.records.begin(), now.records.end(), [&](const ErrorRecord& record) {
-      return record.configuration == before.configuration && record.estimator == before.estimator &&
-             record.quantity == before.quantity;
-    });
-    const std::string name = fmt::format("{} {} {}", before.configuration, before.estimator, before.quantity);
-    if (found == now.records.end()) reject(name.c_str(), "nothing now", "a quantity of both");
+    const auto found = std::find_if(now.records.begin(), now.records.end(),
+                                    [&](const ErrorRecord& record) { return same(record, before); });
+    if (found == now.records.end()) reject(name_of(before).c_str(), "nothing now", "a quantity of both");
     const auto judge = [&](const char* what, double p, double value_then, double value_now) {
       if (p < level) {
         comparison.worse.push_back(

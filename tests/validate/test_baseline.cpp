@@ -189,3 +189,17 @@ TEST_CASE("A baseline of another scenario, noise or form is refused") {
     CHECK_THROWS_AS(validate::read_baseline(dir / "b.json"), base::InputError);
   }
 }
+
+TEST_CASE("A quantity or a clip that only one of two baselines has is refused by its name, whichever it is") {
+  const Baseline whole = then();
+  Baseline fewer = whole, without_clip = whole;
+  fewer.records.erase(fewer.records.begin());
+  without_clip.smoothing.clear();
+  const validate::ErrorRecord& gone = whole.records.front();
+  const std::string name = gone.configuration + " " + gone.estimator + " " + gone.quantity;
+  CHECK_THROWS_WITH(validate::compare_baselines(whole, fewer), Catch::Matchers::Contains(name + ": found nothing now"));
+  CHECK_THROWS_WITH(validate::compare_baselines(fewer, whole),
+                    Catch::Matchers::Contains(name + ": found nothing in the baseline"));
+  CHECK_THROWS_WITH(validate::compare_baselines(without_clip, whole),
+                    Catch::Matchers::Contains(whole.smoothing.front().clip + ": found nothing in the baseline"));
+}
