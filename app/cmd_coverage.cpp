@@ -8,7 +8,6 @@
 #include <memory>
 #include <set>
 
-#include "app/analysis_files.h"
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/interrupt.h"

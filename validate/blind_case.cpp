@@ -10,6 +10,7 @@
 
 #include "base/errors.h"
 #include "base/staged_output.h"
+#include "validate/blind_choice.h"
 #include "validate/blind_effects.h"
 #include "validate/blind_strength.h"
 
@@ -24,10 +25,6 @@ constexpr int kMostDraws = 400;
 
 BlindCause cause_of(const BlindEffect& effect, double size, double gain) {
   return {effect.id, size, effect.truth ? effect.truth(size) : std::map<std::string, double>{}, effect.variable, gain};
-}
-
-std::string one_of(const std::vector<std::string>& ids, BlindRandom& random) {
-  return ids[std::min(ids.size() - 1, static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(ids.size()))))];
 }
 
 /// Draws effects for a design; false where they cannot be seen in it.

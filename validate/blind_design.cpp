@@ -7,16 +7,13 @@
 #include <limits>
 #include <numbers>
 
+#include "validate/blind_choice.h"
+
 namespace glidelab::validate {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
 constexpr std::size_t kMostFrames = 260;  // of a clip
-
-template <typename T, std::size_t N>
-T one_of(BlindRandom& random, const T (&values)[N]) {
-  return values[std::min(N - 1, static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(N))))];
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "base/staged_output.h"
+#include "validate/blind_choice.h"
 #include "validate/blind_retouch.h"
 #include "validate/blind_scene_effects.h"
 
@@ -19,10 +20,6 @@ constexpr double kNone = 0.25, kSingle = 0.82;
 constexpr double kLeastGain = 8.0, kMostGain = 1500.0;
 constexpr int kMostScenes = 400;
 constexpr std::uint32_t kFilmed = 0x66696c6d;  // so that filmed cases are no tracks' cases of the same seed
-
-const std::string& one_of(const std::vector<std::string>& ids, BlindRandom& random) {
-  return ids[std::min(ids.size() - 1, static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(ids.size()))))];
-}
 
 bool outside(const std::string& id) {
   const auto& ids = filmed_outside_effects();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "validate/blind_seen_effects.h"
+
 namespace glidelab::validate {
 namespace {
 
@@ -51,7 +53,7 @@ BlindEffect cogging(const BlindDesign&, BlindRandom& random) {
 
 /// Two rails whose joint is not straight: the slope steps.
 BlindEffect rail_joint(const BlindDesign& design, BlindRandom& random) {
-  const double at = uniform(random, -0.15, 0.35), sign = uniform(random, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
+  const double at = uniform(random, -0.15, 0.35), sign = either_sign(random);
   const double g = design.gravity_m_s2;
   return force_effect("x_m", 0.05, [=](double size) -> BlindChange {
     return [=](double x, double, double, BlindTerms& f) {
@@ -173,7 +175,7 @@ BlindEffect sagging_tripod(const BlindDesign& design, BlindRandom& random) {
 
 /// A camera's clock that slows down while it warms: times stretch with the square of the time in the clip.
 BlindEffect drifting_clock(const BlindDesign&, BlindRandom& random) {
-  const double sign = uniform(random, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
+  const double sign = either_sign(random);
   BlindEffect effect;
   effect.largest = 0.08;
   effect.variable = "t_s";

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/marker_bound.h"
+#include "validate/blind_choice.h"
 
 namespace glidelab::validate {
 namespace {
@@ -15,11 +16,6 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMarker_m = 0.02, kReflectance = 1.1, kWhite = 0.75, kWall = 0.38;
 constexpr double kReach_m = 0.46;  // from the reference point: the marker is in the picture
 constexpr std::size_t kFewestFrames = 40, kMostFrames = 150;
-
-template <typename T, std::size_t N>
-T one_of(BlindRandom& random, const T (&values)[N]) {
-  return values[std::min(N - 1, static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(N))))];
-}
 
 BlindCamera draw_camera(BlindRandom& random, bool lossless) {
   BlindCamera camera;

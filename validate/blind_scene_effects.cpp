@@ -11,6 +11,7 @@
 
 #include "validate/blind_effects.h"
 #include "validate/blind_picture_effects.h"
+#include "validate/blind_strength.h"
 
 namespace glidelab::validate {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "validate/blind_case.h"
 #include "validate/blind_scene.h"
-#include "validate/blind_strength.h"
 
 namespace glidelab::validate {
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/errors.h"
+#include "validate/least_sd_of.h"
 
 namespace glidelab::validate {
 namespace {
@@ -59,10 +60,7 @@ std::vector<QuantityComparison> with_bounds(std::vector<QuantityComparison> quan
       return candidate.configuration == compared.configuration;
     });
     if (bound == bounds.end()) continue;
-    compared.cramer_rao_sd = compared.quantity == "k_over_m_1_s" ? bound->k_over_m_1_s
-                             : compared.quantity == "mu"         ? bound->mu
-                             : compared.quantity == "alpha_deg"  ? bound->alpha_deg
-                                                                 : bound->v_lim_m_s;
+    compared.cramer_rao_sd = least_sd_of(*bound, compared.quantity);
     if (!compared.cramer_rao_sd || !compared.noise_sd || !(*compared.noise_sd > 0.0)) continue;
     compared.efficiency = std::pow(*compared.cramer_rao_sd / *compared.noise_sd, 2);
   }

@@ -18,8 +18,7 @@
 #include "diagnose/trajectory_results.h"
 #include "validate/binomial.h"
 #include "validate/camera_noise.h"
-#include "validate/comparison.h"
-#include "validate/cramer_rao.h"
+#include "validate/least_sd_of.h"
 #include "validate/made_tracks.h"
 #include "validate/naive_lines.h"
 
@@ -48,10 +47,6 @@ constexpr const char* kNames[] = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"
 
 std::optional<double> truth_of(const TrueConfiguration& truth, int which) {
   return which == 0 ? truth.k_over_m_1_s : which == 1 ? truth.mu : which == 2 ? truth.alpha_deg : truth.v_lim_m_s;
-}
-
-std::optional<double> bound_of(const LeastSd& least, int which) {
-  return which == 0 ? least.k_over_m_1_s : which == 1 ? least.mu : which == 2 ? least.alpha_deg : least.v_lim_m_s;
 }
 
 /// The same scenario filmed with another clock of its kind: its rate is off by a normal deviate of the standard
@@ -196,7 +191,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
         row.estimator = estimators[e];
         row.quantity = kNames[which];
         row.truth = *truth;
-        row.cramer_rao_sd = bound_of(with_clock(bounds[c], clean.truth.configurations[c]), which);
+        row.cramer_rao_sd = least_sd_of(with_clock(bounds[c], clean.truth.configurations[c]), kNames[which]);
         summarise(outcomes, (e * configurations + c) * 4 + static_cast<std::size_t>(which), options.levels, row);
         coverage.rows.push_back(std::move(row));
       }

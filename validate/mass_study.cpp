@@ -7,7 +7,6 @@
 #include <map>
 #include <tuple>
 
-#include "validate/sweep_design.h"
 #include "validate/sweep_groups.h"
 
 namespace glidelab::validate {

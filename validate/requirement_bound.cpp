@@ -6,19 +6,12 @@
 
 #include "core/quantile.h"
 #include "validate/camera_noise.h"
-#include "validate/cramer_rao.h"
+#include "validate/least_sd_of.h"
 
 namespace glidelab::validate {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-std::optional<double> bound_of(const LeastSd& least, const std::string& quantity) {
-  if (quantity == "k_over_m_1_s") return least.k_over_m_1_s;
-  if (quantity == "mu") return least.mu;
-  if (quantity == "alpha_deg") return least.alpha_deg;
-  return least.v_lim_m_s;
-}
 
 std::vector<double> noise_without(const Setting& setting, const Truth& truth, const WithoutLimit& without) {
   if (setting.given_noise_m) return std::vector<double>(truth.clips.size(), *setting.given_noise_m);
@@ -46,7 +39,7 @@ std::vector<TargetResult> bounds(const MadeTracks& made, const std::vector<doubl
   const std::vector<LeastSd> all = least_sds(made.truth, noise_m, made.gravity_m_s2);
   for (std::size_t t = 0; t < targets.size(); ++t) {
     for (const LeastSd& least : all) {
-      const std::optional<double> sd = bound_of(least, targets[t].quantity);
+      const std::optional<double> sd = least_sd_of(least, targets[t].quantity);
       if (!sd) continue;
       const double factor = targets[t].measure == Target::Measure::sd        ? 1.0
                             : targets[t].measure == Target::Measure::error95 ? core::kNormal95
