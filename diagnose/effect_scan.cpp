@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "diagnose/common_limits.h"
 #include "diagnose/effect_ranges.h"
 #include "diagnose/push_scan.h"
 #include "diagnose/wave_scan.h"
@@ -11,7 +12,6 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSeen = 4.0;         // standard deviations that the largest size must make
 constexpr double kNumerical = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
 
 std::vector<double> second_parameters(const TrackSet& set, const EffectInfo& effect) {
@@ -40,7 +40,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
     ScoreColumn column = space.of_effect(effect, shape);
     const double square = seen_square(space, column);
     const double z_most = most * std::sqrt(square);
-    if (z_most < kSeen) {
+    if (z_most < kVisible_sd) {
       logs.push_back(0.0);  // says nothing
       continue;
     }

@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "base/dense.h"
+#include "diagnose/common_limits.h"
 #include "diagnose/next_clip.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 using Global = ParameterLayout::Global;
-
-constexpr double kOpenAlpha = 0.35;  // rad: of a set-up whose inclination nobody states, as in the fit
 
 /// New data of an explanation: residuals, and its derivatives by the common parameters (own ones projected out).
 struct Rows {
@@ -89,7 +88,7 @@ Eigen::MatrixXd with_set_up(const TrackSet& set, const Eigen::MatrixXd& covarian
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) wider(i + (i >= at), j + (j >= at)) = covariance(i, j);
   }
-  const double open = 1.0 / (kOpenAlpha * kOpenAlpha);
+  const double open = 1.0 / (kOpenInclination_rad * kOpenInclination_rad);
   wider(at, at) = 1.0 / (open + (set_up.sd_rad > 0.0 ? 1.0 / (set_up.sd_rad * set_up.sd_rad) : 0.0));
   return wider;
 }

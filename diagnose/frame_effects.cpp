@@ -6,16 +6,15 @@
 #include <utility>
 
 #include "core/median.h"
+#include "diagnose/common_limits.h"
 #include "diagnose/leftover.h"
 #include "diagnose/speed_noise.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kMostScatter = 6.0;        // standard deviations
-constexpr std::size_t kFewestScatter = 50;  // points from which a scatter's shape tells anything
-constexpr double kMostAside = 0.2;
-constexpr double kBeyondDoubt = 5.0;  // log evidence
+constexpr double kMostScatter = 6.0;  // standard deviations
+constexpr double kMostAside = 0.2;    // of a motion's points
 
 }  // namespace
 

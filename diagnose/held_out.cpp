@@ -13,8 +13,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kStretches = 4;
-constexpr double kLeastKnown = 1e-4;  // of a statement's variance: below, a pull is a difference of rounding
+constexpr std::size_t kStretches = 4;  // of a single clip
+constexpr std::size_t kFewest = 8;     // points of a stretch, or to smooth
+constexpr double kLeastKnown = 1e-4;   // of a statement's variance: below, a pull is a difference of rounding
 
 /// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions.
 void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd& residual, ClipGap& clip) {
@@ -28,7 +29,7 @@ void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd
     t.push_back(data.t_s[p]);
     r.push_back(over_sd[static_cast<Eigen::Index>(p)] * data.sd_of(p));
   }
-  if (t.size() < 8) return;
+  if (t.size() < kFewest) return;
   const core::LocalCubic cubic(t, bandwidth);
   for (std::size_t p = 0; p < t.size(); p += 3) {
     if (t[p] - t.front() < 2.0 * bandwidth || t.back() - t[p] < 2.0 * bandwidth) continue;
@@ -48,16 +49,15 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
   for (const FitMotion& motion : fit.motions) motions.push_back(project(motion));
   CommonNormal all = statements_normal(fit);
   for (const ProjectedMotion& motion : motions) all.add(motion);
+  const Eigen::MatrixXd together = inverse_normal(all.matrix);
   double chi2 = 0.0, freedom = 0.0, a_sum = 0.0, a_count = 0.0;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
-    CommonNormal others = all;
     ClipGap clip{set.clips[c].name};
     for (std::size_t i = 0; i < motions.size(); ++i) {
-      if (set.motions[i].clip != c) continue;
-      others.add(motions[i], -1.0);
-      clip.freedom += motions[i].freedom;
+      if (set.motions[i].clip == c) clip.freedom += motions[i].freedom;
     }
-    if (clip.freedom <= 0.0) continue;
+    if (clip.freedom <= 0.0) continue;  // nothing of it moves
+    const CommonNormal others = without_clip(set, all, motions, c);
     const Eigen::MatrixXd covariance = inverse_normal(others.matrix);
     const Eigen::VectorXd shift = base::product(covariance, others.right);
     // u'(1 + G C G')^-1 u = u'u - (G'u)' (C^-1 + G'G)^-1 (G'u)
@@ -69,7 +69,6 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
       gu += base::transposed_product(motions[i].common, u);
       add_accelerations(set, i, u, clip);
     }
-    const Eigen::MatrixXd together = inverse_normal(all.matrix);
     const Eigen::VectorXd taken = base::product(together, gu);
     clip.chi2 -= gu.dot(taken);
     chi2 += clip.chi2;
@@ -92,10 +91,10 @@ TrackSet split_clip(const TrackSet& set) {
   split.motions.clear();
   for (const TrackedMotion& motion : set.motions) {
     const std::size_t n = motion.t_s.size();
-    for (int k = 0; k < kStretches; ++k) {
-      const std::size_t from = n * static_cast<std::size_t>(k) / 4, to = n * static_cast<std::size_t>(k + 1) / 4;
+    for (std::size_t k = 0; k < kStretches; ++k) {
+      const std::size_t from = n * k / kStretches, to = n * (k + 1) / kStretches;
       TrackedMotion part = some_points(motion, from, to);
-      if (part.t_s.size() < 8) continue;
+      if (part.t_s.size() < kFewest) continue;
       if (set.position_noise) whiten(part, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
       part.clip = split.clips.size();
       TrackedClip clip = set.clips[motion.clip];

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
 constexpr std::size_t kFitted = 9;    // effects of the short list that are fitted in full
+constexpr double kLeads = 3.0;        // log evidence from which something else is weighed beside an effect
+constexpr double kNoLossSeen = -3.0;  // log evidence of lost frames where none is found
 constexpr double kTrifle = 6.0;       // log evidence
 constexpr double kTriflePart = 0.01;  // of that of the effects
 
@@ -33,7 +35,7 @@ void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) 
   bool first = true;
   double likeliest = 0.0;
   for (const Hypothesis& named : around) {
-    if (named.log_evidence < 3.0) continue;
+    if (named.log_evidence < kLeads) continue;
     work.look();
     const ScoreSpace space(set, comparison.fits[static_cast<std::size_t>(named.fit)]);
     std::vector<UnnamedFamily> families = unnamed_families(space);
@@ -58,7 +60,7 @@ void add_frame_effects(Comparison& comparison) {
   const std::vector<Hypothesis> so_far = comparison.all;
   for (const FrameEffect& frame : comparison.frames) {
     for (const Hypothesis& other : so_far) {
-      if (other.effects.size() > 1 || (other.effects.size() == 1 && other.log_evidence < 3.0)) continue;
+      if (other.effects.size() > 1 || (other.effects.size() == 1 && other.log_evidence < kLeads)) continue;
       if (std::find(other.effects.begin(), other.effects.end(), frame.effect) != other.effects.end()) continue;
       Hypothesis with = other;
       with.effects.push_back(frame.effect);
@@ -174,7 +176,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
       found.hypothesis.log_evidence = comparison.missing.effect.log_evidence;
       add(comparison, std::move(found));
     } else {
-      comparison.all.push_back({{dropped}, false, 0.0, -3.0, 0.0, -1});
+      comparison.all.push_back({{dropped}, false, 0.0, kNoLossSeen, 0.0, -1});
     }
   }
   add_pairs(set, space, left_out, work.at(0.5), comparison);

@@ -5,15 +5,10 @@
 #include <algorithm>
 
 #include "base/number_text.h"
+#include "diagnose/verdict_words.h"
 
 namespace glidelab::diagnose {
 namespace {
-
-std::string percent(double probability) {
-  if (probability > 0.995) return "more than 99 %";
-  if (probability < 0.005) return "less than 1 %";
-  return fmt::format("{:.0f} %", 100.0 * probability);
-}
 
 std::string times(double gap) {
   return gap < 10.0 ? fmt::format("{:.1f}", gap) : fmt::format("{:.0f}", gap);

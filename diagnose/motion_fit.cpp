@@ -7,6 +7,7 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
+#include "diagnose/common_limits.h"
 #include "diagnose/fit_step.h"
 
 namespace glidelab::diagnose {
@@ -18,8 +19,7 @@ constexpr double kConverged = 1e-3;  // change of chi², small beside what evide
 // steep: a step along it ends far up a wall, from where undamped steps lead back down; it has failed where so many do
 // not.
 constexpr int kStepsBack = 4;
-constexpr int kVainWaysBack = 2;     // then there is no valley
-constexpr double kWideAlpha = 0.35;  // rad: what holds back an inclination that the data leave open
+constexpr int kVainWaysBack = 2;  // then there is no valley
 using Global = ParameterLayout::Global;
 
 bool inside(const ParameterLayout& layout, const FitPoint& at) {
@@ -43,7 +43,7 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
         for (const InclineStatement& s : set.groups[global.index].statements) {
           statements.push_back({g, s.alpha_rad, s.sd_rad, s.against, true});
         }
-        statements.push_back({g, set.groups[global.index].stated_rad, kWideAlpha, "", false});
+        statements.push_back({g, set.groups[global.index].stated_rad, kOpenInclination_rad, "", false});
         break;
       case Global::Kind::mass:
       case Global::Kind::mode:

@@ -2,9 +2,9 @@
 /// is stated.
 ///
 /// A clip begins a twentieth of the range of places inside its upper or lower end and lasts as long as the longest one
-/// so far, or until it leaves that range. Its noise is what positions have so far: of tracks sd² (1 + c v²), c from
-/// `wider` of the motions (0 where that is empty), of films as in whitening.h; half the exposure takes a quarter of
-/// what grows with the speed. SI units.
+/// so far (2000 frames at most), or until it leaves that range. Its noise is what positions have so far: of tracks sd²
+/// (1 + c v²), c from `wider` of the motions (0 where that is empty), of films as in whitening.h; half the exposure
+/// takes a quarter of what grows with the speed. SI units.
 #pragma once
 
 #include <cstddef>

@@ -116,10 +116,7 @@ HeldOutFit held_out(const TrackSet& set, const MotionFit& fit) {
     all.add(out.motions.back());
   }
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
-    CommonNormal others = all;
-    for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      if (set.motions[i].clip == c) others.add(out.motions[i], -1.0);
-    }
+    const CommonNormal others = without_clip(set, all, out.motions, c);
     out.covariance.push_back(inverse_normal(others.matrix));
     out.shift.push_back(base::product(out.covariance.back(), others.right));
   }

@@ -89,7 +89,7 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
     filmed.view = views.emplace(clip.experiment + "/" + setups[i].group, views.size()).first->second;
     filmed.record = clip.pictures;
     filmed.camera = *cameras[i];
-    double uu = 0.0, ux = 0.0, mean_u = 0.0, mean_x = 0.0, count = 0.0;
+    double xx = 0.0, ux = 0.0, mean_u = 0.0, mean_x = 0.0, count = 0.0;
     for (int pass = 0; pass < 2; ++pass) {
       for (const core::MarkerLook& look : clip.pictures->marker) {
         if (look.frame >= clip.motion.size() || !clip.motion[look.frame].measured_m) continue;
@@ -100,7 +100,7 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
           count += 1.0;
         } else {
           ux += (look.u_px - mean_u) * (x - mean_x);
-          uu += (x - mean_x) * (x - mean_x);
+          xx += (x - mean_x) * (x - mean_x);
         }
       }
       if (pass == 0) {
@@ -108,7 +108,7 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
         mean_x /= std::max(1.0, count);
       }
     }
-    if (uu > 0.0) filmed.px_per_m = std::abs(ux / uu);
+    if (xx > 0.0) filmed.px_per_m = std::abs(ux / xx);
     clips.push_back(std::move(filmed));
   }
   return clips;

@@ -11,14 +11,15 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kMemory = 0.05;  // of a ratio of variances that should be 1
+constexpr double kMemory = 0.05;      // of a ratio of variances that should be 1: what it errs by,
+constexpr double kUsualMemory = 1.1;  // and what it is where nothing is wrong
 
 }  // namespace
 
 double memory_log_evidence(const std::vector<FilmedClip>& clips) {
   double memory = 1.0;
   for (const FilmedClip& clip : clips) memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
-  return log_evidence_of((memory - 1.1) / kMemory, 1.0 / kMemory);
+  return log_evidence_of((memory - kUsualMemory) / kMemory, 1.0 / kMemory);
 }
 
 void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
@@ -55,7 +56,7 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
                               : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
                                              : std::string("What the file was compressed with is not known"),
                               steps, relative > 2.0 ? "as" : "than");
-  if (memory > 1.1)
+  if (memory > kUsualMemory)
     finding.words +=
         fmt::format(" Noise lasts over frames (changes over two frames are {:.2f} times those over one).", memory);
   evidence.findings.push_back(std::move(finding));

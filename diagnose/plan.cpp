@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "diagnose/common_limits.h"
 #include "diagnose/effect_scan.h"
 #include "diagnose/track_set.h"
 
 namespace glidelab::diagnose {
 namespace {
-
-constexpr double kSeenFrom = 4.0;  // standard deviations: what a scan calls visible
 
 struct Direction {
   ScoreColumn column;
@@ -62,7 +61,7 @@ Plan plan_of(const core::AnalysisResults& results, const std::vector<core::ClipS
     PlannedEffect planned{
         std::string(list[e].id), std::string(list[e].words), std::string(parameter.key), 0.0, false, {}};
     if (direction.square > 0.0) {
-      const double size = kSeenFrom / std::sqrt(direction.square);
+      const double size = kVisible_sd / std::sqrt(direction.square);
       planned.seen = size <= range_of(set, parameter).high;
       planned.seen_from = std::abs(size_for_reader(parameter, size));
     }

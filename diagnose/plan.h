@@ -34,7 +34,8 @@ struct Plan {
 /// Two effects are called alike from here on: the second one then explains 90 % of what the first one gains.
 inline constexpr double kAlike = 0.95;
 
-/// From motions that were analysed: planned ones (a simulation) or recorded ones. InputError as diagnose_results.
+/// From motions that were analysed: planned ones (a simulation) or recorded ones. InputError where nothing moves
+/// freely.
 Plan plan_of(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups);
 
 }  // namespace glidelab::diagnose

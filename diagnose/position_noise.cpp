@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/median.h"
+#include "diagnose/common_limits.h"
 #include "diagnose/effect_scan.h"
 #include "diagnose/noise_likelihood.h"
 #include "diagnose/score_space.h"
@@ -15,8 +16,6 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 80;  // of all motions
 constexpr double kWaveShows = 5.0;         // log evidence
-constexpr double kBeyondDoubt = 5.0;       // log evidence
-constexpr double kLeastJitter = 1e-5;      // s; a hundredth of a short exposure
 constexpr double kWorth = 1.0;             // log likelihood that one more part of the noise must gain
 
 // It also codes anew what moves and leaves what rests as it was: its errors grow with the speed as those of uneven
@@ -185,7 +184,7 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
     uneven.jitter_s = tau;
     Likelihood there = likelihood.of(uneven);
     const double jitter_s = tau * there.white_px / pilot_px;  // the pilot may hold the jitter of the mean speed
-    if (jitter_s < kLeastJitter || jitter_s > 0.5 * step_s) continue;
+    if (jitter_s < kLeastFilmedJitter_s || jitter_s > 0.5 * step_s) continue;
     of_speed.push_back({tau / unit, jitter_s, there.value - best.value, std::move(there)});
   }
   if (const OfSpeed* chosen = weigh_speed(of_speed, set.handed_on, noise)) {

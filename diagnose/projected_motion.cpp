@@ -34,6 +34,14 @@ void CommonNormal::add(const ProjectedMotion& motion, double sign) {
   right += sign * base::transposed_product(motion.common, motion.residual);
 }
 
+CommonNormal without_clip(const TrackSet& set, CommonNormal all, const std::vector<ProjectedMotion>& motions,
+                          std::size_t clip) {
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (set.motions[i].clip == clip) all.add(motions[i], -1.0);
+  }
+  return all;
+}
+
 CommonNormal statements_normal(const MotionFit& fit) {
   const auto n = fit.at.global.size();
   CommonNormal normal{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};

@@ -9,6 +9,9 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <vector>
+
 #include "base/dense.h"
 #include "diagnose/motion_fit.h"
 
@@ -38,6 +41,10 @@ struct CommonNormal {
 
   void add(const ProjectedMotion& motion, double sign = 1.0);
 };
+/// Without the motions of one clip.
+CommonNormal without_clip(const TrackSet& set, CommonNormal all, const std::vector<ProjectedMotion>& motions,
+                          std::size_t clip);
+
 /// Of what is stated alone.
 CommonNormal statements_normal(const MotionFit& fit);
 

@@ -6,19 +6,17 @@
 #include <cmath>
 
 #include "core/noise.h"
+#include "diagnose/common_limits.h"
 #include "diagnose/score_space.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastFilmedJitter = 1e-5;  // s; a hundredth of a short exposure
-constexpr std::size_t kFewestScatter = 50;   // points from which a scatter's shape tells anything
-constexpr double kBeyondDoubt = 5.0;         // log evidence
-constexpr double kMostScatter = 8.0;         // standard deviations
-constexpr int kRounds = 3;                   // the jitter is found against the noise of all speeds first
-constexpr double kOwn = 0.5;                 // motions differ by so much, in the logarithm
-constexpr double kLeastAtRest = 0.003;       // of the noise of all speeds
-constexpr double kIndependent = 0.38;        // squares of neighbouring fourth differences: 1 / (1 + 2 sum of rho²)
+constexpr double kMostScatter = 8.0;    // standard deviations
+constexpr int kRounds = 3;              // the jitter is found against the noise of all speeds first
+constexpr double kOwn = 0.5;            // motions differ by so much, in the logarithm
+constexpr double kLeastAtRest = 0.003;  // of the noise of all speeds
+constexpr double kIndependent = 0.38;   // squares of neighbouring fourth differences: 1 / (1 + 2 sum of rho²)
 
 /// Scatter of a motion's positions about their four neighbours.
 void add_neighbours(const TrackedMotion& motion, const std::vector<double>& t_s, SpeedScatter& scatter) {
@@ -115,7 +113,7 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
   // pictures from what cannot be the marker's blur, which makes its noise grow with the speed as well.
   const double unit = sd / scatter.top_m_s;
   const double least = 2.0 * std::pow(2.0 / (independent * n), 0.25) * unit;
-  const double least_s = set.pictures ? kLeastFilmedJitter : 0.0;
+  const double least_s = set.pictures ? kLeastFilmedJitter_s : 0.0;
   for (double tau = least; tau < 40.0 * scatter.widest * unit && tau < 0.5 * step; tau *= 1.3) {
     const double gain = log_likelihood(tau) - none;
     if (tau * std::sqrt(mean_square) < least_s) continue;

@@ -48,6 +48,13 @@ struct Point {
   std::vector<Eigen::Vector2d> starts;
 };
 
+/// A point, what is linear there (weighted), and its cost.
+struct Evaluated {
+  Point at;
+  std::vector<Linearised> linearised;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
 class Problem {
  public:
   /// `weights` of every position of every block; empty: 1.
@@ -56,24 +63,26 @@ class Problem {
     for (const Eigen::VectorXd& of_block : weights) roots_.push_back(of_block.cwiseSqrt());
   }
 
-  /// Infinite where the motion cannot be moved.
-  double cost(const Point& at, std::vector<Linearised>& linearised) const {
-    linearised.clear();
+  /// An infinite cost where the motion cannot be moved.
+  Evaluated evaluate(Point point) const {
+    Evaluated there{std::move(point), {}};
     double cost = 0.0;
     try {
       for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        linearised.push_back(linearise(blocks_[b], at.common, at.starts[b]));
-        if (!roots_.empty()) linearised.back().scale_rows(roots_[b]);
-        cost += linearised.back().residual.squaredNorm() / variance_of(blocks_[b]);
+        there.linearised.push_back(linearise(blocks_[b], there.at.common, there.at.starts[b]));
+        if (!roots_.empty()) there.linearised.back().scale_rows(roots_[b]);
+        cost += there.linearised.back().residual.squaredNorm() / variance_of(blocks_[b]);
       }
     } catch (const base::NumericalError&) {
-      return std::numeric_limits<double>::infinity();
+      return there;
     }
-    return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+    if (std::isfinite(cost)) there.cost = cost;
+    return there;
   }
 
   /// The step of Levenberg and Marquardt, each block's start eliminated.
-  Point step(const Point& at, const std::vector<Linearised>& linearised, double damping) const {
+  Point step(const Evaluated& from, double damping) const {
+    const std::vector<Linearised>& linearised = from.linearised;
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free_, free_);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(free_);
     Eigen::VectorXd diagonal = right;
@@ -100,7 +109,7 @@ class Problem {
     }
     normal.diagonal() += damping * diagonal;
     const Eigen::VectorXd change = base::solve_positive(normal, right);
-    Point next = at;
+    Point next = from.at;
     next.common.head(free_) += change;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       next.starts[b] += own[b] * (own_right[b] - Eigen::Vector2d(transposed_product(cross[b], change)));
@@ -131,29 +140,20 @@ Eigen::Vector2d start_of(const core::FreeBlock& block) {
   return {fit[0], v};
 }
 
-struct Found {
-  Point at;
-  std::vector<Linearised> linearised;  // weighted
-  double cost = std::numeric_limits<double>::infinity();
+struct Found : Evaluated {
   bool converged = false;
   int iterations = 0;
 };
 
 Found minimise(const Problem& problem, Point at) {
-  Found found;
-  found.at = std::move(at);
-  found.cost = problem.cost(found.at, found.linearised);
+  Found found{problem.evaluate(std::move(at))};
   double damping = 1e-4;
   while (std::isfinite(found.cost) && found.iterations < kMostIterations && !found.converged) {
     ++found.iterations;
-    const Point next = problem.step(found.at, found.linearised, damping);
-    std::vector<Linearised> linearised;
-    const double cost = problem.cost(next, linearised);
-    if (cost <= found.cost) {
-      found.converged = found.cost - cost <= kConverged * found.cost;
-      found.at = next;
-      found.linearised = std::move(linearised);
-      found.cost = cost;
+    Evaluated next = problem.evaluate(problem.step(found, damping));
+    if (next.cost <= found.cost) {
+      found.converged = found.cost - next.cost <= kConverged * found.cost;
+      static_cast<Evaluated&>(found) = std::move(next);
       damping = std::max(1e-12, 0.1 * damping);
     } else {
       damping *= 10.0;

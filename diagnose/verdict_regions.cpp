@@ -128,11 +128,8 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
         const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
                                        [&](const GapRegion& other) { return other.clip == clip.name; });
         if (named) continue;  // by what explains it better
-        region.variable = std::string("t_s");
+        region.variable = "t_s";
         region.clip = clip.name;
-        const bool known = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
-                                       [&](const GapRegion& other) { return other.clip == clip.name; });
-        if (known) continue;  // by something likelier
         region.from = 0.0;
         region.to = clip.duration_s;
       }

@@ -14,12 +14,6 @@ std::string times(double gap) {
   return gap < 10.0 ? fmt::format("{:.2f}", gap) : fmt::format("{:.0f}", gap);
 }
 
-std::string percent(double probability) {
-  if (probability > 0.995) return "more than 99 %";
-  if (probability < 0.005) return "less than 1 %";
-  return fmt::format("{:.0f} %", 100.0 * probability);
-}
-
 std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ") {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -153,6 +147,12 @@ std::string verdict_words(const Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+std::string percent(double probability) {
+  if (probability > 0.995) return "more than 99 %";
+  if (probability < 0.005) return "less than 1 %";
+  return fmt::format("{:.0f} %", 100.0 * probability);
+}
 
 std::string summary_of(const Diagnosis& diagnosis) {
   const VerdictLimits& limits = diagnosis.limits;

@@ -7,6 +7,9 @@
 
 namespace glidelab::diagnose {
 
+/// A probability for a person: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
+std::string percent(double probability);
+
 /// A paragraph for somebody who knows the experiment and no statistics.
 std::string summary_of(const Diagnosis& diagnosis);
 

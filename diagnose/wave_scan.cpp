@@ -39,12 +39,17 @@ std::vector<WavePart> wave_parts(const ScoreSpace& space, double f) {
   return parts;
 }
 
-double log_wave_evidence(const std::vector<WavePart>& parts, double least_m, double& best_size, double& best_gain) {
+struct WaveEvidence {
+  double log_evidence = 0.0;
+  double size_m = 0.0, gain = 0.0;  // at the best size
+};
+
+WaveEvidence weigh_wave(const std::vector<WavePart>& parts, double least_m) {
   constexpr int kSizes = 20, kPhases = 24;
   double square = 0.0;
   for (const WavePart& part : parts) square += 0.5 * (part.ss + part.cc);
   std::vector<double> logs;
-  best_gain = 0.0;
+  WaveEvidence found;
   std::array<double, kPhases> sine, cosine;
   for (std::size_t k = 0; k < kPhases; ++k) {
     sine[k] = std::sin(kTurn * static_cast<double>(k) / kPhases);
@@ -68,12 +73,13 @@ double log_wave_evidence(const std::vector<WavePart>& parts, double least_m, dou
       gain += most;
     }
     logs.push_back(log_likelihood);
-    if (gain > best_gain) {
-      best_gain = gain;
-      best_size = size;
+    if (gain > found.gain) {
+      found.gain = gain;
+      found.size_m = size;
     }
   }
-  return log_mean(logs);
+  found.log_evidence = log_mean(logs);
+  return found;
 }
 
 }  // namespace
@@ -89,9 +95,9 @@ Wave find_wave(const ScoreSpace& space) {
   const ParameterRange hz = range_of(set, effect_list()[effect_index("base_vibration")].parameters[1]);
   std::vector<double> logs;
   for (double f = hz.low; f < hz.high; f += 0.3 / longest) {
-    double size = 0.0, gain = 0.0;
-    logs.push_back(log_wave_evidence(wave_parts(space, f), least_m, size, gain));
-    if (gain > wave.gain) wave = {gain, 0.0, size, f};
+    const WaveEvidence at = weigh_wave(wave_parts(space, f), least_m);
+    logs.push_back(at.log_evidence);
+    if (at.gain > wave.gain) wave = {at.gain, 0.0, at.size_m, f};
   }
   if (!logs.empty()) wave.log_evidence = log_mean(logs);
   return wave;
