@@ -1,8 +1,4 @@
 /// What a person's disk, names and impatience may do to the program: nothing half-written, one clear message.
-#include <fmt/format.h>
-#include <sys/mount.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +9,7 @@
 
 #include "base/staged_output.h"
 #include "catch.h"
+#include "left_behind.h"
 #include "made_track.h"
 #include "run_process.h"
 #include "temp_dir.h"
@@ -21,19 +18,10 @@
 
 using namespace glidelab;
 namespace fs = std::filesystem;
+using tests::names_in;
+using tests::says;
 
 namespace {
-
-std::vector<std::string> names_in(const fs::path& dir) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(dir)) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-bool says(const tests::ProcessResult& result, const std::string& part) {
-  return result.err.find(part) != std::string::npos;
-}
 
 /// Permissions do not hold back root, who runs the tests in containers: nobody then runs the program.
 tests::User held_back_by_permissions() {
@@ -54,25 +42,6 @@ void open_to_all(const fs::path& folder) {
     fs::permissions(entry.path(), entry.is_directory() ? kRead | kEnter : kRead, fs::perm_options::add);
   }
 }
-
-/// A file system in memory of this size, for as long as this lives; not there where it may not be mounted.
-class SmallDisk {
- public:
-  SmallDisk(fs::path place, const char* size) : place_(std::move(place)) {
-    fs::create_directories(place_);
-    there_ = ::mount("tmpfs", place_.c_str(), "tmpfs", 0, fmt::format("size={}", size).c_str()) == 0;
-  }
-  ~SmallDisk() {
-    if (there_) ::umount2(place_.c_str(), MNT_DETACH);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  bool there() const { return there_; }
-
- private:
-  fs::path place_;
-  bool there_ = false;
-};
 
 }  // namespace
 
@@ -210,61 +179,6 @@ TEST_CASE("files that may not be read are wrong input that names them, and leave
   }
 }
 
-TEST_CASE("on a full disk a command ends with an error of the environment and takes back what it wrote") {
-  const tests::TempDir temp;
-  const SmallDisk disk(temp / "disk", "64k");
-  if (!disk.there()) {
-    WARN("skipped: no file system may be mounted");
-    return;
-  }
-  tests::write_track_experiment(temp / "made");
-  tests::write_tiny_scenario(temp / "tiny.toml");
-  struct Run {
-    const char* command;
-    const char* input;
-    std::size_t own_kib;  ///< of the disk's 64 that something of a person's takes: what is left is filled on the way
-  };
-  for (const auto& [command, input, own_kib] :
-       {Run{"analyze", "made", 60}, Run{"diagnose", "made", 60}, Run{"check", "made", 60},
-        Run{"render", "tiny.toml", 60}, Run{"simulate", "tiny.toml", 64}}) {
-    INFO(command);
-    base::write_file(temp / "disk/own", std::string(own_kib * 1024, 'x'));
-    const tests::ProcessResult result =
-        tests::glidelab({command, (temp / input).string(), "-q", "--out", (temp / "disk/out").string()});
-    INFO(result.err);
-    CHECK(result.status == 3);
-    CHECK(says(result, "No space left"));
-    CHECK(names_in(temp / "disk") == std::vector<std::string>{"own"});
-    CHECK(fs::file_size(temp / "disk/own") == own_kib * 1024);
-  }
-}
-
-TEST_CASE("a result that the standard output has no room for is an error of the environment") {
-  if (!fs::exists("/dev/full")) {
-    WARN("skipped: no /dev/full");
-    return;
-  }
-  const tests::TempDir temp;
-  tests::write_track_experiment(temp / "made");
-  const tests::ProcessResult result =
-      tests::run({"sh", "-c", "\"$0\" analyze \"$1\" -q --json --out \"$2\" > /dev/full", tests::kBinary,
-                  (temp / "made").string(), (temp / "out").string()});
-  CHECK(result.status == 3);
-  CHECK(says(result, "No space left"));
-}
-
-TEST_CASE("a file that may not grow further (a full quota) leaves no half-written folder") {
-  const tests::TempDir temp;
-  tests::write_tiny_scenario(temp / "tiny.toml");
-  // 8 blocks of 512 bytes: the first picture does not fit. SIGXFSZ is ignored, as under a quota write(2) then fails.
-  const tests::ProcessResult result =
-      tests::run({"sh", "-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" render \"$1\" -q --out \"$2\"", tests::kBinary,
-                  (temp / "tiny.toml").string(), (temp / "out").string()});
-  INFO(result.err);
-  CHECK(result.status == 3);
-  CHECK(names_in(temp.path()) == std::vector<std::string>{"tiny.toml"});
-}
-
 TEST_CASE("two analyses into one folder at the same time both succeed, and what stands is whole") {
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");
@@ -323,21 +237,6 @@ TEST_CASE("killed at random instants, analyze and diagnose leave whole files, an
     REQUIRE(tests::run(command).status == 0);
   }
   CHECK(names_in(temp.path()) == std::vector<std::string>{"analyze", "diagnose", "made"});
-}
-
-TEST_CASE("help, version, manual page and completion on a full standard output are errors of the environment") {
-  if (!fs::exists("/dev/full")) {
-    WARN("skipped: no /dev/full");
-    return;
-  }
-  for (const char* wanted :
-       {"--man", "--help", "--version", "--completion bash", "--completion zsh", "render --help", "help render"}) {
-    const tests::ProcessResult result =
-        tests::run({"sh", "-c", std::string("\"$0\" ") + wanted + " > /dev/full", tests::kBinary});
-    INFO(wanted << ": " << result.err);
-    CHECK(result.status == 3);
-    CHECK(says(result, "standard output: cannot be written: No space left"));
-  }
 }
 
 TEST_CASE("blind touches no cases that it did not make") {

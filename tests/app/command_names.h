@@ -1,0 +1,13 @@
+/// All commands, for what must hold of each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace glidelab::tests {
+
+inline const std::vector<std::string> kCommands = {"simulate", "render",  "analyze", "validate",     "coverage",
+                                                   "sweep",    "require", "laws",    "characterize", "diagnose",
+                                                   "blind",    "new",     "pattern", "check",        "explore"};
+
+}  // namespace glidelab::tests
