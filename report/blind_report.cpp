@@ -135,7 +135,7 @@ std::string methods_table(const validate::BlindScore& score) {
 std::string cases_table(const BlindRun& run) {
   HtmlTable table({"case", "truth", "gain", "verdict", "probability", "not to be told from"}, 6);
   for (const validate::BlindOutcome& outcome : run.outcomes) {
-    std::string truth = outcome.causes.empty() ? "none" : "", gain, said = outcome.verdict.verdict, p, same;
+    std::string truth = outcome.causes.empty() ? "none" : "", gain, said = escape(outcome.verdict.verdict), p, same;
     for (const auto& cause : outcome.causes) {
       truth += (truth.empty() ? "" : " + ") + escape(cause.id);
       gain += (gain.empty() ? "" : ", ") + number_text(cause.gain, 2);

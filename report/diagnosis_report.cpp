@@ -91,7 +91,7 @@ std::string parameter_table(const diagnose::GapSizes& gap) {
   HtmlTable table({"parameter", "of", "against", "alone", "together", "standard deviations off, before", "after"}, 3);
   for (const auto& p : gap.parameters) {
     const std::string symbol = p.quantity == "k_n_s_m" ? "K" : symbol_of(p.quantity);
-    table.row({symbol, escape(p.group), escape(p.against), quantity_text(p.alone), quantity_text(p.together),
+    table.row({escape(symbol), escape(p.group), escape(p.against), quantity_text(p.alone), quantity_text(p.together),
                z_text(p.z_before), z_text(p.z_after)});
   }
   return table.empty() ? "" : table.str();

@@ -146,7 +146,7 @@ std::string list_of(std::vector<Listed> all, int digits, const char* unit) {
     double least = all[i].number, most = least;
     const std::string& estimator = all[i].series->estimator;
     for (; i < all.size() && all[i].series->estimator == estimator; ++i) {
-      quantities += (quantities.empty() ? "" : ", ") + symbol_of(all[i].series->quantity);
+      quantities += (quantities.empty() ? "" : ", ") + escape(symbol_of(all[i].series->quantity));
       least = std::min(least, all[i].number);
       most = std::max(most, all[i].number);
     }
