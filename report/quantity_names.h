@@ -23,6 +23,13 @@ inline std::string symbol_of(std::string_view key) {
   return std::string(key);
 }
 
+/// Among kQuantities; their number for what is none of them.
+inline std::size_t place_of(std::string_view key) {
+  std::size_t place = 0;
+  while (place < kQuantities.size() && kQuantities[place].key != key) ++place;
+  return place;
+}
+
 inline std::string unit_of(std::string_view key) {
   for (const QuantityName& name : kQuantities) {
     if (name.key == key) return std::string(name.unit);

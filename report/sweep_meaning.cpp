@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "report/html.h"
@@ -24,8 +26,15 @@ bool knows_truth(const std::string& estimator) {
   return estimator.ends_with(validate::kBestPossible);
 }
 
-/// Of one group each: the least rms error among those that answer.
-const Series* best_of(const std::vector<Series>& all, std::string_view quantity) {
+/// "h=0.04 s" of the lines with that bandwidth; empty for all others.
+std::string given_bandwidth(const std::string& estimator) {
+  constexpr std::string_view kLines = "phase-diagram h=";
+  return estimator.starts_with(kLines) ? estimator.substr(kLines.size() - 2) : std::string();
+}
+
+/// Of one group each: the least rms error among those that answer and are asked for.
+const Series* best_of(const std::vector<Series>& all, std::string_view quantity,
+                      const std::function<bool(const std::string& estimator)>& asked) {
   std::uint64_t most = 0;
   for (const Series& series : all) {
     if (series.quantity == quantity) most = std::max(most, series.groups.front().statistics.answered);
@@ -33,7 +42,7 @@ const Series* best_of(const std::vector<Series>& all, std::string_view quantity)
   const Series* best = nullptr;
   for (const Series& series : all) {
     const ErrorStatistics& of = series.groups.front().statistics;
-    if (series.quantity != quantity || knows_truth(series.estimator) || of.answered == 0) continue;
+    if (series.quantity != quantity || !asked(series.estimator) || of.answered == 0) continue;
     if (static_cast<double>(of.answered) < kAnswers * static_cast<double>(most)) continue;
     if (best == nullptr || of.rms < best->groups.front().statistics.rms) best = &series;
   }
@@ -50,6 +59,44 @@ const Series* series_of(const std::vector<Series>& all, const Series& like) {
 std::string with_unit(double value, std::string_view quantity) {
   const std::string unit = unit_of(quantity);
   return number_text(value, 2) + (unit.empty() ? "" : (unit == "°" ? "" : " ") + unit);
+}
+
+/// "trajectory in K/m (0.001 1/s), µ (0.0001)", of each quantity the best that is asked for; `name` makes the name of
+/// it.
+std::string winners_of(const SweepSummary& summary, const std::function<bool(const std::string& estimator)>& asked,
+                       const std::function<std::string(const std::string& estimator)>& name) {
+  std::string text, previous;
+  for (const QuantityName& quantity : kQuantities) {
+    const Series* const best = best_of(summary.overall, quantity.key, asked);
+    if (best == nullptr) continue;
+    const std::string who = best->estimator == previous ? "" : escape(name(best->estimator)) + " in ";
+    text += fmt::format("{}{}{} ({})",
+                        text.empty()  ? ""
+                        : who.empty() ? ", "
+                                      : "; ",
+                        who, quantity.symbol, with_unit(best->groups.front().statistics.rms, quantity.key));
+    previous = best->estimator;
+  }
+  return text;
+}
+
+/// Which of several given bandwidths errs least; nothing where there are not two of them.
+std::string bandwidths_of(const SweepSummary& summary) {
+  std::set<std::string> given;
+  std::uint64_t answered = 0;
+  for (const Series& series : summary.overall) {
+    if (given_bandwidth(series.estimator).empty()) continue;
+    given.insert(series.estimator);
+    answered = std::max(answered, series.groups.front().statistics.answered);
+  }
+  if (given.size() < 2 || answered == 0) return {};
+  const std::string winners = winners_of(
+      summary, [](const std::string& estimator) { return !given_bandwidth(estimator).empty(); }, given_bandwidth);
+  // Two standard errors of the ratio of two rms errors, of normal errors.
+  return fmt::format(
+      "<p>Of the {} given bandwidths of the lines the least rms error is that of {}. Two whose errors differ by less "
+      "than {:.0f} % may be alike.</p>\n",
+      given.size(), winners, 200.0 / std::sqrt(static_cast<double>(answered)));
 }
 
 std::string at_text(const validate::AxisSummary& axis, const GroupStatistics& group) {
@@ -205,23 +252,21 @@ std::string stated_sds(const SweepSummary& summary) {
 }  // namespace
 
 std::string sweep_meaning(const SweepSummary& summary) {
-  std::string text, who;
+  const auto honest = [](const std::string& estimator) { return !knows_truth(estimator); };
   const Series* first = nullptr;
   for (const QuantityName& quantity : kQuantities) {
-    const Series* const best = best_of(summary.overall, quantity.key);
-    if (best == nullptr) continue;
-    if (first == nullptr) first = best;
-    who += fmt::format("{} {} in {} ({})", who.empty() ? "" : ",", escape(best->estimator), quantity.symbol,
-                       with_unit(best->groups.front().statistics.rms, quantity.key));
+    if (first == nullptr) first = best_of(summary.overall, quantity.key, honest);
   }
-  if (who.empty()) return {};
+  if (first == nullptr) return {};
+  std::string text;
   if (summary.runs < summary.planned) {
     text += fmt::format("{} of {} runs are done; what follows is of these. ", summary.runs, summary.planned);
   }
   if (summary.failed > 0) text += fmt::format("{} runs failed and are not in it. ", summary.failed);
-  text += "The least rms error over all runs is that of" + who + ".";
-  return "<h2 id=\"meaning\">What this means</h2>\n<p>" + text + "</p>\n" + changes_of(summary, *first) + "<p>" +
-         (intervals(summary) + stated_sds(summary)).substr(1) + "</p>\n";
+  text += "The least rms error over all runs is that of " +
+          winners_of(summary, honest, [](const std::string& estimator) { return estimator; }) + ".";
+  return meaning_section("<p>" + text + "</p>\n" + bandwidths_of(summary) + changes_of(summary, *first) + "<p>" +
+                         (intervals(summary) + stated_sds(summary)).substr(1) + "</p>\n");
 }
 
 }  // namespace glidelab::report

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "report/html.h"
 #include "report/json_numbers.h"
@@ -34,10 +34,21 @@ std::string name_of(const std::string& quantity) {
   return symbol_of(quantity) + (unit.empty() ? "" : fmt::format(" ({})", unit));
 }
 
-void add_rows(HtmlTable& table, const std::vector<validate::Series>& overall) {
+/// Quantity, estimator and numbers, as text: the quantities in the order in which every page has them, which is not
+/// that of the database.
+std::vector<std::vector<std::string>> rows_of(std::vector<validate::Series> overall) {
+  std::ranges::stable_sort(overall, {}, [](const validate::Series& series) { return place_of(series.quantity); });
+  std::vector<std::vector<std::string>> rows;
   for (const validate::Series& series : overall) {
-    std::vector<std::string> row = {escape(name_of(series.quantity)), escape(series.estimator)};
-    for (std::string& cell : cells_of(series.groups.front().statistics)) row.push_back(std::move(cell));
+    rows.push_back({name_of(series.quantity), series.estimator});
+    for (std::string& cell : cells_of(series.groups.front().statistics)) rows.back().push_back(std::move(cell));
+  }
+  return rows;
+}
+
+void add_rows(HtmlTable& table, const std::vector<validate::Series>& overall) {
+  for (std::vector<std::string>& row : rows_of(overall)) {
+    for (std::string& cell : row) cell = escape(cell);
     table.row(row);
   }
 }
@@ -154,12 +165,8 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
 }
 
 std::string sweep_text(const SweepSummary& summary) {
-  std::vector<std::vector<std::string>> rows = {
-      {"quantity", "estimator", "answers", "mean error", "rms error", "stated sd", "least sd", "coverage"}};
-  for (const validate::Series& series : summary.overall) {
-    rows.push_back({name_of(series.quantity), series.estimator});
-    for (std::string& cell : cells_of(series.groups.front().statistics)) rows.back().push_back(std::move(cell));
-  }
+  std::vector<std::vector<std::string>> rows = rows_of(summary.overall);
+  rows.insert(rows.begin(), kHeader);
   std::string text = text_table(rows, 2);
   text += fmt::format("{} of {} runs, {} failed\n", summary.runs, summary.planned, summary.failed);
   for (const std::string& failure : summary.failures) text += fmt::format("  {}\n", failure);

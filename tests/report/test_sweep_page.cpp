@@ -64,6 +64,35 @@ TEST_CASE("every sweep's page says first who errs least, along which key it chan
   CHECK(report::sweep_meaning(of).empty());
 }
 
+TEST_CASE("a sweep's page names the best of several given bandwidths, for each quantity that it is best in") {
+  validate::SweepSummary of = summary();
+  const auto add = [&](const std::string& quantity, const std::string& estimator, double rms) {
+    of.overall.push_back({quantity, estimator, {group("", 0.0, rms)}});
+  };
+  add("k_over_m_1_s", "phase-diagram h=0.02 s", 0.004);
+  add("mu", "phase-diagram h=0.02 s", 5e-4);
+  CHECK_FALSE(has(report::sweep_meaning(of), "given bandwidths"));  // of one there is nothing to choose
+  add("k_over_m_1_s", "phase-diagram h=0.04 s", 0.001);
+  add("alpha_deg", "phase-diagram h=0.04 s", 0.003);
+  add("mu", "phase-diagram h=0.04 s", 4e-4);
+  CHECK(has(report::sweep_meaning(of),
+            "Of the 2 given bandwidths of the lines the least rms error is that of h=0.04 s in K/m (0.001 1/s), µ "
+            "(0.0004), α (0.003°). Two whose errors differ by less than 10 % may be alike."));  // 2 / sqrt(400)
+  of.overall.back().groups.front().statistics.rms = 6e-4;
+  CHECK(has(report::sweep_meaning(of), "h=0.04 s in K/m (0.001 1/s); h=0.02 s in µ (0.0005); h=0.04 s in α"));
+}
+
+TEST_CASE("a sweep's tables have the quantities as all pages do, whatever order the database has") {
+  validate::SweepSummary of = summary();
+  of.overall.insert(of.overall.begin(), {"alpha_deg", "trajectory", {group("", 0.0, 0.003)}});
+  of.overall.push_back({"k_over_m_1_s", "trajectory", {group("", 0.0, 0.003)}});
+  for (const std::string& text : {report::sweep_text(of), report::sweep_report(of).html}) {
+    const std::size_t k = text.find("K/m (1/s)"), alpha = text.find("α (°)");
+    CHECK(k < alpha);
+    CHECK(alpha != std::string::npos);
+  }
+}
+
 TEST_CASE("where runs have no answer the page compares like runs, or says that it cannot") {
   validate::SweepSummary of = summary();
   validate::Series& series = of.axes[0].series[1];
