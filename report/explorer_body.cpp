@@ -34,12 +34,24 @@ h1 { font-size: 1.35rem; margin: .2rem 0; }
 #timebar button { min-width: 5.2em; }
 #timebar label { flex: 1; display: flex; gap: .7rem; align-items: center; white-space: nowrap; }
 #timebar output { min-width: 3em; }
-@media (max-width: 900px) {
-  #controls { grid-template-columns: repeat(auto-fit, minmax(min(15rem, 100%), 1fr)); }
-  #plots { grid-template-columns: minmax(0, 1fr); }
-  #plots canvas { height: 15rem; }
+@media (max-width: 900px) { #controls { grid-template-columns: repeat(auto-fit, minmax(min(15rem, 100%), 1fr)); } }
+@media (max-width: 600px) {  /* a telephone: sliders and all three plots in one view, the words below it */
+  #controls { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: .1rem .9rem; }
+  #controls label:first-child { grid-column: 1 / -1; display: flex; gap: .6rem; align-items: center; }
+  #cases { flex-wrap: nowrap; overflow-x: auto; white-space: nowrap; }
+  #plots { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: .35rem; }
+  #plots figure:last-child { grid-column: 1 / -1; }
+  #plots canvas { height: var(--plot, 9rem); }
+  #plots canvas#track { height: 5.2rem; }
+  #plots figcaption { font-size: .8rem; padding: 0 .4rem .1rem; }
+  #timebar { gap: .5rem; }
 }
-@media print { #explorer button, #explorer input { display: none; } #plots canvas { height: 15rem; } }
+@media print {  /* as drawn for the screen, only smaller or larger */
+  #explorer button, #explorer input, #cases { display: none; }
+  #plots { grid-template-columns: repeat(3, minmax(0, 1fr)); }
+  #plots figure:last-child { grid-column: auto; }
+  #plots canvas, #plots canvas#track { height: auto; }
+}
 </style>
 <h1>Friction in the phase plane</h1>
 <div id="explorer">

@@ -78,6 +78,7 @@ function prepare() {
   current = { p, m, path, points, law };
   for (const name of names) $('o-' + name).textContent = show(p[name], digits[name]);
   $('dragname').textContent = units[p.law]; $('k').disabled = p.law === 3;
+  if (p.law === 3) $('o-k').textContent = '';
 }
 function draw() {
   const { p, m, path, points, law } = current, here = m.at(p.t);
@@ -105,12 +106,14 @@ function reserve() {
   reserved = words.offsetHeight; words.style.minHeight = reserved + 'px';
   fit(); draw();
 }
-function fit() {  // plots beside each other are as high as the window leaves room for
+function fit() {  // plots are as high as the window leaves room for; of two rows of them the words may lie below the window
   const style = document.documentElement.style, em = parseFloat(getComputedStyle(document.documentElement).fontSize);
   style.removeProperty('--plot');
-  if (getComputedStyle($('plots')).gridTemplateColumns.split(' ').length === 1) return;
-  const others = $('explorer').getBoundingClientRect().bottom + scrollY - $('xt').clientHeight;
-  style.setProperty('--plot', Math.max(11 * em, Math.floor(document.documentElement.clientHeight - others)) + 'px');
+  const rows = getComputedStyle($('plots')).gridTemplateColumns.split(' ').length === 3 ? 1 : 2;
+  const below = rows === 1 ? 0 : $('readout').getBoundingClientRect().height;
+  const others = $('explorer').getBoundingClientRect().bottom + scrollY - rows * $('xt').clientHeight - below;
+  const room = Math.floor((document.documentElement.clientHeight - others) / rows);
+  style.setProperty('--plot', Math.max((rows === 1 ? 11 : 8) * em, room) + 'px');
 }
 function resized() { reserved = 0; $('readout').style.minHeight = ''; draw(); }
 function track(here, points, p) {
@@ -118,9 +121,9 @@ function track(here, points, p) {
   const px = x => 4 * em + (width - 8 * em) * (x - low) / (high - low);
   // The true slope where that fits.
   const most = Math.atan((height / 2 - 2.4 * em) / (width / 2 - 2 * em)), slope = p.alpha * Math.PI / 180;
-  c.save(); c.translate(width / 2, height / 2 + em); c.rotate(Math.sign(slope) * Math.min(Math.abs(slope), most)); c.translate(-width / 2, 0);
+  c.save(); c.translate(width / 2, height / 2 + 0.5 * em); c.rotate(Math.sign(slope) * Math.min(Math.abs(slope), most)); c.translate(-width / 2, 0);
   c.fillStyle = s.color('line'); c.fillRect(em, 0.5 * em, width - 2 * em, 0.4 * em);
-  c.fillStyle = s.color('soft'); c.textAlign = 'center'; c.fillText('0', px(0), 2 * em);
+  c.fillStyle = s.color('soft'); c.textAlign = 'center'; c.fillText('0', px(0), 1.8 * em);
   c.fillStyle = s.color('first'); c.fillRect(px(here.x) - 1.8 * em, -em, 3.6 * em, 1.4 * em);
   c.fillStyle = s.color('paper'); c.beginPath(); c.arc(px(here.x), -0.3 * em, 0.4 * em, 0, 7); c.fill();
   if (Math.abs(here.v) > 1e-4) { const d = Math.sign(here.v), l = (1 + 2.2 * Math.min(1, Math.abs(here.v))) * em, y = -1.6 * em; c.strokeStyle = s.color('third'); c.fillStyle = s.color('third'); c.lineWidth = 0.2 * em; c.beginPath(); c.moveTo(px(here.x), y); c.lineTo(px(here.x) + d * l, y); c.stroke(); c.beginPath(); c.moveTo(px(here.x) + d * (l + 0.6 * em), y); c.lineTo(px(here.x) + d * l, y - 0.4 * em); c.lineTo(px(here.x) + d * l, y + 0.4 * em); c.fill(); }

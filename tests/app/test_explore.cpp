@@ -159,12 +159,13 @@ document.documentElement.dataset.said = said.join('|'); document.documentElement
   }
 }
 
-TEST_CASE("in class the explorer's three plots and its time are seen at once, and on a telephone one above the other") {
+TEST_CASE("in class and on a telephone the explorer's sliders, its three plots and its time are seen at once") {
   const tests::TempDir temp;
   const std::string script = R"js(
 const boxes = ['xt', 'vt', 'av', 'timebar'].map(id => $(id).getBoundingClientRect());
 document.documentElement.dataset.seen = boxes.filter(b => b.top >= 0 && b.bottom <= innerHeight && b.right <= innerWidth).length;
 document.documentElement.dataset.rows = new Set(boxes.slice(0, 3).map(b => b.top)).size;
+document.documentElement.dataset.sliders = ['k', 'mu', 'alpha', 'v0'].filter(id => $(id).getBoundingClientRect().bottom < boxes[0].top).length;
 document.documentElement.dataset.wide = document.documentElement.scrollWidth - innerWidth;
 document.documentElement.dataset.time = boxes[3].bottom - innerHeight;
 let covered = 0;  // of the words, by the bar below them
@@ -185,9 +186,14 @@ document.documentElement.dataset.covered = covered;
     CHECK(opened->data.at("rows") == "1");
     CHECK(std::stod(opened->data.at("covered")) < 1.0);
   }
-  const auto narrow = tests::open_with(temp.path(), page_html(), script, 500, 900);
-  REQUIRE(narrow);
-  CHECK(narrow->data.at("rows") == "3");
-  CHECK(std::stod(narrow->data.at("wide")) <= 0.0);
-  CHECK(std::abs(std::stod(narrow->data.at("time"))) < 1.0);  // at the window's foot, though the plots go on below
+  for (const int height : {700, 800, 1000}) {
+    const auto narrow = tests::open_with(temp.path(), page_html(), script, 500, height);
+    REQUIRE(narrow);
+    INFO("500 x " << height);
+    CHECK(narrow->data.at("seen") == "4");
+    CHECK(narrow->data.at("rows") == "2");  // a(v) has one of its own
+    CHECK(narrow->data.at("sliders") == "4");
+    CHECK(std::stod(narrow->data.at("wide")) <= 0.0);
+    CHECK(std::abs(std::stod(narrow->data.at("time"))) < 1.0);  // at the window's foot, the words are below it
+  }
 }
