@@ -10,6 +10,7 @@
 #include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/number_text.h"
+#include "report/plot_axis.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
@@ -40,13 +41,10 @@ PlotData line_of(const core::CameraMeasurement& camera) {
   return data;
 }
 
-/// Five or so labels along the axis of codes: 1, 2 or 5 times a power of ten.
-double tick_step(const core::CameraMeasurement& camera) {
+double brightest_dn(const core::CameraMeasurement& camera) {
   double most_dn = camera.saturation_dn;
   for (const core::TransferPoint& point : camera.curve) most_dn = std::max(most_dn, point.mean_dn);
-  const double power = std::pow(10.0, std::floor(std::log10(most_dn / 4.0)));
-  const double digits = most_dn / 4.0 / power;
-  return power * (digits < 2.0 ? 1.0 : digits < 5.0 ? 2.0 : 5.0);
+  return most_dn;
 }
 
 Plot transfer_plot(const core::CameraMeasurement& camera) {
@@ -57,7 +55,7 @@ Plot transfer_plot(const core::CameraMeasurement& camera) {
       "0 to {0:.6g}, graph 1 nohead dt 2 lc rgb '{1}'\nplot $line using 1:2 with lines lw 2 lc rgb '{2}' title 'line', "
       "$used using 1:2:3 with yerrorbars pt 7 ps 0.7 lc rgb '{3}' title 'in the fit', $others using 1:2 with points pt "
       "6 ps 0.8 lc rgb '{1}' title 'others'\n",
-      0.7 * camera.saturation_dn, kGrey, color(1), color(0), tick_step(camera));
+      0.7 * camera.saturation_dn, kGrey, color(1), color(0), tick_step(brightest_dn(camera), 6));
   const std::vector<PlotData> data = {line_of(camera), points_of(camera, "used", true),
                                       points_of(camera, "others", false)};
   return {Drawing{script, data},

@@ -105,9 +105,9 @@ Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& ce
       map.low, map.high, 0.5 - static_cast<double>(cells.size()), kDeepest, kDeepest);
   const int height = 110 + std::clamp(22 * static_cast<int>(cells.size()), 190, 700);
   return {Drawing{script, std::vector{data}, {520, height}},
-          fmt::format("What the fit leaves of each clip, {}: a few neighbouring positions together, over what their "
-                      "noise allows (white: nothing; the darkest: {:g} standard deviations or more)",
-                      when, kDeepest),
+          fmt::format("What the fit leaves of each clip, {1}: a few neighbouring positions together, over what their "
+                      "noise allows (0: nothing; {0:g} and -{0:g}: as many standard deviations or more)",
+                      kDeepest, when),
           fmt::format("Map of the residuals by clip {}", when)};
 }
 

@@ -58,6 +58,7 @@ td.why { white-space: normal; color: var(--soft); }
 .figures.large { grid-template-columns: repeat(auto-fit, minmax(min(480px, 100%), 1fr)); }
 figure { margin: 0; border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--tint); max-width: 620px; }
 figure img, figure video { display: block; width: 100%; height: auto; background: #ffffff; }
+figure video { background: #22282e; }  /* until it is loaded */
 figcaption { padding: 0.4rem 0.7rem 0.5rem; }
 nav ul { columns: 16rem; padding-left: 1.2rem; }
 .note { border-left: 4px solid var(--accent); background: var(--tint); padding: 0.5rem 0.9rem; margin: 0.8rem 0; }

@@ -28,7 +28,7 @@ PlotData columns(const std::string& name, const std::vector<double>& x, const st
 Plot position_plot(const LawStudy& study) {
   std::vector<PlotData> data;
   std::string script = std::string(kFrame) +
-                       "set key font ',11' maxrows 4\nset xlabel 't (s)'\nset ylabel 'x (m)'\n"
+                       "set key top right font ',11' maxrows 4\nset xlabel 't (s)'\nset ylabel 'x (m)'\n"
                        "set offsets 0, graph 0.02, graph 0.06, graph 0.06\nset xrange [0:*]\nplot ";
   for (std::size_t i = 0; i < study.motions.size(); ++i) {
     data.push_back(columns(fmt::format("motion{}", i), study.motions[i].t_s, study.motions[i].x_m));
@@ -41,7 +41,7 @@ Plot position_plot(const LawStudy& study) {
 Plot phase_plot(const LawStudy& study) {
   std::vector<PlotData> data;
   std::string script = std::string(kFrame) +
-                       "set key font ',11' maxrows 4\nset xlabel 'v (m/s)'\nset ylabel 'a (m/s²)'\n"
+                       "set key top right font ',11' maxrows 4\nset xlabel 'v (m/s)'\nset ylabel 'a (m/s²)'\n"
                        "set xzeroaxis lt 1 lc rgb '#777777'\nset yzeroaxis lt 1 lc rgb '#777777'\nplot ";
   bool first = true, stable_named = false, unstable_named = false;
   const auto add = [&](PlotData block, const std::string& how) {

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "report/diagnosis_lead.h"
 #include "report/diagnosis_plots.h"
 #include "report/effect_names.h"
 #include "report/gap_text.h"
+#include "report/handy_units.h"
 #include "report/line_plots.h"
 #include "report/number_text.h"
 
@@ -44,7 +46,7 @@ std::string name_of(const diagnose::LineCandidate& candidate) {
 std::string sizes_text(const diagnose::LineCandidate& candidate) {
   std::string text;
   for (const diagnose::LineSize& size : candidate.sizes) {
-    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", size.key, value_and_sd_text(size.value, size.sd));
+    text += (text.empty() ? "" : ", ") + parameter_text(size.key, size.value, size.sd);
   }
   return text.empty() ? "–" : text;
 }
@@ -81,12 +83,19 @@ std::string gap_table(const diagnose::GapSizes& gap) {
   return text;
 }
 
+/// Of "unknown: in words" the words stand once, behind the name.
+std::string explanation_html(const std::string& text) {
+  const std::size_t colon = std::min(text.find(": "), text.size());
+  return effect_html(text.substr(0, colon)) + escape(text.substr(colon));
+}
+
 std::string candidate_table(const diagnose::LineComparison& lines) {
   const auto rows = line_rows(lines);
   HtmlTable table(rows.front(), 2);
   for (std::size_t r = 1; r < rows.size(); ++r) {
     std::vector<std::string> cells;
-    for (const std::string& cell : rows[r]) cells.push_back(cells.empty() ? effect_html(cell) : escape(cell));
+    for (const std::string& cell : rows[r])
+      cells.push_back(cells.empty() ? explanation_html(cell) : symbols_html(cell));
     table.row(cells);
   }
   std::string text = table.str();

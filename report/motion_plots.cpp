@@ -124,8 +124,10 @@ std::string largest_deviation(const core::ClipResult& clip, Variable variable) {
       largest = std::max(largest, deviation(point, variable));
   }
   if (!(largest > 0.0) || !std::isfinite(largest)) return {};
-  const char* const unit = variable == Variable::x ? "m" : variable == Variable::v ? "m/s" : "m/s²";
-  return fmt::format(" (at most {})", size_text(2.0 * largest, 2, unit));
+  const std::string size = variable == Variable::x   ? size_text(2.0 * largest, 2, "m")
+                           : variable == Variable::v ? size_text(2.0 * largest, 2, "m") + "/s"
+                                                     : size_text(2.0 * largest, 2, "m/s²");
+  return fmt::format(" (at most {})", size);
 }
 
 Plot motion_plot(const core::ClipResult& clip, Variable variable) {

@@ -8,6 +8,7 @@
 
 #include "report/decimate.h"
 #include "report/gnuplot.h"
+#include "report/plot_axis.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
@@ -111,6 +112,9 @@ struct Window {
   bool has_limit;  ///< a line crosses a = 0 within it, on its own side of v = 0
 };
 
+/// Labels with a minus sign run into each other where there are more.
+constexpr int kMostSteps = 6;
+
 Window detail_window(const core::AnalysisResults& results, const PhaseGroup& group, double v_max) {
   const double half = kDetail * v_max;
   double low = 0.0;
@@ -125,7 +129,8 @@ Window detail_window(const core::AnalysisResults& results, const PhaseGroup& gro
       }
     }
   }
-  std::string script = fmt::format("set xrange [{:.6g}:{:.6g}]\n", -half, half);
+  std::string script =
+      fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", -half, half, tick_step(2.0 * half, kMostSteps));
   if (high > low) {
     const double margin = 0.08 * (high - low);
     script += fmt::format("set yrange [{:.6g}:{:.6g}]\n", low - margin, high + margin);
@@ -169,9 +174,10 @@ std::string axes(const char* y) {
       y);
 }
 
-/// The range of the points and the lines: the band of a line that is hardly known runs out of it.
-std::string range_of(const std::vector<PlotData>& data, bool residuals) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
+/// The range of the points and the lines, for the band of a line that is hardly known runs out of it, and the labels of
+/// v.
+std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
+  double low = HUGE_VAL, high = -HUGE_VAL, slowest = 0.0, fastest = 0.0;
   for (const PlotData& block : data) {
     const bool lines = block.name.starts_with("lines");
     if (lines && residuals) continue;
@@ -180,17 +186,20 @@ std::string range_of(const std::vector<PlotData>& data, bool residuals) {
       if (row.size() <= column || !std::isfinite(row[column])) continue;
       low = std::min(low, row[column]);
       high = std::max(high, row[column]);
+      slowest = std::min(slowest, row.front());
+      fastest = std::max(fastest, row.front());
     }
   }
-  if (!(high > low)) return {};
+  if (!(high > low) || !(fastest > slowest)) return {};
   const double margin = 0.08 * (high - low);
-  return fmt::format("set yrange [{:.6g}:{:.6g}]\n", low - margin, high + margin);
+  return fmt::format("set yrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low - margin, high + margin,
+                     tick_step(fastest - slowest, kMostSteps));
 }
 
 Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all) {
   std::vector<PlotData> data;
   const std::string plot = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, true, data);
-  const std::string script = std::string(kFrame) + axes("residual  (m/s²)") + range_of(data, true) + plot;
+  const std::string script = std::string(kFrame) + axes("residual  (m/s²)") + ranges_of(data, true) + plot;
   return {
       Drawing{script, data},
       "Residuals of the lines: what a(v) leaves unexplained. Bands: 95 % of each line; bars: 95 % of some points by "
@@ -244,7 +253,7 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
 
   std::vector<PlotData> data;
   std::string plot = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, false, data);
-  std::string script = std::string(kFrame) + axes(y) + range_of(data, false) + plot;
+  std::string script = std::string(kFrame) + axes(y) + ranges_of(data, false) + plot;
   std::vector<Plot> plots = {{Drawing{script, data},
                               "Phase diagram: points as measured and smoothed, lines fitted for v < 0 and v > 0, with "
                               "their 95 % bands; bars: 95 % of some points by their noise",

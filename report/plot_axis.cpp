@@ -20,7 +20,17 @@ double round_up(double value) {
   return 10.0 * power;
 }
 
+/// As gnuplot writes the numbers that it labels itself.
+std::string with_minus(std::string number) {
+  for (std::size_t at = number.find('-'); at != std::string::npos; at = number.find('-')) number.replace(at, 1, "−");
+  return number;
+}
+
 }  // namespace
+
+double tick_step(double span, int most) {
+  return round_up(span / most);
+}
 
 std::vector<double> ladder_of(double from, double to) {
   std::vector<double> ladder;
@@ -92,7 +102,7 @@ std::string ValueAxis::script(double points) const {
   }
   std::string tics;  // placed to the digits that the data are written with
   for (std::size_t i = 0; i < all.size(); ++i) {
-    tics += fmt::format("{}'{}' {:.9g}", i == 0 ? "" : ", ", labelled[i] ? text(all[i]) : "", all[i]);
+    tics += fmt::format("{}'{}' {:.9g}", i == 0 ? "" : ", ", labelled[i] ? with_minus(text(all[i])) : "", all[i]);
   }
   return fmt::format("{}set xrange [{:.9g}:{:.9g}]\nset xtics ({})\n", logarithmic_ ? "set logscale x\n" : "",
                      from_axis(from_), from_axis(to_), tics);

@@ -7,6 +7,9 @@
 
 namespace glidelab::report {
 
+/// 1, 2 or 5 times a power of ten: marks that far apart are `most` + 1 at most on an axis of that length, above 0.
+double tick_step(double span, int most);
+
 /// 1, 2 and 5 times powers of ten from the first that is not above `from` to the first that is not below `to`, both
 /// above 0.
 std::vector<double> ladder_of(double from, double to);

@@ -150,7 +150,7 @@ Plot requirement_plot(const Requirement& requirement) {
   }
   if (!all.empty()) script += x.script("x") + y.script("y");
   for (const Label& label : labels_of(all, x.length(), y.length())) {
-    script += fmt::format("set label {} at {:.9g},{:.9g} offset 0.8,0.45 font ',11'\n",
+    script += fmt::format("set label {} at {:.9g},{:.9g} front offset 0.8,0.45 font ',11'\n",
                           gnuplot_quoted(ranges_text(label.numbers)), label.right, label.top);
   }
   script +=

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -67,14 +68,19 @@ std::string beyond_text(const validate::TargetResult& result) {
   return result.runs == 0 ? "–" : fmt::format("{} of {}", result.beyond, result.runs);
 }
 
-/// What no track knows is said where tracks judged.
+/// What no track knows is said where tracks or the bound judged, and what rendering is for where it could change
+/// something: pictures only add to what the bound forbids.
 std::string next_step(const Requirement& requirement) {
   if (requirement.confirm == validate::Confirm::clips) return {};
-  return fmt::format(
-      "{}: a lens, a codec, a rolling shutter and the calibration are not in it. With --confirm clips those that are "
-      "near the target are rendered as well.",
-      requirement.confirm == validate::Confirm::none ? "Nothing was run, the bound alone judged"
-                                                     : "Tracks judged, no pictures");
+  const bool ran = std::ranges::any_of(requirement.candidates, [](const Candidate& candidate) {
+    return std::ranges::any_of(candidate.results, [](const auto& result) { return result.runs > 0; });
+  });
+  const bool forbidden = std::ranges::all_of(requirement.candidates, [](const Candidate& candidate) {
+    return candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::refused;
+  });
+  return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not in it.{}",
+                     ran ? "Tracks judged, no pictures" : "Nothing was run, the bound alone judged",
+                     forbidden ? "" : " With --confirm clips those that are near the target are rendered as well.");
 }
 
 std::string found_text(const validate::TargetResult& result, double scale) {
@@ -110,6 +116,16 @@ std::string numbered(const Requirement& requirement, std::size_t i) {
   return fmt::format("<b>{}. {}</b>", i + 1, escape(requirement.candidates[i].name));
 }
 
+/// "rms error of µ is (5.66 ± 0.30) · 10⁻⁶".
+std::string found_words(const Target& target, const validate::TargetResult& result) {
+  const Scale scale = scale_of(target);
+  const std::string name = target_name(target), unit = unit_of(target.quantity);
+  const std::string number = found_text(result, scale.size);
+  return fmt::format("{} is {}{}", name.substr(0, name.find(" (")),
+                     scale.factor.empty() ? number : fmt::format("({}) · {}", number, scale.factor),
+                     unit.empty() ? "" : " " + unit);
+}
+
 /// What the answer is, in some sentences.
 std::string meaning(const Requirement& requirement) {
   std::vector<std::size_t> reaching, undecided, possible, missed;
@@ -133,12 +149,8 @@ std::string meaning(const Requirement& requirement) {
     if (!first.price_class.empty()) text += fmt::format(" ({})", escape(first.price_class));
     if (!first.results.empty() && first.results.front().found && std::isfinite(*first.results.front().found)) {
       const validate::TargetResult& result = first.results.front();
-      const double scale = scale_of(requirement.targets.front()).size;
-      text +=
-          fmt::format(": {} is {}, {} times within the target",
-                      escape(target_name(requirement.targets.front(), scale_of(requirement.targets.front()).factor)),
-                      value_and_sd_text(*result.found / scale, result.found_sd / scale),
-                      number_text(requirement.targets.front().value / *result.found, 2));
+      text += fmt::format(": its {}, {} times within the target", found_words(requirement.targets.front(), result),
+                          number_text(requirement.targets.front().value / *result.found, 2));
     }
     text += ".";
   }

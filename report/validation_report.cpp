@@ -69,13 +69,13 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
       comparison.detected, comparison.frames,
       restitution.points.empty() ? "–" : number_text(restitution.rms_m * 1e3, 2),
       comparison.lines.empty() ? "–" : r2_text(lowest_r2), comparison.wall_s);
+  body += meaning_of(comparison);
   body += "<h2 id=\"comparison\">Truth and recovered values</h2>\n" + comparison_table(comparison);
   body +=
       "<p class=\"soft\">sd is the standard deviation that the analysis itself states, camera and scale included; "
       "least sd is what "
       "the noise of the positions alone allows at all (Cramér-Rao bound), and efficiency (least sd / noise's part of "
       "sd)².</p>\n";
-  body += meaning_of(comparison);
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);
   body += recovered_section(results);

@@ -12,6 +12,7 @@
 #include "report/diagnosis_report.h"
 #include "report/plan_report.h"
 #include "report/text_table.h"
+#include "report/validation_report.h"
 
 using namespace glidelab;
 
@@ -170,6 +171,12 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   check.findings = {{core::Severity::unusable, "m1", "black", "more light"}};
   check.usable = false;
   CHECK(tells(page(), "mend what “must change”"));
+}
+
+TEST_CASE("a rehearsal's page says at the top how many values lie near the truth, above all its tables") {
+  validate::Comparison comparison;
+  comparison.quantities = {{"m1", 0.335, 4.0, "trajectory", "mu", 0.0071, 0.0072, 0.0001, 0.0001, ""}};
+  CHECK(tells(report::validation_report("v", tests::made_results(), comparison, {}), "lie within two of their"));
 }
 
 TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and that some numbers are missing") {

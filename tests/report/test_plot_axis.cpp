@@ -29,6 +29,16 @@ std::vector<Tic> tics_of(const std::string& script) {
 
 }  // namespace
 
+TEST_CASE("marks below zero are written with a minus sign, and steps are round numbers, as many as were asked for") {
+  const std::vector<Tic> tics = tics_of(report::ValueAxis({-1.2, -0.8}, false).script(360.0));
+  REQUIRE(tics.size() == 2);
+  CHECK(tics[0].label == "−1.2");
+  CHECK(tics[0].at == -1.2);
+  CHECK(report::tick_step(2.3, 6) == 0.5);
+  CHECK(report::tick_step(1.2, 6) == 0.2);
+  CHECK(report::tick_step(3600.0, 6) == 1000.0);
+}
+
 TEST_CASE("values that were run have marks of their own, and labels only where there is room for them") {
   const report::ValueAxis axis({120.0, 60.0, 240.0, 60.0}, false);
   CHECK(axis.size() == 3);

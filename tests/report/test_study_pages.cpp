@@ -65,6 +65,12 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   validate::Requirement rendered = one_camera("mu", 0.0005, 1.8e-5);
   rendered.confirm = validate::Confirm::clips;
   CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));
+  // What the bound forbids was not run, and pictures would not help.
+  validate::Requirement impossible = one_camera("mu", 1e-6, 1.8e-5);
+  impossible.candidates.front().verdict = validate::Verdict::impossible;
+  impossible.candidates.front().results = {{1.8e-5, {}, 0.0, 0, 0, ""}};
+  CHECK(has(report::requirement_text(impossible), "Nothing was run, the bound alone judged"));
+  CHECK_FALSE(has(report::requirement_text(impossible), "--confirm clips"));
 }
 
 TEST_CASE("the numbers in the plot of require are those of its tables, the cheapest camera first") {
@@ -82,7 +88,7 @@ TEST_CASE("the numbers in the plot of require are those of its tables, the cheap
   CHECK(has(plotted, "e-05,2.600"));
   CHECK(has(plotted, "# missed\n10,0.002,2,"));
   CHECK(has(page.html, "1 of 2 reach the target. <b>1. webcam</b> is the one with the fewest pixels"));
-  CHECK(has(page.html, "19.8 ± 5.4, 25 times within the target"));
+  CHECK(has(page.html, "its rms error of µ is (19.8 ± 5.4) · 10⁻⁶, 25 times within the target"));
 }
 
 TEST_CASE("points of require that lie close together share one label") {
