@@ -161,7 +161,14 @@ Scenario read_scenario(std::string_view text, const std::filesystem::path& path,
   refuse_sweep(text, path);
   Scenario scenario;
   if (const auto camera = root.maybe_text("camera_file")) {
-    scenario.camera_name = take_camera_file(path.parent_path() / *camera, file, text).name;
+    const std::filesystem::path camera_path = path.parent_path() / *camera;
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(camera_path, unreadable)) {
+      throw base::InputError(base::Issue{path.string(), root.line("camera_file"), "camera_file",
+                                         fmt::format("no file {}", camera_path.lexically_normal().string()),
+                                         "the name of a camera's file, from the scenario's folder"});
+    }
+    scenario.camera_name = take_camera_file(camera_path, file, text).name;
   }
   scenario.file = path;
   scenario.motion = sim::read_motions(root);

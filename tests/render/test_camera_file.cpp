@@ -106,6 +106,22 @@ TEST_CASE("Another choice of the scenario takes away what belonged to the camera
   CHECK(files.read("[codec]\ncrf = 20.0\n").compression.bitrate_kbit_s == 0.0);
 }
 
+TEST_CASE("A camera file that is not there is named with the scenario's line and the place that was looked at") {
+  const tests::TempDir dir;
+  base::write_file(dir / "scenario.toml",
+                   std::string("format = 1\nname = \"test\"\ncamera_file = \"cameras/phone.toml\"\n") + kMotions);
+  try {
+    read_scenario(dir / "scenario.toml");
+    FAIL("read");
+  } catch (const base::InputError& error) {
+    const std::string message = error.what();
+    INFO(message);
+    CHECK(message.find((dir / "scenario.toml").string() + ":3: camera_file: found no file " +
+                       (dir / "cameras/phone.toml").string()) != std::string::npos);
+    CHECK(message.find("from the scenario's folder") != std::string::npos);
+  }
+}
+
 TEST_CASE("What is wrong is named with the file that it stands in") {
   const Files files;
   using Catch::Contains;
