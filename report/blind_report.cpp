@@ -100,7 +100,7 @@ Plot methods_plot(const validate::BlindScore& score) {
       std::string(kFrame) +
       "unset offsets\nset style fill solid 0.85 noborder\nset boxwidth 0.19\nset yrange [0:105]\n"
       "set xrange [0.4:6.6]\nset ylabel 'right  (%)'\nset key outside top center horizontal maxcols 2 samplen 1\n"
-      "set xtics ('none' 1, 'weak' 2, 'moderate' 3, 'strong' 4, 'two' 5, 'outside' 6)\nplot ";
+      "set xtics font ',12' ('none' 1, 'weak' 2, 'moderate' 3, 'strong' 4, 'two' 5, 'outside' 6)\nplot ";
   for (std::size_t m = 0; m < score.methods.size(); ++m) {
     const auto& method = score.methods[m];
     PlotData rows{fmt::format("m{}", m), {}, {"kind of case (place)", fmt::format("right by {} (%)", method.name)}};

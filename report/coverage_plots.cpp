@@ -34,7 +34,8 @@ Plot coverage_plot(const validate::Coverage& coverage) {
     lowest = std::min(lowest, 100.0 * row.low95 - 2.0);
     data[place].rows.push_back({100.0 * row.coverage, row_number, 100.0 * row.low95, 100.0 * row.high95});
     tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ",
-                        gnuplot_quoted(fmt::format("{}  {}", row.configuration, symbol_of(row.quantity))), row_number);
+                        gnuplot_quoted(fmt::format("{}  {}", shortened(row.configuration), symbol_of(row.quantity))),
+                        row_number);
   }
   script += fmt::format(
       "unset offsets\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"

@@ -180,9 +180,10 @@ std::string lines_of(const OverTime& of, int dashes, bool names) {
   std::string text;
   for (std::size_t i = 0; i < of.clips.size(); ++i) {
     const std::string title = told_apart ? of.clips[i] : fmt::format("{} clips", of.clips.size());
-    text += fmt::format("{0}${1} using 1:2 every :::{2}::{2} with lines lw 1 dt {3} lc rgb '{4}' {5}",
-                        i > 0 ? ", " : "", of.data.name, i, dashes, told_apart ? color(i) : std::string(kGrey),
-                        names && (told_apart || i == 0) ? "title " + gnuplot_quoted(title) + " noenhanced" : "notitle");
+    text += fmt::format(
+        "{0}${1} using 1:2 every :::{2}::{2} with lines lw 1 dt {3} lc rgb '{4}' {5}", i > 0 ? ", " : "", of.data.name,
+        i, dashes, told_apart ? color(i) : std::string(kGrey),
+        names && (told_apart || i == 0) ? "title " + gnuplot_quoted(shortened(title)) + " noenhanced" : "notitle");
   }
   return text;
 }
@@ -208,7 +209,7 @@ std::string axis_of(const std::string& variable) {
 std::string chart_labels(const std::vector<std::string>& names) {
   std::string tics = "set ytics (";
   for (std::size_t i = 0; i < names.size(); ++i) {
-    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(names[i]), -static_cast<double>(i));
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(shortened(names[i])), -static_cast<double>(i));
   }
   return tics + ") scale 0 noenhanced\n";
 }

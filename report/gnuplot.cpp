@@ -158,6 +158,16 @@ std::string spelt_out(std::string text) {
 
 }  // namespace
 
+std::string shortened(std::string_view text, std::size_t most) {
+  std::vector<std::size_t> starts;  // of characters: UTF-8's further bytes begin none
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u) starts.push_back(i);
+  }
+  if (starts.size() <= most) return std::string(text);
+  const std::size_t head = most / 2, tail = most - 1 - head;
+  return fmt::format("{}…{}", text.substr(0, starts[head]), text.substr(starts[starts.size() - tail]));
+}
+
 std::string gnuplot_quoted(std::string_view text) {
   std::string quoted = "'";
   for (const char c : text) {

@@ -34,6 +34,10 @@ std::vector<std::string> plot_file_names(std::span<const Plot> plots);
 /// EnvironmentError where gnuplot cannot be started: to be found before the long work, not after it.
 void check_gnuplot();
 
+/// The text in `most` characters or fewer, "…" in its middle where it is longer, for a name's two ends tell it from
+/// others: a plot gives a long label all its room, and none to what it shows. `most` at least 3.
+std::string shortened(std::string_view text, std::size_t most = 28);
+
 /// The text as a gnuplot string in single quotes: no escapes, no commands, on one line, its apostrophes curled.
 std::string gnuplot_quoted(std::string_view text);
 

@@ -32,8 +32,9 @@ Plot position_plot(const LawStudy& study) {
                        "set offsets 0, graph 0.02, graph 0.06, graph 0.06\nset xrange [0:*]\nplot ";
   for (std::size_t i = 0; i < study.motions.size(); ++i) {
     data.push_back(columns(fmt::format("motion{}", i), study.motions[i].t_s, study.motions[i].x_m));
-    script += fmt::format("{}${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", i == 0 ? "" : ", ",
-                          data.back().name, i % 2 == 0 ? 1 : 2, color(i), gnuplot_quoted(study.motions[i].clip));
+    script +=
+        fmt::format("{}${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", i == 0 ? "" : ", ", data.back().name,
+                    i % 2 == 0 ? 1 : 2, color(i), gnuplot_quoted(shortened(study.motions[i].clip)));
   }
   return {Drawing{script, data}, "Position over time", "x(t) of " + study.name};
 }
@@ -66,7 +67,7 @@ Plot phase_plot(const LawStudy& study) {
         path.rows.push_back({motion.v_m_s[i], motion.a_m_s2[i]});
       }
       add(std::move(path), fmt::format("with lines lw 2.4 dt {} lc rgb '{}' title {}", m % 2 == 0 ? 1 : 2, color(m),
-                                       gnuplot_quoted(motion.clip)));
+                                       gnuplot_quoted(shortened(motion.clip))));
     }
     for (const bool stable : {true, false}) {
       PlotData points{fmt::format("{}{}", stable ? "stable" : "unstable", c), {}};

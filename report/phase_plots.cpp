@@ -158,7 +158,7 @@ std::string diagram(const core::AnalysisResults& results, const PhaseGroup& grou
         "${0} using 1:{2} with points pt 7 ps 0.3 lc rgb '{3}' notitle, ${1} using 1:(${2}-$4):(0):(2*$4) with vectors "
         "nohead lw 1.2 lc rgb '{3}' notitle, ",
         data_name("points", cloud.configuration), data_name("bars", cloud.configuration), residuals ? 3 : 2, own);
-    const std::string label = gnuplot_quoted(configuration_label(results, group, cloud.configuration));
+    const std::string label = gnuplot_quoted(shortened(configuration_label(results, group, cloud.configuration)));
     lines += (n > 1 ? ", " : "") +
              (residuals ? fmt::format("keyentry with points pt 7 ps 0.8 lc rgb '{}' title {}", own, label)
                         : fmt::format("${} using 1:2 with lines lw 1.6 lc rgb '{}' title {}", line, own, label));

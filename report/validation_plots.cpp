@@ -45,9 +45,9 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
     widest = std::max(widest, 1.1 * std::abs(in_sd));
     by_quantity[kind].rows.push_back({in_sd, row});
     if (!added) continue;
-    tics +=
-        fmt::format("{}{} {}", tics.empty() ? "" : ", ",
-                    gnuplot_quoted(fmt::format("{}  {}", quantity.configuration, symbol_of(quantity.quantity))), row);
+    tics += fmt::format(
+        "{}{} {}", tics.empty() ? "" : ", ",
+        gnuplot_quoted(fmt::format("{}  {}", shortened(quantity.configuration), symbol_of(quantity.quantity))), row);
   }
   if (order.empty()) return {};
   std::string script(kFrame);
@@ -98,7 +98,7 @@ std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
                           block.name, color(c));
     if (named) {
       script += fmt::format(", keyentry with points pt 7 ps 0.8 lc rgb '{}' title {}", color(c),
-                            gnuplot_quoted(results.clips[c].name));
+                            gnuplot_quoted(shortened(results.clips[c].name)));
     }
     data.push_back(std::move(block));
   }

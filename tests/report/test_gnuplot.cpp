@@ -47,6 +47,14 @@ report::DrawnPlot drawn(const report::Drawing& drawing) {
 
 }  // namespace
 
+TEST_CASE("a name that is too long for a plot keeps its two ends, counted in characters") {
+  CHECK(report::shortened("2024-03-05 glider 335 g up") == "2024-03-05 glider 335 g up");
+  CHECK(report::shortened("abcdefghij", 10) == "abcdefghij");
+  CHECK(report::shortened("abcdefghijk", 10) == "abcde…hijk");
+  CHECK(report::shortened("µµµµµµ", 5) == "µµ…µµ");
+  CHECK(report::shortened("abcd", 3) == "a…d");
+}
+
 TEST_CASE("a plot of data is an SVG and a PDF of the size that was asked for") {
   const report::DrawnPlot plot = drawn({"plot $points using 1:2 with lines", kPoints, {500, 300}});
   CHECK(plot.svg.find("<svg") != std::string::npos);
