@@ -53,6 +53,9 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
       size += size.empty() ? "" : "<br>";
       size += symbols_html(parameter_text(p));
     }
+    if (!size.empty() && !effect_meaning(effect.id).empty()) {
+      size += fmt::format("<br><small>{}</small>", symbols_html(effect_meaning(effect.id)));
+    }
     for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + effect_html(id);
     table.row({effect_html(effect.id), escape(effect.stage), probability_text(effect.probability),
                size.empty() ? "–" : size, same.empty() ? "–" : same,

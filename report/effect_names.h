@@ -12,6 +12,10 @@ namespace glidelab::report {
 /// in words too. What is the id of no effect (a cause without a name, in words already) stays as it is.
 std::string effect_name(std::string_view ids);
 
+/// What the letters beside the effect's size mean: "a force −c v |v|"; empty where its size is a word, or an id is of
+/// no effect.
+std::string effect_meaning(std::string_view id);
+
 /// effect_name() of each.
 std::vector<std::string> effect_names(const std::vector<std::string>& ids);
 

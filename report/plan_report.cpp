@@ -112,8 +112,9 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   body += "<h2>What can be seen</h2>\n";
   HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    table.row({effect_html(effect.id), escape(effect.words), symbols_html(seen_text(effect)),
-               escape(joined(effect_names(effect.alike)))});
+    const std::string meaning = effect_meaning(effect.id);
+    table.row({effect_html(effect.id), escape(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning)),
+               symbols_html(seen_text(effect)), escape(joined(effect_names(effect.alike)))});
   }
   body +=
       table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);

@@ -5,6 +5,7 @@
 #include "catch.h"
 #include "diagnose/effect_list.h"
 #include "report/diagnosis_report.h"
+#include "report/plan_report.h"
 
 using namespace glidelab;
 
@@ -21,6 +22,26 @@ TEST_CASE("every effect that a diagnosis can name has a short name of its own") 
     names.insert(name);
   }
   CHECK(names.size() == ids.size());
+}
+
+TEST_CASE("every effect with a size says what the letters of its size mean, on the pages of diagnosis and plan") {
+  for (const diagnose::EffectInfo& effect : diagnose::effect_list()) {
+    INFO(effect.id);
+    CHECK(report::effect_meaning(effect.id).empty() == (effect.id == std::string_view("compression")));
+  }
+  CHECK(report::effect_meaning("smoothing_bias") == "intercepts are off by intercept_s2 times (K/m)²");
+  CHECK(report::effect_meaning("none").empty());
+  diagnose::Diagnosis of;
+  of.verdict = "effect";
+  diagnose::DiagnosedEffect effect{};
+  effect.id = "eddy_rolloff";
+  effect.parameters = {{"v_c_m_s", 2.0, 0.1, "", ""}};
+  of.effects = {effect};
+  const std::string words = "K v becomes K v / (1 + (v / v<sub>c</sub>)²)";
+  CHECK(report::diagnosis_report("d", of, {}).html.find(words) != std::string::npos);
+  diagnose::Plan plan;
+  plan.effects = {{"eddy_rolloff", "a drag that levels off", "v_c_m_s", 20.0, true, {}}};
+  CHECK(report::plan_page("p", plan).html.find("a drag that levels off: " + words) != std::string::npos);
 }
 
 TEST_CASE("effects that act together are named together, and a cause without a name keeps its words") {
