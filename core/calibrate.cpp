@@ -10,6 +10,7 @@
 
 #include "base/dense.h"
 #include "base/errors.h"
+#include "base/number_text.h"
 #include "core/pose_elimination.h"
 
 namespace glidelab::core {
@@ -147,7 +148,8 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
     const double part = is_radial ? believed(term, own(0, 0), fit.found, size) : 1.0;
     const double statistic = part * value.dot(weighted);
     const double limit = count == 1 ? kSignificantOne : kSignificantPair;
-    tests.push_back(fmt::format("{}: {:.3g} of {:.3g}", term.name, statistic, limit));
+    tests.push_back(
+        fmt::format("{}: {} of {}", term.name, base::number_text(statistic, 3), base::number_text(limit, 3)));
     if (statistic > limit) {
       if (is_radial) radial = false;
       continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "report/camera_plots.h"
@@ -148,6 +149,11 @@ Html clips_section(const core::AnalysisResults& results, const std::vector<core:
   return text;
 }
 
+std::string as_sentence(std::string text) {
+  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return escape(text);
+}
+
 Html camera_section(const core::AnalysisResults& results) {
   if (results.calibrations.empty() && results.plumbs.empty()) return {};
   Html text = "<h2 id=\"camera\">Camera and plumb line</h2>\n";
@@ -161,7 +167,7 @@ Html camera_section(const core::AnalysisResults& results) {
         "<p>In the picture the plane's corners are {} px (rms) from where the camera puts them; their noise explains "
         "{} px. {}.</p>\n",
         number_text(calibration.plane_rms_px, 2), number_text(calibration.plane_expected_px, 2),
-        escape(calibration.model));
+        as_sentence(calibration.model));
     HtmlTable table({"parameter", "value"});
     const std::vector<double>& m = calibration.camera_matrix;
     const auto sd_of = [&](std::size_t k) { return k < calibration.sd.size() ? calibration.sd[k] : 0.0; };

@@ -67,6 +67,13 @@ TEST_CASE("a page needs nothing but itself, says its values, and stays small for
   CHECK(page.size() < 3'000'000);  // 10 MB allow twelve clips of a quarter of this each
 }
 
+TEST_CASE("what the camera's model says begins as a sentence does") {
+  core::AnalysisResults results = tests::made_results();
+  results.calibrations[0].model = "distortion: none <b>";
+  CHECK(report::analysis_report("camera", results, {}).html.find(" px. Distortion: none &lt;b&gt;.") !=
+        std::string::npos);
+}
+
 TEST_CASE("parts of a page keep their order, and a plot stands where it was put") {
   report::Html first("<p>a</p>");
   first.plot({{"plot 1", {}}, "one", "one"});
