@@ -67,7 +67,8 @@ TEST_CASE("a phase diagram carries its lines' bands and the bars of some points,
     CHECK(plot.drawing.script.find("filledcurves") != std::string::npos);
     CHECK(plot.drawing.script.find("with vectors nohead") != std::string::npos);
   }
-  // Seven labels of v at most, of -1.2 to 0.23 m/s (the lines), of 15 % of what is used both ways, and of -1 to 0.2 m/s.
+  // Seven labels of v at most, of -1.2 to 0.23 m/s (the lines), of 15 % of what is used both ways, and of -1 to 0.2
+  // m/s.
   CHECK(plots[0].drawing.script.find("set xtics 0.5\n") != std::string::npos);
   CHECK(plots[1].drawing.script.find("set xtics 0.05\n") != std::string::npos);
   CHECK(plots[2].drawing.script.find("set xtics 0.2\n") != std::string::npos);
