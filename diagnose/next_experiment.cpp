@@ -18,9 +18,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kDecides = 5.0;         // expected log likelihood at which a change is worth making
-constexpr double kBeyondDoubt = 1000.0;  // its figure means no more than that
-constexpr double kStillLikely = 0.05;    // probability of a rival
+constexpr double kDecides = 5.0;        // expected log likelihood at which a change is worth making
+constexpr double kMostStated = 1000.0;  // its figure means no more than that
+constexpr double kStillLikely = 0.05;   // probability of a rival
 constexpr std::size_t kMostRivals = 3;
 constexpr double kSharpens = 0.95;  // of the standard deviation: more is not worth a clip
 
@@ -79,7 +79,7 @@ const MotionFit* fit_of(const Comparison& comparison, const Hypothesis& of) {
 }
 
 std::string likelihood_words(double gain) {
-  if (gain > kBeyondDoubt) return fmt::format("more than {:.0f}", kBeyondDoubt);
+  if (gain > kMostStated) return fmt::format("more than {:.0f}", kMostStated);
   return gain < 10.0 ? fmt::format("{:.1f}", gain) : fmt::format("{:.0f}", gain);
 }
 

@@ -107,8 +107,7 @@ struct TrackSet {
 
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
 /// start or for a stop stays in the motion; else it is left out. Motions with fewer than 12 points are left out. Of
-/// more than 8000 positions in all every second, third, ... is taken (with a note), which is enough for any law; what
-/// single frames show needs neighbours, and is weaker then.
+/// more than 30,000 positions in all every second, third, ... is taken (thin_tracks.h).
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
 
 /// Point i off the cubic through its four nearest neighbours, over the standard deviation that unit noise gives it: its
