@@ -15,7 +15,7 @@ namespace {
 
 tests::ProcessResult require_of(const tests::TempDir& dir, const std::string& target) {
   tests::write_sweep(dir.path(), "", tests::kTwoKeys);
-  return tests::glidelab({"require", "sweep.toml", "--target", target, "--runs", "4", "-o", "out", "-q"}, dir.path());
+  return tests::glidelab({"require", "sweep.toml", "--target", target, "-o", "out", "-q"}, dir.path());
 }
 
 nlohmann::json answer_in(const fs::path& folder) {
