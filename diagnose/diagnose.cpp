@@ -135,15 +135,26 @@ void note_lasting_noise(TrackSet& set) {
       lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)));
 }
 
+/// One position beyond a gap may as well be an outlier, where no frame is missing elsewhere; two of one end are not.
+void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
+  const auto same_end = [&](const EdgePosition& a, const EdgePosition& b) {
+    const std::size_t middle = set.motions[a.motion].t_s.size() / 2;
+    return a.motion == b.motion && (a.point < middle) == (b.point < middle);
+  };
+  const std::vector<EdgePosition> all = beyond;
+  std::erase_if(beyond, [&](const EdgePosition& position) {
+    return std::count_if(all.begin(), all.end(), [&](const EdgePosition& of) { return same_end(position, of); }) < 2;
+  });
+}
+
 /// The noise of every position, by what single frames tell of it. Frames that are missing are taken out first: a jump
 /// is no noise and no outlier.
 void settle_noise(TrackSet& set) {
   MissingFrames missing = find_missing_frames(set, fit_nominal(set));
-  if (missing.count > 0) {
-    const std::vector<EdgePosition> beyond = positions_beyond_gaps(set, missing.fit);
-    for (const EdgePosition& position : beyond) set.motions[position.motion].outlier[position.point] = 0;
-    if (!beyond.empty()) missing = find_missing_frames(set, fit_nominal(set));
-  }
+  std::vector<EdgePosition> beyond = positions_beyond_gaps(set, missing.fit);
+  if (missing.count == 0) leave_single(set, beyond);
+  for (const EdgePosition& position : beyond) set.motions[position.motion].outlier[position.point] = 0;
+  if (!beyond.empty()) missing = find_missing_frames(set, fit_nominal(set));
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
   const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
   if (missing.count > 0 && set.pictures) refit();

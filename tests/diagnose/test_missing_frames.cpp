@@ -118,3 +118,16 @@ TEST_CASE("frames lost right behind the first ones of several clips, or before t
   REQUIRE(diagnosis.gap);
   CHECK(std::abs(diagnosis.gap->after - 1.0) < 0.1);
 }
+
+TEST_CASE(
+    "the only frame that is lost, three before a clip's end, is a lost frame and three positions are no outliers") {
+  // The last three positions are a frame's way off, 1.1 mm at noise of 0.02 mm.
+  Losses losses;
+  losses.of_clip.resize(8);
+  losses.of_clip[3].insert(kFrames - 4);
+  const tests::MadeExperiment made = made_with(losses, 12);
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
+  REQUIRE(diagnosis.verdict == "effect");
+  CHECK(diagnosis.effects.size() == 1);
+  CHECK(diagnosis.effects.front().id == "dropped_frames");
+}
