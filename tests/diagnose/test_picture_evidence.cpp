@@ -6,9 +6,9 @@
 #include <random>
 
 #include "catch.h"
-#include "diagnose/series_wave.h"
 #include "diagnose/picture_shape.h"
 #include "diagnose/picture_sway.h"
+#include "diagnose/series_wave.h"
 
 using namespace glidelab;
 
