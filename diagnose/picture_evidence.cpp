@@ -22,11 +22,41 @@ namespace {
 constexpr double kToneOfShape = 0.4;
 constexpr double kLeastSmear_px = 0.2;
 
+/// Clips of one camera as it is stated.
+std::vector<std::vector<FilmedClip>> by_camera(const std::vector<FilmedClip>& clips) {
+  const auto same = [](const FilmedClip& a, const FilmedClip& b) {
+    return a.camera.exposure_s == b.camera.exposure_s && stated_line_s(a.camera) == stated_line_s(b.camera) &&
+           a.camera.frame_rate_hz == b.camera.frame_rate_hz && a.record->height_px == b.record->height_px;
+  };
+  std::vector<std::vector<FilmedClip>> cameras;
+  for (const FilmedClip& clip : clips) {
+    const auto camera =
+        std::find_if(cameras.begin(), cameras.end(), [&](const auto& of) { return same(of.front(), clip); });
+    if (camera != cameras.end()) {
+      camera->push_back(clip);
+    } else {
+      cameras.push_back({clip});
+    }
+  }
+  return cameras;
+}
+
+/// What one camera shows, unless another has shown it more clearly.
+void add_clearest(PictureFinding finding, PictureEvidence& evidence) {
+  for (PictureFinding& known : evidence.findings) {
+    if (known.id != finding.id) continue;
+    if (finding.log_evidence > known.log_evidence) known = std::move(finding);
+    return;
+  }
+  evidence.findings.push_back(std::move(finding));
+}
+
+/// `clips` of one camera.
 void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   ShapeFit fit = fit_marker_shape(clips);
   if (!fit.known) return;
   const core::CameraSettings& camera = clips.front().camera;
-  evidence.fastest_px_s = fit.fastest_px_s;
+  evidence.fastest_px_s = std::max(evidence.fastest_px_s, fit.fastest_px_s);
   for (PictureCurve& curve : fit.curves) evidence.curves.push_back(std::move(curve));
   PictureFinding blur = finding_of("exposure_blur");
   const double least_s = kLeastSmear_px / fit.fastest_px_s;
@@ -42,7 +72,7 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
         fmt::format("The marker is smeared as by an exposure of {} ms; none is stated.",
                     base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * std::hypot(fit.exposure_sd_s, least_s)));
   }
-  evidence.findings.push_back(std::move(blur));
+  add_clearest(std::move(blur), evidence);
 
   PictureFinding shutter = finding_of("rolling_shutter");
   const double stated = stated_line_s(camera);
@@ -55,7 +85,7 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   shutter.words = fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
                               base::value_and_sd_text(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
                               stated == 0.0 ? "(a global shutter) is stated" : "is stated");
-  evidence.findings.push_back(std::move(shutter));
+  add_clearest(std::move(shutter), evidence);
 }
 
 }  // namespace
@@ -117,7 +147,7 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
 PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
   PictureEvidence evidence;
   if (clips.empty()) return evidence;
-  add_shape(clips, evidence);
+  for (const std::vector<FilmedClip>& of_one : by_camera(clips)) add_shape(of_one, evidence);
   add_flicker(clips, evidence);
   add_sway(clips, evidence);
   add_gradient(clips, evidence);

@@ -179,3 +179,18 @@ TEST_CASE("Evidence of a deviation falls below nothing at none and grows with it
   CHECK(diagnose::log_evidence_of(10.0, 100.0) < 50.0);  // z²/2 less what the unknown size costs
   CHECK(diagnose::log_evidence_of(-10.0, 100.0) < diagnose::log_evidence_of(0.0, 100.0));
 }
+
+TEST_CASE("clips of several cameras are each held to what is stated of their own") {
+  const auto blur_of = [](double first_s, double second_s, double second_stated_s) {
+    std::vector<diagnose::FilmedClip> clips = filmed({.exposure_s = first_s}, first_s, 61);
+    for (diagnose::FilmedClip& clip : filmed({.exposure_s = second_s}, second_stated_s, 62)) {
+      clip.view = 1;
+      clips.push_back(clip);
+    }
+    return finding(diagnose::picture_evidence(clips), "exposure_blur");
+  };
+  CHECK(blur_of(0.001, 0.008, 0.008).log_evidence < 0.0);  // eight times the first one's, as stated
+  const diagnose::PictureFinding longer = blur_of(0.005, 0.006, 0.001);
+  CHECK(longer.log_evidence > 5.0);
+  CHECK(std::abs(longer.parameters.front().value - 0.006) < 4.0 * longer.parameters.front().sd);
+}
