@@ -11,6 +11,7 @@
 #include "core/bandwidth_rule.h"
 #include "core/clip_to_track.h"
 #include "core/phase_diagram.h"
+#include "core/require_clips.h"
 
 namespace glidelab::core {
 namespace {
@@ -26,9 +27,7 @@ std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folde
     }
     experiments.push_back(read_input(folder, bare));
     const Experiment& read = experiments.back();
-    if (read.clips.empty()) {
-      throw base::InputError(base::Issue{read.file.string(), 0, "clip", "none", "one or more clips or tracks"});
-    }
+    require_clips(read);
     if (read.gravity_m_s2 != experiments.front().gravity_m_s2) {
       throw base::InputError(
           base::Issue{read.file.string(), 0, "gravity_m_s2", fmt::format("{}", read.gravity_m_s2),

@@ -10,6 +10,7 @@
 #include "core/clip_look.h"
 #include "core/clip_to_track.h"
 #include "core/phase_diagram.h"
+#include "core/require_clips.h"
 #include "core/track_csv.h"
 
 namespace glidelab::core {
@@ -97,9 +98,7 @@ void analyze_motions(const Experiment& experiment, const std::vector<ClipAttempt
 
 RecordingCheck check_recording(const Experiment& experiment, int jobs, const base::Progress& progress,
                                const FrameOpener& open) {
-  if (experiment.clips.empty()) {
-    throw base::InputError(base::Issue{experiment.file.string(), 0, "clip", "none", "one or more clips or tracks"});
-  }
+  require_clips(experiment);
   RecordingCheck check;
   check.name = experiment.name;
   progress("pattern", 0.0);
