@@ -47,7 +47,7 @@ install_optional() {
 
 # skipped_in LOG: what tests of ctest's log say that they were skipped for, each once.
 skipped_in() {
-  grep -ho 'skipped: .*' "$1" | sort -u || true
+  grep -hoE '^[[:space:]]*skipped: .*' "$1" | sed 's/^ *//' | sort -u || true  # a line of its own: commands are in the log as well
 }
 
 # build PRESET [TARGET…]: configures and builds in build/PRESET.
