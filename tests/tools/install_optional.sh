@@ -32,5 +32,5 @@ echo "$said" | grep -qx '== Not installed, so that tests which need them will be
 # And what a log of tests says of skipped ones, each reason once; the command of a test that ran, and what another one
 # printed in the middle of a line, are none.
 printf '  skipped: no zsh program\nfine\n  skipped: no zsh program\n' > "$work/log"
-printf 'Command: "sh" "-c" "echo skipped: no cat program"\n== Not installed, tests will be skipped: tac\n' >> "$work/log"
+printf 'Command: "sh" "-c" "echo skipped: no room"\n== Not installed, tests will be skipped: tac\n' >> "$work/log"
 [ "$(bash -c ". '$source/tools/setup.sh'; skipped_in '$work/log'")" = "skipped: no zsh program" ]
