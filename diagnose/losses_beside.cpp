@@ -74,8 +74,7 @@ void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std:
     // A wave's phase jumps with each loss: it is found where these are known, and others along it.
     beside[i] = {pairs[i], find_more_missing_frames(set, comparison.fits[static_cast<std::size_t>(pairs[i].fit)])};
   });
-  double likeliest = comparison.missing.count > 0 ? comparison.missing.effect.log_evidence : 0.0;
-  for (Beside& one : beside) {
+  for (const Beside& one : beside) {
     if (one.missing.count == 0) continue;
     Found both;
     both.fit = one.missing.fit;
@@ -83,10 +82,6 @@ void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std:
     if (one.of.effects.size() == 1) both.hypothesis.effects.push_back(dropped);
     both.hypothesis.gain += one.missing.effect.gain;
     both.hypothesis.log_evidence += one.missing.effect.log_evidence;
-    if (both.hypothesis.log_evidence > likeliest) {
-      likeliest = both.hypothesis.log_evidence;
-      comparison.missing = std::move(one.missing);
-    }
     add(comparison, std::move(both));
   }
 }

@@ -11,8 +11,8 @@
 namespace glidelab::diagnose {
 
 /// Looks for missing frames along the fits of the likeliest effects, alone or beside the losses that are known; what is
-/// found joins the comparison, and the likeliest stands in `missing`. Nothing is done where no frame is missing for all
-/// to see. `nominal`: fit of the usual model.
+/// found joins the comparison. Nothing is done where no frame is missing for all to see. `nominal`: fit of the usual
+/// model.
 void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std::set<std::size_t>& without,
                        const Work& work, Comparison& comparison);
 

@@ -220,6 +220,15 @@ void describe(double gain, double penalty, double points, MissingFrames& found) 
 
 }  // namespace
 
+std::size_t missing_in(const TrackSet& set, const MotionFit& fit) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < fit.late.size(); ++i) {
+    const double rate_hz = set.clips[set.motions[i].clip].frame_rate_hz;
+    count += static_cast<std::size_t>(std::lround(fit.late[i].back() * rate_hz));
+  }
+  return count;
+}
+
 MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
   MissingFrames found;
   found.effect.effect = effect_index("dropped_frames");
@@ -255,10 +264,7 @@ MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& wit
   MissingFrames known;
   known.effect.effect = effect_index("dropped_frames");
   known.fit = with_losses;
-  for (std::size_t i = 0; i < set.motions.size(); ++i) {
-    const double rate_hz = set.clips[set.motions[i].clip].frame_rate_hz;
-    known.count += static_cast<std::size_t>(std::lround(with_losses.late.at(i).back() * rate_hz));
-  }
+  known.count = missing_in(set, with_losses);
   const double points = points_of(set);
   MissingFrames all = with_hidden(set, known);
   if (!lowers(all.fit, all.count, known) || all.fit.cost >= kNothingLeft * points) all = known;

@@ -12,6 +12,9 @@
 
 namespace glidelab::diagnose {
 
+/// How many frames a fit has as missing, all clips together.
+std::size_t missing_in(const TrackSet& set, const MotionFit& fit);
+
 /// What was found; the fit that goes with them has their lateness.
 struct MissingFrames {
   FrameEffect effect;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "diagnose/held_out.h"
+#include "diagnose/missing_frames.h"
 #include "diagnose/projected_motion.h"
 #include "diagnose/thin_tracks.h"
 #include "diagnose/whitening.h"
@@ -114,17 +114,13 @@ bool is_open(Eigen::Index quantity, double sd, double of_all) {
   return !(quantity == kMu ? sd < kOpenMu : sd < kOpenK * std::abs(of_all));
 }
 
-bool late(const MotionFit& fit) {
-  return std::any_of(fit.late.begin(), fit.late.end(), [](const std::vector<double>& of) { return of.back() > 0.0; });
-}
-
 }  // namespace
 
 std::vector<GapOfParameter> parameter_gaps(const TrackSet& set, const MotionFit& nominal, const MotionFit* after) {
   std::vector<GapOfParameter> of_drag, of_mu;
   const Eigen::MatrixXd of_all = common_covariance(nominal);
   // Missing frames are no effect of a fit but in its times.
-  const bool same = after != nullptr && after->effects.empty() && !late(*after);
+  const bool same = after != nullptr && after->effects.empty() && missing_in(set, *after) == 0;
   for (std::size_t mass = 0; mass < set.masses.size(); ++mass) {
     for (const int direction : {0, 1, -1}) {
       if (direction == 0 && set.masses.size() < 2) continue;

@@ -13,6 +13,7 @@
 #include "diagnose/derived_parameters.h"
 #include "diagnose/gap_sizes.h"
 #include "diagnose/held_out.h"
+#include "diagnose/missing_frames.h"
 #include "diagnose/next_experiment.h"
 #include "diagnose/twin.h"
 #include "diagnose/verdict_limits.h"
@@ -69,11 +70,14 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
     if (!parameters.empty()) continue;
     parameters.push_back({effect_list()[effect].id == "timestamp_jitter" ? "sd_s" : "fraction", frame.value, frame.sd});
   }
-  if (parameters.empty() && comparison.missing.count > 0 && comparison.missing.effect.effect == effect) {
-    parameters.push_back({"fraction", comparison.missing.effect.value, comparison.missing.effect.sd});
-  }
   if (hypothesis.fit < 0) return parameters;
   const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+  if (parameters.empty() && effect == effect_index("dropped_frames")) {
+    double points = 0.0;
+    for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+    const auto count = static_cast<double>(missing_in(set, fit));
+    if (count > 0.0) parameters.push_back({"fraction", count / points, std::sqrt(count) / points});
+  }
   const Eigen::MatrixXd covariance = common_covariance(fit);
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
@@ -104,7 +108,10 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
   std::size_t count = with.globals().size() - nominal.globals().size() + with.own().size() * set.motions.size();
   for (const std::size_t e : hypothesis.effects) {
     const EffectInfo& info = effect_list()[e];
-    if (info.search == Search::frames) count += 1 + comparison.missing.count;
+    if (info.search == Search::frames) {
+      ++count;
+      if (hypothesis.fit >= 0) count += missing_in(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]);
+    }
     if (info.search == Search::pictures) ++count;
     if (info.search == Search::noise) count += info.id == "heavy_tailed_noise" ? 2 : 1;
   }
