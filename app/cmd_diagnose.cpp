@@ -18,6 +18,7 @@
 #include "core/experiment.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/effect_list.h"
+#include "diagnose/line_table.h"
 #include "diagnose/plan.h"
 #include "diagnose/twin.h"
 #include "render/scenario.h"
@@ -76,7 +77,7 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
     const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
     std::vector<core::ClipSetup> setups;
     for (const fs::path& folder : folders) {
-      const core::Experiment experiment = core::read_experiment(folder, options.outside);
+      const core::Experiment experiment = diagnose::read_recording(folder, options.outside);
       if (experiment.lines) {
         throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
                                            "clips or tracks: --plan says what motions will show, and lines hold none"});
@@ -120,7 +121,7 @@ void diagnose(const DiagnoseCommand& options) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   const fs::path out = output_folder(options.common, "diagnose", folders.front());
   refuse_scenarios(options.experiments);
-  std::string title = core::read_experiment(folders.front(), options.outside).name;
+  std::string title = diagnose::read_recording(folders.front(), options.outside).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
   if (!options.twin.empty()) {
     check_file_writable(options.twin);
@@ -174,9 +175,10 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       "diagnose",
       "Say which unmodelled effect makes the gap between measured motions and the model, or that none does");
   command
-      ->add_option("EXPERIMENT", options->experiments,
-                   "Folders that hold an experiment.toml; several share the glider and the track")
-      ->type_name("DIR")
+      ->add_option(
+          "EXPERIMENT", options->experiments,
+          "Folders that hold an experiment.toml; several share the glider and the track. Or one .csv, a table of lines")
+      ->type_name("DIR|FILE")
       ->required();
   CLI::Option* without =
       command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")

@@ -14,6 +14,7 @@
 #include "base/temporary_folder.h"
 #include "render/camera_file.h"
 #include "report/gnuplot.h"
+#include "report/json_numbers.h"
 #include "report/sweep_report.h"
 #include "validate/run_sweep.h"
 #include "validate/sweep_design.h"
@@ -121,6 +122,16 @@ void say_size(const SweepOptions& options, const validate::SweepEstimate& estima
                                   bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
 }
 
+std::string estimate_json(const SweepOptions& options, const validate::SweepEstimate& estimate) {
+  return report::json_text({{"runs", estimate.runs},
+                            {"missing_runs", estimate.missing},
+                            {"jobs", options.common.jobs},
+                            {"seconds", estimate.seconds},
+                            {"bytes", estimate.bytes},
+                            {"bytes_to_come", estimate.bytes_to_come},
+                            {"free_bytes", estimate.free_bytes}});
+}
+
 std::string database_name(const validate::Shard& shard) {
   return shard.count == 1 ? "sweep.sqlite" : fmt::format("sweep-{}-of-{}.sqlite", shard.index, shard.count);
 }
@@ -139,7 +150,10 @@ void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const va
   } else {
     check_file_writable(made);
   }
-  say_size(options, validate::estimate_sweep(sweep, database, shard, options.common.jobs, disk, only_interrupts));
+  const validate::SweepEstimate estimate =
+      validate::estimate_sweep(sweep, database, shard, options.common.jobs, disk, only_interrupts);
+  if (options.common.json) return print_result(estimate_json(options, estimate));
+  say_size(options, estimate);
 }
 
 /// Where nothing was there before, a merge that fails leaves nothing.

@@ -38,16 +38,30 @@ bool parse_number(std::string_view text, double& value) {
   return error == std::errc{} && end == text.data() + text.size() && !text.empty();
 }
 
+/// What the last digit of a number is worth: 0.001 for "2.310", 1e-5 for "2.31e-3".
+double worth_of_last_digit(std::string_view number) {
+  const std::size_t power = std::min(number.find_first_of("eE"), number.size());
+  const std::size_t point = number.find('.');
+  int exponent = 0;
+  if (power < number.size()) {
+    std::string_view text = number.substr(power + 1);
+    if (text.starts_with('+')) text.remove_prefix(1);
+    std::from_chars(text.data(), text.data() + text.size(), exponent);
+  }
+  if (point < power) exponent -= static_cast<int>(power - point) - 1;
+  return std::pow(10.0, exponent);
+}
+
 }  // namespace
 
 bool CsvTable::has(std::string_view name) const {
   return std::find(header.begin(), header.end(), name) != header.end();
 }
 
-const std::vector<double>& CsvTable::column(std::string_view name) const {
+std::size_t CsvTable::place(std::string_view name) const {
   const auto found = std::find(header.begin(), header.end(), name);
   if (found == header.end()) throw InputError(Issue{file, 1, "header", "no column of this name", std::string(name)});
-  return columns[static_cast<std::size_t>(found - header.begin())];
+  return static_cast<std::size_t>(found - header.begin());
 }
 
 CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::string>& wanted,
@@ -89,6 +103,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::stri
       }
       if (!issues.empty()) break;
       table.columns.resize(table.header.size());
+      table.last_digit.resize(table.header.size(), std::numeric_limits<double>::infinity());
       continue;
     }
     if (fields.size() != skip.size()) {
@@ -106,6 +121,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::stri
         issues.push_back({table.file, line_number, fmt::format("column \"{}\"", table.header[column]),
                           fmt::format("\"{}\"", fields[f]), "a finite number with a decimal point"});
       }
+      table.last_digit[column] = std::min(table.last_digit[column], worth_of_last_digit(fields[f]));
       table.columns[column++].push_back(value);
     }
     table.line.push_back(line_number);

@@ -16,11 +16,16 @@ struct CsvTable {
   std::string file;
   std::vector<std::string> header;
   std::vector<std::vector<double>> columns;  ///< columns[c][row], all of one length; every value finite
+  std::vector<double> last_digit;            ///< of a column: the least that a last digit is worth, 0.001 for "2.310"
   std::vector<int> line;                     ///< line[row], 1-based
 
   bool has(std::string_view name) const;
   /// The column of this name; InputError where there is none.
-  const std::vector<double>& column(std::string_view name) const;
+  const std::vector<double>& column(std::string_view name) const { return columns[place(name)]; }
+  double last_digit_of(std::string_view name) const { return last_digit[place(name)]; }
+
+ private:
+  std::size_t place(std::string_view name) const;
 };
 
 /// Reads the columns named in `wanted` (required) and `optional`; other columns are ignored where `allow_others`,

@@ -189,9 +189,9 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
   choice.bandwidth_s = taken->bandwidth_s;
   choice.method = fmt::format("least mean squared error of the lines ({:.1f} ms)", 1e3 * choice.line_s);
   if (taken != best) {
-    choice.method +=
-        fmt::format(", raised for quieter points (noise of a {:.2g} % of its spread, bias of the lines {:.2g} %)",
-                    100.0 * taken->noise_share, 100.0 * taken->bias_share);
+    choice.method += fmt::format(
+        ", raised for quieter points (the noise of a is {:.2g} % of its spread; the lines are biased by {:.2g} %)",
+        100.0 * taken->noise_share, 100.0 * taken->bias_share);
   }
   return choice;
 }

@@ -47,7 +47,7 @@ plane = "calibration/plane.png"    # the pattern where the marker moves, its lon
 
 # ---- The marker: a disc or ball that contrasts with everything near its path.
 [marker]
-diameter_m = 0.020
+diameter_m = 0.016                 # AS PRINTED: the sheet of "glidelab pattern" has discs of 8, 12, 16 and 24 mm
 #height_m = 0.0                    # its centre off the pattern's plane, towards the camera
 #color = "#101010"                 # a black disc (left out, a bright one is looked for first); or the hue of an object, as "#e04020"
 #start_px = [400, 120]             # where it is in the first frame, should something else move as well

@@ -12,7 +12,6 @@ constexpr std::size_t kFewestPoints = 6;
 constexpr std::size_t kEnoughPoints = 400;  // more are thinned: the candidates times the points are looked at
 constexpr double kPartOfSize = 0.25;        // of the line's size that a point may lie off
 constexpr double kDeviations = 5.0;         // standard deviations that a point may lie off
-constexpr double kNormalMad = 1.4826;       // standard deviation of normal numbers over their median magnitude
 
 /// Least squares through the points for which `counts(i)`; a level line where their v hardly differ.
 template <typename Counts>
@@ -50,7 +49,7 @@ void measure(const LawPoints& points, ConsensusLine& line) {
   }
   if (sizes.size() < kFewestPoints) return;
   line.size_m_s2 = quantile(sizes, 0.9);
-  line.scatter = std::max(1.0, kNormalMad * quantile(offs, 0.5));
+  line.scatter = std::max(1.0, kSdOverMedian * quantile(offs, 0.5));
 }
 
 LawPoints thinned(const LawPoints& points) {

@@ -1,10 +1,8 @@
 #include "core/marker.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -15,7 +13,6 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLargestRatio = 2.0;                         // of the fitted radius and the expected one
 constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitude; a disc leaves noise only
 constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
 constexpr double kSharpEdge_px = 0.29;  // the pixel's own extent, 1/sqrt(12): nothing that is not clipped is sharper
@@ -96,8 +93,13 @@ std::optional<NormalEquations<N>> evaluate(MarkerModel<N>& pixels, const Prior& 
   return equations;
 }
 
-template <int N>
-std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& guess) {
+/// What the pixels well inside and well outside of the guess are like.
+struct Contrast {
+  double level;      ///< of the background
+  double amplitude;  ///< of the marker above it, > 0
+};
+
+std::optional<Contrast> contrast_of(const MarkerPixels& window, const MarkerGuess& guess) {
   std::vector<double> inside, around;
   inside.reserve(window.size());
   around.reserve(window.size());
@@ -108,53 +110,92 @@ std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& gues
     if (square < well_inside_px * well_inside_px) inside.push_back(window.value()[i]);
     if (square > guess.radius_px * guess.radius_px) around.push_back(window.value()[i]);
   }
-  if (inside.empty() || around.empty() || window.size() < 2 * static_cast<std::size_t>(N)) return std::nullopt;
+  if (inside.empty() || around.empty()) return std::nullopt;
   const double level = median_of(std::move(around));
   const double amplitude = median_of(std::move(inside)) - level;
   if (!(amplitude > 0.0)) return std::nullopt;
+  return Contrast{level, amplitude};
+}
 
+template <int N>
+Eigen::Matrix<double, N, 1> start_of(const MarkerGuess& guess, const Contrast& contrast) {
   Eigen::Matrix<double, N, 1> start = Eigen::Matrix<double, N, 1>::Zero();
-  Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Constant(3e-3 * amplitude);
   start[kU] = guess.centre.x;
   start[kV] = guess.centre.y;
   start[kMuu] = guess.shape ? (*guess.shape)[0] : 1.0 / guess.radius_px;
   start[kMuv] = guess.shape ? (*guess.shape)[1] : 0.0;
   start[kMvv] = guess.shape ? (*guess.shape)[2] : 1.0 / guess.radius_px;
   start[kLogBlur] = std::log(guess.blur_px);
-  start[kBright] = level + amplitude;
-  start[kLevel] = level;
+  start[kBright] = contrast.level + contrast.amplitude;
+  start[kLevel] = contrast.level;
+  return start;
+}
+
+/// Changes of the parameters that are too small to matter.
+template <int N>
+Eigen::Matrix<double, N, 1> steps_of(const MarkerGuess& guess, double amplitude) {
+  Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Constant(3e-3 * amplitude);
   step[kU] = step[kV] = 1e-3;
   step[kMuu] = step[kMuv] = step[kMvv] = 3e-3 / guess.radius_px;
   step[kLogBlur] = 2e-2;
+  return step;
+}
+
+template <int N>
+LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const Contrast& contrast) {
+  const double amplitude = contrast.amplitude;
   const Prior prior{guess.radius_px, guess.blur_px, amplitude};
-  MarkerModel<N> pixels(window);
   const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(pixels, prior, p); };
   const auto is_hopeless = [&](const LeastSquaresFit<N>& so_far, const NormalEquations<N>& here) {
     if (so_far.iterations < kTrials) return false;
-    const double contrast = std::max(amplitude, so_far.parameters[kBright] - so_far.parameters[kLevel]);
-    return here.cost > here.weight * kHopelessResidual * kHopelessResidual * contrast * contrast;
+    const double bright = std::max(amplitude, so_far.parameters[kBright] - so_far.parameters[kLevel]);
+    return here.cost > here.weight * kHopelessResidual * kHopelessResidual * bright * bright;
   };
-  LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations, is_hopeless);
+  const Eigen::Matrix<double, N, 1> step = steps_of<N>(guess, amplitude);
+  LeastSquaresFit<N> found =
+      fit_least_squares<N>(model, start_of<N>(guess, contrast), step, kMaxIterations, is_hopeless);
   if (found.stop == FitStop::iterations && found.parameters[kLogBlur] < std::log(kSharpEdge_px) &&
       found.rms < kLargestResidual * amplitude) {
     found = fit_least_squares<N>(model, found.parameters, step, kMoreIterations);
   }
-  if (found.stop != FitStop::converged) return std::nullopt;
+  return found;
+}
 
-  const auto& p = found.parameters;
-  double total_weight = 0.0;
-  for (const double w : window.weight()) total_weight += w;
-  if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;
-  MarkerFit marker;
-  marker.centre = {p[kU], p[kV]};
-  // The bright marker's pixels are noisier than the background's, and the taper counts: covariance by the sandwich
-  // A^-1 B A^-1 with A = J^T W J, B = sum (w r)^2 J J^T, and N parameters taken from the residuals' freedom.
+/// Standard deviation of a coordinate of the centre. The bright marker's pixels are noisier than the background's, and
+/// the taper counts: covariance by the sandwich A^-1 B A^-1 with A = J^T W J, B = sum (w r)^2 J J^T, and N parameters
+/// taken from the residuals' freedom.
+template <int N>
+double centre_sd(MarkerModel<N>& pixels, const LeastSquaresFit<N>& found, double total_weight) {
   const Eigen::Matrix<double, N, N> noise =
       pixels.gradient_variance(found.evaluated_at, found.parameters - found.evaluated_at);
   const Eigen::Matrix<double, 2, N> inverse = found.covariance.template topRows<2>() / (found.rms * found.rms);
   const Eigen::Matrix2d covariance = inverse * noise * inverse.transpose();
   const double freedom = total_weight / (total_weight - N);
-  marker.sd_px = std::sqrt(0.5 * freedom * covariance.trace());
+  return std::sqrt(0.5 * freedom * covariance.trace());
+}
+
+/// Second moments of what is above the fitted background.
+cv::Vec3d moments_of(const MarkerPixels& window, const MarkerFit& marker, double expected_radius_px) {
+  cv::Vec3d moments(0.0, 0.0, 0.0);
+  double above = 0.0;
+  const double reach = kMomentReach * expected_radius_px + kMomentMargin_px;  // short of what else moves with it
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double du = window.u()[i] - marker.centre.x, dv = window.v()[i] - marker.centre.y;
+    if (du * du + dv * dv > reach * reach) continue;
+    const double value = window.value()[i] - marker.background - marker.slope_u * du - marker.slope_v * dv;
+    above += value;
+    moments += value * cv::Vec3d(du * du, du * dv, dv * dv);
+  }
+  return moments * (1.0 / above);
+}
+
+template <int N>
+MarkerFit marker_of(const MarkerPixels& window, const MarkerGuess& guess, MarkerModel<N>& pixels,
+                    const LeastSquaresFit<N>& found, double total_weight) {
+  const auto& p = found.parameters;
+  MarkerFit marker;
+  marker.centre = {p[kU], p[kV]};
+  marker.sd_px = centre_sd<N>(pixels, found, total_weight);
   const double determinant = p[kMuu] * p[kMvv] - p[kMuv] * p[kMuv];
   marker.radius_px = 1.0 / std::sqrt(determinant);
   marker.shape = {p[kMuu], p[kMuv], p[kMvv]};
@@ -163,28 +204,35 @@ std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& gues
   marker.elongation = (mean + spread) / std::max(mean - spread, 1e-9);
   marker.amplitude = p[kBright] - p[kLevel];
   marker.background = p[kLevel];
-  double above = 0.0;
-  const double reach = kMomentReach * guess.radius_px + kMomentMargin_px;  // short of what else moves with the marker
-  for (std::size_t i = 0; i < window.size(); ++i) {
-    const double du = window.u()[i] - p[kU], dv = window.v()[i] - p[kV];
-    if (du * du + dv * dv > reach * reach) continue;
-    const double value = window.value()[i] - p[kLevel] - p[kSlopeU] * du - p[kSlopeV] * dv;
-    above += value;
-    marker.moments += value * cv::Vec3d(du * du, du * dv, dv * dv);
-  }
-  marker.moments *= 1.0 / above;
   marker.slope_u = p[kSlopeU];
   marker.slope_v = p[kSlopeV];
+  marker.moments = moments_of(window, marker, guess.radius_px);
   marker.blur_px = std::exp(p[kLogBlur]);
   marker.rms = found.rms;
   marker.bic = total_weight * std::log(std::max(found.rms * found.rms * (total_weight - N) / total_weight, 1e-12)) +
                N * std::log(total_weight);
+  return marker;
+}
+
+bool is_plausible(const MarkerFit& marker, const MarkerGuess& guess) {
   const double moved = cv::norm(marker.centre - guess.centre);
-  const double ratio = marker.radius_px / guess.radius_px;
-  const bool plausible = moved < std::max(guess.radius_px, 1.5) && ratio < kLargestRatio &&
-                         ratio > 1.0 / kLargestRatio && marker.amplitude > 0.0 &&
-                         marker.rms < kLargestResidual * marker.amplitude;
-  if (!plausible) return std::nullopt;
+  return moved < std::max(guess.radius_px, 1.5) && has_expected_size(marker, guess) && marker.amplitude > 0.0 &&
+         marker.rms < kLargestResidual * marker.amplitude;
+}
+
+template <int N>
+std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& guess) {
+  if (window.size() < 2 * static_cast<std::size_t>(N)) return std::nullopt;
+  const std::optional<Contrast> contrast = contrast_of(window, guess);
+  if (!contrast) return std::nullopt;
+  MarkerModel<N> pixels(window);
+  const LeastSquaresFit<N> found = solve<N>(pixels, guess, *contrast);
+  if (found.stop != FitStop::converged) return std::nullopt;
+  double total_weight = 0.0;
+  for (const double w : window.weight()) total_weight += w;
+  if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;
+  MarkerFit marker = marker_of<N>(window, guess, pixels, found, total_weight);
+  if (!is_plausible(marker, guess)) return std::nullopt;
   return marker;
 }
 
@@ -194,80 +242,6 @@ std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& gue
   const auto window = cut_window(signal, guess.centre, 1.25 * guess.radius_px + 2.5);
   if (!window) return std::nullopt;
   return surface == Surface::uniform ? fit<kUniformParameters>(*window, guess) : fit<kShadedParameters>(*window, guess);
-}
-
-std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGuess& guess) {
-  const double reach = 2.2 * guess.radius_px + 2.0;
-  const cv::Rect picture(0, 0, signal.values.cols, signal.values.rows);
-  const cv::Point corner(static_cast<int>(std::floor(guess.centre.x - reach)),
-                         static_cast<int>(std::floor(guess.centre.y - reach)));
-  const int side = 2 * static_cast<int>(std::ceil(reach)) + 1;
-  const cv::Rect box = cv::Rect(corner.x, corner.y, side, side) & picture;
-  if (box.width < 3 || box.height < 3) return std::nullopt;
-  signal.see(box);
-
-  // The background from the rim of the box, the peak from the brightest tenth near the guess.
-  std::vector<double> rim, near;
-  for (int v = box.y; v < box.br().y; ++v) {
-    for (int u = box.x; u < box.br().x; ++u) {
-      const double distance = std::hypot(u - guess.centre.x, v - guess.centre.y);
-      if (distance > 1.6 * guess.radius_px) rim.push_back(signal.at(u, v));
-      if (distance < std::max(guess.radius_px, 1.5)) near.push_back(signal.at(u, v));
-    }
-  }
-  if (rim.size() < 8 || near.empty()) return std::nullopt;
-  const double level = median_of(rim);
-  const auto high = near.begin() + static_cast<std::ptrdiff_t>(9 * near.size() / 10);
-  std::nth_element(near.begin(), high, near.end());
-  const double amplitude = *high - level;
-  if (!(amplitude > 0.0)) return std::nullopt;
-
-  // From the brightest pixel near the guess, everything that hangs together above a fifth of the peak.
-  const double floor = level + 0.2 * amplitude;
-  cv::Point seed(-1, -1);
-  double best = floor;
-  for (int v = box.y; v < box.br().y; ++v) {
-    for (int u = box.x; u < box.br().x; ++u) {
-      if (std::hypot(u - guess.centre.x, v - guess.centre.y) > std::max(guess.radius_px, 1.5)) continue;
-      if (signal.at(u, v) <= best) continue;
-      best = signal.at(u, v);
-      seed = {u, v};
-    }
-  }
-  if (seed.x < 0) return std::nullopt;
-  cv::Mat taken = cv::Mat::zeros(box.size(), CV_8U);
-  std::queue<cv::Point> open;
-  open.push(seed);
-  taken.at<unsigned char>(seed.y - box.y, seed.x - box.x) = 1;
-  double sum = 0.0, sum_u = 0.0, sum_v = 0.0, area = 0.0, inner = 0.0;
-  while (!open.empty()) {
-    const cv::Point here = open.front();
-    open.pop();
-    // Rises linearly from nothing at the floor, so that a pixel that comes or goes there does not matter.
-    const double weight = std::min((signal.at(here.x, here.y) - floor) / (0.8 * amplitude), 1.0);
-    sum += weight;
-    sum_u += weight * here.x;
-    sum_v += weight * here.y;
-    area += std::min(weight * 2.0, 1.0);
-    inner += 1.0;
-    for (const cv::Point off : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
-      const cv::Point next = here + off;
-      if (!box.contains(next) || signal.at(next.x, next.y) <= floor) continue;
-      unsigned char& mark = taken.at<unsigned char>(next.y - box.y, next.x - box.x);
-      if (mark != 0) continue;
-      mark = 1;
-      open.push(next);
-    }
-  }
-  if (!(sum > 0.0)) return std::nullopt;
-  MarkerFit marker;
-  marker.centre = {sum_u / sum, sum_v / sum};
-  marker.radius_px = std::sqrt(area / std::numbers::pi);
-  marker.amplitude = amplitude;
-  marker.background = level;
-  const double ratio = marker.radius_px / guess.radius_px;
-  if (ratio > kLargestRatio || ratio < 1.0 / kLargestRatio) return std::nullopt;
-  return marker;
 }
 
 }  // namespace glidelab::core

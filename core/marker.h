@@ -63,6 +63,13 @@ struct MarkerGuess {
   std::optional<cv::Vec3d> shape;  ///< M of the last frame's fit: a start, not a constraint
 };
 
+inline constexpr double kLargestRatio = 2.0;  ///< of the fitted radius and the expected one, or its inverse
+
+inline bool has_expected_size(const MarkerFit& marker, const MarkerGuess& guess) {
+  const double ratio = marker.radius_px / guess.radius_px;
+  return ratio <= kLargestRatio && ratio >= 1.0 / kLargestRatio;
+}
+
 /// Fits the model in a window of 1.25 radii plus 2.5 px. Nothing where the window leaves the picture, the fit does not
 /// converge, moves by more than a radius, or ends with a shape that is not the marker's (size off by more than a factor
 /// of 2, darker than its surroundings, residuals above a third of the amplitude).

@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "core/median.h"
+#include "core/quantile.h"
 
 namespace glidelab::core {
 namespace {
@@ -17,7 +18,6 @@ constexpr int kMaxIterations = 30;
 constexpr double kTukey = 6.0;  // scaled median deviations; 99 % efficient for Gaussian residuals
 // Anything above zero keeps exact data's weights defined; a tenth of a micrometre is below any camera.
 constexpr double kLeastScale = 1e-7;
-constexpr double kMedianToSd = 1.0 / 0.6745;  // of a Gaussian
 
 /// One point of every small cell, so that a marker that rests does not outvote its motion; at most about 80.
 std::vector<cv::Point2d> thinned(const std::vector<cv::Point2d>& points) {
@@ -96,7 +96,7 @@ PlaneLine fit_from(const std::optional<PlaneLine>& start, const std::vector<cv::
     std::vector<double> distances;
     for (const cv::Point2d& point : points) distances.push_back(std::abs(start->across(point)));
     // A generous scale: the line through two noisy points is itself off by some noise.
-    const double scale = std::max(3.0 * kMedianToSd * median_of(distances), least_scale);
+    const double scale = std::max(3.0 * kSdOverMedian * median_of(distances), least_scale);
     for (std::size_t i = 0; i < points.size(); ++i) weights[i] = distances[i] < kTukey * scale ? 1.0 : 0.0;
   }
   PlaneLine line;
@@ -129,7 +129,7 @@ PlaneLine fit_from(const std::optional<PlaneLine>& start, const std::vector<cv::
       distances.push_back(std::abs(across));
     }
     if (!(length2 > 0.0)) throw base::NumericalError("the points of a line all lie in one place");
-    const double scale = std::max(kMedianToSd * median_of(distances), least_scale);
+    const double scale = std::max(kSdOverMedian * median_of(distances), least_scale);
     line.used = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double share = distances[i] / (kTukey * scale);

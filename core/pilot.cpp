@@ -23,8 +23,8 @@ double residual_noise(const Motion& motion, const std::vector<std::optional<Smoo
     if (smoothed[j]) off.push_back(std::abs(motion.y_m[j] - smoothed[j]->x_m));
   }
   // var(r) = s^2 (1 - own weight) for white noise: sum of squared weights is the own weight for a projection, and
-  // nearly so here. 1.4826: standard deviation over median magnitude of a normal distribution.
-  return 1.4826 * quantile(off, 0.5) / std::sqrt(std::max(0.1, 1.0 - weight_of_own_point));
+  // nearly so here.
+  return kSdOverMedian * quantile(off, 0.5) / std::sqrt(std::max(0.1, 1.0 - weight_of_own_point));
 }
 
 Pilot smooth_at(const Motion& motion, double bandwidth_s) {

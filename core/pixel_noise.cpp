@@ -1,4 +1,5 @@
 #include "core/pixel_noise.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ double noise_by(std::vector<float>& differences) {
   if (differences.empty()) return 0.0;
   const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  return static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
+  return kSdOverMedian * static_cast<double>(*middle) / std::sqrt(6.0);
 }
 
 template <class Pixel>

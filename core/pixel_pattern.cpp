@@ -1,4 +1,5 @@
 #include "core/pixel_pattern.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <array>
@@ -125,7 +126,7 @@ double robust_sd(const cv::Mat& deviations, const cv::Mat& mask) {
   if (sizes.empty()) return 0.0;
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
+  return kSdOverMedian * *middle;
 }
 
 bool has_mosaic(const FlatFieldStack& flat, const FlatFieldStack& dark) {

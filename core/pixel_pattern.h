@@ -33,7 +33,7 @@ std::vector<CellPattern> spatial_pattern(const cv::Mat& mean_dn, const cv::Mat& 
 /// Median of the 5 x 5 pixels around each one (of the same colour, in a mosaic).
 cv::Mat neighbourhood_median(const cv::Mat& mean_dn, bool mosaic);
 
-/// 1.4826 times the median of the absolute values: the standard deviation, as outliers do not move it.
+/// kSdOverMedian times the median of the absolute values: the standard deviation, as outliers do not move it.
 double robust_sd(const cv::Mat& deviations, const cv::Mat& mask);
 
 /// Pixels further than this many robust standard deviations off their neighbourhood stand out: of a normal pattern,

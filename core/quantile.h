@@ -11,6 +11,9 @@ namespace glidelab::core {
 /// Standard deviations to either side that hold 95 % of a normal distribution: the quantile of 0.975.
 inline constexpr double kNormal95 = 1.959963984540054;
 
+/// Standard deviation of normal numbers about zero over the median of their magnitudes: over the quantile of 0.75.
+inline constexpr double kSdOverMedian = 1.0 / 0.674489750196082;
+
 /// The value below which the given part of the numbers lies (the lower of two neighbours); 0 where there are none.
 inline double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/median.h"
@@ -9,13 +10,16 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kDisturbed = 3.0;     // residuals over the usual ones
-constexpr double kWellKnown = 0.5;     // px; a shift known less well is no measurement
-constexpr double kTells = 0.2;         // px; a patch that is to agree with the others must know its shift so well
-constexpr double kOff = 5.0;           // of its standard deviations
-constexpr double kInterpolated = 0.1;  // px: residual over gradient of structure near the pixels' own size
-constexpr double kLossyNoise = 1.0;    // codes, of a pixel
-constexpr double kBlock = 64.0;        // pixels that a codec errs in together
+constexpr double kDisturbed = 3.0;         // residuals over the usual ones
+constexpr double kWellKnown = 0.5;         // px; a shift known less well is no measurement
+constexpr double kTells = 0.2;             // px; a patch that is to agree with the others must know its shift so well
+constexpr double kOff = 5.0;               // of its standard deviations
+constexpr double kInterpolated = 0.1;      // px: residual over gradient of structure near the pixels' own size
+constexpr double kLossyNoise = 1.0;        // codes, of a pixel
+constexpr double kBlock = 64.0;            // pixels that a codec errs in together
+constexpr double kLeastShiftSd = 0.01;     // px: of a patch against the others
+constexpr double kMedianOfSquare = 0.455;  // of a standard normal deviate
+constexpr int kFramesOfChange = 3;         // in a row that give changes over one frame and over two
 
 void keep_known(SceneLook& look) {
   if (!(look.sd_u_px < kWellKnown)) look.u_px = look.sd_u_px = 0.0;
@@ -28,118 +32,132 @@ double of_lossy(double variance) {
 
 }  // namespace
 
-SceneLook SceneWatch::compare(const Pixels& pixels) {
-  SceneLook look;
-  variances_.push_back(0.0);
-  struct Found {
-    Patch* patch;
-    cv::Vec3d by;
-    double rest;
-  };
-  std::vector<Found> found;
-  std::vector<double> rests;
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    Patch& patch = patches_[p];
-    const std::size_t n = patch.reference.size();
-    std::swap(patch.before_that, patch.before);
-    std::swap(patch.before, patch.residual);
-    patch.residual.assign(n, 0.0F);
-    if (pixels[p].empty()) {
-      patch.good = 0;
-      continue;
-    }
-    cv::Vec3d right(0.0, 0.0, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double off = pixels[p][i] - patch.reference[i];
-      right += off * cv::Vec3d(patch.reference[i], -patch.gu[i], -patch.gv[i]);
-    }
-    const cv::Vec3d by = patch.inverse * right;
-    double rest = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double model = by[0] * patch.reference[i] - by[1] * patch.gu[i] - by[2] * patch.gv[i];
-      patch.residual[i] = static_cast<float>(pixels[p][i] - patch.reference[i] - model);
-      rest += patch.residual[i] * patch.residual[i];
-    }
-    // Fine structure that has moved by part of a pixel is never quite what interpolation makes of it.
-    const double moved = std::min(1.0, std::hypot(shift_.x + by[1], shift_.y + by[2]));
-    const double steep = std::sqrt((patch.structure(0, 0) + patch.structure(1, 1)) / static_cast<double>(n));
-    const double usual = std::hypot(std::max(patch.usual_rms, kPatchNoise), kInterpolated * steep * moved);
-    if (std::sqrt(rest / static_cast<double>(n)) > kDisturbed * usual) {
-      patch.good = 0;
-      continue;
-    }
-    found.push_back({&patch, by, rest / static_cast<double>(n)});
-    rests.push_back(found.back().rest);
+/// Gain and shift of a patch that nothing passes through; what is left over stays in the patch.
+std::optional<SceneWatch::Moved> SceneWatch::fit_patch(Patch& patch, const std::vector<float>& pixels) const {
+  const std::size_t n = patch.reference.size();
+  std::swap(patch.before_that, patch.before);
+  std::swap(patch.before, patch.residual);
+  patch.residual.assign(n, 0.0F);
+  if (pixels.empty()) return std::nullopt;
+  cv::Vec3d right(0.0, 0.0, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double off = pixels[i] - patch.reference[i];
+    right += off * cv::Vec3d(patch.reference[i], -patch.gu[i], -patch.gv[i]);
   }
-  if (found.empty()) return look;
-  double variance =
-      std::max(median_of(rests), kPatchNoise * kPatchNoise) / (kPatchSofter * kPatchSofter);  // of a pixel
-  if (lossy_) variance = of_lossy(variance);
-  variances_.back() = variance;
-  // What moves otherwise than half of the patches that can tell is not the scene.
-  for (const int axis : {0, 1}) {
+  const cv::Vec3d by = patch.inverse * right;
+  double rest = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double model = by[0] * patch.reference[i] - by[1] * patch.gu[i] - by[2] * patch.gv[i];
+    patch.residual[i] = static_cast<float>(pixels[i] - patch.reference[i] - model);
+    rest += patch.residual[i] * patch.residual[i];
+  }
+  // Fine structure that has moved by part of a pixel is never quite what interpolation makes of it.
+  const double moved = std::min(1.0, std::hypot(shift_.x + by[1], shift_.y + by[2]));
+  const double steep = std::sqrt((patch.structure(0, 0) + patch.structure(1, 1)) / static_cast<double>(n));
+  const double usual = std::hypot(std::max(patch.usual_rms, kPatchNoise), kInterpolated * steep * moved);
+  const double mean = rest / static_cast<double>(n);
+  if (std::sqrt(mean) > kDisturbed * usual) return std::nullopt;
+  return Moved{&patch, by, mean};
+}
+
+/// What moves otherwise than half of the patches that can tell is not the scene.
+void SceneWatch::drop_odd(std::vector<Moved>& found, double variance) {
+  for (const int axis : {1, 2}) {
     std::vector<double> shifts;
-    for (const Found& one : found) {
-      if (variance * one.patch->inverse(1 + axis, 1 + axis) < kTells * kTells) shifts.push_back(one.by[1 + axis]);
+    for (const Moved& one : found) {
+      if (variance * one.patch->inverse(axis, axis) < kTells * kTells) shifts.push_back(one.by[axis]);
     }
     if (shifts.size() < 3) continue;
     const double usual = median_of(shifts);
-    std::erase_if(found, [&](const Found& one) {
-      const double sd = std::sqrt(variance * one.patch->inverse(1 + axis, 1 + axis));
-      const bool off = sd < kTells && std::abs(one.by[1 + axis] - usual) > kOff * std::max(sd, 0.01);
+    std::erase_if(found, [&](const Moved& one) {
+      const double sd = std::sqrt(variance * one.patch->inverse(axis, axis));
+      const bool off = sd < kTells && std::abs(one.by[axis] - usual) > kOff * std::max(sd, kLeastShiftSd);
       if (off) one.patch->good = 0;
       return off;
     });
   }
-  cv::Matx22d information = cv::Matx22d::zeros();
-  cv::Vec2d sum(0.0, 0.0);
+}
+
+/// Of the bands of rows that have a patch.
+void SceneWatch::tell_gains(const std::vector<Moved>& found, double variance, SceneLook& look) const {
   std::array<double, kRowBands> gain{}, weight{};
-  for (const Found& one : found) {
-    Patch& patch = *one.patch;
-    ++patch.good;
-    information += patch.structure;
-    sum += patch.structure * cv::Vec2d(one.by[1], one.by[2]);
+  for (const Moved& one : found) {
     const auto band = static_cast<std::size_t>(
-        std::clamp((patch.place.y + kPatchSide / 2) * static_cast<int>(kRowBands) / size_.height, 0,
+        std::clamp((one.patch->place.y + kPatchSide / 2) * static_cast<int>(kRowBands) / size_.height, 0,
                    static_cast<int>(kRowBands) - 1));
-    gain[band] += one.by[0] / patch.gain_variance;
-    weight[band] += 1.0 / patch.gain_variance;
-    if (patch.good < 3) continue;
-    patch.changed.resize(patch.residual.size(), 0.0);
-    patch.changes += 1.0;
-    for (std::size_t i = 0; i < patch.residual.size(); ++i) {
-      const double change = patch.residual[i] - patch.before[i];
-      patch.changed[i] += change * change;
-      change_one_ += change * change;
-      change_two_ += std::pow(patch.residual[i] - patch.before_that[i], 2);
-    }
-    changes_ += patch.residual.size();
+    gain[band] += one.by[0] / one.patch->gain_variance;
+    weight[band] += 1.0 / one.patch->gain_variance;
   }
   for (std::size_t b = 0; b < kRowBands; ++b) {
     if (weight[b] == 0.0) continue;
     look.gain[b] = gain[b] / weight[b];
     look.gain_sd[b] = std::sqrt(variance / weight[b]);
   }
-  if (found.empty()) return look;
+}
+
+/// The patches' own shifts, weighted by their gradients.
+void SceneWatch::tell_shift(const std::vector<Moved>& found, double variance, SceneLook& look) const {
+  cv::Matx22d information = cv::Matx22d::zeros();
+  cv::Vec2d sum(0.0, 0.0);
+  for (const Moved& one : found) {
+    information += one.patch->structure;
+    sum += one.patch->structure * cv::Vec2d(one.by[1], one.by[2]);
+  }
   const cv::Matx22d inverse = information.inv();
   const cv::Vec2d shift = inverse * sum;
   // What patches differ by beyond their pixels' noise errs in all pixels of a patch together, as a codec's blocks do.
-  std::array<std::vector<double>, 2> off;
-  for (const Found& one : found) {
-    for (const int axis : {0, 1}) {
+  const auto variance_with_excess = [&](int axis) {
+    std::vector<double> squares;
+    for (const Moved& one : found) {
       const double own = variance * one.patch->inverse(1 + axis, 1 + axis);
-      off[static_cast<std::size_t>(axis)].push_back(std::pow(one.by[1 + axis] - shift[axis], 2) / own);
+      squares.push_back(std::pow(one.by[1 + axis] - shift[axis], 2) / own);
     }
-  }
-  const auto excess = [](const std::vector<double>& squares) {
-    constexpr double kMedianOfSquare = 0.455;  // of a standard normal deviate
-    return std::max(1.0, median_of(squares) / kMedianOfSquare);
+    return variance * inverse(axis, axis) * std::max(1.0, median_of(squares) / kMedianOfSquare);
   };
-  look.sd_u_px = std::sqrt(variance * inverse(0, 0) * excess(off[0]));
-  look.sd_v_px = std::sqrt(variance * inverse(1, 1) * excess(off[1]));
+  look.sd_u_px = std::sqrt(variance_with_excess(0));
+  look.sd_v_px = std::sqrt(variance_with_excess(1));
   look.u_px = shift_.x + shift[0];
   look.v_px = shift_.y + shift[1];
   keep_known(look);
+}
+
+/// Each pixel's changes since the frame before, and since the one before that.
+void SceneWatch::add_changes(Patch& patch) {
+  patch.changed.resize(patch.residual.size(), 0.0);
+  patch.changes += 1.0;
+  for (std::size_t i = 0; i < patch.residual.size(); ++i) {
+    const double change = patch.residual[i] - patch.before[i];
+    patch.changed[i] += change * change;
+    change_one_ += change * change;
+    change_two_ += std::pow(patch.residual[i] - patch.before_that[i], 2);
+  }
+  changes_ += patch.residual.size();
+}
+
+SceneLook SceneWatch::compare(const Pixels& pixels) {
+  SceneLook look;
+  variances_.push_back(0.0);
+  std::vector<Moved> found;
+  std::vector<double> rests;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    if (const std::optional<Moved> moved = fit_patch(patches_[p], pixels[p])) {
+      found.push_back(*moved);
+      rests.push_back(moved->rest);
+    } else {
+      patches_[p].good = 0;
+    }
+  }
+  if (found.empty()) return look;
+  double variance =
+      std::max(median_of(rests), kPatchNoise * kPatchNoise) / (kPatchSofter * kPatchSofter);  // of a pixel
+  if (lossy_) variance = of_lossy(variance);
+  variances_.back() = variance;
+  drop_odd(found, variance);
+  for (const Moved& one : found) {
+    if (++one.patch->good >= kFramesOfChange) add_changes(*one.patch);
+  }
+  tell_gains(found, variance, look);
+  if (!found.empty()) tell_shift(found, variance, look);
   return look;
 }
 

@@ -16,6 +16,7 @@
 #include <opencv2/core.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/block_steps.h"
@@ -54,6 +55,12 @@ class SceneWatch {
     std::vector<double> changed;                       ///< sum of squares of each pixel's changes
     double changes = 0.0;                              ///< from one frame to the next
   };
+  /// A patch that counts in a frame.
+  struct Moved {
+    Patch* patch;
+    cv::Vec3d by;  ///< gain, and shift (px) from where the reference stands
+    double rest;   ///< mean square of what is left over
+  };
   using Pixels = std::vector<std::vector<float>>;  ///< of each patch
 
   void choose(const cv::Mat& grey);
@@ -61,6 +68,11 @@ class SceneWatch {
   void make_reference();
   static void shift_reference(Patch& patch, cv::Point2d shift);
   SceneLook compare(const Pixels& pixels);
+  std::optional<Moved> fit_patch(Patch& patch, const std::vector<float>& pixels) const;
+  static void drop_odd(std::vector<Moved>& found, double variance);
+  void tell_gains(const std::vector<Moved>& found, double variance, SceneLook& look) const;
+  void tell_shift(const std::vector<Moved>& found, double variance, SceneLook& look) const;
+  void add_changes(Patch& patch);
   void look(const cv::Mat& grey, double t_s);
   PixelChanges changes_by_level() const;
   void allow_for_codec(std::vector<SceneLook>& looks) const;

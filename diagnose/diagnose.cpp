@@ -274,7 +274,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
   std::vector<std::optional<core::CameraSettings>> cameras;
   std::vector<core::Experiment> experiments;
   for (const std::filesystem::path& folder : folders) {
-    const core::Experiment experiment = core::read_experiment(folder, options.outside);
+    const core::Experiment experiment = read_recording(folder, options.outside);
     if (experiment.lines) {
       if (folders.size() > 1) {
         throw base::InputError(base::Issue{experiment.file.string(), 0, "lines",

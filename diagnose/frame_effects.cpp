@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/median.h"
+#include "core/quantile.h"
 #include "diagnose/common_limits.h"
 #include "diagnose/leftover.h"
 #include "diagnose/speed_noise.h"
@@ -40,12 +41,11 @@ namespace {
 
 constexpr std::size_t kSpeedPoints = 61;  // that give the scatter at a speed: known to a seventh
 
-constexpr double kMedianOfNormal = 0.6745;  // of |z|, z of standard deviation 1
-constexpr double kLeastScatter = 0.05;      // of the noise: positions may have been put where the curve is
+constexpr double kLeastScatter = 0.05;  // of the noise: positions may have been put where the curve is
 
 /// Standard deviation of values by the median of their sizes.
 double scatter_of(std::vector<double> sizes) {
-  return std::max(core::median_of(std::move(sizes)) / kMedianOfNormal, kLeastScatter);
+  return std::max(core::kSdOverMedian * core::median_of(std::move(sizes)), kLeastScatter);
 }
 
 /// Scatter of values by how fast the marker moves (median of the nearest in speed), over that of all of them.

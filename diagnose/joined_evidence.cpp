@@ -44,7 +44,7 @@ double line_support(const PictureEvidence& pictures, const PictureFinding& findi
   const auto at = static_cast<Eigen::Index>(g);
   const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(at, at)));
   const DiagnosedParameter& sheared = finding.parameters.front();
-  return agreement({sheared.value - stated_line_s(pictures.clips.front().camera), sheared.sd}, {fit.at.global[at], sd});
+  return agreement({sheared.value - pictures.stated_line_s, sheared.sd}, {fit.at.global[at], sd});
 }
 
 /// Log likelihood of one motion's residuals: variance s²((1 - share) white + share exp(-lag/frames)).

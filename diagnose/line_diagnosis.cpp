@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "diagnose/alike_effects.h"
-#include "diagnose/clip_interval.h"
 #include "diagnose/effect_list.h"
+#include "diagnose/line_gap.h"
 #include "diagnose/line_isolability.h"
 #include "diagnose/line_regions.h"
 #include "diagnose/line_weighing.h"
@@ -21,7 +20,6 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kSameEvidence = 3.0;
-constexpr double kReadAngle = 0.3;  // degrees: what a person reads off a plumb, where a table says nothing
 
 void check_names(const std::vector<std::string>& without) {
   const std::vector<std::string> known = effect_words();
@@ -135,63 +133,84 @@ void join_sets(const std::vector<LineTerm>& terms, const std::vector<LineExplana
   join_alike(named, words, diagnosis);
 }
 
-/// Over lines, each of which is held out by itself.
-void add_intervals(GapSizes& gap) {
-  std::vector<ClipSquares> before, after;
-  for (const double one : gap.before_by_clip) before.push_back({one * one, 1.0});
-  for (const double one : gap.after_by_clip) after.push_back({one * one, 1.0});
-  gap.interval95.why_none = why_no_interval(before.size());
-  gap.interval95.before = rms_interval(before);
-  gap.interval95.after = rms_interval(after);
-  if (gap.shrink) gap.interval95.shrink = shrink_interval(before, after);
-}
-
-GapSizes gap_of(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
-                const OwnScatter& scatter, std::vector<std::string>& notes) {
-  GapSizes gap;
-  gap.before = gap_of_lines(before, scatter);
-  gap.after = gap_of_lines(after, scatter);
-  gap.standard_error = std::sqrt(0.5 / static_cast<double>(lines.size()) + 0.5 / static_cast<double>(scatter.freedom));
-  if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - 1.0);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    gap.held_out.push_back(fmt::format("{:.0f} g, {} deg, v {} 0", 1000.0 * lines[i].mass_kg, lines[i].incline_deg,
-                                       lines[i].direction > 0 ? ">" : "<"));
-    gap.before_by_clip.push_back(gap_of_line(before, scatter, i));
-    gap.after_by_clip.push_back(gap_of_line(after, scatter, i));
-  }
-  add_intervals(gap);
-  for (const double incline : different(lines, &TableLine::incline_deg)) {
-    double mean = 0.0, count = 0.0;
-    for (const TableLine& line : lines) {
-      if (line.incline_deg != incline) continue;
-      mean += line.a0_m_s2;
-      count += 1.0;
-    }
-    const double intercept = mean / count;
-    if (!(std::abs(intercept) <= g)) {
-      gap.parameters.push_back({"alpha_deg", "stated", fmt::format("{} deg", incline)});
-      notes.push_back(
-          fmt::format("Lines stated at {} degrees have a mean intercept of {:.3g} m/s², more than gravity ({:.6g} "
-                      "m/s²): no inclination has it.",
-                      incline, intercept, g));
-      continue;
-    }
-    const double degrees = std::asin(intercept / g) * 180.0 / std::numbers::pi;
-    const double z = (degrees - incline) / kReadAngle;
-    gap.parameters.push_back({"alpha_deg", "stated", fmt::format("{} deg", incline), z, z});
-    notes.push_back(fmt::format(
-        "Lines stated at {} degrees have a mean intercept of {:.3f} degrees; a table does not say how well the angle "
-        "was read ({} degrees are taken).",
-        incline, degrees, kReadAngle));
-  }
-  return gap;
-}
-
+/// The term's size where nothing else is added, or its standard deviation where that is more: what may be there.
 double size_by_itself(const LineData& data, const std::vector<LineTerm>& terms, const std::string& id) {
   for (const LineTerm& term : terms) {
-    if (term.id == id) return solve_lines(data, {term}).size[0];
+    if (term.id != id) continue;
+    const LineSolution alone = solve_lines(data, {term});
+    return std::max(std::abs(alone.size[0]), alone.sd[0]);
   }
   return 0.0;
+}
+
+/// The likeliest explanation with a name and the likeliest without; nothing where there is none.
+struct Leaders {
+  const LineExplanation* named = nullptr;
+  const LineExplanation* unnamed = nullptr;
+};
+
+Leaders leaders_of(const std::vector<LineExplanation>& all) {
+  Leaders leaders;
+  for (const LineExplanation& e : all) {
+    if (!e.family && e.named.empty()) continue;
+    const LineExplanation*& leader = e.family ? leaders.unnamed : leaders.named;
+    if (leader == nullptr || e.probability > leader->probability) leader = &e;
+  }
+  return leaders;
+}
+
+/// The probabilities of nothing and of what has no name, the verdict that they give, and the ranking of the rest.
+void weigh_up(const std::vector<LineExplanation>& all, LineComparison& table, Diagnosis& diagnosis) {
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    if (all[e].family) {
+      diagnosis.unknown += all[e].probability;
+    } else if (all[e].named.empty()) {
+      diagnosis.none += all[e].probability;
+    } else {
+      const LineCandidate& c = table.candidates[e];
+      diagnosis.ranking.push_back(
+          {c.id, c.probability, c.log_evidence_gain, c.log_likelihood_gain, c.terms, c.gap, c.left_out});
+    }
+  }
+  const auto likelier = [](const auto& a, const auto& b) {
+    return a.left_out.empty() != b.left_out.empty() ? a.left_out.empty() : a.probability > b.probability;
+  };
+  std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), likelier);
+  std::stable_sort(table.candidates.begin(), table.candidates.end(), likelier);
+  diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
+}
+
+/// Which effects a table does not tell apart, and the probability that it is one or several of them.
+void tell_either(const std::vector<LineExplanation>& all, const std::vector<LineTerm>& terms,
+                 const std::vector<std::size_t>& equals, LineComparison& table) {
+  if (equals.size() < 2) return;
+  for (const std::size_t t : equals) table.either_of.push_back(terms[t].id);
+  for (const LineExplanation& e : all) {
+    const bool only = !e.named.empty() && std::all_of(e.named.begin(), e.named.end(), [&](std::size_t t) {
+      return std::find(equals.begin(), equals.end(), t) != equals.end();
+    });
+    if (only && !e.family) table.either_probability += e.probability;
+  }
+}
+
+std::vector<LineCurve> curves_of(const std::vector<TableLine>& lines, const LineData& data,
+                                 const std::vector<LineTerm>& terms, const std::vector<LineExplanation>& all) {
+  std::vector<LineCurve> curves;
+  for (const LineExplanation& e : all) {
+    if (e.named.size() != 1 || e.family || !e.solution.left_out.empty()) continue;
+    LineCurve curve = line_curve(lines, data, terms[e.named.front()], e.solution);
+    if (!curve.mass_kg.empty()) curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+std::string next_of(const std::vector<TableLine>& lines, const LineData& data) {
+  if (different(lines, &TableLine::mass_kg).size() < 2) {
+    return "Record a second mass: with one, a friction force is simply mu.";
+  }
+  const std::vector<LineTerm> every = named_terms(lines, {});
+  return next_for_lines(lines, size_by_itself(data, every, "load_independent_friction"),
+                        size_by_itself(data, every, "smoothing_bias"));
 }
 
 }  // namespace
@@ -205,66 +224,33 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
   const std::vector<LineExplanation> all = weigh_lines(data, terms, families);
   const LineSolution& nominal = all.front().solution;
   const OwnScatter scatter = own_scatter(lines);
+  const Leaders leaders = leaders_of(all);
 
   Diagnosis diagnosis;
   LineComparison table = comparison_of(all, terms, families, scatter);
   table.lines = lines.size();
   table.chi2_before = table.candidates.front().chi2;
-  const LineExplanation *best = nullptr, *unnamed = nullptr;
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    const LineExplanation*& leader = all[e].family ? unnamed : best;
-    if (all[e].family) diagnosis.unknown += all[e].probability;
-    if (!all[e].family && all[e].named.empty()) diagnosis.none += all[e].probability;
-    if (!all[e].family && all[e].named.empty()) continue;
-    if (leader == nullptr || all[e].probability > leader->probability) leader = &all[e];
-    if (all[e].family) continue;
-    const LineCandidate& c = table.candidates[e];
-    diagnosis.ranking.push_back(
-        {c.id, c.probability, c.log_evidence_gain, c.log_likelihood_gain, c.terms, c.gap, c.left_out});
-  }
-  const auto likelier = [](const auto& a, const auto& b) {
-    return a.left_out.empty() != b.left_out.empty() ? a.left_out.empty() : a.probability > b.probability;
-  };
-  std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), likelier);
-  std::stable_sort(table.candidates.begin(), table.candidates.end(), likelier);
-  diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
-  if (best != nullptr && best->probability > 0.0 && diagnosis.verdict != "none") {
-    const std::vector<std::size_t> equals = equals_of(*best, all);
-    for (const std::size_t t : equals) {
-      if (equals.size() > 1) table.either_of.push_back(terms[t].id);
-    }
-    for (const LineExplanation& e : all) {
-      const bool only = !e.named.empty() && std::all_of(e.named.begin(), e.named.end(), [&](std::size_t t) {
-        return std::find(equals.begin(), equals.end(), t) != equals.end();
-      });
-      if (equals.size() > 1 && only && !e.family) table.either_probability += e.probability;
-    }
-    if (diagnosis.verdict == "effect") diagnosis.effects = effects_of(*best, all, terms, equals, without);
+  weigh_up(all, table, diagnosis);
+  const bool is_effect = diagnosis.verdict == "effect", is_unknown = diagnosis.verdict == "unknown";
+  if (leaders.named != nullptr && leaders.named->probability > 0.0 && diagnosis.verdict != "none") {
+    const std::vector<std::size_t> equals = equals_of(*leaders.named, all);
+    tell_either(all, terms, equals, table);
+    if (is_effect) diagnosis.effects = effects_of(*leaders.named, all, terms, equals, without);
   }
   join_sets(terms, all, diagnosis);
-  if (diagnosis.verdict == "effect") diagnosis.stage = diagnosis.effects.front().stage;
-  if (diagnosis.verdict == "unknown") diagnosis.stage = "dynamics";
-  if (diagnosis.verdict != "none") diagnosis.regions = line_regions(lines, data, nominal, scatter);
+  if (is_effect) diagnosis.stage = diagnosis.effects.front().stage;
+  if (is_unknown) diagnosis.stage = "dynamics";
+  if (is_effect || is_unknown) diagnosis.regions = line_regions(lines, data, nominal, scatter);
   if (scatter.known()) {
-    const LineSolution& after = diagnosis.verdict == "effect"    ? best->solution
-                                : diagnosis.verdict == "unknown" ? unnamed->solution
-                                                                 : nominal;
-    diagnosis.gap = gap_of(lines, g, nominal, after, scatter, diagnosis.notes);
+    const LineSolution& after = is_effect ? leaders.named->solution : is_unknown ? leaders.unnamed->solution : nominal;
+    LineGap gap = line_gap(lines, g, nominal, after, scatter);
+    diagnosis.gap = std::move(gap.sizes);
+    diagnosis.notes = std::move(gap.notes);
     diagnosis.isolability = line_isolability(data, terms, scatter.slope, scatter.intercept_m_s2);
   }
   table.off = lines_off(lines, nominal);
-  for (const LineExplanation& e : all) {
-    if (e.named.size() != 1 || e.family || !e.solution.left_out.empty()) continue;
-    LineCurve curve = line_curve(lines, data, terms[e.named.front()], e.solution);
-    if (!curve.mass_kg.empty()) table.curves.push_back(std::move(curve));
-  }
-  if (different(lines, &TableLine::mass_kg).size() < 2) {
-    diagnosis.next_experiment = "Record a second mass: with one, a friction force is simply mu.";
-  } else {
-    const std::vector<LineTerm> every = named_terms(lines, {});
-    diagnosis.next_experiment = next_for_lines(lines, size_by_itself(data, every, "load_independent_friction"),
-                                               size_by_itself(data, every, "smoothing_bias"));
-  }
+  table.curves = curves_of(lines, data, terms, all);
+  diagnosis.next_experiment = next_of(lines, data);
   diagnosis.notes.push_back(fmt::format(
       "A table of {} lines: their errors are not stated and are taken from their scatter; the speeds that they rest on "
       "are not known, so that effects of the speed (quadratic_drag, power_law_drag, stribeck) cannot be weighed.",

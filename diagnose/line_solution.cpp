@@ -12,7 +12,8 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kLeastLeft = 1e-6;                     // of lines without any scatter: log of K/m, and m/s²
+constexpr double kLeastLeft = 1e-6;                     // of lines with very many digits: log of K/m, and m/s²
+constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
 constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
 constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
 constexpr int kMostTurns = 50;
@@ -50,6 +51,10 @@ double squares_about_mean(const std::vector<double>& values) {
   return sum;
 }
 
+double root_mean_square(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
 }  // namespace
 
 LineData line_data(const std::vector<TableLine>& lines, double g) {
@@ -65,6 +70,13 @@ LineData line_data(const std::vector<TableLine>& lines, double g) {
     data.base_a0(i, at) = 1.0;
     data.base_a0(i, data.base_a0.cols() - 1) = -line.direction * g * std::cos(line.incline_deg * kDegree);
   }
+  double of_k = 0.0, of_a = 0.0;  // squares of errors, relative ones of K/m
+  for (const TableLine& line : lines) {
+    of_k += std::pow(line.k_digit_1_s / line.k_over_m_1_s, 2) * kRoundingVariance / static_cast<double>(n);
+    of_a += std::pow(line.a0_digit_m_s2, 2) * kRoundingVariance / static_cast<double>(n);
+  }
+  data.rounding_log_k = std::max(std::sqrt(of_k), kLeastLeft);
+  data.rounding_a0 = std::max(std::sqrt(of_a), kLeastLeft);
   return data;
 }
 
@@ -95,8 +107,8 @@ LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& term
     inverse = scale.asDiagonal() * base::inverse_positive(normal) * scale.asDiagonal();
     fit = base::product(inverse, base::transposed_product(wx, Eigen::VectorXd(weight.cwiseProduct(y))));
     off = y - base::product(x, fit);
-    const double sd_k = std::max(std::sqrt(off.head(n).squaredNorm() / static_cast<double>(n)), kLeastLeft);
-    const double sd_a = std::max(std::sqrt(off.tail(n).squaredNorm() / static_cast<double>(n)), kLeastLeft);
+    const double sd_k = std::max(root_mean_square(off.head(n)), data.rounding_log_k);
+    const double sd_a = std::max(root_mean_square(off.tail(n)), data.rounding_a0);
     const bool settled = std::abs(sd_k - s.sd_k) <= kSettled * sd_k && std::abs(sd_a - s.sd_a) <= kSettled * sd_a;
     s.sd_k = sd_k;
     s.sd_a = sd_a;

@@ -11,8 +11,9 @@
 ///
 ///     ∫ (1 + g)^((n - p0 - p) / 2) (1 + g RSS / RSS_0)^(-(n - p0) / 2) sqrt(n / (2 pi)) g^(-3/2) exp(-n / (2 g)) dg
 ///
-/// for each kind of data. (With g = n fixed it stays below (1 + n)^((n - p0 - p) / 2) however little is left: two
-/// causes at once would never be found where one of them explains nearly all.)
+/// for each kind of data. Neither RSS is less than what rounding to the table's decimals leaves: lines that were
+/// calculated, and rounded, tell no more than their digits. (With g = n fixed it stays below (1 + n)^((n - p0 - p) / 2)
+/// however little is left: two causes at once would never be found where one of them explains nearly all.)
 #pragma once
 
 #include <Eigen/Core>
@@ -30,6 +31,7 @@ namespace glidelab::diagnose {
 struct LineData {
   Eigen::VectorXd log_k, a0;
   Eigen::MatrixXd base_log_k, base_a0;
+  double rounding_log_k = 0.0, rounding_a0 = 0.0;  ///< standard deviations of the numbers' own rounding
 };
 
 struct LineSolution {

@@ -27,11 +27,25 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file) {
     if (!(std::abs(incline[i]) < 90.0)) wrong("incline_deg", incline[i], "an angle between -90 and 90");
     if (direction[i] != 1.0 && direction[i] != -1.0) wrong("direction", direction[i], "1 or -1, the sign of v");
     if (!(k[i] > 0.0)) wrong("k_over_m_1_s", k[i], "a number above 0");
-    lines.push_back({mass[i], incline[i], direction[i] > 0.0 ? 1 : -1, a0[i], k[i]});
+    lines.push_back({mass[i], incline[i], direction[i] > 0.0 ? 1 : -1, a0[i], k[i], table.last_digit_of("a0_m_s2"),
+                     table.last_digit_of("k_over_m_1_s")});
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
   if (lines.size() < kFewestLines) throw base::InputError(too_few_lines(file.string(), lines.size()));
   return lines;
+}
+
+core::Experiment read_recording(const std::filesystem::path& path, core::OutsideFiles outside) {
+  std::error_code ignored;  // what cannot be looked at is read as a folder, which says what is wrong
+  if (path.extension() != ".csv" || !std::filesystem::is_regular_file(path, ignored)) {
+    return core::read_experiment(path, outside);
+  }
+  core::Experiment experiment;
+  experiment.folder = path.parent_path();
+  experiment.file = path;
+  experiment.name = path.stem().string();
+  experiment.lines = path;
+  return experiment;
 }
 
 base::Issue too_few_lines(const std::string& file, std::size_t lines) {

@@ -5,17 +5,22 @@
 #include <algorithm>
 
 #include "base/number_text.h"
+#include "base/size_text.h"
 #include "diagnose/verdict_words.h"
 
 namespace glidelab::diagnose {
 namespace {
 
+constexpr double kWorthSaying = 0.01;  // probability of what has a name beside something that has none
+
 std::string times(double gap) {
   return gap < 10.0 ? fmt::format("{:.1f}", gap) : fmt::format("{:.0f}", gap);
 }
 
-std::string unit_of(const std::string& key) {
-  return key == "force_n" ? "N" : key == "mass_kg" ? "kg" : "m/s² for each 1/s² of (K/m)²";
+std::string size_text(const LineSize& size) {
+  if (size.key == "force_n") return base::size_and_sd_text(size.value, size.sd, "N");
+  if (size.key == "mass_kg") return base::size_and_sd_text(size.value, size.sd, "kg");
+  return base::size_and_sd_text(size.value, size.sd, "m/s²") + " for each 1/s² of (K/m)²";
 }
 
 const LineCandidate& candidate(const LineComparison& lines, const std::string& id) {
@@ -26,8 +31,7 @@ const LineCandidate& candidate(const LineComparison& lines, const std::string& i
 std::string sizes_of(const LineCandidate& candidate) {
   std::string text;
   for (const LineSize& size : candidate.sizes) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : " and ", base::value_and_sd_text(size.value, size.sd),
-                        unit_of(size.key));
+    text += (text.empty() ? "" : " and ") + size_text(size);
   }
   return text;
 }
@@ -124,7 +128,8 @@ std::string unknown_words(const Diagnosis& diagnosis) {
                         : most.direction > 0 ? " where v > 0"
                                              : " where v < 0");
   }
-  if (lines.either_of.size() > 1) return text + " Of what has a name the best is " + either(diagnosis) + ".";
+  if (lines.either_of.size() > 1 && lines.either_probability >= kWorthSaying)
+    return text + " Of what has a name the best is " + either(diagnosis) + ".";
   return text;
 }
 
@@ -164,10 +169,10 @@ std::string next_for_lines(const std::vector<TableLine>& lines, double force_n, 
   const double heavy = 3.0 * different(lines, &TableLine::mass_kg).back();
   return fmt::format(
       "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its square, a "
-      "friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {:.2g} N moves "
-      "its "
-      "intercepts by {:.2g} m/s² each, the smoothing bias by {:.2g} m/s².",
-      1000.0 * heavy, force_n, force_n / heavy, bias_s2_m_s2 * (drag / heavy) * (drag / heavy));
+      "friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} moves "
+      "its intercepts by {} each, the smoothing bias by {}.",
+      1000.0 * heavy, base::size_text(force_n, 2, "N"), base::size_text(force_n / heavy, 2, "m/s²"),
+      base::size_text(bias_s2_m_s2 * (drag / heavy) * (drag / heavy), 2, "m/s²"));
 }
 
 }  // namespace glidelab::diagnose

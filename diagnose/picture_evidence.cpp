@@ -41,14 +41,16 @@ std::vector<std::vector<FilmedClip>> by_camera(const std::vector<FilmedClip>& cl
   return cameras;
 }
 
-/// What one camera shows, unless another has shown it more clearly.
-void add_clearest(PictureFinding finding, PictureEvidence& evidence) {
+/// What one camera shows, unless another has shown it more clearly: false then.
+bool add_clearest(PictureFinding finding, PictureEvidence& evidence) {
   for (PictureFinding& known : evidence.findings) {
     if (known.id != finding.id) continue;
-    if (finding.log_evidence > known.log_evidence) known = std::move(finding);
-    return;
+    if (!(finding.log_evidence > known.log_evidence)) return false;
+    known = std::move(finding);
+    return true;
   }
   evidence.findings.push_back(std::move(finding));
+  return true;
 }
 
 /// `clips` of one camera.
@@ -85,7 +87,7 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   shutter.words = fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
                               base::value_and_sd_text(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
                               stated == 0.0 ? "(a global shutter) is stated" : "is stated");
-  add_clearest(std::move(shutter), evidence);
+  if (add_clearest(std::move(shutter), evidence)) evidence.stated_line_s = stated;
 }
 
 }  // namespace
@@ -147,6 +149,7 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
 PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
   PictureEvidence evidence;
   if (clips.empty()) return evidence;
+  evidence.stated_line_s = stated_line_s(clips.front().camera);
   for (const std::vector<FilmedClip>& of_one : by_camera(clips)) add_shape(of_one, evidence);
   add_flicker(clips, evidence);
   add_sway(clips, evidence);

@@ -37,7 +37,8 @@ struct PictureEvidence {
   std::vector<PictureFinding> findings;
   std::vector<PictureCurve> curves;
   std::vector<FilmedClip> clips;
-  double fastest_px_s = 0.0;  ///< of the marker
+  double fastest_px_s = 0.0;   ///< of the marker
+  double stated_line_s = 0.0;  ///< of the camera whose clips show the shutter best; of the first where none does
   std::optional<Filming> filming;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/dense.h"
@@ -16,6 +17,11 @@ constexpr int kPlace = 4;            // terms of a cubic
 constexpr double kShortest_s = 2e-5;
 constexpr double kFinest = 1.06;  // step of the exposures that are tried
 constexpr int kBins = 24;
+constexpr int kRounds = 3;                  // of the fit, each without the last one's outliers
+constexpr double kOutlier = 7.0;            // median deviations
+constexpr double kLeastScatter_px2 = 1e-9;  // so that exact data have one
+constexpr double kSlowest_px_s = 1.0;       // of the fastest sample: slower, nothing smears
+constexpr double kLongestSmear = 3.0;       // radii
 
 struct Sample {
   double place = 0.0;  ///< u, -1 to 1 over the picture
@@ -126,12 +132,17 @@ double memory_of(const Eigen::VectorXd& rest) {
   return memory;
 }
 
+double fastest_of(const std::vector<Sample>& samples) {
+  double fastest = 0.0;
+  for (const Sample& s : samples) fastest = std::max(fastest, std::hypot(s.wu, s.wv));
+  return fastest;
+}
+
 PictureCurve lengthening(const std::vector<Sample>& samples, const Eigen::VectorXd& rest, double exposure_s,
                          const std::optional<double>& stated_s) {
   PictureCurve curve;
   curve.what = "lengthening";
-  double fastest = 1.0;
-  for (const Sample& s : samples) fastest = std::max(fastest, std::hypot(s.wu, s.wv));
+  const double fastest = std::max(kSlowest_px_s, fastest_of(samples));
   std::vector<std::vector<double>> bins(kBins);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double speed = std::hypot(samples[i].wu, samples[i].wv);
@@ -154,84 +165,109 @@ PictureCurve lengthening(const std::vector<Sample>& samples, const Eigen::Vector
   return curve;
 }
 
+/// Every clip's samples; its view counted from 0 in the order of the clips.
+std::vector<Sample> all_samples(const std::vector<FilmedClip>& clips, std::size_t& views) {
+  std::map<std::size_t, std::size_t> numbers;
+  std::vector<Sample> samples;
+  for (const FilmedClip& clip : clips) {
+    for (Sample sample : samples_of(clip)) {
+      sample.view = numbers.emplace(sample.view, numbers.size()).first->second;
+      samples.push_back(sample);
+    }
+  }
+  views = numbers.size();
+  return samples;
+}
+
+/// The fit at every exposure that may be, and the best of them.
+struct Scan {
+  std::vector<double> tried_s, chi2;
+  double best_s = 0.0;
+  Solved best;
+};
+
+Scan scan_exposures(const Linear& linear, double longest_s, double longest_px, double fastest_px_s) {
+  Scan scan;
+  scan.tried_s = {0.0};
+  for (double t = kShortest_s; t < longest_s && t * fastest_px_s < longest_px; t *= kFinest) scan.tried_s.push_back(t);
+  scan.best.chi2 = std::numeric_limits<double>::infinity();
+  for (const double t : scan.tried_s) {
+    Solved solved = linear.at(t);
+    scan.chi2.push_back(solved.chi2);
+    if (solved.chi2 >= scan.best.chi2) continue;
+    scan.best_s = t;
+    scan.best = std::move(solved);
+  }
+  return scan;
+}
+
+/// Leaves out what lies off the last fit, and weighs the shear anew by its scatter against the stretch's.
+void leave_outliers(const Solved& last, std::vector<Sample>& samples, double& shear_weight) {
+  const auto n = static_cast<Eigen::Index>(samples.size());
+  std::vector<double> of_stretch, of_shear;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    of_stretch.push_back(std::abs(last.rest[i]));
+    of_shear.push_back(std::abs(last.rest[n + i] / shear_weight));
+  }
+  const double stretch = std::max(kLeastScatter_px2, core::median_of(of_stretch));
+  const double shear = std::max(kLeastScatter_px2, core::median_of(of_shear));
+  std::vector<Sample> kept;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (of_stretch[i] < kOutlier * stretch && of_shear[i] < kOutlier * shear) kept.push_back(samples[i]);
+  }
+  samples = std::move(kept);
+  shear_weight = stretch / shear;
+}
+
+/// Mean and spread over the likelihood of the exposures tried, each with the step that it stands for.
+void tell_exposure(const Scan& scan, double variance, ShapeFit& result) {
+  double sum = 0.0, mean = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < scan.tried_s.size(); ++i) {
+    const double t = scan.tried_s[i];
+    const double step = i == 0 ? kShortest_s : t * (kFinest - 1.0);
+    const double w = step * std::exp(-0.5 * (scan.chi2[i] - scan.best.chi2) / variance);
+    sum += w;
+    mean += w * t;
+    square += w * t * t;
+  }
+  result.exposure_s = mean / sum;
+  result.exposure_sd_s = std::sqrt(
+      std::max(square / sum - result.exposure_s * result.exposure_s, std::pow(scan.best_s * (kFinest - 1.0) / 3.0, 2)));
+}
+
 }  // namespace
 
 ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
   ShapeFit result;
-  std::vector<Sample> samples;
-  std::map<std::size_t, std::size_t> views;
+  std::size_t views = 0;
+  std::vector<Sample> samples = all_samples(clips, views);
+  if (samples.size() < kFewest) return result;
   std::vector<double> radii;
   double longest_s = 0.0;
   for (const FilmedClip& clip : clips) {
-    for (Sample sample : samples_of(clip)) {
-      sample.view = views.emplace(sample.view, views.size()).first->second;
-      samples.push_back(sample);
-    }
-    for (const auto& look : clip.record->marker) {
-      radii.push_back(2.0 * std::sqrt(look.vv_px2));
-    }
+    for (const auto& look : clip.record->marker) radii.push_back(2.0 * std::sqrt(look.vv_px2));
     longest_s = std::max(longest_s, 1.0 / clip.camera.frame_rate_hz);
   }
-  if (samples.size() < kFewest) return result;
   result.radius_px = core::median_of(radii);
-  for (const Sample& s : samples) result.fastest_px_s = std::max(result.fastest_px_s, std::hypot(s.wu, s.wv));
-  if (!(result.fastest_px_s > 1.0)) return result;
+  result.fastest_px_s = fastest_of(samples);
+  if (!(result.fastest_px_s > kSlowest_px_s)) return result;
 
-  double best_s = 0.0, weight = 1.0;
-  Solved best;
-  std::vector<double> tried, chi2;
-  for (int round = 0; round < 3; ++round) {
-    if (round > 0) {  // outliers by the last fit; the shear's weight by its scatter
-      const auto n = static_cast<Eigen::Index>(samples.size());
-      std::vector<double> of_stretch, of_shear;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        of_stretch.push_back(std::abs(best.rest[i]));
-        of_shear.push_back(std::abs(best.rest[n + i] / weight));
-      }
-      const double a = std::max(1e-9, core::median_of(of_stretch)), b = std::max(1e-9, core::median_of(of_shear));
-      std::vector<Sample> kept;
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
-        if (std::abs(best.rest[at]) < 7.0 * a && std::abs(best.rest[n + at] / weight) < 7.0 * b)
-          kept.push_back(samples[i]);
-      }
-      samples = std::move(kept);
-      weight = a / b;
-      if (samples.size() < kFewest) return result;
-    }
-    const Linear linear(samples, views.size(), weight);
-    tried = {0.0};
-    for (double t = kShortest_s; t < longest_s && t * result.fastest_px_s < 3.0 * result.radius_px; t *= kFinest)
-      tried.push_back(t);
-    chi2.clear();
-    best.chi2 = 1e300;
-    for (const double t : tried) {
-      Solved solved = linear.at(t);
-      chi2.push_back(solved.chi2);
-      if (solved.chi2 >= best.chi2) continue;
-      best_s = t;
-      best = std::move(solved);
-    }
+  double weight = 1.0;
+  Scan scan;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round > 0) leave_outliers(scan.best, samples, weight);
+    if (samples.size() < kFewest) return result;
+    scan = scan_exposures({samples, views, weight}, longest_s, kLongestSmear * result.radius_px, result.fastest_px_s);
   }
+  const Solved& best = scan.best;
   const auto n = static_cast<Eigen::Index>(samples.size());
   const double memory = std::max(memory_of(best.rest.head(n)), memory_of(best.rest.tail(n)));
   const double variance = memory * best.chi2 / static_cast<double>(2 * n);
-  // Mean and spread over the likelihood of the exposures tried, each with the step that it stands for.
-  double sum = 0.0, mean = 0.0, square = 0.0;
-  for (std::size_t i = 0; i < tried.size(); ++i) {
-    const double step = i == 0 ? kShortest_s : tried[i] * (kFinest - 1.0);
-    const double w = step * std::exp(-0.5 * (chi2[i] - best.chi2) / variance);
-    sum += w;
-    mean += w * tried[i];
-    square += w * tried[i] * tried[i];
-  }
   result.known = true;
-  result.exposure_s = mean / sum;
-  result.exposure_sd_s = std::sqrt(
-      std::max(square / sum - result.exposure_s * result.exposure_s, std::pow(best_s * (kFinest - 1.0) / 3.0, 2)));
+  tell_exposure(scan, variance, result);
   result.line_s = best.line;
   result.line_sd_s = std::sqrt(best.line_variance * variance);
-  result.curves.push_back(lengthening(samples, best.rest, best_s, clips.front().camera.exposure_s));
+  result.curves.push_back(lengthening(samples, best.rest, scan.best_s, clips.front().camera.exposure_s));
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "base/dense.h"
 #include "base/errors.h"
 #include "core/median.h"
+#include "core/quantile.h"
 #include "diagnose/trajectory_uncertainty.h"
 #include "sim/track_sensitivity.h"
 
@@ -22,9 +23,8 @@ using base::transposed_product;
 constexpr int kMostIterations = 60;
 constexpr double kConverged = 1e-10;  // relative change of the cost
 constexpr int kRobustPasses = 8;
-constexpr double kHuber = 1.5;         // scaled deviations beyond which a position counts less
-constexpr double kOutlier = 4.0;       // and beyond which it is left out: 6 of 1e5 by chance
-constexpr double kNormalMad = 1.4826;  // standard deviation of normal numbers over their median magnitude
+constexpr double kHuber = 1.5;    // scaled deviations beyond which a position counts less
+constexpr double kOutlier = 4.0;  // and beyond which it is left out: 6 of 1e5 by chance
 
 Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const Eigen::Vector2d& start) {
   const core::FreeBlock& block = *fit.block;
@@ -204,7 +204,7 @@ RobustFit fit_robustly(const std::vector<FitBlock>& blocks, int free, Found foun
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       const Eigen::VectorXd off = linearise(blocks[b], fit.found.at.common, fit.found.at.starts[b]).residual.cwiseAbs();
       const double middle = core::median_of({off.begin(), off.end()});
-      const double scale = std::max(kNormalMad * middle, std::sqrt(kLeastVariance));
+      const double scale = std::max(core::kSdOverMedian * middle, std::sqrt(kLeastVariance));
       const double shrink = std::min(1.0, scale * scale / variance_of(blocks[b]));
       fit.blocks[b] = blocks[b];
       for (double& gamma : fit.blocks[b].autocovariance_m2) gamma *= shrink;

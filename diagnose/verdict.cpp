@@ -86,8 +86,8 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
                                     [&](const auto& p) { return p.key == globals[g].parameter->key; });
     const auto at = static_cast<Eigen::Index>(g);
     ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
-    if (globals[g].parameter->member == &EffectValues::line_s && !pictures.clips.empty()) {
-      value.value += stated_line_s(pictures.clips.front().camera);  // tracks show what it is more than stated
+    if (globals[g].parameter->member == &EffectValues::line_s) {
+      value.value += pictures.stated_line_s;  // tracks show what it is more than stated
     }
     const DiagnosedParameter tracked{std::string(globals[g].parameter->key), value.value,
                                      std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_member)};

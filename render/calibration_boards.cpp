@@ -27,7 +27,7 @@ constexpr Pose kPoses[] = {
 };
 
 double jitter(std::uint64_t seed, std::uint32_t view, std::uint32_t number) {
-  return 2.0 * uniform_of(philox({view, number, 0, 2}, philox_key(seed))[0]) - 1.0;  // -1 to 1
+  return 2.0 * uniform_of(philox({view, number, 0, 4}, philox_key(seed))[0]) - 1.0;  // -1 to 1
 }
 
 bool wholly_seen(const Camera& camera, const Chessboard& board, double margin_px) {

@@ -14,8 +14,8 @@
 /// through the picture); word pairs (0, 1) and (2, 3) of a block give two deviates each by Box and Muller's method (24
 /// bits of each word, so at most 5.9 standard deviations), and deviate j of block b belongs to pixel 8 j + b of its
 /// group. Purpose 1: the exact path; block is the pixel's number in the picture, its words are Poisson (2), and the
-/// read noise's pair. Purpose 2: the fixed pattern {pixel, 0, 0}, and the poses of the calibration's boards {view,
-/// number, 0}, which share the first pixels' words with it. Purpose 3: the clock {slot, 0, stream}. So a pixel is the
+/// read noise's pair. Purpose 2: the fixed pattern {pixel, 0, 0}. Purpose 3: the clock {slot, 0, stream}. Purpose
+/// 4: the poses of the calibration's boards {view, number, 0}. So a pixel is the
 /// same in any order, on any number of threads, and in any part of the picture that is asked for; and the same with and
 /// without AVX2 (only IEEE-exact operations, never contracted).
 #pragma once

@@ -26,6 +26,67 @@ std::string text_of(SqlStatement& rows, int column) {
   return number && *number != 0.0 ? fmt::format("{:.4g}", *number) : rows.text(column);
 }
 
+/// Row's place: configuration, values of the other axes, bandwidth (s).
+using MassRows = std::map<std::tuple<std::string, std::string, double>, MassRow>;
+
+/// Of each configuration, mass and combination of the other axes: mean and mean square of mu, their number, the truth
+/// and R². A run has one mu of a configuration, and R² of each of its clips: the least of these.
+std::string query_of(const Axis& masses, const std::vector<const Axis*>& others, std::size_t clips) {
+  std::string columns;
+  for (const Axis* other : others) columns += ", r." + sql_name(other->name);
+  std::string marks;
+  for (std::size_t i = 0; i < clips; i += 2) {
+    marks += fmt::format("{}(?{}, ?{})", i == 0 ? "" : ", ", i + 2, i + 3);
+  }
+  return fmt::format(
+      "WITH clip_of(clip, configuration) AS (VALUES {2}) SELECT s.configuration, r.{0}, avg(s.value), avg(s.value * "
+      "s.value), count(s.value), max(s.truth), avg("
+      "(SELECT min(min(coalesce(c.r2_up, 1), coalesce(c.r2_down, 1))) FROM clip c JOIN clip_of k ON k.clip = c.clip "
+      "WHERE c.run = s.run AND c.estimator = s.estimator AND k.configuration = s.configuration)){1} FROM result s "
+      "JOIN run r ON r.run = s.run WHERE s.quantity = 'mu' AND s.estimator = ?1 "
+      "AND s.value IS NOT NULL AND s.truth IS NOT NULL GROUP BY s.configuration, r.{0}{1} ORDER BY 2",
+      sql_name(masses.name), columns, marks);
+}
+
+MassPoint point_of(const SqlStatement& row) {
+  MassPoint point;
+  point.mass_kg = row.number(1);
+  point.mu = row.number(2);
+  const auto n = static_cast<double>(row.integer(4));
+  const double variance = row.number(3) - point.mu * point.mu;
+  constexpr double kRounding = 1e-12;  // of squares summed in double precision: exact replicates are alike
+  if (n > 1.0 && variance > kRounding * point.mu * point.mu) point.se = std::sqrt(variance / (n - 1.0));
+  point.r2 = row.number(6);
+  return point;
+}
+
+/// What the query gives, put into the rows of the bandwidth.
+void take_points(SqlStatement& select, const std::vector<const Axis*>& others, double bandwidth_s, MassRows& rows) {
+  while (select.step()) {
+    std::string with;
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      with += fmt::format("{}{} = {}", i == 0 ? "" : ", ", others[i]->name, text_of(select, 7 + static_cast<int>(i)));
+    }
+    MassRow& row = rows[{select.text(0), with, bandwidth_s}];
+    row.configuration = select.text(0);
+    row.others = with;
+    row.bandwidth_s = bandwidth_s;
+    row.truth = select.number(5);
+    row.masses.push_back(point_of(select));
+  }
+}
+
+/// A published fall's answers, one of each combination of the other axes.
+std::vector<FallAnswer> answers_of(const PublishedFall& published, const std::vector<MassRow>& rows) {
+  std::map<std::string, std::vector<MassRow>> by_others;
+  for (const MassRow& row : rows) {
+    if (row.configuration == published.configuration) by_others[row.others].push_back(row);
+  }
+  std::vector<FallAnswer> answers;
+  for (const auto& [with, of] : by_others) answers.push_back(answer_of(published, of));
+  return answers;
+}
+
 /// Between two rows, `part` of the way.
 FallAt between(const MassRow& a, const MassRow& b, double part) {
   FallAt at;
@@ -75,58 +136,21 @@ MassStudy study_masses(const Sweep& sweep, Database& database) {
   for (const Axis& axis : sweep.axes) {
     if (&axis != masses) others.push_back(&axis);
   }
-  std::string columns;
-  for (const Axis* other : others) columns += ", r." + sql_name(other->name);
   const std::vector<std::string> clips = clips_and_configurations(sweep, database);
   if (clips.empty()) return study;
-  std::string marks;
-  for (std::size_t i = 0; i < clips.size(); i += 2) {
-    marks += fmt::format("{}(?{}, ?{})", i == 0 ? "" : ", ", i + 2, i + 3);
-  }
-  std::map<std::tuple<std::string, std::string, double>, MassRow> rows;
+  MassRows rows;
   for (const Analysis& analysis : sweep.analyses) {
     if (analysis.estimator != "all-points") continue;
-    // A run has one mu of a configuration, and R² of each of its clips: the least of these.
-    SqlStatement select = database.prepare(fmt::format(
-        "WITH clip_of(clip, configuration) AS (VALUES {2}) SELECT s.configuration, r.{0}, avg(s.value), avg(s.value * "
-        "s.value), count(s.value), max(s.truth), avg("
-        "(SELECT min(min(coalesce(c.r2_up, 1), coalesce(c.r2_down, 1))) FROM clip c JOIN clip_of k ON k.clip = c.clip "
-        "WHERE c.run = s.run AND c.estimator = s.estimator AND k.configuration = s.configuration)){1} FROM result s "
-        "JOIN run r ON r.run = s.run WHERE s.quantity = 'mu' AND s.estimator = ?1 "
-        "AND s.value IS NOT NULL AND s.truth IS NOT NULL GROUP BY s.configuration, r.{0}{1} ORDER BY 2",
-        sql_name(masses->name), columns, marks));
+    SqlStatement select = database.prepare(query_of(*masses, others, clips.size()));
     select.bind(1, std::string_view(analysis.name()));
     for (std::size_t i = 0; i < clips.size(); ++i) select.bind(2 + static_cast<int>(i), std::string_view(clips[i]));
-    while (select.step()) {
-      std::string with;
-      for (std::size_t i = 0; i < others.size(); ++i) {
-        with += fmt::format("{}{} = {}", i == 0 ? "" : ", ", others[i]->name, text_of(select, 7 + static_cast<int>(i)));
-      }
-      MassRow& row = rows[{select.text(0), with, *analysis.bandwidth_s}];
-      row.configuration = select.text(0);
-      row.others = with;
-      row.bandwidth_s = *analysis.bandwidth_s;
-      row.truth = select.number(5);
-      MassPoint point;
-      point.mass_kg = select.number(1);
-      point.mu = select.number(2);
-      const auto n = static_cast<double>(select.integer(4));
-      const double variance = select.number(3) - point.mu * point.mu;
-      constexpr double kRounding = 1e-12;  // of squares summed in double precision: exact replicates are alike
-      if (n > 1.0 && variance > kRounding * point.mu * point.mu) point.se = std::sqrt(variance / (n - 1.0));
-      point.r2 = select.number(6);
-      row.masses.push_back(point);
-    }
+    take_points(select, others, *analysis.bandwidth_s, rows);
   }
   for (auto& [key, row] : rows) {
     if (row.masses.size() >= 2) study.rows.push_back(std::move(row));
   }
   for (const PublishedFall& published : sweep.published_falls) {
-    std::map<std::string, std::vector<MassRow>> by_others;
-    for (const MassRow& row : study.rows) {
-      if (row.configuration == published.configuration) by_others[row.others].push_back(row);
-    }
-    for (const auto& [with, of] : by_others) study.answers.push_back(answer_of(published, of));
+    for (FallAnswer& answer : answers_of(published, study.rows)) study.answers.push_back(std::move(answer));
   }
   return study;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <variant>
 
 #include "validate/sweep_design.h"
 #include "validate/sweep_scenario.h"
@@ -57,9 +59,23 @@ ErrorStatistics statistics_of(const Moments& of) {
   return statistics;
 }
 
+/// A file without folder and extension.
 std::string label_of_word(const std::string& word) {
   const std::filesystem::path path(word);
   return path.extension() == ".toml" ? path.stem().string() : word;
+}
+
+bool are_labels_alike(const std::vector<base::TomlScalar>& values) {
+  std::set<std::string> labels;
+  return std::any_of(values.begin(), values.end(), [&](const base::TomlScalar& value) {
+    const std::string* word = std::get_if<std::string>(&value);
+    return word != nullptr && !labels.insert(label_of_word(*word)).second;
+  });
+}
+
+std::string label_of(const Grouping& grouping, const std::string& word) {
+  if (grouping.switched) return word == "1" ? "true" : "false";
+  return grouping.of_runs || grouping.as_written ? word : label_of_word(word);
 }
 
 double middle_of_bin(const Grouping& grouping, double bin) {
@@ -73,8 +89,7 @@ GroupStatistics group_at(const Grouping& grouping, const SqlStatement& row, int 
                          std::vector<std::string>& words) {
   GroupStatistics group;
   if (grouping.words) {
-    const std::string word = row.text(column);
-    group.label = grouping.of_runs ? word : grouping.switched ? (word == "1" ? "true" : "false") : label_of_word(word);
+    group.label = label_of(grouping, row.text(column));
     auto found = std::find(words.begin(), words.end(), group.label);
     if (found == words.end()) found = words.insert(words.end(), group.label);
     group.position = static_cast<double>(found - words.begin());
@@ -206,6 +221,7 @@ Grouping grouping_of(const Sweep& sweep, const Axis& axis, Database& database) {
   const AxisSource& source = axis.source;
   grouping.words = source.kind == Kind::list && !std::holds_alternative<double>(source.values.front());
   grouping.switched = source.kind == Kind::list && std::holds_alternative<bool>(source.values.front());
+  grouping.as_written = grouping.words && are_labels_alike(source.values);
   if (grouping.words) return grouping;
   SqlStatement select = database.prepare(
       fmt::format("SELECT count(DISTINCT {0}), min({0}), max({0}) FROM run r WHERE status = 'done'", column));

@@ -28,6 +28,8 @@ struct Grouping {
   double from = 0.0, to = 0.0;  ///< of the bins
   bool binned = false, logarithmic = false, words = false;
   bool switched = false;  ///< the words are false and true
+  bool as_written =
+      false;  ///< the words are files of which two have the same name, so that their folders tell them apart
   /// Two SQL expressions, of what has to be answered in every group to be compared; empty where the design has no such.
   std::string combination = {};
   std::uint64_t combinations = 0;  ///< how many there are, of one configuration

@@ -62,3 +62,22 @@ TEST_CASE("diagnose: a table of lines cannot be planned, and what is left out mu
   CHECK(without.status == 2);
   CHECK(without.err.find("\"nonsense\"") != std::string::npos);
 }
+
+TEST_CASE("diagnose: a table of lines in no folder is diagnosed as in a folder, and another table is refused") {
+  const tests::TempDir temp;
+  write_table(temp.path());
+  const auto run = [&](const std::filesystem::path& what) {
+    return tests::glidelab({"diagnose", what.string(), "--no-page", "--json", "-o", (temp / "out").string(), "-q"});
+  };
+  const tests::ProcessResult folder = run(temp.path()), file = run(temp / "lines.csv");
+  INFO(file.err);
+  REQUIRE(file.status == 0);
+  CHECK(file.out == folder.out);
+  std::ofstream(temp / "track.csv") << "t_s,x_m\n0,0\n0.1,0.1\n";
+  const tests::ProcessResult track = run(temp / "track.csv");
+  CHECK(track.status == 1);
+  CHECK(track.err.find("track.csv:1: header: found no column \"mass_kg\"") != std::string::npos);
+  const tests::ProcessResult other = run(temp / "experiment.toml");
+  CHECK(other.status == 1);
+  CHECK(other.err.find("the folder that it is in") != std::string::npos);
+}

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
@@ -277,6 +278,9 @@ TEST_CASE("The size is said before a sweep starts, and a run's whole scenario ca
   const tests::ProcessResult dry = tests::glidelab({"sweep", sweep, "-o", dir / "out", "--dry-run"});
   CHECK(dry.status == 0);
   CHECK(dry.err.find("18 runs, 18 of them to do") != std::string::npos);
+  const tests::ProcessResult as_json = tests::glidelab({"sweep", sweep, "-o", dir / "out", "--dry-run", "--json"});
+  CHECK(as_json.status == 0);
+  CHECK(nlohmann::json::parse(as_json.out).at("missing_runs") == 18);
   CHECK_FALSE(fs::exists(dir / "out"));
   const tests::ProcessResult shown = tests::glidelab({"sweep", sweep, "--show", "17"});
   CHECK(shown.status == 0);

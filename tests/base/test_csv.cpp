@@ -1,5 +1,7 @@
 #include "base/csv.h"
 
+#include <cmath>
+
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "catch.h"
@@ -43,6 +45,19 @@ TEST_CASE("bad fields are named by line and column") {
   CHECK(contains(error_of("t_s,x_m\n0,\n"), "found \"\""));
   CHECK(contains(error_of(""), "no header"));
   CHECK(contains(error_of("t_s,x_m,t_s\n0,1,2\n"), "twice"));
+}
+
+TEST_CASE("a column knows what the last digit of its numbers is worth, the finest of them") {
+  const glidelab::tests::TempDir temp;
+  write_file(temp / "t.csv", "a,b,c,d\n2.310,1,-2.5e-3,1E+3\n2.3,20,+1e-1,2.50e2\n");
+  const CsvTable table = read_csv(temp / "t.csv", {"a", "b", "c", "d"});
+  const auto is = [&](const char* column, double worth) {
+    CHECK(std::abs(table.last_digit_of(column) / worth - 1.0) < 1e-12);  // a power of ten, to rounding
+  };
+  is("a", 1e-3);
+  is("b", 1.0);
+  is("c", 1e-4);
+  is("d", 1.0);
 }
 
 TEST_CASE("numbers written read back as the same doubles") {

@@ -110,6 +110,23 @@ TEST_CASE("published lines with nothing wrong: nothing is missing, also where th
   CHECK(200 - count("none", 200, kThreeMasses, nothing) <= 10 + 9);
 }
 
+TEST_CASE("published lines that were calculated and rounded tell no more than their digits: nothing is missing") {
+  tests::LineCauses exact;
+  exact.scatter = 0.0;
+  // Lines of one mass have the same K/m, rounded alike: to the last digit they scatter between masses and not within.
+  for (const double digit : {1e-2, 1e-3, 1e-4}) {
+    std::vector<diagnose::TableLine> lines = lines_with(exact, 1);
+    for (diagnose::TableLine& line : lines) {
+      line.a0_m_s2 = digit * std::round(line.a0_m_s2 / digit);
+      line.k_over_m_1_s = digit * std::round(line.k_over_m_1_s / digit);
+      line.a0_digit_m_s2 = line.k_digit_1_s = digit;
+    }
+    CHECK(diagnose::diagnose_lines(lines, kLineGravity, {}).verdict == "none");
+    for (diagnose::TableLine& line : lines) line.a0_digit_m_s2 = line.k_digit_1_s = 0.0;
+    CHECK(diagnose::diagnose_lines(lines, kLineGravity, {}).verdict != "none");  // as if measured to the last bit
+  }
+}
+
 TEST_CASE("published lines with a cause that has no name: unknown") {
   // 85 % is wanted; three standard errors of 40 tables less.
   constexpr int kWanted = 34 - 7;

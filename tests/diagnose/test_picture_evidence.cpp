@@ -70,7 +70,8 @@ std::vector<diagnose::FilmedClip> filmed(const Made& made, double stated_s, unsi
   return clips;
 }
 
-const diagnose::PictureFinding& finding(const diagnose::PictureEvidence& evidence, const std::string& id) {
+/// A copy: the evidence may be gone before it is looked at.
+diagnose::PictureFinding finding(const diagnose::PictureEvidence& evidence, const std::string& id) {
   const auto found =
       std::find_if(evidence.findings.begin(), evidence.findings.end(), [&](const auto& f) { return f.id == id; });
   REQUIRE(found != evidence.findings.end());
@@ -193,4 +194,17 @@ TEST_CASE("clips of several cameras are each held to what is stated of their own
   const diagnose::PictureFinding longer = blur_of(0.005, 0.006, 0.001);
   CHECK(longer.log_evidence > 5.0);
   CHECK(std::abs(longer.parameters.front().value - 0.006) < 4.0 * longer.parameters.front().sd);
+}
+
+TEST_CASE("the stated line time that goes with a rolling shutter is that of the camera that shows it") {
+  std::vector<diagnose::FilmedClip> clips = filmed({}, 0.001, 63);  // a global shutter, as stated
+  for (diagnose::FilmedClip& clip : filmed({.line_s = 4e-5}, 0.001, 64)) {
+    clip.view = 1;
+    clip.camera.shutter = core::Shutter::rolling;
+    clip.camera.line_readout_s = 1e-5;
+    clips.push_back(clip);
+  }
+  const diagnose::PictureEvidence evidence = diagnose::picture_evidence(clips);
+  CHECK(finding(evidence, "rolling_shutter").log_evidence > 5.0);
+  CHECK(evidence.stated_line_s == 1e-5);
 }

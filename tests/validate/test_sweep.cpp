@@ -132,18 +132,47 @@ TEST_CASE("A camera file that the scenario names is part of what a sweep is, and
                     Contains("camera file"));
 }
 
+namespace {
+
+/// The swept scenario without a camera's keys.
+std::string without_camera() {
+  std::string scenario = tests::kSweptScenario;
+  for (const char* key : {"width_px", "height_px", "frame_rate_hz", "focal_px"}) {
+    const std::size_t at = scenario.find(key);
+    scenario.erase(at, scenario.find('\n', at) - at + 1);
+  }
+  return scenario;
+}
+
+}  // namespace
+
+TEST_CASE("Two camera files of one name in two folders are two groups of a sweep, told apart by their folders") {
+  const tests::TempDir dir;
+  const std::filesystem::path cameras = std::filesystem::path(tests::kSourceDir) / "scenarios/cameras";
+  for (const auto& [folder, camera] : {std::pair{"old", "chronos-14.toml"}, std::pair{"new", "usb-webcam-vga.toml"}}) {
+    std::filesystem::create_directory(dir / folder);
+    std::filesystem::copy_file(cameras / camera, dir / folder / "lab.toml");
+  }
+  tests::write_sweep(dir.path(), "", kNoise + "[[vary]]\ncameras = [\"old/lab.toml\", \"new/lab.toml\"]\n");
+  base::write_file(dir / "scenario.toml", without_camera());
+  const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::run_sweep(sweep, database, {}, 1);
+  const validate::SweepSummary summary = validate::summarize(sweep, database.database());
+  const std::vector<validate::GroupStatistics>& groups = summary.axes[0].series.front().groups;
+  REQUIRE(groups.size() == 2);
+  for (const validate::GroupStatistics& group : groups) CHECK(group.statistics.runs == 1);
+  CHECK_THAT(groups[0].label, Contains("new/lab.toml"));
+  CHECK_THAT(groups[1].label, Contains("old/lab.toml"));
+}
+
 TEST_CASE("A sweep over cameras takes each one over, and refuses a scenario that writes the camera itself") {
   const tests::TempDir dir;
   const std::string vary =
       kNoise + "[[vary]]\ncameras = [\"" + std::string(tests::kSourceDir) + "/scenarios/cameras\"]\n";
   tests::write_sweep(dir.path(), "", vary);
   CHECK_THROWS_WITH(validate::read_sweep(dir / "sweep.toml"), Contains("camera.frame_rate_hz"));
-  std::string scenario = tests::kSweptScenario;
-  for (const char* key : {"width_px", "height_px", "frame_rate_hz", "focal_px"}) {
-    const std::size_t at = scenario.find(key);
-    scenario.erase(at, scenario.find('\n', at) - at + 1);
-  }
-  base::write_file(dir / "scenario.toml", scenario);
+  base::write_file(dir / "scenario.toml", without_camera());
   const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
   REQUIRE(sweep.axes.size() == 1);
   CHECK(sweep.axes[0].source.values.size() >= 16);
