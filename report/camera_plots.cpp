@@ -6,26 +6,19 @@
 #include <cmath>
 
 #include "report/number_text.h"
+#include "report/plot_axis.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
 namespace {
 
 constexpr double kArrow = 0.08;  // of the picture's width, for the largest
+constexpr int kMostTics = 7;     // that leave room for numbers of pixels side by side
 
 /// 1, 2 or 5 times a power of ten, at most `value`.
 double round_down(double value) {
   const double ten = std::pow(10.0, std::floor(std::log10(value)));
   return (value >= 5.0 * ten ? 5.0 : value >= 2.0 * ten ? 2.0 : 1.0) * ten;
-}
-
-/// The least step, 1, 2 or 5 times a power of ten, that leaves room for numbers of pixels side by side.
-double tic_step(int width_px) {
-  constexpr double kMostTics = 7.0;
-  const double least = width_px / kMostTics;
-  const double down = round_down(least);
-  if (down >= least) return down;
-  return round_down(2.5 * down);  // 1, 2, 5, 10
 }
 
 }  // namespace
@@ -35,7 +28,7 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
   for (const core::CornerCell& cell : rests.cells) largest = std::max(largest, std::hypot(cell.du_px, cell.dv_px));
   if (!(largest > 0.0)) return {};
   const double enlarged = round_down(kArrow * rests.width_px / largest);
-  const double step = tic_step(rests.width_px);
+  const double step = tick_step(rests.width_px, kMostTics);
   PlotData arrows{"arrows", {}, {"u (px)", "v (px)", "du, enlarged (px)", "dv, enlarged (px)"}};
   PlotData noise{"noise", {}, {"u (px)", "v (px)", "standard deviation, enlarged (px)"}};
   for (const core::CornerCell& cell : rests.cells) {

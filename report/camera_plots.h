@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/results.h"
 #include "diagnose/diagnosis.h"

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "report/camera_rows.h"
-#include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/number_text.h"
 #include "report/plot_axis.h"
@@ -16,29 +15,24 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Rows of (mean, variance, 2 sd) of the levels in the fit, or of the others; never empty, which gnuplot does not like.
+/// Rows of (mean, variance, 2 sd) of the levels in the fit, or of the others.
 PlotData points_of(const core::CameraMeasurement& camera, const char* name, bool used) {
   PlotData data{name, {}, {"mean above dark (DN)", "variance (DN²)", "two standard deviations (DN²)"}};
   for (const core::TransferPoint& point : camera.curve) {
     if (point.used == used) data.rows.push_back({point.mean_dn, point.variance_dn2, 2.0 * point.sd_dn2});
   }
-  if (data.rows.empty()) data.rows.push_back({kNan, kNan, kNan});
-  return data;
+  return never_empty(std::move(data));
 }
 
-/// Beside which levels the line was fitted, and on to saturation.
+/// The line that was fitted, from dark to saturation.
 PlotData line_of(const core::CameraMeasurement& camera) {
   PlotData data{"line", {}, {"mean above dark (DN)", "variance (DN²)"}};
   if (camera.gain_dn_per_e.value && camera.intercept_dn2) {
     for (const double mean_dn : {0.0, camera.saturation_dn}) {
       data.rows.push_back({mean_dn, *camera.intercept_dn2 + *camera.gain_dn_per_e.value * mean_dn});
     }
-  } else {
-    data.rows.push_back({kNan, kNan});
   }
-  return data;
+  return never_empty(std::move(data));
 }
 
 double brightest_dn(const core::CameraMeasurement& camera) {

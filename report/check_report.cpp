@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/number_text.h"
 #include "report/plot_style.h"

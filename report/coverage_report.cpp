@@ -18,19 +18,15 @@ namespace {
 constexpr auto estimator_name = coverage_estimator_name;
 constexpr double kAstray = 2.0;  // scatter over stated sd; chance alone moves the ratio of 200 values by a tenth
 
-std::string with_unit(const validate::CoverageRow& row) {
-  const std::string unit(unit_of(row.quantity));
-  return std::string(symbol_of(row.quantity)) + (unit.empty() ? "" : fmt::format(" ({})", unit));
-}
-
 /// "95 %", "99.5 %".
 std::string level_text(double level) {
   return number_text(100.0 * level, 4) + " %";
 }
 
 std::vector<std::string> cells_of(const validate::CoverageRow& row) {
-  if (row.determined == 0) return {with_unit(row), value_text(row.truth, 0.0), "–", "–", "–", "–", "–", "–", "0"};
-  return {with_unit(row),
+  if (row.determined == 0)
+    return {heading_of(row.quantity), value_text(row.truth, 0.0), "–", "–", "–", "–", "–", "–", "0"};
+  return {heading_of(row.quantity),
           value_text(row.truth, row.sd),
           error_text(row.bias, row.sd),
           sd_text(row.sd),

@@ -109,7 +109,6 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
       after.rows.push_back({at[p], 1000.0 * curve.after_m[p]});
     }
   }
-  if (before.rows.empty()) before.rows = after.rows = {{kNan, kNan}};
   // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
   std::string script(kFrame);
   if (variable == 2) script += kFromStart;
@@ -119,7 +118,7 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
       "'{0}' title 'before', $after using 1:2 with points pt 7 ps 0.15 lc rgb '{1}' notitle, keyentry with points pt 7 "
       "ps 0.8 lc rgb '{1}' title 'after'\n",
       kColors[1], kColors[0]);
-  return {Drawing{script, std::vector{before, after}},
+  return {Drawing{script, std::vector{never_empty(before), never_empty(after)}},
           fmt::format("What the fit leaves of all clips, over {}{}",
                       variable == 0   ? "the place"
                       : variable == 1 ? "the speed"

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "report/diagnosis_plots.h"
-#include "report/gnuplot.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {

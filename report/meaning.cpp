@@ -57,16 +57,11 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
 /// The numbers alone, of a law that does not fit.
 std::string numbers_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
-  const auto add = [&](const core::Quantity& quantity, const QuantityName& name) {
-    if (!quantity.estimate) return;
-    const std::string unit =
-        name.unit.empty() || name.unit == "°" ? std::string(name.unit) : fmt::format(" {}", name.unit);
+  for (const auto& [name, quantity] : quantities_of(c)) {
+    if (!quantity->estimate || quantity == &c.alpha_deg) continue;  // α says nothing of drag or friction
     text += fmt::format("{}{} = {}{}", text.empty() ? "" : ", ", name.symbol,
-                        value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), unit);
-  };
-  add(c.k_over_m_1_s, kQuantities[0]);
-  add(c.mu, kQuantities[1]);
-  add(c.v_lim_m_s, kQuantities[3]);
+                        value_and_sd_text(quantity->estimate->value, quantity->estimate->sd), unit_suffix(name.unit));
+  }
   if (text.empty()) return {};
   return fmt::format("<li>{}: {}</li>\n", escape(configuration_name(results, c)), text);
 }

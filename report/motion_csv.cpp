@@ -1,44 +1,19 @@
 #include "report/motion_csv.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "base/csv.h"
-#include "base/errors.h"
 #include "report/file_names.h"
+#include "report/fitted_lines.h"
+#include "report/motion_row.h"
 
 namespace glidelab::report {
 namespace {
 
-class Row {
- public:
-  Row(base::CsvWriter& table, const core::ClipResult& clip, double t_s) : table_(table), clip_(clip), t_s_(t_s) {}
-  void put(std::optional<double> value) {
-    if (!value) {
-      table_.empty();
-    } else if (std::isfinite(*value)) {
-      table_.number(*value);
-    } else {
-      throw base::NumericalError(
-          fmt::format("clip \"{}\": the smoothed motion at t = {} s is not finite", clip_.name, t_s_));
-    }
-  }
-
- private:
-  base::CsvWriter& table_;
-  const core::ClipResult& clip_;
-  double t_s_;
-};
-
-std::optional<double> line_at(const core::ClipResult& clip, double v_m_s) {
-  if (clip.forced) return {};
-  const auto line = std::find_if(clip.segments.begin(), clip.segments.end(),
-                                 [&](const core::LineFit& of) { return of.direction * v_m_s > 0.0; });
-  if (line == clip.segments.end()) return {};
-  return line->a0_m_s2.value - line->k_over_m_1_s.value * v_m_s;
+/// a on the clip's own line; nothing where there is none, and for a clip with a known force.
+std::optional<double> own_line_at(const core::ClipResult& clip, double v_m_s) {
+  const core::LineFit* const line = clip.forced ? nullptr : line_of(clip.segments, v_m_s);
+  return line == nullptr ? std::nullopt : std::optional(line_at(*line, v_m_s));
 }
 
 }  // namespace
@@ -47,7 +22,7 @@ std::string motion_csv(const core::ClipResult& clip) {
   base::CsvWriter table(
       "t_s,measured_x_m,x_m,sd_x_m,residual_x_m,v_m_s,sd_v_m_s,a_m_s2,sd_a_m_s2,line_a_m_s2,residual_a_m_s2,reason");
   for (const core::MotionPoint& point : clip.motion) {
-    Row row(table, clip, point.t_s);
+    MotionRow row(table, clip, point.t_s);
     const auto smoothed = [&](double value) { return point.smoothed ? std::optional(value) : std::nullopt; };
     row.put(point.t_s);
     row.put(point.measured_m);
@@ -58,7 +33,7 @@ std::string motion_csv(const core::ClipResult& clip) {
     row.put(smoothed(point.sd_v_m_s));
     row.put(smoothed(point.a_m_s2));
     row.put(smoothed(point.sd_a_m_s2));
-    const std::optional<double> line = point.smoothed ? line_at(clip, point.v_m_s) : std::nullopt;
+    const std::optional<double> line = point.smoothed ? own_line_at(clip, point.v_m_s) : std::nullopt;
     row.put(line);
     row.put(line ? std::optional(point.a_m_s2 - *line) : std::nullopt);
     table.text(core::describe(point.left_out));

@@ -15,7 +15,7 @@
 
 namespace glidelab::report {
 
-/// NumericalError where a smoothed value is not finite.
+/// NumericalError where a value is not finite.
 std::string motion_csv(const core::ClipResult& clip);
 
 /// `motion-<clip>.csv` for each clip, as phase_file_names() has it.

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "report/decimate.h"
-#include "report/gnuplot.h"
 #include "report/handy_units.h"
 #include "report/plot_style.h"
 
@@ -70,11 +69,7 @@ PlotData smoothed_lines(const core::ClipResult& clip, Variable variable, bool us
     data.rows.emplace_back();
     from = to;
   }
-  if (data.rows.empty()) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    data.rows.push_back({kNan, kNan, kNan});
-  }
-  return data;
+  return never_empty(std::move(data));
 }
 
 /// Positions of frames that have no smoothed value.
@@ -87,8 +82,7 @@ PlotData bare_positions(const core::ClipResult& clip) {
   for (const std::size_t i : every_nth(bare.size(), kCloudPoints)) {
     data.rows.push_back({clip.motion[bare[i]].t_s, *clip.motion[bare[i]].measured_m});
   }
-  if (data.rows.empty()) data.rows.push_back(std::vector<double>(2, std::numeric_limits<double>::quiet_NaN()));
-  return data;
+  return never_empty(std::move(data));
 }
 
 std::string shading(const core::ClipResult& clip) {

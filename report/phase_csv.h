@@ -13,6 +13,7 @@
 
 namespace glidelab::report {
 
+/// NumericalError where a value is not finite.
 std::string phase_csv(const core::ClipResult& clip);
 
 }  // namespace glidelab::report

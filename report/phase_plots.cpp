@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "report/decimate.h"
+#include "report/fitted_lines.h"
 #include "report/gnuplot.h"
 #include "report/plot_axis.h"
 #include "report/plot_style.h"
@@ -34,17 +35,6 @@ struct Cloud {
   std::vector<PhasePoint> points;
 };
 
-const core::LineFit* line_of(const core::ConfigurationResult& configuration, double v_m_s) {
-  for (const core::LineFit& line : configuration.lines) {
-    if (line.direction * v_m_s > 0.0) return &line;
-  }
-  return nullptr;
-}
-
-double line_at(const core::LineFit& line, double v_m_s) {
-  return line.a0_m_s2.value - line.k_over_m_1_s.value * v_m_s;
-}
-
 std::vector<Cloud> clouds(const core::AnalysisResults& results, const PhaseGroup& group, bool& force_applied) {
   std::vector<Cloud> all;
   for (const std::size_t c : group.configurations) {
@@ -57,7 +47,7 @@ std::vector<Cloud> clouds(const core::AnalysisResults& results, const PhaseGroup
         if (!point.smoothed || point.left_out != core::LeftOut::used) continue;
         if (point.force_n != 0.0) force_applied = true;
         const double a = point.a_m_s2 - point.force_n / configuration.mass_kg;
-        const core::LineFit* line = line_of(configuration, point.v_m_s);
+        const core::LineFit* line = line_of(configuration.lines, point.v_m_s);
         const double residual = line == nullptr ? kNan : a - line_at(*line, point.v_m_s);
         cloud.points.push_back({point.v_m_s, a, residual, k95 * point.sd_a_m_s2});
       }
@@ -69,12 +59,6 @@ std::vector<Cloud> clouds(const core::AnalysisResults& results, const PhaseGroup
 
 std::string data_name(const char* kind, std::size_t configuration) {
   return fmt::format("{}{}", kind, configuration);
-}
-
-/// gnuplot counts the rows of a block that is empty as an error; one row of NaN draws nothing.
-PlotData never_empty(PlotData data) {
-  if (data.rows.empty()) data.rows.push_back(std::vector<double>(data.columns.size(), kNan));
-  return data;
 }
 
 PlotData thinned(const Cloud& cloud, const char* kind, std::size_t most, double from_v, double to_v) {

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "report/decimate.h"
-#include "report/gnuplot.h"
 #include "report/number_text.h"
 #include "report/plot_style.h"
 

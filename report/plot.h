@@ -1,7 +1,9 @@
 /// A plot before it is drawn: columns of numbers, and the commands of gnuplot that draw them.
 #pragma once
 
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glidelab::report {
@@ -12,6 +14,14 @@ struct PlotData {
   std::vector<std::vector<double>> rows;  ///< an empty row stands for a blank line, which breaks a line as well
   std::vector<std::string> columns = {};  ///< what each holds, with its unit: "v (m/s)"; for who reads the file
 };
+
+/// gnuplot takes a block without rows for an error; one row of NaN, as wide as `columns`, draws nothing.
+inline PlotData never_empty(PlotData data) {
+  if (data.rows.empty()) {
+    data.rows.push_back(std::vector<double>(data.columns.size(), std::numeric_limits<double>::quiet_NaN()));
+  }
+  return data;
+}
 
 /// Size in points of the plot's own coordinates; a page scales it.
 struct PlotSize {

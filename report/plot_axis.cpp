@@ -45,6 +45,11 @@ std::vector<double> ladder_of(double from, double to) {
   return ladder;
 }
 
+SmallLengthUnit small_length_unit(double largest_m) {
+  constexpr double kMillimetresFrom = 2e-4;  // m: below it the labels of millimetres would all begin with a zero
+  return largest_m < kMillimetresFrom ? SmallLengthUnit{"µm", 1e6} : SmallLengthUnit{"mm", 1e3};
+}
+
 ValueAxis::ValueAxis(std::vector<double> values, bool logarithmic)
     : values_(std::move(values)), logarithmic_(logarithmic) {
   std::sort(values_.begin(), values_.end());

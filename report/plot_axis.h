@@ -1,7 +1,7 @@
 /// An axis of numbers whose labels do not run into each other.
 #pragma once
 
-#include <span>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,6 +14,13 @@ double tick_step(double span, int most);
 /// above 0.
 std::vector<double> ladder_of(double from, double to);
 
+/// The unit of a plot of small lengths, and how many of it are a metre: µm where none is as long as 0.2 mm, else mm.
+struct SmallLengthUnit {
+  const char* name;
+  double per_m;
+};
+SmallLengthUnit small_length_unit(double largest_m);
+
 /// The x axis of values that were run, with some room at both ends and for what stands beside a value.
 class ValueAxis {
  public:
@@ -25,16 +32,17 @@ class ValueAxis {
   /// Where number i of `count` things that belong to one value stands: side by side, and never as far as halfway to the
   /// next value.
   double beside(double value, std::size_t i, std::size_t count) const;
+  /// How many different values there are.
   std::size_t size() const { return values_.size(); }
 
  private:
   double to_axis(double value) const;
   double from_axis(double place) const;
   std::vector<double> marks() const;
-  std::vector<double> values_;  // sorted, each once
+  std::vector<double> values_;  ///< sorted, each once
   bool logarithmic_;
-  double from_ = 0.0, to_ = 1.0;  // as to_axis() gives them
-  double least_gap_ = 1.0;        // of two values, likewise
+  double from_ = 0.0, to_ = 1.0;  ///< as to_axis() gives them
+  double least_gap_ = 1.0;        ///< of two values, likewise
 };
 
 }  // namespace glidelab::report

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
+
+#include "core/results.h"
 
 namespace glidelab::report {
 
@@ -16,13 +19,6 @@ struct QuantityName {
 inline constexpr std::array<QuantityName, 4> kQuantities = {
     {{"k_over_m_1_s", "K/m", "1/s"}, {"mu", "µ", ""}, {"alpha_deg", "α", "°"}, {"v_lim_m_s", "limit velocity", "m/s"}}};
 
-inline std::string symbol_of(std::string_view key) {
-  for (const QuantityName& name : kQuantities) {
-    if (name.key == key) return std::string(name.symbol);
-  }
-  return std::string(key);
-}
-
 /// Among kQuantities; their number for what is none of them.
 inline std::size_t place_of(std::string_view key) {
   std::size_t place = 0;
@@ -30,11 +26,47 @@ inline std::size_t place_of(std::string_view key) {
   return place;
 }
 
+/// "K/m" for "k_over_m_1_s"; what is none of kQuantities stays as it is.
+inline std::string symbol_of(std::string_view key) {
+  const std::size_t place = place_of(key);
+  return std::string(place < kQuantities.size() ? kQuantities[place].symbol : key);
+}
+
+/// "1/s" for "k_over_m_1_s"; empty for a pure number and for what is none of kQuantities.
 inline std::string unit_of(std::string_view key) {
-  for (const QuantityName& name : kQuantities) {
-    if (name.key == key) return std::string(name.unit);
-  }
-  return {};
+  const std::size_t place = place_of(key);
+  return std::string(place < kQuantities.size() ? kQuantities[place].unit : "");
+}
+
+/// "v (m/s)"; the name alone of a pure number.
+inline std::string with_unit(std::string_view name, std::string_view unit) {
+  std::string text(name);
+  if (!unit.empty()) text.append(" (").append(unit).append(")");
+  return text;
+}
+
+/// "K/m (1/s)" for "k_over_m_1_s": a quantity at the head of a row or a column.
+inline std::string heading_of(std::string_view key) {
+  return with_unit(symbol_of(key), unit_of(key));
+}
+
+/// A unit behind a number: " 1/s", "°", and nothing of a pure number.
+inline std::string unit_suffix(std::string_view unit) {
+  return (unit.empty() || unit == "°" ? "" : " ") + std::string(unit);
+}
+
+/// A recovered quantity with its names.
+struct NamedQuantity {
+  QuantityName name;
+  const core::Quantity* quantity = nullptr;  ///< in the configuration that was given
+};
+
+/// K/m, µ, α and the limit velocity of a configuration, in the order of kQuantities.
+inline std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::ConfigurationResult& configuration) {
+  return {{{kQuantities[0], &configuration.k_over_m_1_s},
+           {kQuantities[1], &configuration.mu},
+           {kQuantities[2], &configuration.alpha_deg},
+           {kQuantities[3], &configuration.v_lim_m_s}}};
 }
 
 }  // namespace glidelab::report

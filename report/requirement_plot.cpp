@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "report/gnuplot.h"
+#include "report/plot_axis.h"
 #include "report/plot_style.h"
 #include "report/quantity_names.h"
 
@@ -28,7 +29,7 @@ std::string target_name(const Target& target, const std::string& factor) {
   const char* measure = target.measure == Target::Measure::sd        ? "rms error"
                         : target.measure == Target::Measure::error95 ? "95 % error"
                                                                      : "bias";
-  return fmt::format("{} of {}{}", measure, symbol_of(target.quantity), unit.empty() ? "" : fmt::format(" ({})", unit));
+  return with_unit(fmt::format("{} of {}", measure, symbol_of(target.quantity)), unit);
 }
 
 namespace {
@@ -70,14 +71,10 @@ struct LogAxis {
   }
   double length() const { return std::log(to / from); }
   std::string script(const std::string& name) const {
-    std::string tics;
-    for (int power = static_cast<int>(std::floor(std::log10(from))); std::pow(10.0, power) < to; ++power) {
-      for (const double digit : {1.0, 2.0, 5.0}) {
-        const double value = digit * std::pow(10.0, power);
-        if (value >= from && value <= to) tics += fmt::format("{}{:.6g}", tics.empty() ? "" : ", ", value);
-      }
-    }
-    return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3})\n", name, from, to, tics);
+    std::vector<double> tics = ladder_of(from, to);
+    std::erase_if(tics, [this](double value) { return value < from || value > to; });
+    return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3:.6g})\n", name, from, to,
+                       fmt::join(tics, ", "));
   }
 };
 

@@ -10,7 +10,9 @@
 #include "report/camera_plots.h"
 #include "report/configuration_name.h"
 #include "report/file_names.h"
+#include "report/fitted_lines.h"
 #include "report/html.h"
+#include "report/motion_csv.h"
 #include "report/motion_plots.h"
 #include "report/number_text.h"
 #include "report/phase_plots.h"
@@ -21,9 +23,10 @@
 namespace glidelab::report {
 namespace {
 
-std::string unit_suffix(std::string_view unit) {
-  if (unit.empty()) return {};
-  return unit == "°" ? "°" : fmt::format(" {}", unit);
+/// "2.7791 ± 0.0062", or a dash that says why when it is pointed at. HTML.
+std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
+  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
+  return value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
 }
 
 std::string notes_html(const std::vector<std::string>& notes) {
@@ -31,12 +34,6 @@ std::string notes_html(const std::vector<std::string>& notes) {
   std::string text = "<div class=\"note\"><ul>";
   for (const std::string& note : notes) text += fmt::format("<li>{}</li>", escape(note));
   return text + "</ul></div>\n";
-}
-
-const core::LineFit* line_of(const std::vector<core::LineFit>& lines, int direction) {
-  const auto found =
-      std::find_if(lines.begin(), lines.end(), [&](const core::LineFit& line) { return line.direction == direction; });
-  return found == lines.end() ? nullptr : &*found;
 }
 
 /// With the number of points that the line rests on.
@@ -99,7 +96,7 @@ std::string noise_text(double noise_mm, std::size_t points) {
 }
 
 Html clip_html(const core::ClipResult& clip, std::size_t index, const std::string& phase_file,
-               const core::Preview* preview) {
+               const std::string& motion_file, const core::Preview* preview) {
   Html text = fmt::format("<h3 id=\"{}\">{}</h3>\n", clip_anchor(index), escape(clip.name));
   std::size_t used = 0;
   for (const core::MotionPoint& point : clip.motion) {
@@ -112,7 +109,7 @@ Html clip_html(const core::ClipResult& clip, std::size_t index, const std::strin
                              : fmt::format("{} frames, the marker found in {},", clip.frames, clip.detected),
       number_text(clip.frame_rate_hz, 5), used, noise_text(clip.position_noise_m * 1e3, used),
       number_text(clip.bandwidth_s * 1e3, 3), clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method),
-      escape(phase_file), escape("motion" + phase_file.substr(phase_file.find('-'))));
+      escape(phase_file), escape(motion_file));
   text += notes_html(clip.notes);
   if (preview != nullptr) text += pictures(clip, *preview);
   text += figures(motion_plots(clip));
@@ -136,7 +133,7 @@ std::string lines_section(const core::AnalysisResults& results) {
 
 Html clips_section(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
                    const base::Progress& progress) {
-  const std::vector<std::string> files = phase_file_names(results);
+  const std::vector<std::string> phase_files = phase_file_names(results), motion_files = motion_file_names(results);
   Html text = "<h2 id=\"clips\">Clips</h2>\n<nav><ul>\n";
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     text += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", clip_anchor(c), escape(results.clips[c].name));
@@ -144,7 +141,7 @@ Html clips_section(const core::AnalysisResults& results, const std::vector<core:
   text += "</ul></nav>\n<p class=\"soft\">In the plots, blue is what the fits use; grey was left out.</p>\n";
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     progress("writing the report", static_cast<double>(c) / static_cast<double>(results.clips.size()));
-    text += clip_html(results.clips[c], c, files[c], previews.empty() ? nullptr : &previews[c]);
+    text += clip_html(results.clips[c], c, phase_files[c], motion_files[c], previews.empty() ? nullptr : &previews[c]);
   }
   return text;
 }
@@ -221,13 +218,10 @@ std::string method_section() {
 std::string corrections_html(const core::AnalysisResults& results) {
   HtmlTable table({"configuration", "quantity", "of the lines as they are", "correction", "recovered"}, 2);
   for (const core::ConfigurationResult& c : results.configurations) {
-    const std::array<std::pair<std::string_view, const core::Quantity*>, 4> quantities = {
-        std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
-        std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)};
-    for (const auto& [name, quantity] : quantities) {
+    for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
       const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      table.row({escape(configuration_name(results, c)), std::string(name),
+      table.row({escape(configuration_name(results, c)), std::string(name.symbol),
                  value_text(quantity->estimate->value - correction, sd), error_text(correction, sd),
                  value_and_sd_text(quantity->estimate->value, sd)});
     }
@@ -242,11 +236,6 @@ std::string corrections_html(const core::AnalysisResults& results) {
 
 }  // namespace
 
-std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
-  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
-  return value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
-}
-
 std::string recovered_section(const core::AnalysisResults& results) {
   HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
                    "R² (v&gt;0)"});
@@ -255,12 +244,10 @@ std::string recovered_section(const core::AnalysisResults& results) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
                quantity_html(c.k_over_m_1_s, ""), quantity_html(c.mu, ""), quantity_html(c.alpha_deg, ""),
                quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1)});
-    for (const auto& [name, quantity] :
-         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
-          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
+    for (const auto& [name, quantity] : quantities_of(c)) {
       if (quantity->estimate) continue;
-      reasons += fmt::format("<li>{}: {} is not determined: {}</li>\n", escape(configuration_name(results, c)), name,
-                             escape(quantity->why));
+      reasons += fmt::format("<li>{}: {} is not determined: {}</li>\n", escape(configuration_name(results, c)),
+                             name.symbol, escape(quantity->why));
     }
   }
   std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();

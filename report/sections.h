@@ -11,9 +11,6 @@
 
 namespace glidelab::report {
 
-/// "2.7791 ± 0.0062 1/s" as HTML, or a dash that says why on hover and in a footnote of the table.
-std::string quantity_html(const core::Quantity& quantity, std::string_view unit);
-
 /// One row a configuration: what was recovered, and below it why something was not.
 std::string recovered_section(const core::AnalysisResults& results);
 

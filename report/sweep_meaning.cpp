@@ -56,9 +56,9 @@ const Series* series_of(const std::vector<Series>& all, const Series& like) {
   return found == all.end() ? nullptr : &*found;
 }
 
-std::string with_unit(double value, std::string_view quantity) {
-  const std::string unit = unit_of(quantity);
-  return number_text(value, 2) + (unit.empty() ? "" : (unit == "°" ? "" : " ") + unit);
+/// "0.0021 1/s".
+std::string error_of(double value, std::string_view quantity) {
+  return number_text(value, 2) + unit_suffix(unit_of(quantity));
 }
 
 /// "trajectory in K/m (0.001 1/s), µ (0.0001)", of each quantity the best that is asked for; `name` makes the name of
@@ -74,7 +74,7 @@ std::string winners_of(const SweepSummary& summary, const std::function<bool(con
                         text.empty()  ? ""
                         : who.empty() ? ", "
                                       : "; ",
-                        who, quantity.symbol, with_unit(best->groups.front().statistics.rms, quantity.key));
+                        who, quantity.symbol, error_of(best->groups.front().statistics.rms, quantity.key));
     previous = best->estimator;
   }
   return text;
@@ -120,8 +120,8 @@ std::string span_of(const validate::AxisSummary& axis, const Series& series) {
     if (most == nullptr || of->rms > rms(*most)) most = &group;
   }
   if (least == most || !(rms(*least) > 0.0)) return {};
-  return fmt::format("{} at {} and {} at {}, {} times as much{}", with_unit(rms(*least), series.quantity),
-                     at_text(axis, *least), with_unit(rms(*most), series.quantity), at_text(axis, *most),
+  return fmt::format("{} at {} and {} at {}, {} times as much{}", error_of(rms(*least), series.quantity),
+                     at_text(axis, *least), error_of(rms(*most), series.quantity), at_text(axis, *most),
                      number_text(rms(*most) / rms(*least), 2),
                      part_of(series.likeness, "combinations of all else that have an answer at each value"));
 }
@@ -140,7 +140,7 @@ std::string configurations_of(const SweepSummary& summary, const Series& best) {
     const ErrorStatistics* const errors = validate::comparable(*series, series->groups.front());
     if (errors == nullptr || errors->answered == 0) continue;
     part = part_of(series->likeness, "runs in which each configuration has an answer");
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", escape(of.name), with_unit(errors->rms, best.quantity));
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", escape(of.name), error_of(errors->rms, best.quantity));
   }
   return text + part;
 }

@@ -20,10 +20,6 @@ using validate::Series;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} ({})", name, unit);
-}
-
 constexpr double kPlotWidth = 360.0;  // points between the axis' ends
 
 /// Words stand one beside the other.

@@ -29,18 +29,13 @@ std::vector<std::string> cells_of(const ErrorStatistics& of) {
           of.answered == 0 ? "–" : fmt::format("{:.1f} %", 100.0 * of.coverage)};
 }
 
-std::string name_of(const std::string& quantity) {
-  const std::string unit = unit_of(quantity);
-  return symbol_of(quantity) + (unit.empty() ? "" : fmt::format(" ({})", unit));
-}
-
 /// Quantity, estimator and numbers, as text: the quantities in the order in which every page has them, which is not
 /// that of the database.
 std::vector<std::vector<std::string>> rows_of(std::vector<validate::Series> overall) {
   std::ranges::stable_sort(overall, {}, [](const validate::Series& series) { return place_of(series.quantity); });
   std::vector<std::vector<std::string>> rows;
   for (const validate::Series& series : overall) {
-    rows.push_back({name_of(series.quantity), series.estimator});
+    rows.push_back({heading_of(series.quantity), series.estimator});
     for (std::string& cell : cells_of(series.groups.front().statistics)) rows.back().push_back(std::move(cell));
   }
   return rows;
@@ -157,7 +152,7 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       progress("drawing", done++ / static_cast<double>(summary.axes.size() * kQuantities.size()));
       const std::vector<Plot> plots = sweep_plots(axis, quantity.key, summary.configurations);
       if (plots.empty()) continue;
-      drawn += fmt::format("<h3>{}</h3>\n", escape(name_of(std::string(quantity.key)))) + figures(plots);
+      drawn += fmt::format("<h3>{}</h3>\n", escape(heading_of(quantity.key))) + figures(plots);
     }
     if (!drawn.plots().empty()) body += fmt::format("<h2>Over {}</h2>\n", escape(axis.name)) + drawn;
   }

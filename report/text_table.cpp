@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "report/configuration_name.h"
+#include "report/fitted_lines.h"
 #include "report/meaning.h"
 #include "report/number_text.h"
 #include "report/quantity_names.h"
@@ -25,19 +26,13 @@ std::size_t width_of(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-std::string with_unit(std::string_view symbol, std::string_view unit) {
-  return unit.empty() ? std::string(symbol) : fmt::format("{} ({})", symbol, unit);
-}
-
 std::string quantity_text(const core::Quantity& quantity) {
   return quantity.estimate ? value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) : "–";
 }
 
 std::string r2_of(const core::ConfigurationResult& configuration, int direction) {
-  for (const core::LineFit& line : configuration.lines) {
-    if (line.direction == direction) return r2_text(line.r2);
-  }
-  return "–";
+  const core::LineFit* const line = line_of(configuration.lines, direction);
+  return line == nullptr ? "–" : r2_text(line->r2);
 }
 
 }  // namespace
@@ -70,12 +65,10 @@ std::string analysis_text(const core::AnalysisResults& results) {
     rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), c.group,
                     quantity_text(c.k_over_m_1_s), quantity_text(c.mu), quantity_text(c.alpha_deg),
                     quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
-    for (const auto& [name, quantity] :
-         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
-          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
+    for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate) {
-        reasons +=
-            fmt::format("{}: no {}: {}\n", printable(configuration_name(results, c)), name, printable(quantity->why));
+        reasons += fmt::format("{}: no {}: {}\n", printable(configuration_name(results, c)), name.symbol,
+                               printable(quantity->why));
       }
     }
   }
@@ -84,12 +77,10 @@ std::string analysis_text(const core::AnalysisResults& results) {
   rows = {{"configuration", "quantity", "of the lines as they are", "taken off for smoothing"}};
   std::string notes;
   for (const core::ConfigurationResult& c : results.configurations) {
-    for (const auto& [name, quantity] :
-         {std::pair(kQuantities[0].symbol, &c.k_over_m_1_s), std::pair(kQuantities[1].symbol, &c.mu),
-          std::pair(kQuantities[2].symbol, &c.alpha_deg), std::pair(kQuantities[3].symbol, &c.v_lim_m_s)}) {
+    for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
       const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      rows.push_back({configuration_name(results, c), std::string(name),
+      rows.push_back({configuration_name(results, c), std::string(name.symbol),
                       value_text(quantity->estimate->value - correction, sd), error_text(-correction, sd)});
     }
     for (const std::string& note : c.notes) {
@@ -116,9 +107,9 @@ std::string comparison_text(const validate::Comparison& comparison) {
     previous = q.configuration;
     estimator = q.estimator;
     rows.push_back({first ? fmt::format("{} ({:.6g} kg, {:.4g}°)", q.configuration, q.mass_kg, q.incline_deg) : "",
-                    other ? q.estimator : "", with_unit(symbol_of(q.quantity), unit_of(q.quantity)),
-                    q.truth ? value_text(*q.truth, sd) : "–", q.value ? value_text(*q.value, sd) : "–",
-                    q.sd ? sd_text(*q.sd) : "–", q.error ? error_text(*q.error, sd) : "–",
+                    other ? q.estimator : "", heading_of(q.quantity), q.truth ? value_text(*q.truth, sd) : "–",
+                    q.value ? value_text(*q.value, sd) : "–", q.sd ? sd_text(*q.sd) : "–",
+                    q.error ? error_text(*q.error, sd) : "–",
                     q.error && sd > 0.0 ? fmt::format("{:+.2f}", *q.error / sd) : "–",
                     q.cramer_rao_sd ? sd_text(*q.cramer_rao_sd) : "–"});
   }

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "report/plot_axis.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
@@ -28,11 +28,6 @@ void add(const std::vector<double>& at, const std::vector<double>& value, double
   for (std::size_t p = 0; p < at.size(); p += step) into.rows.push_back({at[p], scale * value[p]});
 }
 
-void never_empty(PlotData& data) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  if (data.rows.empty()) data.rows = {{kNan, kNan}};
-}
-
 }  // namespace
 
 std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
@@ -45,9 +40,7 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
   for (const validate::TwinMotion& motion : motions) {
     for (const double x : motion.rest_m) largest_m = std::max(largest_m, std::abs(x));
   }
-  const bool micrometres = largest_m < 2e-4;
-  const double scale = micrometres ? 1e6 : 1e3;
-  const char* const unit = micrometres ? "µm" : "mm";
+  const auto [unit, scale] = small_length_unit(largest_m);
   rest.columns = {"t (s)", fmt::format("data - twin ({})", unit)};
   noise.columns = {"t (s)", fmt::format("noise of the twin ({})", unit)};
   for (const validate::TwinMotion& motion : motions) {
@@ -56,16 +49,15 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
     add(motion.v_m_s, motion.a_m_s2, 1.0, step, data);
     add(motion.twin_v_m_s, motion.twin_a_m_s2, 1.0, step, twin);
   }
-  for (PlotData* one : {&rest, &noise, &data, &twin}) never_empty(*one);
   return {
       {Drawing{std::string(kFrame) + "set offsets 0, graph 0.02, graph 0.06, graph 0.06\nset xlabel 'time t (s)'\n" +
                    fmt::format("set ylabel 'position  ({})'\n", unit) + points("data − twin", "noise of the twin"),
-               std::vector{rest, noise}},
+               std::vector{never_empty(rest), never_empty(noise)}},
        "What the measured positions of all clips lie off the twin's: as much as noise alone, where nothing is missing",
        "Measured positions less those of the twin over time, beside noise"},
       {Drawing{std::string(kFrame) + "set xlabel 'speed v (m/s)'\nset ylabel 'acceleration a (m/s²)'\n" +
                    points("data", "twin"),
-               std::vector{data, twin}},
+               std::vector{never_empty(data), never_empty(twin)}},
        "Acceleration over speed, of the data and of the twin, smoothed alike",
        "Acceleration over speed of data and twin"}};
 }

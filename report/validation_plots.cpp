@@ -9,6 +9,7 @@
 #include "report/decimate.h"
 #include "report/gnuplot.h"
 #include "report/pixel_phase.h"
+#include "report/plot_axis.h"
 #include "report/plot_style.h"
 #include "report/quantity_names.h"
 
@@ -73,10 +74,8 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
 std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
                                    const validate::RestitutionComparison& restitution) {
   if (restitution.points.empty()) return {};
-  const bool micrometres = restitution.max_m < 2e-4;
-  const double scale = micrometres ? 1e6 : 1e3;
+  const auto [unit, scale] = small_length_unit(restitution.max_m);
   std::vector<PlotData> data;
-  const char* const unit = micrometres ? "µm" : "mm";
   const bool named = results.clips.size() <= kMostNamed;
   std::string script(kFrame);
   script += fmt::format("set xlabel 'true x  (m)'\nset ylabel 'measured − true  ({})'\n{}plot ", unit,

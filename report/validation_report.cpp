@@ -31,7 +31,6 @@ std::string comparison_table(const validate::Comparison& comparison) {
     }
     previous = q.configuration;
     estimator = q.estimator;
-    const std::string unit = unit_of(q.quantity);
     std::string in_sd = "–";
     if (q.error && sd > 0.0) {
       const double ratio = *q.error / sd;
@@ -39,8 +38,7 @@ std::string comparison_table(const validate::Comparison& comparison) {
       in_sd = fmt::format("<span class=\"{}\">{:+.2f}</span>", std::abs(ratio) <= 3.0 ? "good" : "bad", ratio);
     }
     const bool relative = q.error && q.truth && *q.truth != 0.0 && q.quantity != "alpha_deg" && q.quantity != "mu";
-    table.row({escape(symbol_of(q.quantity)) + (unit.empty() ? "" : fmt::format(" ({})", unit)),
-               cell(q.truth, value_text, sd),
+    table.row({escape(heading_of(q.quantity)), cell(q.truth, value_text, sd),
                q.value ? value_text(*q.value, sd) : fmt::format("<span title=\"{}\">–</span>", escape(q.why)),
                q.sd ? sd_text(*q.sd) : "–", cell(q.error, error_text, sd), in_sd,
                relative ? fmt::format("{:+.3f} %", 100.0 * *q.error / *q.truth) : "",
