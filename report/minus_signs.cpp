@@ -13,9 +13,30 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Of a word that a hyphen would join: letters of other alphabets among them.
-bool joins(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' || c == ']';
+/// The character that ends before `at` (above 0) in UTF-8.
+char32_t character_before(std::string_view text, std::size_t at) {
+  char32_t value = 0;
+  unsigned shift = 0;
+  do {
+    const auto byte = static_cast<unsigned char>(text[--at]);
+    const bool continues = (byte & 0xC0u) == 0x80u;
+    const unsigned bits = continues      ? 0x3Fu
+                          : byte < 0x80u ? 0x7Fu
+                          : byte < 0xE0u ? 0x1Fu
+                          : byte < 0xF0u ? 0x0Fu
+                                         : 0x07u;
+    value |= static_cast<char32_t>(byte & bits) << shift;
+    if (!continues) break;
+    shift += 6;
+  } while (at > 0 && shift < 24);
+  return value;
+}
+
+/// Of a word that a hyphen would join, letters of other alphabets among them: those lie from U+00C0 on but for the
+/// signs × and ÷ and the block of punctuation and mathematical signs, U+2000 to U+2BFF.
+bool joins(char32_t c) {
+  if (c < 0x80) return std::isalnum(static_cast<int>(c)) != 0 || c == '-' || c == '_' || c == '.' || c == ']';
+  return c == U'µ' || (c >= 0xC0 && c != U'×' && c != U'÷' && (c < 0x2000 || c >= 0x2C00));
 }
 
 bool opens(std::string_view tag, std::string_view name) {
@@ -46,7 +67,7 @@ std::string with_minus_signs(std::string_view html) {
       continue;
     }
     const bool minus =
-        html[i] == '-' && i + 1 < html.size() && is_digit(html[i + 1]) && (i == 0 || !joins(html[i - 1]));
+        html[i] == '-' && i + 1 < html.size() && is_digit(html[i + 1]) && (i == 0 || !joins(character_before(html, i)));
     text += minus ? std::string_view("\u2212") : html.substr(i, 1);
     ++i;
   }

@@ -7,7 +7,8 @@
 namespace glidelab::report {
 
 /// The document with U+2212 for each hyphen that begins a number ("-0.3", "(-5", "± -2"): one before a digit, with
-/// neither a letter, a digit nor another hyphen before it, so that "m1-2", "1e-07" and "2026-11-23" stay. Tags, style,
+/// neither a letter of any alphabet, a digit, another hyphen, nor one of "_", "." and "]" before it, so that "m1-2",
+/// "maß-2", "1e-07" and "2026-11-23" stay. Tags, style,
 /// scripts and code elements (what one types or finds in a file) stay as they are.
 std::string with_minus_signs(std::string_view html);
 

@@ -25,10 +25,11 @@ TEST_CASE("a table of long names gives them a wide column, one of short names or
 
 TEST_CASE("a hyphen before a number becomes a minus sign on a page, one in a name, a date, a tag or code does not") {
   CHECK(report::with_minus_signs("-0.3, (-5) ± -2") == "−0.3, (−5) ± −2");
+  CHECK(report::with_minus_signs("10×-3, “-4”, ±-5") == "10×−3, “−4”, ±−5");
   CHECK(report::with_minus_signs("<td class=\"n\">-1.2</td>") == "<td class=\"n\">−1.2</td>");
   for (const std::string same :
-       {"m1-2", "1e-07", "2026-11-23", "a - b", "--cases 3", "<a href=\"#-1\">x</a>", "<code>-1</code>",
-        "<script>x = -1;</script>", "<style>a { top: -1px }</style>", "-", "<", "<code"}) {
+       {"m1-2", "maß-2", "Δ-1", "ход-3", "µ-4", "1e-07", "2026-11-23", "a - b", "--cases 3", "<a href=\"#-1\">x</a>",
+        "<code>-1</code>", "<script>x = -1;</script>", "<style>a { top: -1px }</style>", "-", "<", "<code"}) {
     CHECK(report::with_minus_signs(same) == same);
   }
   CHECK(report::with_minus_signs("<code>-1</code>-1") == "<code>-1</code>−1");
