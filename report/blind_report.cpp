@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
+#include <array>
 
 #include "report/blind_targets.h"
 #include "report/gnuplot.h"
@@ -22,9 +22,24 @@ std::string percent_only(const BlindShare& share) {
   return share.of == 0 ? "–" : fmt::format("{:.0f} %", 100.0 * share.share());
 }
 
-BlindShare of(const std::map<std::string, BlindShare>& shares, const std::string& key) {
-  const auto found = shares.find(key);
-  return found == shares.end() ? BlindShare{} : found->second;
+/// Of the kinds of case, as the methods' table and plot have them.
+std::array<BlindShare, 6> kinds_of(const validate::BlindMethod& method) {
+  return {method.none,
+          share_of(method.single, "weak"),
+          share_of(method.single, "moderate"),
+          share_of(method.single, "strong"),
+          method.pair,
+          method.outside};
+}
+
+std::vector<std::string> percents_of(const validate::BlindMethod& method) {
+  std::vector<std::string> cells;
+  for (const BlindShare& share : kinds_of(method)) cells.push_back(percent_only(share));
+  return cells;
+}
+
+std::string wanted_calibration_text() {
+  return fmt::format("below {}", kWantedCalibration);
 }
 
 std::string said_text(const validate::ConfusionRow& row) {
@@ -76,16 +91,16 @@ Plot reliability_plot(const validate::BlindScore& score) {
   PlotData data{"bins", {}, {"probability stated", "share right", "95 % from", "95 % to"}};
   for (const validate::ReliabilityBin& bin : score.reliability) {
     if (bin.right.of == 0) continue;
-    using Binomial = boost::math::binomial_distribution<>;
-    const auto n = static_cast<double>(bin.right.of), yes = static_cast<double>(bin.right.yes);
-    data.rows.push_back({bin.stated, bin.right.share(), Binomial::find_lower_bound_on_p(n, yes, 0.025),
-                         Binomial::find_upper_bound_on_p(n, yes, 0.025)});
+    const validate::ProportionInterval interval = bin.right.interval95();
+    data.rows.push_back({bin.stated, bin.right.share(), interval.low, interval.high});
   }
   const std::string script = std::string(kFrame) +
                              "unset offsets\nset xrange [0:1.03]\nset yrange [0:1.03]\n"
-                             "set xlabel 'probability that was stated'\nset ylabel 'share that was right'\n"
-                             "plot x with lines lw 1.5 lc rgb '#9a9a9a' title 'as stated', "
-                             "$bins using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.5 lc rgb '#0072b2' title 'cases'\n";
+                             "set xlabel 'probability that was stated'\nset ylabel 'share that was right'\n" +
+                             fmt::format(
+                                 "plot x with lines lw 1.5 lc rgb '{}' title 'as stated', $bins using 1:2:3:4 with "
+                                 "yerrorbars pt 7 ps 0.9 lw 1.5 lc rgb '{}' title 'cases'\n",
+                                 kGrey, kColors[0]);
   const std::vector<PlotData> all = {data};
   return {Drawing{script, all},
           fmt::format("Stated probability of the verdict and how often it was right, with 95 % intervals; expected "
@@ -101,33 +116,29 @@ Plot methods_plot(const validate::BlindScore& score) {
       "unset offsets\nset style fill solid 0.85 noborder\nset boxwidth 0.19\nset yrange [0:105]\n"
       "set xrange [0.4:6.6]\nset ylabel 'right  (%)'\nset key outside top center horizontal maxcols 2 samplen 1\n"
       "set xtics font ',12' ('none' 1, 'weak' 2, 'moderate' 3, 'strong' 4, 'two' 5, 'outside' 6)\nplot ";
+  const double middle = 0.5 * (static_cast<double>(score.methods.size()) - 1.0);
   for (std::size_t m = 0; m < score.methods.size(); ++m) {
     const auto& method = score.methods[m];
     PlotData rows{fmt::format("m{}", m), {}, {"kind of case (place)", fmt::format("right by {} (%)", method.name)}};
-    const std::vector<BlindShare> shares = {method.none,
-                                            of(method.single, "weak"),
-                                            of(method.single, "moderate"),
-                                            of(method.single, "strong"),
-                                            method.pair,
-                                            method.outside};
+    const std::array<BlindShare, 6> shares = kinds_of(method);
     for (std::size_t s = 0; s < shares.size(); ++s) {
       rows.rows.push_back(
-          {static_cast<double>(s) + 1.0 + 0.2 * (static_cast<double>(m) - 1.5), 100.0 * shares[s].share()});
+          {static_cast<double>(s) + 1.0 + 0.2 * (static_cast<double>(m) - middle), 100.0 * shares[s].share()});
     }
     script += fmt::format("{}$m{} using 1:2 with boxes lc rgb '{}' title {}", m == 0 ? "" : ", ", m, color(m),
                           gnuplot_quoted(method.name));
     data.push_back(std::move(rows));
   }
   return {Drawing{script, data, {480, 400}}, "How often each way of deciding is right, by kind of case",
-          "Share of right answers of four methods"};
+          fmt::format("Share of right answers of {} methods", score.methods.size())};
 }
 
 std::string methods_table(const validate::BlindScore& score) {
   HtmlTable table({"", "nothing there", "one, weak", "moderate", "strong", "two effects", "outside"});
   for (const validate::BlindMethod& method : score.methods) {
-    table.row({escape(method.name), percent_only(method.none), percent_only(of(method.single, "weak")),
-               percent_only(of(method.single, "moderate")), percent_only(of(method.single, "strong")),
-               percent_only(method.pair), percent_only(method.outside)});
+    std::vector<std::string> row = percents_of(method);
+    row.insert(row.begin(), escape(method.name));
+    table.row(row);
   }
   return table.str();
 }
@@ -208,15 +219,14 @@ std::string blind_text(const BlindRun& run) {
       {"of " + std::to_string(run.outcomes.size()) + " blind cases", "found", "wanted"}};
   for (const BlindTarget& target : blind_targets(score))
     rows.push_back({target.what, blind_percent(target.share), wanted_text(target)});
-  rows.push_back({"expected calibration error", number_text(score.calibration_error, 2), "below 0.05"});
+  rows.push_back({"expected calibration error", number_text(score.calibration_error, 2), wanted_calibration_text()});
   for (const auto& [word, share] : score.left_out)
     rows.push_back({"true effect left out of the list: " + word, blind_percent(share), ""});
   std::string text = text_table(rows, 1) + "\n";
   rows = {{"right", "none", "weak", "moderate", "strong", "two", "outside"}};
   for (const auto& method : score.methods) {
-    rows.push_back({method.name, percent_only(method.none), percent_only(of(method.single, "weak")),
-                    percent_only(of(method.single, "moderate")), percent_only(of(method.single, "strong")),
-                    percent_only(method.pair), percent_only(method.outside)});
+    rows.push_back(percents_of(method));
+    rows.back().insert(rows.back().begin(), method.name);
   }
   text += text_table(rows, 1) + "\n";
   rows = {{"truth", "first name"}};
@@ -240,7 +250,7 @@ Page blind_page(const BlindRun& run) {
     targets.row({escape(target.what), blind_percent(target.share), wanted_text(target) + how});
   }
   targets.row({"expected calibration error", number_text(score.calibration_error, 2),
-               score.calibration_error < kWantedCalibration ? "below 0.05: met" : "below 0.05: missed"});
+               wanted_calibration_text() + (score.calibration_error < kWantedCalibration ? ": met" : ": missed")});
   body += "<h2>Found and wanted</h2>\n" + targets.str();
   if (score.failed > 0) {
     body += fmt::format("<p class=\"note\">{} cases could not be diagnosed; they count as wrong.</p>\n", score.failed);

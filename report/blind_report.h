@@ -17,9 +17,13 @@ struct BlindRun {
   bool pictures = false;  ///< filmed experiments, not tracks
 };
 
+/// The score and every case's outcome, with a newline at its end. No number in it is NaN.
 std::string blind_json(const BlindRun& run);
+
+/// Targets, ways of deciding and confusions as tables for a terminal.
 std::string blind_text(const BlindRun& run);
-/// EnvironmentError where gnuplot fails.
+
+/// The same as a page, with what it means first and all cases last. EnvironmentError where gnuplot fails.
 Page blind_page(const BlindRun& run);
 
 }  // namespace glidelab::report

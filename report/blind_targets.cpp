@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <boost/math/distributions/binomial.hpp>
-
 #include "report/html.h"
 #include "report/number_text.h"
 
@@ -11,11 +9,6 @@ namespace glidelab::report {
 namespace {
 
 using validate::BlindShare;
-
-BlindShare of(const std::map<std::string, BlindShare>& shares, const std::string& key) {
-  const auto found = shares.find(key);
-  return found == shares.end() ? BlindShare{} : found->second;
-}
 
 BlindShare all_of(const std::map<std::string, BlindShare>& shares) {
   BlindShare sum;
@@ -28,11 +21,9 @@ BlindShare all_of(const std::map<std::string, BlindShare>& shares) {
 
 /// "in 96 % (122 of 127; 95 %: 91 to 99 %)"
 std::string with_interval(const BlindShare& share) {
-  using Binomial = boost::math::binomial_distribution<>;
-  const auto n = static_cast<double>(share.of), yes = static_cast<double>(share.yes);
+  const validate::ProportionInterval interval = share.interval95();
   return fmt::format("in {:.0f} % ({} of {}; 95 %: {:.0f} to {:.0f} %)", 100.0 * share.share(), share.yes, share.of,
-                     100.0 * Binomial::find_lower_bound_on_p(n, yes, 0.025),
-                     100.0 * Binomial::find_upper_bound_on_p(n, yes, 0.025));
+                     100.0 * interval.low, 100.0 * interval.high);
 }
 
 /// By how much more is stated than is right, on average over the cases.
@@ -48,6 +39,11 @@ double over_stated(const validate::BlindScore& score) {
 
 }  // namespace
 
+BlindShare share_of(const std::map<std::string, BlindShare>& shares, const std::string& key) {
+  const auto found = shares.find(key);
+  return found == shares.end() ? BlindShare{} : found->second;
+}
+
 std::string blind_percent(const BlindShare& share) {
   if (share.of == 0) return "–";
   return fmt::format("{:.0f} % ({} of {})", 100.0 * share.share(), share.yes, share.of);
@@ -55,15 +51,15 @@ std::string blind_percent(const BlindShare& share) {
 
 std::vector<BlindTarget> blind_targets(const validate::BlindScore& score) {
   const auto& single = score.methods.front().single;
-  return {{"one strong effect: named first", of(single, "strong"), 0.95, false},
-          {"one moderate effect: named first", of(single, "moderate"), 0.80, false},
+  return {{"one strong effect: named first", share_of(single, "strong"), 0.95, false},
+          {"one moderate effect: named first", share_of(single, "moderate"), 0.80, false},
           {"one effect, moderate or strong: among those named",
-           {of(score.in_set, "strong").of + of(score.in_set, "moderate").of,
-            of(score.in_set, "strong").yes + of(score.in_set, "moderate").yes},
+           {share_of(score.in_set, "strong").of + share_of(score.in_set, "moderate").of,
+            share_of(score.in_set, "strong").yes + share_of(score.in_set, "moderate").yes},
            0.97,
            false},
           {"nothing: another verdict than none", score.false_alarm, 0.05, true},
-          {"outside the library, strong: unknown", of(score.recognised, "strong"), 0.85, false},
+          {"outside the library, strong: unknown", share_of(score.recognised, "strong"), 0.85, false},
           {"outside the library, all: unknown", all_of(score.recognised), 0.85, false},
           {"outside the library: a name with probability over 0.8", score.wrong_name, 0.03, true},
           {"two effects: both named", score.methods.front().pair, 0.75, false},
@@ -84,8 +80,9 @@ std::string blind_meaning(const validate::BlindScore& score) {
   const auto add = [&](const BlindShare& share, const char* when, const char* what) {
     if (share.of > 0) text += fmt::format("<li>{}: {} {}.</li>\n", when, what, with_interval(share));
   };
-  add(of(single, "strong"), "One strong effect", "its name, or that of what is the same on such data, comes first");
-  add(of(single, "moderate"), "One moderate effect", "its name comes first");
+  add(share_of(single, "strong"), "One strong effect",
+      "its name, or that of what is the same on such data, comes first");
+  add(share_of(single, "moderate"), "One moderate effect", "its name comes first");
   add(score.methods.front().pair, "Two effects at once", "both are named");
   add(score.false_alarm, "Nothing wrong", "another verdict than none");
   add(all_of(score.recognised), "A cause that is in no list", "it is called unknown");

@@ -1,6 +1,7 @@
 /// What blind cases are wanted to come out with, and what their score means in words.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,16 @@ inline constexpr double kWantedCalibration = 0.05;
 struct BlindTarget {
   std::string what;
   validate::BlindShare share;
-  double wanted = 0.0;
+  double wanted = 0.0;  ///< of the share
   bool at_most = false;
 };
+/// All of them, whether or not there are cases that say anything about one.
 std::vector<BlindTarget> blind_targets(const validate::BlindScore& score);
 
-/// Of a share of no cases it says nothing.
+/// That of a key, of no cases where there is none.
+validate::BlindShare share_of(const std::map<std::string, validate::BlindShare>& shares, const std::string& key);
+
+/// Whether the share reaches what is wanted; of a share of no cases that says nothing.
 bool is_met(const BlindTarget& target);
 
 /// "at least 95 %"

@@ -181,7 +181,6 @@ void add_shrink(const BlindOutcome& outcome, BlindScore& score) {
   }
   if (!oracle || verdict.gap_before - *oracle < kClearGap * verdict.gap_error) return;
   const double reached = (verdict.gap_before - verdict.gap_after) / (verdict.gap_before - *oracle);
-  score.shrink_of_oracle.push_back(reached);
   count(score.shrunk, reached >= kSameShrink);
 }
 

@@ -5,6 +5,7 @@
 /// gain less than 15 in log likelihood, moderate ones 15 to 50, strong ones more.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,10 +13,13 @@
 #include <string_view>
 #include <vector>
 
+#include "validate/binomial.h"
 #include "validate/blind_case.h"
 #include "validate/blind_verdict.h"
 
 namespace glidelab::validate {
+
+inline constexpr double kSureName = 0.8;  ///< probability; a name with more is a sure one
 
 struct BlindOutcome {
   std::size_t index = 0;
@@ -33,14 +37,16 @@ std::string blind_class(const std::string& id, bool filmed);
 std::string true_class(const BlindOutcome& outcome);
 /// All that a verdict names, as classes: its effects and their equals.
 std::set<std::string> named_by(const BlindOutcome& outcome);
-inline constexpr double kSureName = 0.8;  ///< a name with more is a sure one
 
 /// "weak", "moderate", "strong"; of a pair by its weaker cause.
 std::string_view strength_word(const BlindOutcome& outcome);
 
 struct BlindShare {
   std::size_t of = 0, yes = 0;
+  /// 0 of none.
   double share() const { return of == 0 ? 0.0 : static_cast<double>(yes) / static_cast<double>(of); }
+  /// Its 95 % interval (Clopper and Pearson); 0 to 1 of none.
+  ProportionInterval interval95() const { return proportion_interval(yes, of, 0.95); }
 };
 
 /// How often one way of deciding is right.
@@ -68,20 +74,20 @@ struct BlindScore {
   std::map<std::string, BlindShare> exact;       ///< single cases: the very id first, by strength
   std::map<std::string, BlindShare> recognised;  ///< outside: unknown, by strength
   BlindShare false_alarm;                        ///< none: anything else
-  BlindShare wrong_name;                         ///< outside: a name with probability over 0.8
+  BlindShare wrong_name;                         ///< outside: a sure name (kSureName)
   BlindShare where;                              ///< outside and unknown: the true variable among the regions
   BlindShare where_first;                        ///< outside and unknown: it is that of the first one
-  std::vector<ReliabilityBin> reliability;
-  double calibration_error = 0.0;        ///< expected: mean |stated - right| over cases
-  std::vector<double> shrink_of_oracle;  ///< single, strong: shrink over the true effect's own, each case
-  BlindShare shrunk;                     ///< of these: at least 0.95
-  std::map<std::string, BlindShare>
-      left_out;               ///< unknown, equivalent, none, name, sure name, failed: of those left out
-  BlindShare left_out_where;  ///< unknown of those: the first region is in a variable of the effect
+  std::vector<ReliabilityBin> reliability;       ///< ten of equal width, from 0 to 1
+  double calibration_error = 0.0;                ///< expected: mean |stated - right| over cases
+  /// Single and strong, and the gap that the true effect's own fit closes is clear: the diagnosis' closes 95 % of it.
+  BlindShare shrunk;
+  std::map<std::string, BlindShare> left_out;  ///< by each word of verdict_without() (blind_left_out.h)
+  BlindShare left_out_where;                   ///< unknown of those: the first region is in a variable of the effect
   std::vector<ConfusionRow> confusion;
   std::size_t failed = 0;
 };
 
+/// Every case counts; one that could not be diagnosed as wrong, but not among the probabilities.
 BlindScore score_blind(const std::vector<BlindOutcome>& outcomes);
 
 }  // namespace glidelab::validate
