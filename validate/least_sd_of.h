@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "validate/cramer_rao.h"
@@ -9,11 +11,13 @@
 namespace glidelab::validate {
 
 /// Of k_over_m_1_s, mu, alpha_deg or v_lim_m_s, in the quantity's unit; none where the motions do not determine it.
+/// std::logic_error of any other name.
 inline std::optional<double> least_sd_of(const LeastSd& least, std::string_view quantity) {
-  return quantity == "k_over_m_1_s" ? least.k_over_m_1_s
-         : quantity == "mu"         ? least.mu
-         : quantity == "alpha_deg"  ? least.alpha_deg
-                                    : least.v_lim_m_s;
+  if (quantity == "k_over_m_1_s") return least.k_over_m_1_s;
+  if (quantity == "mu") return least.mu;
+  if (quantity == "alpha_deg") return least.alpha_deg;
+  if (quantity == "v_lim_m_s") return least.v_lim_m_s;
+  throw std::logic_error("no quantity: " + std::string(quantity));
 }
 
 }  // namespace glidelab::validate

@@ -7,6 +7,7 @@
 
 #include "catch.h"
 #include "sim/closed_forms.h"
+#include "validate/least_sd_of.h"
 
 using namespace glidelab;
 using namespace glidelab::validate;
@@ -134,4 +135,13 @@ TEST_CASE("a law that is not equation (8) has no bound, and a noise of nothing i
   CHECK_THROWS_AS(least_sds(truth, {}, kGravity), std::invalid_argument);
   truth.configurations[0].mu.reset();
   CHECK_FALSE(least_sds(truth, {1e-5}, kGravity)[0].k_over_m_1_s);
+}
+
+TEST_CASE("a bound is asked for by the quantity's name, and another name is a mistake") {
+  const LeastSd least{"m1", 1.0, 2.0, 3.0, std::nullopt};
+  CHECK(least_sd_of(least, "k_over_m_1_s") == 1.0);
+  CHECK(least_sd_of(least, "mu") == 2.0);
+  CHECK(least_sd_of(least, "alpha_deg") == 3.0);
+  CHECK_FALSE(least_sd_of(least, "v_lim_m_s"));
+  CHECK_THROWS_AS(least_sd_of(least, "v_lim"), std::logic_error);
 }
