@@ -11,28 +11,19 @@
 
 namespace glidelab::report {
 
-std::string coverage_estimator_name(const std::string& estimator) {
-  if (estimator == "trajectory") return "fit of the whole motion";
-  if (estimator == "phase-diagram-gls") return "generalised lines";
-  if (estimator == "phase-diagram") return "lines of the phase diagram";
-  if (estimator == "naive-lines") return "naive lines (for contrast)";
-  return estimator;
-}
-
 Plot coverage_plot(const validate::Coverage& coverage) {
   std::string tics, script(kFrame);
   std::vector<PlotData> data;
-  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
+  const auto& estimators = validate::kCoverageEstimators;
   for (std::size_t e = 0; e < estimators.size(); ++e) data.push_back({fmt::format("e{}", e), {}});
   double row_number = 0.0, lowest = 90.0;
   for (const validate::CoverageRow& row : coverage.rows) {
     if (row.determined == 0) continue;
     row_number += 1.0;
-    const auto place =
-        static_cast<std::size_t>(std::find(estimators.begin(), estimators.end(), row.estimator) - estimators.begin());
-    if (place == estimators.size()) continue;
+    const auto place = std::find(estimators.begin(), estimators.end(), row.estimator) - estimators.begin();
     lowest = std::min(lowest, 100.0 * row.low95 - 2.0);
-    data[place].rows.push_back({100.0 * row.coverage, row_number, 100.0 * row.low95, 100.0 * row.high95});
+    data.at(static_cast<std::size_t>(place))
+        .rows.push_back({100.0 * row.coverage, row_number, 100.0 * row.low95, 100.0 * row.high95});
     tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ",
                         gnuplot_quoted(fmt::format("{}  {}", shortened(row.configuration), symbol_of(row.quantity))),
                         row_number);
@@ -46,7 +37,7 @@ Plot coverage_plot(const validate::Coverage& coverage) {
     if (data[e].rows.empty()) continue;
     script += fmt::format("{}${} using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}' title {}",
                           script.ends_with("plot ") ? "" : ", ", data[e].name, color(e),
-                          gnuplot_quoted(coverage_estimator_name(estimators[e])));
+                          gnuplot_quoted(estimator_name(estimators[e])));
   }
   const int height = 190 + 18 * std::max(10, static_cast<int>(row_number));
   return {Drawing{script, data, {560, height}}, "Coverage of the stated intervals, with its own 95 % interval",
@@ -57,7 +48,7 @@ Plot reliability_plot(const validate::Coverage& coverage) {
   // A column of the plot for each level: over the level itself 90, 95 and 99 % would lie over each other.
   PlotData band{"band", {}}, stated{"stated", {}};
   std::string tics;
-  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
+  const auto& estimators = validate::kCoverageEstimators;
   for (std::size_t i = 0; i < coverage.levels.size(); ++i) {
     const double level = coverage.levels[i], x = static_cast<double>(i);
     const validate::CoverageBand of = validate::band_of(level, coverage.replicates);
@@ -86,7 +77,7 @@ Plot reliability_plot(const validate::Coverage& coverage) {
     }
     if (points.rows.empty()) continue;
     script += fmt::format(", ${} using 1:2 with points pt 7 ps 0.5 lc rgb '{}' title {}", points.name, color(e),
-                          gnuplot_quoted(coverage_estimator_name(estimators[e])));
+                          gnuplot_quoted(estimator_name(estimators[e])));
     data.push_back(std::move(points));
   }
   return {Drawing{script, data, {560, 480}},

@@ -8,9 +8,6 @@
 
 namespace glidelab::report {
 
-/// "fit of the whole motion" for "trajectory".
-std::string coverage_estimator_name(const std::string& estimator);
-
 /// Coverage of every row's 95 % intervals with its binomial interval, a line at 95 %.
 Plot coverage_plot(const validate::Coverage& coverage);
 

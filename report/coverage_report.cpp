@@ -15,7 +15,6 @@
 namespace glidelab::report {
 namespace {
 
-constexpr auto estimator_name = coverage_estimator_name;
 constexpr double kAstray = 2.0;  // scatter over stated sd; chance alone moves the ratio of 200 values by a tenth
 
 /// "95 %", "99.5 %".
@@ -104,7 +103,8 @@ std::string list_of(const std::vector<validate::CoverageFailure>& failures) {
 std::vector<validate::CoverageRow> scattered(const validate::Coverage& coverage) {
   std::vector<validate::CoverageRow> rows;
   for (const validate::CoverageRow& row : coverage.rows) {
-    if (row.determined > 0 && row.estimator != "naive-lines" && row.sd > kAstray * row.stated_sd) rows.push_back(row);
+    if (row.determined > 0 && row.estimator != validate::kNaiveLines && row.sd > kAstray * row.stated_sd)
+      rows.push_back(row);
   }
   return rows;
 }
@@ -129,18 +129,18 @@ std::string astray_list(const std::vector<validate::CoverageRow>& rows) {
   return text;
 }
 
-std::string meaning(const validate::Coverage& coverage) {
+std::string coverage_meaning(const validate::Coverage& coverage) {
   const auto narrow = validate::too_narrow(coverage), wide = validate::too_wide(coverage);
-  std::string text = "<h2 id=\"meaning\">What this means</h2>\n";
   const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
-    return row.determined > 0 && row.estimator != "naive-lines";
+    return row.determined > 0 && row.estimator != validate::kNaiveLines;
   });
   if (!any) {
-    return text +
-           "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m and µ "
-           "are true of viscous and Coulomb friction only; under another law the inclination α has a true value, and "
-           "the limit velocity where the forces balance, and these motions do not determine them.</p>\n";
+    return meaning_section(
+        "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m and µ "
+        "are true of viscous and Coulomb friction only; under another law the inclination α has a true value, and "
+        "the limit velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
+  std::string text;
   if (narrow.empty()) {
     text +=
         "<p>The intervals of every estimator but the naive one hold the truth as often as they say, as far as this "
@@ -162,7 +162,7 @@ std::string meaning(const validate::Coverage& coverage) {
   text +=
       "<p>The naive lines treat smoothed points as if they were independent. They are shown so that one sees what "
       "that does to an interval.</p>\n";
-  return text;
+  return meaning_section(text);
 }
 
 }  // namespace
@@ -241,7 +241,7 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
       "by each estimator.</p>\n",
       escape(title), coverage.replicates, noise_text(coverage),
       coverage.camera_noise ? " (the least that the camera, the light and the marker allow)" : "");
-  body += meaning(coverage);
+  body += coverage_meaning(coverage);
   const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(),
                                [](const validate::CoverageRow& row) { return row.determined > 0; });
   if (any) {

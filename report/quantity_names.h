@@ -1,4 +1,4 @@
-/// What the recovered quantities are called on a page, beside their names in files.
+/// What the recovered quantities and the estimators are called on a page, beside their names in files.
 #pragma once
 
 #include <array>
@@ -52,7 +52,18 @@ inline std::string heading_of(std::string_view key) {
 
 /// A unit behind a number: " 1/s", "°", and nothing of a pure number.
 inline std::string unit_suffix(std::string_view unit) {
-  return (unit.empty() || unit == "°" ? "" : " ") + std::string(unit);
+  std::string text;
+  if (!unit.empty() && unit != "°") text += ' ';
+  return text.append(unit);
+}
+
+/// "fit of the whole motion" for "trajectory"; what is none of the estimators stays as it is.
+inline std::string estimator_name(std::string_view estimator) {
+  if (estimator == "trajectory") return "fit of the whole motion";
+  if (estimator == "phase-diagram-gls") return "generalised lines";
+  if (estimator == "phase-diagram") return "lines of the phase diagram";
+  if (estimator == "naive-lines") return "naive lines (for contrast)";
+  return std::string(estimator);
 }
 
 /// A recovered quantity with its names.

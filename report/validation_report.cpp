@@ -27,7 +27,7 @@ std::string comparison_table(const validate::Comparison& comparison) {
     const double sd = q.sd.value_or(0.0);
     if (q.configuration != previous || q.estimator != estimator) {
       table.heading(fmt::format("{}: {:.6g} kg, stated {:.4g}°, {}", escape(q.configuration), q.mass_kg, q.incline_deg,
-                                q.estimator == "trajectory" ? "fit of the whole motion" : escape(q.estimator)));
+                                escape(estimator_name(q.estimator))));
     }
     previous = q.configuration;
     estimator = q.estimator;
@@ -59,14 +59,12 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
       "<h1>{}</h1>\n<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the pictures alone "
       "by the lines of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n",
       escape(title));
-  body += fmt::format(
-      "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>frames with the marker found</span></div>"
-      "<div class=\"tile\"><b>{} mm</b><span>position error (rms)</span></div>"
-      "<div class=\"tile\"><b>{}</b><span>lowest R² of a line</span></div>"
-      "<div class=\"tile\"><b>{:.1f} s</b><span>to render and analyse</span></div></div>\n",
-      comparison.detected, comparison.frames,
-      restitution.points.empty() ? "–" : number_text(restitution.rms_m * 1e3, 2),
-      comparison.lines.empty() ? "–" : r2_text(lowest_r2), comparison.wall_s);
+  body +=
+      "<div class=\"tiles\">" +
+      tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +
+      tile(restitution.points.empty() ? "–" : number_text(restitution.rms_m * 1e3, 2) + " mm", "position error (rms)") +
+      tile(comparison.lines.empty() ? "–" : r2_text(lowest_r2), "lowest R² of a line") +
+      tile(fmt::format("{:.1f} s", comparison.wall_s), "to render and analyse") + "</div>\n";
   body += meaning_of(comparison);
   body += "<h2 id=\"comparison\">Truth and recovered values</h2>\n" + comparison_table(comparison);
   body +=

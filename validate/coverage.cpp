@@ -160,7 +160,6 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
                                        "a marker of two pixels or more that is brighter than the wall, or --noise-m"});
   }
   const std::vector<LeastSd> bounds = least_sds(clean.truth, noise_sd_m, clean.gravity_m_s2);
-  const std::vector<std::string> estimators = {"phase-diagram", "phase-diagram-gls", "trajectory", "naive-lines"};
   const std::size_t configurations = clean.truth.configurations.size();
   std::vector<std::vector<Outcome>> outcomes(options.replicates);
   std::atomic<std::size_t> done = 0;
@@ -182,13 +181,13 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   });
   Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, options.levels, {}};
   for (std::size_t c = 0; c < configurations; ++c) {
-    for (std::size_t e = 0; e < estimators.size(); ++e) {
+    for (std::size_t e = 0; e < kCoverageEstimators.size(); ++e) {
       for (int which = 0; which < 4; ++which) {
         const std::optional<double> truth = truth_of(clean.truth.configurations[c], which);
         if (!truth) continue;
         CoverageRow row;
         row.configuration = clean.truth.configurations[c].name;
-        row.estimator = estimators[e];
+        row.estimator = kCoverageEstimators[e];
         row.quantity = kNames[which];
         row.truth = *truth;
         row.cramer_rao_sd = least_sd_of(with_clock(bounds[c], clean.truth.configurations[c]), kNames[which]);
@@ -234,7 +233,7 @@ namespace {
 std::vector<CoverageFailure> significant(const Coverage& coverage, bool below) {
   std::vector<CoverageFailure> judged, failing;
   for (const CoverageRow& row : coverage.rows) {
-    if (row.estimator == "naive-lines" || row.determined == 0) continue;
+    if (row.estimator == kNaiveLines || row.determined == 0) continue;
     for (const LevelCount& at : row.levels) judged.push_back({row, at});
   }
   for (const CoverageFailure& one : judged) {

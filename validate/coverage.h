@@ -7,6 +7,8 @@
 /// stated interval has for its standard deviation.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,8 +39,14 @@ struct LevelCount {
   double p_value = 1.0;              ///< of a count as far from the level, two-sided
 };
 
-/// One quantity of one configuration by one estimator ("phase-diagram", "phase-diagram-gls", "trajectory",
-/// "naive-lines").
+/// Lines as textbooks fit them (naive_lines.h): for contrast, and not asked to keep what they say.
+inline constexpr const char* kNaiveLines = "naive-lines";
+
+/// All that are counted, in the order of their rows.
+inline constexpr std::array<const char*, 4> kCoverageEstimators = {"phase-diagram", "phase-diagram-gls", "trajectory",
+                                                                   kNaiveLines};
+
+/// One quantity of one configuration by one of kCoverageEstimators.
 struct CoverageRow {
   std::string configuration;
   std::string estimator;
@@ -77,7 +85,7 @@ struct CoverageFailure {
   LevelCount at;
 };
 
-/// Intervals of estimators other than the naive one that hold the truth less often than they say, or more often (they
+/// Intervals of estimators other than kNaiveLines that hold the truth less often than they say, or more often (they
 /// are wider than they need be), at the 1 % level corrected for the number of rows and levels (Bonferroni).
 std::vector<CoverageFailure> too_narrow(const Coverage& coverage);
 std::vector<CoverageFailure> too_wide(const Coverage& coverage);

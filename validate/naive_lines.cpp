@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "core/local_cubic.h"
 #include "core/quantile.h"
+#include "validate/coverage.h"
 
 namespace glidelab::validate {
 namespace {
@@ -75,7 +76,7 @@ core::Quantity limit_of(const std::optional<Line>& line) {
 }  // namespace
 
 core::AnalysisResults with_naive_lines(core::AnalysisResults results) {
-  results.estimator = "naive-lines";
+  results.estimator = kNaiveLines;
   const double g = results.gravity_m_s2;
   for (core::ConfigurationResult& configuration : results.configurations) {
     const std::optional<Line> minus = line_of(results.clips, configuration.clips, -1);
