@@ -7,6 +7,7 @@
 
 namespace glidelab::report {
 
+/// The document, with a newline at its end. No number in it is NaN; what is missing is null with its reason in "why".
 std::string check_json(const core::RecordingCheck& check);
 
 /// "note", "change" or "unusable".

@@ -8,10 +8,12 @@
 namespace glidelab::report {
 
 /// Indices (rising) of about `most` points that keep the outline of a line through all of them: the first, the last,
-/// and the lowest and highest of each of most/2 equal parts. All of them where there are no more than `most`.
+/// and the lowest and highest of each of most/2 equal parts. All of them where there are no more than `most`, or
+/// than four.
 std::vector<std::size_t> outline(std::span<const double> y, std::size_t most);
 
-/// Indices of about `most` points at equal distance, the first and the last among them: for clouds of points.
+/// Indices of `most` points at equal distance, the first and the last among them (of 1 the first alone), or of all
+/// where there are no more: for clouds of points.
 std::vector<std::size_t> every_nth(std::size_t count, std::size_t most);
 
 }  // namespace glidelab::report

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/normal95.h"
 #include "report/camera_plots.h"
 #include "report/json_numbers.h"
 #include "report/line_report.h"
@@ -94,11 +95,10 @@ Json acceleration_intervals_json(const diagnose::GapIntervals& of) {
 }
 
 Json difference_json(const diagnose::GapValue& of) {
-  constexpr double k95 = 1.959963984540054;  // standard deviations either side
   Json object;
   put(object, "value", of.value);
   put(object, "sd", of.sd);
-  object["interval95"] = {of.value - k95 * of.sd, of.value + k95 * of.sd};
+  object["interval95"] = {of.value - base::kNormal95 * of.sd, of.value + base::kNormal95 * of.sd};
   return object;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "report/camera_plots.h"
 #include "report/diagnosis_lead.h"
@@ -15,11 +16,12 @@
 namespace glidelab::report {
 namespace {
 
-constexpr std::size_t kBars = 8, kFewestBars = 3;
-constexpr double kNoBar = 5e-4;        // a probability that is no bar to be seen
+constexpr std::size_t kBars = 8, kFewestBars = 3;  // explanations in the chart
+constexpr double kNoBar = 5e-4;                    // a probability that is no bar to be seen
 constexpr std::size_t kLongName = 66;  // characters that a plot of bars has room for in its usual size of text
-constexpr std::size_t kCurves = 3;
-constexpr std::size_t kPoints = 800;  // of a clip
+constexpr std::size_t kCurves = 3;     // of those that fill the gap, the likeliest
+constexpr std::size_t kPoints = 800;   // of a clip
+constexpr std::size_t kInFull = 8;     // clips of which every residual is drawn; of k times as many one in k
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Room around the points but at the left: time begins at 0, and room there would make an axis that begins before it.
 constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
@@ -50,7 +52,8 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
           "Bar chart of the probabilities of the explanations"};
 }
 
-Plot clip_gaps(const diagnose::GapSizes& gap) {
+/// `of_lines`: what was held out are published lines, whose own scatter stands for the noise.
+Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines) {
   PlotData data{"gaps", {}, {"row", "gap before / noise", "gap after / noise"}};
   double most = 2.0;
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
@@ -58,7 +61,9 @@ Plot clip_gaps(const diagnose::GapSizes& gap) {
     most = std::max({most, gap.before_by_clip[c], gap.after_by_clip[c]});
   }
   std::string script(kFrame);
-  script += "set offsets 0,0,0,0\nset xlabel 'residuals of the held-out clip / noise'\n";
+  script += fmt::format(
+      "set offsets 0,0,0,0\nset xlabel '{}'\n",
+      of_lines ? "off the prediction by the other lines / own scatter" : "residuals of the held-out clip / noise");
   script += chart_labels(gap.held_out) +
             fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
   script += most > 8.0 ? fmt::format("set logscale x\nset xrange [0.5:{}]\n", 1.5 * most)
@@ -69,7 +74,8 @@ Plot clip_gaps(const diagnose::GapSizes& gap) {
       "$gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'\n",
       kGrey, kColors[1], kColors[0]);
   return {Drawing{script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}},
-          "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
+          of_lines ? "How far each line is off the prediction by the others: 1 (grey line) is the lines' own scatter"
+                   : "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
           "Dots for each clip's gap before and after"};
 }
 
@@ -96,14 +102,14 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
           fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
 }
 
-Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
+Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& variable) {
   const std::vector<diagnose::ResidualCurve>& curves = diagnosis.residuals;
-  const std::string axis = axis_of(variable == 0 ? "x_m" : variable == 1 ? "v_m_s" : "t_s");
+  const std::string axis = axis_of(variable);
   PlotData before{"before", {}, {axis, "measured - model before (mm)"}};
   PlotData after{"after", {}, {axis, "measured - model after (mm)"}};
-  const std::size_t share = std::max<std::size_t>(1, curves.size() / 8);
+  const std::size_t share = std::max<std::size_t>(1, curves.size() / kInFull);
   for (const diagnose::ResidualCurve& curve : curves) {
-    const auto& at = variable == 0 ? curve.x_m : variable == 1 ? curve.v_m_s : curve.t_s;
+    const std::vector<double>& at = along(curve, variable);
     for (std::size_t p = 0; p < at.size(); p += share) {
       before.rows.push_back({at[p], 1000.0 * curve.before_m[p]});
       after.rows.push_back({at[p], 1000.0 * curve.after_m[p]});
@@ -111,7 +117,7 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
   }
   // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
   std::string script(kFrame);
-  if (variable == 2) script += kFromStart;
+  if (variable == "t_s") script += kFromStart;
   script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis);
   script += fmt::format(
       "plot $before using 1:2 with points pt 7 ps 0.35 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
@@ -120,9 +126,9 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, int variable) {
       kColors[1], kColors[0]);
   return {Drawing{script, std::vector{never_empty(before), never_empty(after)}},
           fmt::format("What the fit leaves of all clips, over {}{}",
-                      variable == 0   ? "the place"
-                      : variable == 1 ? "the speed"
-                                      : "the time",
+                      variable == "x_m"     ? "the place"
+                      : variable == "v_m_s" ? "the speed"
+                                            : "the time",
                       diagnosis.verdict == "unknown" ? "; after: with the likeliest curve without a name" : ""),
           "Residuals before and after"};
 }
@@ -205,6 +211,13 @@ std::string axis_of(const std::string& variable) {
   return variable;
 }
 
+const std::vector<double>& along(const diagnose::ResidualCurve& curve, std::string_view variable) {
+  if (variable == "x_m") return curve.x_m;
+  if (variable == "v_m_s") return curve.v_m_s;
+  if (variable == "t_s") return curve.t_s;
+  throw std::logic_error(fmt::format("no residuals over {}", variable));
+}
+
 std::string chart_labels(const std::vector<std::string>& names) {
   std::string tics = "set ytics (";
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -215,7 +228,9 @@ std::string chart_labels(const std::vector<std::string>& names) {
 
 std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots = {probabilities(diagnosis)};
-  if (diagnosis.gap && !diagnosis.gap->held_out.empty()) plots.push_back(clip_gaps(*diagnosis.gap));
+  if (diagnosis.gap && !diagnosis.gap->held_out.empty()) {
+    plots.push_back(clip_gaps(*diagnosis.gap, diagnosis.lines.has_value()));
+  }
   return plots;
 }
 
@@ -223,7 +238,7 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots;
   const std::size_t shown = std::min(kCurves, diagnosis.curves.size());
   for (std::size_t c = 0; c < shown; ++c) plots.push_back(curve_plot(diagnosis.curves[c], shown));
-  for (const int variable : {1, 0, 2}) {
+  for (const char* variable : {"v_m_s", "x_m", "t_s"}) {
     if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis, variable));
   }
   return plots;

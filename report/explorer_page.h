@@ -11,6 +11,7 @@
 
 namespace glidelab::report {
 
+/// A self-contained HTML page without plots of gnuplot.
 Page explorer_page(const validate::PhaseExplorer& explorer);
 
 }  // namespace glidelab::report

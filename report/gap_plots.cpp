@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "base/normal95.h"
 #include "report/diagnosis_plots.h"
 #include "report/plot_style.h"
 
@@ -16,7 +17,6 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWide = 8.0;     // times the noise: from here on a logarithmic axis
 constexpr double kLogFrom = 0.5;  // where that begins
-constexpr double k95 = 1.959963984540054;
 constexpr std::size_t kCells = 60;
 constexpr double kDeepest = 5.0;        // standard deviations at which the colours end
 constexpr std::size_t kMostNamed = 40;  // rows with names that can be read
@@ -39,7 +39,8 @@ Plot phase_plot(const diagnose::PhaseGap& gap) {
                 {"v (m/s)", "a measured - modelled before (m/s²)", "half of its 95 % interval (m/s²)", "after (m/s²)",
                  "half of its 95 % interval (m/s²)"}};
   for (const diagnose::PhaseBin& bin : gap.bins) {
-    data.rows.push_back({bin.v_m_s, bin.before.value, k95 * bin.before.sd, bin.after.value, k95 * bin.after.sd});
+    data.rows.push_back({bin.v_m_s, bin.before.value, base::kNormal95 * bin.before.sd, bin.after.value,
+                         base::kNormal95 * bin.after.sd});
   }
   std::string script(kFrame);
   script += fmt::format(
@@ -67,7 +68,7 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps) {
                 {"v (m/s)", fmt::format("a measured - modelled of {:g} kg (m/s²)", *gap.mass_kg),
                  "half of its 95 % interval (m/s²)"}};
     for (const diagnose::PhaseBin& bin : gap.bins) {
-      of.rows.push_back({bin.v_m_s, bin.before.value, k95 * bin.before.sd});
+      of.rows.push_back({bin.v_m_s, bin.before.value, base::kNormal95 * bin.before.sd});
     }
     curves += fmt::format("{}${} using 1:2:3 with yerrorbars pt 7 ps 0.5 lw 1.2 lc rgb '{}' title '{:g} kg'",
                           curves.empty() ? "" : ", ", of.name, color(data.size()), *gap.mass_kg);
@@ -157,14 +158,11 @@ std::vector<Plot> phase_gap_plots(const diagnose::Diagnosis& diagnosis) {
 
 ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, const std::string& variable,
                          std::size_t cells) {
-  const auto at_of = [&](const diagnose::ResidualCurve& curve) -> const std::vector<double>& {
-    return variable == "x_m" ? curve.x_m : variable == "v_m_s" ? curve.v_m_s : curve.t_s;
-  };
   ResidualMap map;
   bool any = false;
   for (const diagnose::ResidualCurve& curve : curves) {
     if (std::find(map.clips.begin(), map.clips.end(), curve.clip) == map.clips.end()) map.clips.push_back(curve.clip);
-    for (const double at : at_of(curve)) {
+    for (const double at : along(curve, variable)) {
       map.low = any ? std::min(map.low, at) : at;
       map.high = any ? std::max(map.high, at) : at;
       any = true;
@@ -176,8 +174,8 @@ ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, con
   for (const diagnose::ResidualCurve& curve : curves) {
     const auto row =
         static_cast<std::size_t>(std::find(map.clips.begin(), map.clips.end(), curve.clip) - map.clips.begin());
-    for (std::size_t p = 0; p < at_of(curve).size() && map.high > map.low; ++p) {
-      const double part = (at_of(curve)[p] - map.low) / (map.high - map.low);
+    for (std::size_t p = 0; p < along(curve, variable).size() && map.high > map.low; ++p) {
+      const double part = (along(curve, variable)[p] - map.low) / (map.high - map.low);
       const std::size_t cell = std::min(cells - 1, static_cast<std::size_t>(part * static_cast<double>(cells)));
       map.before[row][cell] += curve.before_m[p] / curve.noise_m[p];
       map.after[row][cell] += curve.after_m[p] / curve.noise_m[p];

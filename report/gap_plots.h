@@ -1,6 +1,8 @@
 /// The gap of a diagnosis as pictures: how large in each domain, where in which clip, and in the phase plane.
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "diagnose/diagnosis.h"
@@ -25,7 +27,8 @@ struct ResidualMap {
   double low = 0.0, high = 0.0;                    ///< of the variable
   std::vector<std::vector<double>> before, after;  ///< [clip][cell]
 };
-/// `variable` is t_s, x_m or v_m_s; cells as many as asked for (at least 1), of equal width.
+/// `variable` is t_s, x_m or v_m_s (std::logic_error for another); cells as many as asked for (at least 1), of equal
+/// width. Each curve has as many noise_m as residuals.
 ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, const std::string& variable,
                          std::size_t cells);
 

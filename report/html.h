@@ -37,6 +37,7 @@ class HtmlTable {
   /// One cell over all columns, which names the rows that follow.
   void heading(const std::string& cell);
   bool empty() const { return rows_.empty(); }
+  /// The HTML, in a box that scrolls where the table is wider than the page.
   std::string str() const;
 
  private:

@@ -22,12 +22,14 @@ inline void put(Json& object, const std::string& key, double value) {
   object["why"][key] = "the calculation gives no finite number";
 }
 
+/// The same; where there is none, null with the reason that is given.
 inline void put(Json& object, const std::string& key, const std::optional<double>& value, const std::string& why) {
   if (value) return put(object, key, *value);
   object[key] = nullptr;
   object["why"][key] = why.empty() ? "not known" : why;
 }
 
+/// {"value", "sd", "interval95"}; null with its reason where the value is not finite.
 inline void put(Json& object, const std::string& key, const core::Estimate& estimate) {
   if (!std::isfinite(estimate.value)) return put(object, key, estimate.value);
   Json inner;
@@ -42,6 +44,8 @@ inline void put(Json& object, const std::string& key, const core::Estimate& esti
   object[key] = std::move(inner);
 }
 
+/// The same, with "uncorrected" and "smoothing_correction" where one was made; null with why the data do not determine
+/// it.
 inline void put(Json& object, const std::string& key, const core::Quantity& quantity) {
   if (quantity.estimate) {
     put(object, key, *quantity.estimate);

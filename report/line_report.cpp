@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
+#include <optional>
 
 #include "report/diagnosis_lead.h"
 #include "report/diagnosis_plots.h"
@@ -18,20 +18,14 @@ namespace {
 
 constexpr std::size_t kUnnamedRows = 3;
 
-std::string joined(const std::vector<std::string>& ids, const char* between) {
-  std::string text;
-  for (const std::string& id : ids) text += (text.empty() ? "" : between) + id;
-  return text;
-}
-
 std::string tiles(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   std::string text = "<div class=\"tiles\">";
   if (diagnosis.verdict != "effect") {
     text += tile(diagnosis.verdict, "verdict");
   } else if (!lines.either_of.empty()) {
-    text +=
-        tile(probability_text(lines.either_probability), "either of: " + joined(effect_names(lines.either_of), ", "));
+    text += tile(probability_text(lines.either_probability),
+                 fmt::format("either of: {}", fmt::join(effect_names(lines.either_of), ", ")));
   } else {
     for (const auto& effect : diagnosis.effects)
       text += tile(probability_text(effect.probability), effect_name(effect.id));
@@ -180,16 +174,7 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
                           escape(title), lines.lines);
   body += tiles(diagnosis);
   body += diagnosis_meaning(diagnosis);
-  std::vector<Plot> bars = verdict_plots(diagnosis);
-  if (bars.size() > 1) {
-    constexpr std::string_view kOfClips = "residuals of the held-out clip / noise";
-    std::string& script = bars[1].drawing.script;
-    if (const std::size_t at = script.find(kOfClips); at != std::string::npos) {
-      script.replace(at, kOfClips.size(), "off the prediction by the other lines / own scatter");
-    }
-    bars[1].caption = "How far each line is off the prediction by the others: 1 (grey line) is the lines' own scatter";
-  }
-  body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(bars);
+  body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));
   const std::vector<Plot> left = line_plots(lines);
   if (!left.empty() || !diagnosis.regions.empty()) {
     body += "<h2>Where the gap lies</h2>\n" + figures(left) + region_table(diagnosis);

@@ -10,13 +10,14 @@
 
 namespace glidelab::report {
 
-/// A whole page; `diagnosis.lines` is there.
+/// A whole page; `diagnosis.lines` is there. EnvironmentError where gnuplot fails.
 Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis);
 
 /// What stands under "lines" in diagnosis.json.
 Json lines_json(const diagnose::LineComparison& lines);
 
-/// The explanations as rows of a table of plain text, a header first.
+/// The explanations as rows of a table of plain text, a header first: those that were weighed, of those without a name
+/// the first three.
 std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& lines);
 
 }  // namespace glidelab::report

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <optional>
+#include <vector>
 
 #include "report/configuration_name.h"
 #include "report/html.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
 constexpr double kBelowZero = 2.0;  // standard deviations: what chance does in one of forty
 constexpr double kOffLine = 2.0;    // times the noise: more than a wrong idea of the noise makes
+constexpr double kWithin = 2.0;     // standard deviations from the truth: 95 of 100 values
 
 std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
@@ -68,37 +70,31 @@ std::string numbers_of(const core::AnalysisResults& results, const core::Configu
 
 /// The K of each mass, where it is the same for all within its errors, says that the drag does not depend on the load.
 std::string damping_sentence(const core::AnalysisResults& results) {
-  double weight = 0.0;
-  double weighted = 0.0;
-  std::size_t count = 0;
-  std::optional<double> first_mass;
-  bool masses_differ = false;
+  constexpr double kChance = 0.01;  // that the chi² of equal K is beyond the limit
+  struct Damping {
+    double mass_kg, k_n_s_m, sd_n_s_m;
+  };
+  std::vector<Damping> all;
+  double weight = 0.0, weighted = 0.0;
   for (const core::ConfigurationResult& c : results.configurations) {
     if (!c.k_over_m_1_s.estimate || !(c.k_over_m_1_s.estimate->sd > 0.0) || !(c.mass_kg > 0.0)) continue;
-    const double sd = c.k_over_m_1_s.estimate->sd * c.mass_kg;
-    weight += 1.0 / (sd * sd);
-    weighted += c.k_over_m_1_s.estimate->value * c.mass_kg / (sd * sd);
-    ++count;
-    if (first_mass && *first_mass != c.mass_kg) masses_differ = true;
-    first_mass = c.mass_kg;
+    all.push_back({c.mass_kg, c.k_over_m_1_s.estimate->value * c.mass_kg, c.k_over_m_1_s.estimate->sd * c.mass_kg});
+    weight += std::pow(all.back().sd_n_s_m, -2);
+    weighted += all.back().k_n_s_m * std::pow(all.back().sd_n_s_m, -2);
   }
-  if (count < 2 || !masses_differ) return {};
+  const bool masses_differ =
+      std::ranges::any_of(all, [&](const Damping& one) { return one.mass_kg != all.front().mass_kg; });
+  if (!masses_differ) return {};
   const double mean = weighted / weight;
-  double chi2 = 0.0;
-  double widest = 0.0;
-  for (const core::ConfigurationResult& c : results.configurations) {
-    if (!c.k_over_m_1_s.estimate || !(c.k_over_m_1_s.estimate->sd > 0.0) || !(c.mass_kg > 0.0)) continue;
-    const double k = c.k_over_m_1_s.estimate->value * c.mass_kg;
-    chi2 += std::pow((k - mean) / (c.k_over_m_1_s.estimate->sd * c.mass_kg), 2);
-    widest = std::max(widest, std::abs(k / mean - 1.0));
+  double chi2 = 0.0, widest = 0.0;
+  for (const Damping& one : all) {
+    chi2 += std::pow((one.k_n_s_m - mean) / one.sd_n_s_m, 2);
+    widest = std::max(widest, std::abs(one.k_n_s_m / mean - 1.0));
   }
-  const double expected = static_cast<double>(count - 1);
-  // The upper 1 % point of chi² by Wilson and Hilferty's cube; z = 2.326.
-  const double limit = expected * std::pow(1.0 - 2.0 / (9.0 * expected) + 2.326 * std::sqrt(2.0 / (9.0 * expected)), 3);
-  const std::string k_text = value_and_sd_text(mean, 1.0 / std::sqrt(weight));
-  if (chi2 <= limit) {
+  const boost::math::chi_squared of_chance(static_cast<double>(all.size() - 1));
+  if (chi2 <= quantile(complement(of_chance, kChance))) {
     return fmt::format("<p>Over all masses the damping constant is K = {} N s/m, the same within its errors.</p>\n",
-                       k_text);
+                       value_and_sd_text(mean, 1.0 / std::sqrt(weight)));
   }
   return fmt::format(
       "<p>The damping constant K = m (K/m) is {} N s/m on average and differs between configurations by up to {} %, "
@@ -187,7 +183,7 @@ std::string meaning_of(const validate::Comparison& comparison) {
     if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
     ++compared;
     const double in_sd = std::abs(*quantity.error) / *quantity.sd;
-    if (in_sd <= 2.0) ++within;
+    if (in_sd <= kWithin) ++within;
     if (in_sd > worst) {
       worst = in_sd;
       worst_quantity = &quantity;

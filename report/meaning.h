@@ -1,4 +1,4 @@
-/// A short paragraph in words on what the numbers say.
+/// What the numbers say, in words, at the head of a page.
 #pragma once
 
 #include <string>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/normal95.h"
 #include "report/decimate.h"
 #include "report/fitted_lines.h"
 #include "report/gnuplot.h"
@@ -19,7 +20,6 @@ constexpr std::size_t kPointsOfAll = 1500;  // in one diagram; more only makes t
 constexpr double kDetail = 0.15;            // of the largest speed: the part that figures 7 and 9 show
 constexpr std::size_t kBars = 12;           // of one configuration; on every point they would hide each other
 constexpr int kSteps = 24;                  // along a line, whose band is a hyperbola
-constexpr double k95 = 1.959963984540054;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct PhasePoint {
@@ -33,23 +33,24 @@ struct PhasePoint {
 struct Cloud {
   std::size_t configuration;
   std::vector<PhasePoint> points;
+  bool forced;  ///< a known force acts on some of them
 };
 
-std::vector<Cloud> clouds(const core::AnalysisResults& results, const PhaseGroup& group, bool& force_applied) {
+std::vector<Cloud> clouds(const core::AnalysisResults& results, const PhaseGroup& group) {
   std::vector<Cloud> all;
   for (const std::size_t c : group.configurations) {
     const core::ConfigurationResult& configuration = results.configurations[c];
-    Cloud cloud{c, {}};
+    Cloud cloud{c, {}, false};
     for (const core::ClipResult& clip : results.clips) {
       const auto& names = configuration.clips;
       if (std::find(names.begin(), names.end(), clip.name) == names.end()) continue;
       for (const core::MotionPoint& point : clip.motion) {
         if (!point.smoothed || point.left_out != core::LeftOut::used) continue;
-        if (point.force_n != 0.0) force_applied = true;
+        cloud.forced = cloud.forced || point.force_n != 0.0;
         const double a = point.a_m_s2 - point.force_n / configuration.mass_kg;
         const core::LineFit* line = line_of(configuration.lines, point.v_m_s);
         const double residual = line == nullptr ? kNan : a - line_at(*line, point.v_m_s);
-        cloud.points.push_back({point.v_m_s, a, residual, k95 * point.sd_a_m_s2});
+        cloud.points.push_back({point.v_m_s, a, residual, base::kNormal95 * point.sd_a_m_s2});
       }
     }
     all.push_back(std::move(cloud));
@@ -122,9 +123,16 @@ Window detail_window(const core::AnalysisResults& results, const PhaseGroup& gro
   return {-half, half, script, has_limit};
 }
 
+/// What gnuplot draws, and the command that draws it.
+struct Diagram {
+  std::string plot;
+  std::vector<PlotData> data;
+};
+
 /// Points with some bars, lines and their bands: of a, or of what the lines leave of it.
-std::string diagram(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all,
-                    double from_v, double to_v, bool residuals, std::vector<PlotData>& data) {
+Diagram diagram(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all,
+                double from_v, double to_v, bool residuals) {
+  std::vector<PlotData> data;
   std::string bands, points, lines;
   std::size_t n = 0;
   for (const Cloud& cloud : all) {
@@ -147,7 +155,7 @@ std::string diagram(const core::AnalysisResults& results, const PhaseGroup& grou
              (residuals ? fmt::format("keyentry with points pt 7 ps 0.8 lc rgb '{}' title {}", own, label)
                         : fmt::format("${} using 1:2 with lines lw 1.6 lc rgb '{}' title {}", line, own, label));
   }
-  return "plot " + bands + points + lines + "\n";
+  return {"plot " + bands + points + lines + "\n", std::move(data)};
 }
 
 std::string axes(const char* y) {
@@ -181,11 +189,10 @@ std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
 }
 
 Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all) {
-  std::vector<PlotData> data;
-  const std::string plot = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, true, data);
-  const std::string script = std::string(kFrame) + axes("residual  (m/s²)") + ranges_of(data, true) + plot;
+  const Diagram of = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, true);
+  const std::string script = std::string(kFrame) + axes("residual  (m/s²)") + ranges_of(of.data, true) + of.plot;
   return {
-      Drawing{script, data},
+      Drawing{script, of.data},
       "Residuals of the lines: what a(v) leaves unexplained. Bands: 95 % of each line; bars: 95 % of some points by "
       "their noise",
       "Residuals of the fitted lines over v"};
@@ -226,27 +233,24 @@ std::string configuration_label(const core::AnalysisResults& results, const Phas
 }
 
 std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group) {
-  bool force_applied = false;
-  const std::vector<Cloud> all = clouds(results, group, force_applied);
+  const std::vector<Cloud> all = clouds(results, group);
   double v_max = 0.0;
   for (const Cloud& cloud : all) {
     for (const PhasePoint& point : cloud.points) v_max = std::max(v_max, std::abs(point.v_m_s));
   }
   if (v_max == 0.0) return {};
-  const char* const y = force_applied ? "a − F/m  (m/s²)" : "a  (m/s²)";
-
-  std::vector<PlotData> data;
-  std::string plot = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, false, data);
-  std::string script = std::string(kFrame) + axes(y) + ranges_of(data, false) + plot;
-  std::vector<Plot> plots = {{Drawing{script, data},
+  const bool forced = std::any_of(all.begin(), all.end(), [](const Cloud& cloud) { return cloud.forced; });
+  const char* const y = forced ? "a − F/m  (m/s²)" : "a  (m/s²)";
+  const Diagram whole = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, false);
+  std::string script = std::string(kFrame) + axes(y) + ranges_of(whole.data, false) + whole.plot;
+  std::vector<Plot> plots = {{Drawing{script, whole.data},
                               "Phase diagram: points as measured and smoothed, lines fitted for v < 0 and v > 0, with "
                               "their 95 % bands; bars: 95 % of some points by their noise",
                               "Acceleration over velocity with fitted lines"}};
   const Window window = detail_window(results, group, v_max);
-  data.clear();
-  plot = diagram(results, group, all, window.from_v, window.to_v, false, data);
-  script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + plot;
-  plots.push_back({Drawing{script, data},
+  const Diagram detail = diagram(results, group, all, window.from_v, window.to_v, false);
+  script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + detail.plot;
+  plots.push_back({Drawing{script, detail.data},
                    std::string("Near v = 0: the gap between the lines is twice the Coulomb friction") +
                        (window.has_limit ? ", their crossing of a = 0 the limit velocity" : ""),
                    "Detail of the phase diagram near v = 0"});

@@ -2,6 +2,7 @@
 /// gap at v = 0.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct PhaseGroup {
   double incline_deg = 0.0;
   std::vector<std::size_t> configurations;  ///< indices into the results
 };
+/// One for each stated inclination, in the order in which they first occur.
 std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results);
 
 /// "335 g", with the name of its group where another configuration of the diagram has the same mass.
@@ -26,8 +28,7 @@ std::string configuration_label(const core::AnalysisResults& results, const Phas
 double line_half95_m_s2(const core::LineFit& line, double v_m_s);
 
 /// The diagram, its detail near v = 0, and the residuals of the lines, each with the lines' 95 % bands and the bars of
-/// some points; none where no point is used. Where a known force
-/// was applied, a - F/m stands for a.
+/// some points; none where no point is used. Where a known force was applied, a - F/m stands for a.
 std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group);
 
 }  // namespace glidelab::report

@@ -46,7 +46,7 @@ std::optional<Course> course_of(const core::ClipResult& clip) {
   return std::abs(xv) > std::abs(xu) ? Course{true, xv / xx} : Course{false, xu / xx};
 }
 
-PhasePoint point_of(const core::MarkerSighting& sighting, const Course& course, double error_m) {
+PixelPhase point_of(const core::MarkerSighting& sighting, const Course& course, double error_m) {
   const double place = place_of(sighting, course.vertical);
   return {place - std::round(place), error_m * course.px_per_m};
 }
@@ -56,14 +56,14 @@ struct Harmonic {
 };
 
 /// Least squares by the normal equations of three columns, Cramer's rule.
-Harmonic harmonic_of(const std::vector<PhasePoint>& points) {
+Harmonic harmonic_of(const std::vector<PixelPhase>& points) {
   std::array<std::array<double, 3>, 3> normal{};
   std::array<double, 3> right{};
   const auto columns = [](double phase) {
     const double angle = 2.0 * std::numbers::pi * phase;
     return std::array<double, 3>{1.0, std::cos(angle), std::sin(angle)};
   };
-  for (const PhasePoint& point : points) {
+  for (const PixelPhase& point : points) {
     const auto row = columns(point.phase_px);
     for (std::size_t i = 0; i < 3; ++i) {
       right[i] += row[i] * point.error_px;
@@ -83,7 +83,7 @@ Harmonic harmonic_of(const std::vector<PhasePoint>& points) {
   }
   Harmonic harmonic{solution[0], solution[1], solution[2], 0.0};
   double squares = 0.0;
-  for (const PhasePoint& point : points) {
+  for (const PixelPhase& point : points) {
     const auto row = columns(point.phase_px);
     squares += std::pow(point.error_px - row[0] * solution[0] - row[1] * solution[1] - row[2] * solution[2], 2);
   }
@@ -91,9 +91,9 @@ Harmonic harmonic_of(const std::vector<PhasePoint>& points) {
   return harmonic;
 }
 
-bool covers_a_pixel(const std::vector<PhasePoint>& points) {
+bool covers_a_pixel(const std::vector<PixelPhase>& points) {
   std::array<bool, 4> seen{};
-  for (const PhasePoint& point : points) {
+  for (const PixelPhase& point : points) {
     seen[static_cast<std::size_t>(std::clamp(4.0 * (point.phase_px + 0.5), 0.0, 3.0))] = true;
   }
   return std::all_of(seen.begin(), seen.end(), [](bool one) { return one; });
@@ -101,8 +101,8 @@ bool covers_a_pixel(const std::vector<PhasePoint>& points) {
 
 }  // namespace
 
-std::vector<PhasePoint> phase_points(const core::AnalysisResults& results) {
-  std::vector<PhasePoint> points;
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results) {
+  std::vector<PixelPhase> points;
   for (const core::ClipResult& clip : results.clips) {
     const auto course = course_of(clip);
     if (!course) continue;
@@ -116,9 +116,9 @@ std::vector<PhasePoint> phase_points(const core::AnalysisResults& results) {
   return points;
 }
 
-std::vector<PhasePoint> phase_points(const core::AnalysisResults& results,
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results,
                                      const validate::RestitutionComparison& restitution) {
-  std::vector<PhasePoint> points;
+  std::vector<PixelPhase> points;
   std::vector<std::optional<Course>> courses;
   for (const core::ClipResult& clip : results.clips) courses.push_back(course_of(clip));
   for (const validate::RestitutionPoint& point : restitution.points) {
@@ -133,14 +133,14 @@ std::vector<PhasePoint> phase_points(const core::AnalysisResults& results,
   return points;
 }
 
-std::optional<PixelLocking> pixel_locking(const std::vector<PhasePoint>& points) {
+std::optional<PixelLocking> pixel_locking(const std::vector<PixelPhase>& points) {
   if (points.size() < kFewest || !covers_a_pixel(points)) return std::nullopt;
   const Harmonic harmonic = harmonic_of(points);
   return PixelLocking{std::hypot(harmonic.cosine, harmonic.sine),
                       harmonic.rms * std::sqrt(2.0 / static_cast<double>(points.size()))};
 }
 
-std::vector<Plot> pixel_phase_plot(const std::vector<PhasePoint>& points, bool from_truth) {
+std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool from_truth) {
   const auto locking = pixel_locking(points);
   if (!locking) return {};
   const char* const error = from_truth ? "measured - true (px)" : "measured - smoothed (px)";
@@ -151,7 +151,7 @@ std::vector<Plot> pixel_phase_plot(const std::vector<PhasePoint>& points, bool f
   }
   std::array<double, kBins> n{}, sum{}, squares{};
   double total = 0.0;
-  for (const PhasePoint& point : points) {
+  for (const PixelPhase& point : points) {
     const auto bin = static_cast<std::size_t>(std::clamp((point.phase_px + 0.5) * kBins, 0.0, kBins - 1.0));
     n[bin] += 1.0;
     sum[bin] += point.error_px;

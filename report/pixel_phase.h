@@ -15,15 +15,16 @@
 
 namespace glidelab::report {
 
-struct PhasePoint {
-  double phase_px = 0.0;
+/// One centre.
+struct PixelPhase {
+  double phase_px = 0.0;  ///< from the middle of its pixel, -0.5 to 0.5
   double error_px = 0.0;
 };
 
 /// Of the points that the fits use; empty for tracks.
-std::vector<PhasePoint> phase_points(const core::AnalysisResults& results);
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results);
 /// Of every centre, from the truth.
-std::vector<PhasePoint> phase_points(const core::AnalysisResults& results,
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results,
                                      const validate::RestitutionComparison& restitution);
 
 struct PixelLocking {
@@ -31,10 +32,10 @@ struct PixelLocking {
   double sd_px = 0.0;         ///< of A and of B, the errors taken as independent
 };
 
-/// Nothing for fewer than 20 points.
-std::optional<PixelLocking> pixel_locking(const std::vector<PhasePoint>& points);
+/// Nothing for fewer than 20 points, and where they leave a quarter of the pixel empty.
+std::optional<PixelLocking> pixel_locking(const std::vector<PixelPhase>& points);
 
 /// The points, their means over twentieths of a pixel, and the harmonic. Nothing where pixel_locking() gives nothing.
-std::vector<Plot> pixel_phase_plot(const std::vector<PhasePoint>& points, bool from_truth);
+std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool from_truth);
 
 }  // namespace glidelab::report

@@ -15,10 +15,8 @@
 namespace glidelab::report {
 namespace {
 
-std::string joined(const std::vector<std::string>& ids) {
-  std::string text;
-  for (const std::string& id : ids) text += (text.empty() ? "" : ", ") + id;
-  return text.empty() ? "–" : text;
+std::string alike_text(const std::vector<std::string>& names) {
+  return names.empty() ? "–" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string seen_text(const diagnose::PlannedEffect& effect) {
@@ -94,7 +92,7 @@ std::string plan_json(const diagnose::Plan& plan) {
 std::string plan_text(const diagnose::Plan& plan) {
   std::vector<std::vector<std::string>> rows = {{"effect", "seen from", "not to be told from"}};
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    rows.push_back({effect.id, seen_text(effect), joined(effect.alike)});
+    rows.push_back({effect.id, seen_text(effect), alike_text(effect.alike)});
   }
   std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
   if (!advice(plan).empty()) text += fmt::format("\n{}\n", advice(plan));
@@ -114,7 +112,7 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     const std::string meaning = effect_meaning(effect.id);
     table.row({effect_html(effect.id), escape(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning)),
-               symbols_html(seen_text(effect)), escape(joined(effect_names(effect.alike)))});
+               symbols_html(seen_text(effect)), escape(alike_text(effect_names(effect.alike)))});
   }
   body +=
       table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);

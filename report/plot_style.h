@@ -11,14 +11,16 @@ namespace glidelab::report {
 /// Okabe and Ito, "Color universal design" (2008), without the yellow that white paper swallows.
 inline constexpr std::array<std::string_view, 7> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                             "#56b4e9", "#e69f00", "#000000"};
+/// What stands behind the data or is left out; the ground of such a stretch.
 inline constexpr std::string_view kGrey = "#9a9a9a";
 inline constexpr std::string_view kShade = "#ececec";
 
+/// Of the n-th series; they come again after the last.
 inline std::string color(std::size_t index) {
   return std::string(kColors[index % kColors.size()]);
 }
 
-/// Light grid, thin frame, zero lines, tics that do not crowd.
+/// Thin frame at the left and below, light grid, the legend above, and some room around the points.
 inline constexpr std::string_view kFrame =
     "set border 3 lw 1 lc rgb '#555555'\n"
     "set tics nomirror out scale 0.6\n"

@@ -44,6 +44,8 @@ void validate(const BoardSheet& sheet);
 /// What the sheet says below the board: how many squares in a row to measure. At its black ends a row shows the
 /// board's edge, and no row has two.
 std::string measure_text(const BoardSheet& sheet);
+/// The file's bytes, and the same as pixels (for tests). InputError as validate() has it; EnvironmentError where Cairo
+/// fails.
 std::string board_page(const BoardSheet& sheet, SheetFormat format);
 SheetPicture board_picture(const BoardSheet& sheet, double pixels_per_m);
 
@@ -55,6 +57,7 @@ struct MarkerSheet {
 
 /// InputError (of `--marker-mm`) where they do not fit, or one is finer than 1 mm.
 void validate(const MarkerSheet& sheet);
+/// As board_page() and board_picture().
 std::string marker_page(const MarkerSheet& sheet, SheetFormat format);
 SheetPicture marker_picture(const MarkerSheet& sheet, double pixels_per_m);
 

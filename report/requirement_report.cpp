@@ -22,6 +22,8 @@ using validate::Requirement;
 using validate::Target;
 using validate::Verdict;
 
+constexpr double kSomeGain = 1.05;  // times smaller with one limitation less: below it nothing is worth a name
+
 /// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
 struct Scale {
   double size = 1.0;
@@ -96,19 +98,27 @@ std::string cost_text(const Requirement& requirement, const Candidate& candidate
 std::string limit_text(const Candidate& candidate) {
   std::string text;
   for (const validate::Limit& limit : candidate.limits) {
-    if (limit.gain < 1.05) break;
+    if (limit.gain < kSomeGain) break;
     text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limit.name, limit.gain, limit.gain < 10.0 ? 1 : 0);
   }
   return text;
 }
 
-void add_results(std::vector<std::string>& cells, const Requirement& requirement, const Candidate& candidate) {
+/// Bound, error by runs and runs beyond, of each target.
+std::vector<std::string> result_cells(const Requirement& requirement, const Candidate& candidate) {
+  std::vector<std::string> cells;
   for (std::size_t t = 0; t < candidate.results.size(); ++t) {
     const double scale = scale_of(requirement.targets[t]).size;
     cells.push_back(bound_text(candidate.results[t].bound, scale));
     cells.push_back(found_text(candidate.results[t], scale));
     cells.push_back(beyond_text(candidate.results[t]));
   }
+  return cells;
+}
+
+/// "2.1", of the position noise; a dash where the camera cannot see the marker.
+std::string noise_cell(const Candidate& candidate) {
+  return std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–";
 }
 
 /// Name and number in the tables: "6. webcam".
@@ -162,52 +172,51 @@ std::string meaning(const Requirement& requirement) {
   }
   if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
     const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
-    constexpr double kSome = 1.05;  // times smaller: as in the table
-    text += limit.gain < kSome
+    text += limit.gain < kSomeGain
                 ? fmt::format(" What keeps {} from it is no single limitation.", numbered(requirement, missed.front()))
                 : fmt::format(" What keeps {} from it most: {}, without which it would err {} times less.",
                               numbered(requirement, missed.front()), escape(limit.name), number_text(limit.gain, 2));
   }
-  return "<h2 id=\"meaning\">What this means</h2>\n" + text + "</p>\n";
+  return meaning_section(text + "</p>\n");
 }
 
-}  // namespace
+/// Those that reach the targets, and the others with what limits them.
+struct CandidateTables {
+  HtmlTable good, others;
+};
 
-Page requirement_report(const Requirement& requirement) {
-  Html body = fmt::format("<h1>{}</h1>\n<p>What reaches {} on the worst configuration; {} first.</p>\n",
-                          escape(requirement.name), escape(targets_text(requirement)), order_text(requirement));
-  body += meaning(requirement);
-  const std::string next = next_step(requirement);
-  if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
+CandidateTables candidate_tables(const Requirement& requirement) {
   std::vector<std::string> header = {"no.", "camera", "cost", "verdict", "frames/s", "position noise (µm)"};
   for (const Target& target : requirement.targets) {
     header.push_back("bound: " + escape(target_name(target, scale_of(target).factor)));
     header.push_back("by runs" + escape(same_unit(target)));
     header.push_back("runs beyond the target");
   }
-  HtmlTable good(header, 4);
-  header.insert(header.begin() + 4, "what limits it");
-  HtmlTable others(header, 5);
-  for (const Candidate& candidate : requirement.candidates) {
-    const auto number = &candidate - requirement.candidates.data() + 1;
-    std::vector<std::string> row = {std::to_string(number),
+  std::vector<std::string> with_limits = header;
+  with_limits.insert(with_limits.begin() + 4, "what limits it");
+  CandidateTables tables{HtmlTable(header, 4), HtmlTable(with_limits, 5)};
+  for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
+    const Candidate& candidate = requirement.candidates[i];
+    std::vector<std::string> row = {std::to_string(i + 1),
                                     escape(candidate.name),
                                     escape(cost_text(requirement, candidate)),
                                     escape(describe(candidate)),
                                     number_text(candidate.frame_rate_hz, 4),
-                                    std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"};
-    add_results(row, requirement, candidate);
+                                    noise_cell(candidate)};
+    for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
     if (reached(candidate)) {
-      good.row(row);
+      tables.good.row(row);
     } else {
       row.insert(row.begin() + 4, escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
-      others.row(row);
+      tables.others.row(row);
     }
   }
-  body += good.empty() ? "<p class=\"note bad\">None reaches it.</p>\n" : "<h2>These do</h2>\n" + good.str();
-  body += figures({requirement_plot(requirement)});
-  if (!others.empty()) body += "<h2>The others</h2>\n" + others.str();
-  body += fmt::format(
+  return tables;
+}
+
+/// What the tables' numbers are, below them.
+std::string how_judged(const Requirement& requirement) {
+  std::string text = fmt::format(
       "<p class=\"soft\">The bound is that of Cramér and Rao for the motion seen at this rate with this noise of a "
       "position, which is itself the bound of the marker's centre for the camera's light and noise. {} \"What limits "
       "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) is with one "
@@ -221,12 +230,29 @@ Page requirement_report(const Requirement& requirement) {
                         requirement.runs, requirement.track_runs)
           : fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
                         requirement.track_runs));
-  body += fmt::format(
+  text += fmt::format(
       "<p class=\"soft\">An rms error has the bias in it; a 95 % error is what 95 % of the runs stay within. ± is one "
       "standard deviation, found by drawing the runs anew {} times (bias: that of the errors over the root of their "
       "number); where it spans the target, nothing is decided. \"Runs beyond the target\" err by more than its value: "
       "few and far ones are frames lost without a trace, not noise.</p>\n",
       validate::kResamples);
+  return text;
+}
+
+}  // namespace
+
+Page requirement_report(const Requirement& requirement) {
+  Html body = fmt::format("<h1>{}</h1>\n<p>What reaches {} on the worst configuration; {} first.</p>\n",
+                          escape(requirement.name), escape(targets_text(requirement)), order_text(requirement));
+  body += meaning(requirement);
+  const std::string next = next_step(requirement);
+  if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
+  const CandidateTables tables = candidate_tables(requirement);
+  body +=
+      tables.good.empty() ? "<p class=\"note bad\">None reaches it.</p>\n" : "<h2>These do</h2>\n" + tables.good.str();
+  body += figures({requirement_plot(requirement)});
+  if (!tables.others.empty()) body += "<h2>The others</h2>\n" + tables.others.str();
+  body += how_judged(requirement);
   return page(requirement.name, body);
 }
 
@@ -240,9 +266,8 @@ std::string requirement_text(const Requirement& requirement) {
   std::string below;
   for (const Candidate& candidate : requirement.candidates) {
     rows.push_back({candidate.name, cost_text(requirement, candidate), describe(candidate),
-                    number_text(candidate.frame_rate_hz, 4),
-                    std::isfinite(candidate.noise_m) ? number_text(candidate.noise_m * 1e6, 3) : "–"});
-    add_results(rows.back(), requirement, candidate);
+                    number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
+    for (std::string& cell : result_cells(requirement, candidate)) rows.back().push_back(std::move(cell));
     if (reached(candidate)) continue;
     const std::string limits = candidate.why.empty() ? limit_text(candidate) : candidate.why;
     if (!limits.empty()) below += fmt::format("{}: {}\n", candidate.name, limits);

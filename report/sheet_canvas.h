@@ -22,7 +22,9 @@ struct SheetPicture {
 
 class SheetCanvas {
  public:
+  /// White paper that becomes a file.
   static SheetCanvas page(double width_m, double height_m, SheetFormat format);
+  /// The same as pixels; width and height are rounded to whole ones.
   static SheetCanvas picture(double width_m, double height_m, double pixels_per_m);
   SheetCanvas(SheetCanvas&&) noexcept;
   ~SheetCanvas();
@@ -34,8 +36,9 @@ class SheetCanvas {
   /// The text's baseline starts at (x, y); `size_m` is the font's height.
   void text(double x_m, double y_m, double size_m, std::string_view text);
 
-  /// The file's bytes. EnvironmentError where Cairo fails. Nothing may be drawn any more.
+  /// The bytes of a page()'s file. EnvironmentError where Cairo fails. Nothing may be drawn any more.
   std::string finish_page();
+  /// The pixels of a picture(); likewise.
   SheetPicture finish_picture();
 
  private:

@@ -8,11 +8,12 @@
 
 namespace glidelab::report {
 
-/// HTML; empty where the sweep has no lines by more than one rule. A rule counts only where it answers nearly as often
-/// as any (kAnswers of the most); "better" is by more than kBetter in rms error, and
-/// than two standard errors of that.
+/// A rule counts only where it answers in this part of the most often answered runs.
 inline constexpr double kAnswers = 0.98;
+/// "Better" is by more than this factor in rms error, and than two standard errors of it.
 inline constexpr double kBetter = 1.1;
+
+/// HTML; empty where the sweep has no lines by more than one rule.
 std::string sweep_advice(const validate::SweepSummary& summary);
 
 }  // namespace glidelab::report

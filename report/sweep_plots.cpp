@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/normal95.h"
 #include "report/gnuplot.h"
 #include "report/plot_axis.h"
 #include "report/plot_style.h"
@@ -18,7 +19,7 @@ namespace {
 using validate::AxisSummary;
 using validate::Series;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kPlotWidth = 360.0;  // points between the axis' ends
 
@@ -60,8 +61,14 @@ bool whole(const validate::Likeness& of) {
   return of.whole || (of.alike > 0 && of.alike == of.combinations);
 }
 
-/// What lines are of, where some runs have no answer: in the caption if it is the same of all, else beside each name.
-std::string note_of(const std::vector<const Series*>& drawn, std::vector<std::string>& titles) {
+/// What lines are of, where some runs have no answer: in the caption (`common`) if it is the same of all, else beside
+/// each name.
+struct RunNotes {
+  std::string common;
+  std::vector<std::string> of_each;
+};
+
+RunNotes notes_of(const std::vector<const Series*>& drawn) {
   const auto same = [](const validate::Likeness& a, const validate::Likeness& b) {
     return whole(a) == whole(b) && a.alike == b.alike && a.combinations == b.combinations;
   };
@@ -70,40 +77,46 @@ std::string note_of(const std::vector<const Series*>& drawn, std::vector<std::st
     one = one && same(series->likeness, drawn.front()->likeness);
     if (!whole(series->likeness)) (series->likeness.alike > 0 ? of_alike : of_unlike) = true;
   }
-  std::string note;
+  RunNotes notes{{}, std::vector<std::string>(drawn.size())};
   if (of_alike) {
     const validate::Likeness& of = drawn.front()->likeness;
-    note += fmt::format("; {} combinations of all else that have an answer at every value",
-                        one ? fmt::format("over those {} of {}", of.alike, of.combinations) : "n of m: over those");
+    notes.common +=
+        fmt::format("; {} combinations of all else that have an answer at every value",
+                    one ? fmt::format("over those {} of {}", of.alike, of.combinations) : "n of m: over those");
   }
   if (of_unlike) {
-    note += one ? "; some runs have no answer, so that those at two values are not alike"
-                : "; unlike runs: some have no answer, so that those at two values are not alike";
+    notes.common += one ? "; some runs have no answer, so that those at two values are not alike"
+                        : "; unlike runs: some have no answer, so that those at two values are not alike";
   }
   for (std::size_t i = 0; i < drawn.size() && !one; ++i) {
     const validate::Likeness& of = drawn[i]->likeness;
     if (whole(of)) continue;
-    titles[i] += of.alike > 0 ? fmt::format(", {} of {}", of.alike, of.combinations) : ", unlike runs";
+    notes.of_each[i] = of.alike > 0 ? fmt::format(", {} of {}", of.alike, of.combinations) : ", unlike runs";
   }
-  return note;
+  return notes;
 }
 
-/// What chance leaves between two standard errors, within 0 and 100 % (Wilson's interval).
+/// The 95 % interval of a part, in per cent (Wilson 1927): within 0 and 100, of few runs as well.
 std::pair<double, double> wilson_percent(double part, double count) {
-  constexpr double z = 1.96;
+  constexpr double z = base::kNormal95;
   const double centre = part + z * z / (2.0 * count);
   const double reach = z * std::sqrt(part * (1.0 - part) / count + z * z / (4.0 * count * count));
   const double whole_of = 1.0 + z * z / count;
   return {100.0 * (centre - reach) / whole_of, 100.0 * (centre + reach) / whole_of};
 }
 
-/// Columns: position, rms, sd, least sd, bias, two standard errors of it, coverage, its 95 % interval (two columns).
-std::vector<PlotData> data_of(const std::vector<Series>& all, std::string_view quantity,
-                              std::vector<const Series*>& drawn) {
+/// What is drawn of a quantity: each series that has an answer, and its block of numbers.
+struct Drawn {
+  std::vector<const Series*> series;
   std::vector<PlotData> data;
+};
+
+/// Columns: position, rms, sd, least sd, bias, two standard errors of it, coverage, its 95 % interval (two columns).
+Drawn drawn_of(const std::vector<Series>& all, std::string_view quantity) {
+  Drawn drawn;
   for (const Series& series : all) {
     if (series.quantity != quantity) continue;
-    PlotData block{fmt::format("series{}", data.size()), {}};
+    PlotData block{fmt::format("series{}", drawn.data.size()), {}};
     const validate::Likeness& likeness = series.likeness;
     for (const validate::GroupStatistics& group : series.groups) {
       const bool alike = likeness.whole || likeness.alike > 0;
@@ -111,18 +124,18 @@ std::vector<PlotData> data_of(const std::vector<Series>& all, std::string_view q
       const validate::ErrorStatistics& of = alike ? *validate::comparable(series, group) : group.statistics;
       if (of.answered == 0) continue;
       const auto [low, high] = wilson_percent(of.coverage, static_cast<double>(of.answered));
-      block.rows.push_back({group.position, of.rms > 0.0 ? of.rms : kNone, of.sd > 0.0 ? of.sd : kNone,
-                            of.least_sd.value_or(kNone), of.bias, 2.0 * of.bias_sd, 100.0 * of.coverage, low, high});
+      block.rows.push_back({group.position, of.rms > 0.0 ? of.rms : kNan, of.sd > 0.0 ? of.sd : kNan,
+                            of.least_sd.value_or(kNan), of.bias, 2.0 * of.bias_sd, 100.0 * of.coverage, low, high});
     }
     if (block.rows.empty()) continue;
-    drawn.push_back(&series);
-    data.push_back(std::move(block));
+    drawn.series.push_back(&series);
+    drawn.data.push_back(std::move(block));
   }
-  return data;
+  return drawn;
 }
 
 /// Last column: where a point with a bar stands, beside those of the others.
-void add_places(std::vector<PlotData>& data, const AxisSummary& axis, const ValueAxis& values) {
+std::vector<PlotData> with_places(std::vector<PlotData> data, const AxisSummary& axis, const ValueAxis& values) {
   for (std::size_t i = 0; i < data.size(); ++i) {
     for (std::vector<double>& row : data[i].rows) {
       const double aside = static_cast<double>(i) - 0.5 * (static_cast<double>(data.size()) - 1.0);
@@ -130,20 +143,25 @@ void add_places(std::vector<PlotData>& data, const AxisSummary& axis, const Valu
       row.push_back(axis.words ? row.front() + step * aside : values.beside(row.front(), i, data.size()));
     }
   }
+  return data;
 }
 
-/// Where the lines of many rules stand in one plot, these by their rule alone, as the caption says.
-bool shorten(std::vector<std::string>& titles) {
+/// The series' names in the legend. Where many stand in one plot, the lines by their rule alone, as the caption says.
+struct Titles {
+  std::vector<std::string> of_each;
+  bool shortened = false;
+};
+
+Titles titles_of(const std::vector<const Series*>& drawn) {
   constexpr std::size_t kMany = 5;
   constexpr std::string_view kLines = "phase-diagram ";
-  if (titles.size() < kMany) return false;
-  bool any = false;
-  for (std::string& title : titles) {
-    if (!title.starts_with(kLines)) continue;
-    title.erase(0, kLines.size());
-    any = true;
+  Titles titles;
+  for (const Series* const series : drawn) {
+    const bool by_rule = drawn.size() >= kMany && series->estimator.starts_with(kLines);
+    titles.of_each.push_back(by_rule ? series->estimator.substr(kLines.size()) : series->estimator);
+    titles.shortened = titles.shortened || by_rule;
   }
-  return any;
+  return titles;
 }
 
 /// One axis' plots of one quantity: the legend, what is common to them, and how high they are.
@@ -159,20 +177,22 @@ struct Frame {
 
 Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::string_view quantity) {
   Frame frame;
-  std::vector<const Series*> drawn;
-  frame.data = data_of(all, quantity, drawn);
+  Drawn drawn = drawn_of(all, quantity);
   std::vector<double> positions;
-  for (const PlotData& block : frame.data) {
+  for (const PlotData& block : drawn.data) {
     for (const std::vector<double>& row : block.rows) positions.push_back(row.front());
   }
   if (positions.empty()) return frame;
   const ValueAxis values(positions, axis.logarithmic && !axis.words);
   frame.values = values.size();
-  add_places(frame.data, axis, values);
-  for (const Series* const series : drawn) frame.titles.push_back(series->estimator);
-  const bool short_names = shorten(frame.titles);
-  frame.note = note_of(drawn, frame.titles);
-  if (short_names) frame.note += "; what is named by a rule or h alone are lines of the phase diagram";
+  frame.data = with_places(std::move(drawn.data), axis, values);
+  const Titles titles = titles_of(drawn.series);
+  const RunNotes notes = notes_of(drawn.series);
+  for (std::size_t i = 0; i < drawn.series.size(); ++i) {
+    frame.titles.push_back(titles.of_each[i] + notes.of_each[i]);
+  }
+  frame.note = notes.common;
+  if (titles.shortened) frame.note += "; what is named by a rule or h alone are lines of the phase diagram";
   // gnuplot makes the legend's columns as wide as its longest text: some 7.5 points a letter at this size, and its
   // sample.
   std::size_t longest = std::string_view("stated sd (dashed)").size();

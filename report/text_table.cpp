@@ -35,6 +35,20 @@ std::string r2_of(const core::ConfigurationResult& configuration, int direction)
   return line == nullptr ? "–" : r2_text(line->r2);
 }
 
+/// How far measured positions are off, in a line.
+std::string restitution_text(const validate::RestitutionComparison& restitution) {
+  if (restitution.points.empty()) return "\nposition error: no marker was found\n";
+  std::string text = fmt::format("\nposition error: {} mm rms, {} mm at most", number_text(restitution.rms_m * 1e3, 3),
+                                 number_text(restitution.max_m * 1e3, 3));
+  if (restitution.field_m > 0.0) {
+    text += fmt::format(" ({} % and {} % of the {} m that the motion covers)",
+                        number_text(100.0 * restitution.rms_m / restitution.field_m, 2),
+                        number_text(100.0 * restitution.max_m / restitution.field_m, 2),
+                        number_text(restitution.field_m, 3));
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number) {
@@ -129,20 +143,7 @@ std::string comparison_text(const validate::Comparison& comparison) {
   }
   text += '\n';
   text += text_table(rows, 2);
-  const validate::RestitutionComparison& restitution = comparison.restitution;
-  if (restitution.points.empty()) {
-    text += "\nposition error: no marker was found\n";
-  } else {
-    text += fmt::format("\nposition error: {} mm rms, {} mm at most", number_text(restitution.rms_m * 1e3, 3),
-                        number_text(restitution.max_m * 1e3, 3));
-    if (restitution.field_m > 0.0) {
-      text += fmt::format(" ({} % and {} % of the {} m that the motion covers)",
-                          number_text(100.0 * restitution.rms_m / restitution.field_m, 2),
-                          number_text(100.0 * restitution.max_m / restitution.field_m, 2),
-                          number_text(restitution.field_m, 3));
-    }
-    text += "\n";
-  }
+  text += restitution_text(comparison.restitution);
   text += fmt::format("frames: {}, marker found in {}\ntime: {:.1f} s to render and analyse\n", comparison.frames,
                       comparison.detected, comparison.wall_s);
   return text;

@@ -10,7 +10,7 @@
 namespace glidelab::report {
 
 /// Columns set under their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
-/// characters, not bytes.
+/// characters, not bytes; control characters become "?", for a clip's name must not steer the terminal.
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number);
 
 /// Of each configuration: K/m, mu, alpha, v_lim with sd, R² of its lines; below, why something is missing.

@@ -9,6 +9,8 @@
 
 namespace glidelab::report {
 
+/// Errors of the recovered values, of the positions over the field, and of the centres within their pixels; each only
+/// where there is something to compare.
 std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison);
 
 }  // namespace glidelab::report

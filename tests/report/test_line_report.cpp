@@ -1,7 +1,10 @@
 /// The table of explanations of a diagnosed table of lines.
 #include "report/line_report.h"
 
+#include <stdexcept>
+
 #include "catch.h"
+#include "report/diagnosis_plots.h"
 
 using namespace glidelab;
 
@@ -34,4 +37,27 @@ TEST_CASE("an explanation of lines has its sizes in units, and its words once") 
   CHECK(has(page, "friction whatever the load + something without a name"));
   CHECK(has(page, "<code>load_independent_friction + unknown</code></small>: a drag of each direction<"));
   CHECK_FALSE(has(page, "unknown: a drag of each direction</code>"));
+}
+
+TEST_CASE("the chart of what was held out speaks of lines where lines were held out, of clips else") {
+  diagnose::Diagnosis of;
+  of.gap.emplace();
+  of.gap->held_out = {"one"};
+  of.gap->before_by_clip = {3.0};
+  of.gap->after_by_clip = {1.0};
+  const report::Plot clips = report::verdict_plots(of).at(1);
+  CHECK(has(clips.drawing.script, "residuals of the held-out clip / noise"));
+  CHECK(has(clips.caption, "left out of the fit"));
+  of.lines.emplace();
+  const report::Plot lines = report::verdict_plots(of).at(1);
+  CHECK(has(lines.drawing.script, "off the prediction by the other lines / own scatter"));
+  CHECK(has(lines.caption, "the lines' own scatter"));
+}
+
+TEST_CASE("residuals lie over place, speed or time, and over nothing else") {
+  const diagnose::ResidualCurve curve{"one", {1.0}, {2.0}, {3.0}, {}, {}};
+  CHECK(report::along(curve, "t_s").front() == 1.0);
+  CHECK(report::along(curve, "x_m").front() == 2.0);
+  CHECK(report::along(curve, "v_m_s").front() == 3.0);
+  CHECK_THROWS_AS(report::along(curve, "mass_kg"), std::logic_error);
 }

@@ -70,7 +70,7 @@ TEST_CASE("too few centres, tracks, and a marker that stays within a part of a p
   results.clips[0].sightings.clear();
   CHECK(phase_points(results).empty());
   CHECK(pixel_phase_plot(phase_points(results), false).empty());
-  std::vector<PhasePoint> still(100);
+  std::vector<PixelPhase> still(100);
   for (std::size_t i = 0; i < still.size(); ++i) still[i].phase_px = 0.001 * static_cast<double>(i);
   CHECK_FALSE(pixel_locking(still));
 }

@@ -86,3 +86,10 @@ TEST_CASE("what belongs to one value stands beside it, in order, and nearer to i
     CHECK(std::abs(axis.beside(9.0, 4, kCount) - 9.0) < 1e-12);
   }
 }
+
+TEST_CASE("small lengths are in micrometres where none is as long as 0.2 mm, else in millimetres") {
+  CHECK(std::string(report::small_length_unit(1.9e-4).name) == "µm");
+  CHECK(report::small_length_unit(1.9e-4).per_m == 1e6);
+  CHECK(std::string(report::small_length_unit(2e-4).name) == "mm");
+  CHECK(report::small_length_unit(2e-4).per_m == 1e3);
+}

@@ -160,8 +160,8 @@ TEST_CASE("bars of several estimators at one value stand side by side, and cover
   CHECK(a[0] == b[0]);
   CHECK(a.back() < 50.0);
   CHECK(b.back() > 50.0);
-  // Wilson's interval of 400 out of 400: from 1 / (1 + 1.96^2 / 400) to 1.
-  CHECK(std::abs(a[7] - 100.0 / (1.0 + 1.96 * 1.96 / 400.0)) < 1e-9);
+  // Wilson's interval of 400 out of 400: from 1 / (1 + z^2 / 400) to 1, z the normal quantile of 0.975.
+  CHECK(std::abs(a[7] - 100.0 / (1.0 + 1.959963984540054 * 1.959963984540054 / 400.0)) < 1e-9);
   CHECK(std::abs(a[8] - 100.0) < 1e-9);
 }
 
