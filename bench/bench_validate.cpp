@@ -187,7 +187,7 @@ void clips_through_the_whole_chain(benchmark::State& state) {
     base::for_each_parallel(studios.size(), 2, [&](std::size_t i) {
       const validate::MadeTracks made =
           studios[i] ? studios[i]->film(scenario, seed + i, 1) : validate::film_tracks(scenario, seed + i, 1);
-      benchmark::DoNotOptimize(diagnose::with_trajectory_fits(validate::phase_diagram_of(made, {})));
+      benchmark::DoNotOptimize(diagnose::with_trajectory_fits(validate::analyze_tracks(made, core::MotionOptions{})));
       clips += std::ssize(made.tracks);
     });
     seed += studios.size();

@@ -35,7 +35,8 @@ MadeTracks with_noise(const MadeTracks& clean, double noise_sd_m, std::uint64_t 
 /// The same with a standard deviation for each track (as many as there are: asserted).
 MadeTracks with_noise(const MadeTracks& clean, const std::vector<double>& noise_sd_m, std::uint64_t seed);
 
-/// The phase diagram of every clip and the configurations, as core::analyze() does it with tracks from files.
+/// The phase diagram of every clip and the configurations, as core::analyze() does it with tracks from files: by any of
+/// its methods, or with a bandwidth (chosen where there is none).
 core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionOptions& how, int jobs = 1);
 core::AnalysisResults analyze_tracks(const MadeTracks& made, std::optional<double> bandwidth_s, int jobs = 1);
 

@@ -95,7 +95,7 @@ Verdict RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector
   base::for_each_parallel(options_.runs, options_.jobs, [&](std::size_t run) {
     if (options_.before_run) options_.before_run();
     const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
-    const core::AnalysisResults lines = phase_diagram_of(tracks_of(setting, clean, run, confirm), {});
+    const core::AnalysisResults lines = analyze_tracks(tracks_of(setting, clean, run, confirm), core::MotionOptions{});
     of_runs[run] = compare_quantities(lines, clean.truth);
     const auto fits = compare_quantities(diagnose::with_trajectory_fits(lines), clean.truth);
     of_runs[run].insert(of_runs[run].end(), fits.begin(), fits.end());

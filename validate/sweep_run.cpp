@@ -69,17 +69,6 @@ bool same_for_all_seeds(const render::ClockSetup& clock) {
 
 }  // namespace
 
-core::AnalysisResults phase_diagram_of(const MadeTracks& made, const core::MotionOptions& options) {
-  core::AnalysisResults results;
-  results.gravity_m_s2 = made.gravity_m_s2;
-  for (std::size_t c = 0; c < made.tracks.size(); ++c) {
-    results.clips.push_back(core::analyze_motion(made.setups[c], made.tracks[c], options));
-  }
-  results.configurations = core::join_configurations(made.setups, results.clips, made.gravity_m_s2, options.lines);
-  if (options.lines == core::LineMethod::generalised) results.estimator = "phase-diagram-gls";
-  return results;
-}
-
 MadeTracks RunWorker::tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario) {
   if (!same_for_all_seeds(scenario.recording.clock)) return make_tracks(scenario, record.seed);
   if (made_of_ != text) {
@@ -118,7 +107,7 @@ void RunWorker::fill(RunRecord& record) {
   for (const Analysis& analysis : sweep_.analyses) {
     const bool plain = !analysis.bandwidth_s && analysis.bandwidth_rule.empty();
     if (analysis.estimator == "trajectory" || (analysis.estimator == "phase-diagram" && plain)) {
-      if (!by_default) by_default = phase_diagram_of(made, {});
+      if (!by_default) by_default = analyze_tracks(made, core::MotionOptions{});
       if (analysis.estimator == "trajectory") {
         add_quantities(diagnose::with_trajectory_fits(*by_default), made.truth, least, analysis.name(),
                        record.quantities);
@@ -132,7 +121,7 @@ void RunWorker::fill(RunRecord& record) {
         : analysis.bandwidth_rule == kBestPossible ? with_best_bandwidths(made)
         : analysis.estimator == "phase-diagram" && plain
             ? *by_default
-            : phase_diagram_of(made, {analysis.bandwidth_s, analysis.bandwidth_rule, lines});
+            : analyze_tracks(made, core::MotionOptions{analysis.bandwidth_s, analysis.bandwidth_rule, lines});
     add_clips(results, made.truth, analysis.name(), record.clips);
     add_quantities(results, made.truth, least, analysis.name(), record.quantities);
   }

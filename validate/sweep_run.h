@@ -2,15 +2,15 @@
 /// compared.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/progress.h"
-#include "core/phase_diagram.h"
 #include "validate/film_studio.h"
 #include "validate/made_tracks.h"
 #include "validate/sweep.h"
@@ -61,12 +61,11 @@ class RunWorker {
  private:
   void fill(RunRecord& record);
   MadeTracks tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
-
-  const Sweep& sweep_;
-  base::Progress progress_;
   /// Of the record's point, whose stills have the noise of its first run's seed.
   FilmStudio& studio_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
 
+  const Sweep& sweep_;
+  base::Progress progress_;
   // Replicates of one point share their calibration where the sweep says so; what is drawn may change the scenario.
   std::uint64_t studio_point_ = 0;
   std::string studio_of_;
@@ -75,8 +74,5 @@ class RunWorker {
   std::string made_of_;
   MadeTracks made_;
 };
-
-/// The phase diagram of tracks, by any of its methods.
-core::AnalysisResults phase_diagram_of(const MadeTracks& made, const core::MotionOptions& options);
 
 }  // namespace glidelab::validate

@@ -155,8 +155,9 @@ diameter_m = 0.04
   const render::Scenario scenario = render::read_scenario(dir / "s.toml");
   const validate::MadeTracks made = validate::make_tracks(scenario, 1);
   const double predicted = validate::predicted_noise_m(scenario, made.truth).front();
-  const double found =
-      validate::phase_diagram_of(validate::film_tracks(scenario, 3, 2), {}).clips.front().position_noise_m;
+  const double found = validate::analyze_tracks(validate::film_tracks(scenario, 3, 2), core::MotionOptions{})
+                           .clips.front()
+                           .position_noise_m;
   // The estimate from 120 positions has 10 %; the prediction takes one brightness of the wall, one distance and a
   // normal edge for a smear, and a bound where the analysis fits a disc: together within a third.
   CHECK(found / predicted > 0.75);
