@@ -38,13 +38,13 @@ class ProgressDisplay {
   void print_line(Clock::time_point now);
   void end_stage(Clock::time_point now);
   void erase_bar();
+  /// How many pieces of the stage are done in a second, in words; empty where it has none.
+  std::string rate(double elapsed_s) const;
 
   bool quiet_;
   bool verbose_;
   bool terminal_;
   std::mutex mutex_;
-  std::string rate(double elapsed_s) const;
-
   std::string stage_;
   std::string counted_stage_;
   double pieces_ = 0.0;

@@ -1,4 +1,4 @@
-/// Quantiles of the normal distribution and of some numbers, and the time step of a series.
+/// Quantiles of some numbers, and the time step of a series.
 #pragma once
 
 #include <algorithm>
@@ -6,10 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "base/normal95.h"
+
 namespace glidelab::core {
 
-/// Standard deviations to either side that hold 95 % of a normal distribution: the quantile of 0.975.
-inline constexpr double kNormal95 = 1.959963984540054;
+using base::kNormal95;
 
 /// Standard deviation of normal numbers about zero over the median of their magnitudes: over the quantile of 0.75.
 inline constexpr double kSdOverMedian = 1.0 / 0.674489750196082;

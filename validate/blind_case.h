@@ -1,18 +1,17 @@
 /// One blind case: an experiment with a known truth, of which only the folder is shown to the diagnosis.
 ///
 /// Drawn from (seed, index) alone: a design; nothing, one effect, two, or one outside the library; a strength by its
-/// detectability, the log likelihood that the right model gains on the nominal one fitted to the same positions:
-///
-///     gain = |d - J (J'J)^-1 J'd|² / 2,       d = (seen with - seen without)/noise,
-///
-/// J the derivatives by K, mu, inclinations, masses and starts, with what is stated of them as rows of its own.
+/// detectability, the log likelihood that the right model gains on the nominal one fitted to the same positions
+/// (blind_strength.h).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "validate/blind_design.h"
@@ -21,6 +20,7 @@ namespace glidelab::validate {
 
 enum class BlindKind { none, single, pair, outside };
 
+/// "none", "single", "pair", "outside".
 std::string_view word(BlindKind kind);
 
 struct BlindCause {
@@ -57,7 +57,7 @@ BlindCase make_blind_case(std::uint64_t seed, std::size_t index, const BlindDraw
 /// experiment.toml and tracks/*.csv, nothing else; the folder is made.
 void write_blind_folder(const BlindCase& one, const std::filesystem::path& folder);
 
-/// truth as JSON.
+/// truth_of(), K, mu, the noise, and the true inclinations and masses.
 std::string blind_truth_json(const BlindCase& one);
 
 }  // namespace glidelab::validate

@@ -1,7 +1,7 @@
 /// The experiments of blind cases: who launches what from where, what is stated of it, and what is true.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <random>

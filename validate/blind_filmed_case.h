@@ -36,6 +36,7 @@ using FilmRenderer =
 void film_blind_folder(const FilmedCase& one, const std::filesystem::path& folder, const std::filesystem::path& scratch,
                        const FilmRenderer& render);
 
+/// truth_of(), the noise, what is no secret, what experiment.toml says otherwise, and the scenario that was rendered.
 std::string filmed_truth_json(const FilmedCase& one);
 
 }  // namespace glidelab::validate

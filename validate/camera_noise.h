@@ -1,14 +1,14 @@
 /// How well a camera can locate the marker, before anything is rendered: the bound of the marker's centre
 /// (core/marker_bound.h) for the scenario's light, sensor, distance and speed, as metres in the plane of motion.
 ///
-///     variance of a pixel = shot + dark + read^2 + quantisation^2 + (PRNU signal)^2 + DSNU^2,   mean of marker and
-///     wall
+///     variance of a pixel = shot + dark + read^2 + quantisation^2 + (PRNU signal)^2 + DSNU^2,
+///
+/// the mean of that on the marker and on the wall.
 ///
 /// The marker moves by L = v exposure in a frame, which blurs its edge like a normal one of variance L^2 / 12. Not in
 /// it: lens blur, tone curves, a mosaic, codecs, the calibration; rendered runs have them.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "render/scenario.h"

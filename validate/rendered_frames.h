@@ -11,8 +11,7 @@
 namespace glidelab::validate {
 
 /// The frames of one clip of the set. With colour wanted they are grey in all three channels, as a grey file gives
-/// them. InputError for a lossy codec, whose file holds other codes. Frames
-/// are drawn on canvases of the pool.
+/// them. InputError for a lossy codec, whose file holds other codes. Frames are drawn on canvases of the pool.
 std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render::ClipSet> set, std::size_t clip,
                                                    std::uint64_t seed, bool with_color = false,
                                                    std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());

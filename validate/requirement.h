@@ -86,6 +86,8 @@ enum class Verdict {
   impossible,   ///< the bound is above the target
   refused,      ///< the scenario or the analysis refuses it: `why`
 };
+
+/// One point of the sweep.
 struct Candidate {
   std::string name;  ///< of the camera and the values
   std::string price_class;
@@ -114,6 +116,7 @@ struct Requirement {
   bool any_reached() const;
 };
 
+/// Judges every point. InputError where the sweep has more than 100,000; what refuses a single point is its verdict.
 Requirement find_requirement(const Sweep& sweep, const RequirementOptions& options,
                              const base::Progress& progress = base::no_progress);
 

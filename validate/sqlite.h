@@ -1,8 +1,8 @@
 /// SQLite behind one file: a database and its statements, errors as exceptions.
 ///
-/// A full disk, a file that cannot be read or written, and a database that is damaged are EnvironmentError with the
-/// file's name; a file that is no database is InputError. SQL that is wrong is a programmer's mistake:
-/// std::logic_error.
+/// A full disk, a file that cannot be read or written, and one that another process is writing are EnvironmentError
+/// with the file's name; a file that is no database, or a damaged one, is InputError. SQL that is wrong is a
+/// programmer's mistake: std::logic_error.
 #pragma once
 
 #include <cstdint>

@@ -58,10 +58,10 @@ struct Axis {
   int line = 0;                      ///< of the sweep's file, where the keys stand
 };
 
-/// One way to analyse a run's clips.
 /// The rule that knows the truth (validate/oracle_bandwidth.h).
 inline constexpr const char* kBestPossible = "best-possible";
 
+/// One way to analyse a run's clips.
 struct Analysis {
   std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory", "all-points"
   std::optional<double> bandwidth_s;        ///< given; else chosen

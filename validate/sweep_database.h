@@ -40,13 +40,12 @@ class SweepDatabase {
 
   /// Runs of [from, to) that are there, in order.
   std::vector<std::uint64_t> runs_within(std::uint64_t from, std::uint64_t to);
+  /// How many are there.
   std::uint64_t runs();
+  /// All rows of a run that is not there yet, in one transaction.
   void add(const RunRecord& record, double wall_s);
 
-  /// Takes over all runs of other databases of the same sweep and version (any shard), all of them or none (one
-  /// transaction); a run that several have with the same rows (but its time) once. InputError for a file that is not
-  /// there, is damaged, is another sweep's, has rows of a run that the sweep has not or that is not in it with its
-  /// seed, or has other rows of a run than another file, which is named.
+  /// take_over() of sweep_merge.h, of other databases of the same sweep and version (any shard).
   void take(const std::vector<std::filesystem::path>& others);
 
   Database& database() { return database_; }
@@ -54,7 +53,7 @@ class SweepDatabase {
  private:
   WriterLock lock_;
   Database database_;
-  SweepEntries entries_;  // the shard is the last
+  SweepEntries entries_;  ///< the shard is the last
   Sweep sweep_;
   std::optional<SqlStatement> add_run_, add_result_, add_clip_, add_timing_;
 };

@@ -15,8 +15,8 @@
 namespace glidelab::validate {
 
 /// Takes over all runs of the other files into a database of the sweep. `expected`: the entries that each of them must
-/// have. InputError for a file that is not there, is another sweep's, has rows of a run that the sweep has not or that
-/// is not in it with its seed, or has other rows of a run than another file, which is named.
+/// have. InputError for a file that is not there, is damaged, is another sweep's, has rows of a run that the sweep has
+/// not or that is not in it with its seed, or has other rows of a run than another file, which is named.
 void take_over(Database& into, const Sweep& sweep, const SweepEntries& expected,
                const std::vector<std::filesystem::path>& others);
 

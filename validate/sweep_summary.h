@@ -51,8 +51,10 @@ struct Series {
 /// Errors that may be compared from group to group; null where those of unlike runs are all there is.
 const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group);
 
-/// Over the values of one axis, all others mixed. Plots by configuration are readable of this many.
+/// Configurations of which plots apart are readable.
 inline constexpr std::size_t kMostSplit = 4;
+
+/// Over the values of one axis, all others mixed.
 struct AxisSummary {
   std::string name;
   std::string unit;
@@ -94,6 +96,7 @@ struct SweepSummary {
   MassStudy masses;
 };
 
+/// Of the runs that are there. InputError, EnvironmentError as of the database (sqlite.h).
 SweepSummary summarize(const Sweep& sweep, Database& database);
 
 }  // namespace glidelab::validate

@@ -1,12 +1,12 @@
 /// The truth that a scenario put into an experiment, as the renderer writes it beside the experiment folder.
 ///
-///     NAME.truth/truth.json             {"format": 1, "name", "seed", "configurations": […], "clips": […], "camera":
-///     {…}} NAME.truth/trajectory-<clip>.csv  t_s,x_m,v_m_s,a_m_s2,mode; row k is frame k, middle of its exposure
+///     NAME.truth/truth.json             {"format": 1, "name", "seed", "configurations": […], "clips": […],
+///                                        "camera": {…}}
+///     NAME.truth/trajectory-<clip>.csv  t_s,x_m,v_m_s,a_m_s2,mode; row k is frame k, middle of its exposure
 ///
 /// Only this room reads it. Angles stay in degrees: they are compared with what a person reads.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
