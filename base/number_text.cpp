@@ -22,12 +22,8 @@ bool usable(double sd) {
   return std::isfinite(sd) && sd > 0.0 && decimals_of(sd) <= kMostDecimals;
 }
 
-}  // namespace
-
-std::string number_text(double value, int digits) {
-  if (!std::isfinite(value)) return "–";
-  if (value == 0.0) return "0";
-  const std::string text = fmt::format("{:.{}g}", value, digits);
+/// "4.1e+02" as 410, "1.80e-05" as 0.0000180, as far as these are short.
+std::string plain(const std::string& text) {
   const std::size_t power = text.find('e');
   if (power == std::string::npos) return text;
   const int exponent = std::stoi(text.substr(power + 1));
@@ -36,6 +32,22 @@ std::string number_text(double value, int digits) {
   const std::size_t point = text.find('.');
   const int behind_point = point < power ? static_cast<int>(power - point) - 1 : 0;
   return fmt::format("{:.{}f}", std::stod(text), std::max(0, behind_point - exponent));
+}
+
+}  // namespace
+
+std::string number_text(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  return value == 0.0 ? "0" : plain(fmt::format("{:.{}g}", value, digits));
+}
+
+std::string digits_text(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0.0) return "0";
+  const std::string text = fmt::format("{:.{}e}", value, digits - 1);  // rounded: 9.996 has its power of ten from here
+  const int exponent = std::stoi(text.substr(text.find('e') + 1));
+  if (exponent < kLeastPlainPower || exponent > kMostPlainPower) return text;
+  return fmt::format("{:.{}f}", std::stod(text), std::max(0, digits - 1 - exponent));
 }
 
 std::string value_text(double value, double sd) {
@@ -55,7 +67,19 @@ std::string value_and_sd_text(double value, double sd) {
 std::string error_text(double error, double sd) {
   if (!std::isfinite(error)) return number_text(error);
   if (!usable(sd)) return fmt::format("{:+.3g}", error);
-  return fmt::format("{:+.{}f}", error, decimals_of(sd));
+  const std::string text = fmt::format("{:+.{}f}", error, decimals_of(sd));
+  return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
+}
+
+std::string with_raised_power(const std::string& number) {
+  const std::size_t power = number.find('e');
+  if (power == std::string::npos) return number;
+  constexpr std::array<const char*, 10> kRaised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string raised;
+  for (const char digit : std::to_string(std::stoi(number.substr(power + 1)))) {
+    raised += digit == '-' ? "⁻" : kRaised[static_cast<std::size_t>(digit - '0')];
+  }
+  return number.substr(0, power) + "·10" + raised;
 }
 
 std::string gain_text(double gain) {
@@ -63,14 +87,7 @@ std::string gain_text(double gain) {
   if (!std::isfinite(gain)) return number_text(gain);
   if (std::abs(gain) < kDecimalsBelow) return fmt::format("{:+.1f}", gain);
   if (std::abs(gain) < kDigitsBelow) return fmt::format("{:+.0f}", gain);
-  constexpr std::array<const char*, 10> kRaised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  const std::string text = fmt::format("{:+.3e}", gain);
-  const std::size_t power = text.find('e');
-  std::string raised;
-  for (const char digit : std::to_string(std::stoi(text.substr(power + 1)))) {
-    raised += kRaised[static_cast<std::size_t>(digit - '0')];
-  }
-  return text.substr(0, power) + "·10" + raised;
+  return with_raised_power(fmt::format("{:+.3e}", gain));
 }
 
 std::string r2_text(double r2) {

@@ -48,7 +48,8 @@ std::string size_and_sd_text(double value, double sd, std::string_view unit) {
 }
 
 NamedUnit name_and_unit(std::string_view key) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kUnits = {{{"_kg_m", "kg/m"},
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kUnits = {{{"_s2_m_s2", "m/s² for each 1/s²"},
+                                                                                     {"_kg_m", "kg/m"},
                                                                                      {"_1_m2", "1/m²"},
                                                                                      {"_1_m", "1/m"},
                                                                                      {"_n_s_m", "N s/m"},

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/number_text.h"
 #include "core/bandwidth_scan.h"
 #include "core/line_fit.h"
 #include "core/line_input.h"
@@ -189,9 +190,9 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
   choice.bandwidth_s = taken->bandwidth_s;
   choice.method = fmt::format("least mean squared error of the lines ({:.1f} ms)", 1e3 * choice.line_s);
   if (taken != best) {
-    choice.method += fmt::format(
-        ", raised for quieter points (the noise of a is {:.2g} % of its spread; the lines are biased by {:.2g} %)",
-        100.0 * taken->noise_share, 100.0 * taken->bias_share);
+    choice.method +=
+        fmt::format(", raised for quieter points (the noise of a is {} % of its spread; the lines are biased by {} %)",
+                    base::digits_text(100.0 * taken->noise_share, 2), base::digits_text(100.0 * taken->bias_share, 2));
   }
   return choice;
 }

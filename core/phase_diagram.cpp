@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/number_text.h"
 #include "core/bandwidth.h"
 #include "core/bandwidth_rule.h"
 #include "core/clip_frames.h"
@@ -177,10 +178,11 @@ void note_findings(const Motion& motion, std::size_t outliers, const std::vector
   }
   if (!factors.empty()) {
     const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
-    clip.notes.push_back(fmt::format(
-        "the noise of a position grows with the speed: {:.2g} mm at the slowest, {:.2g} mm at the fastest; the lines' "
-        "intervals allow for it",
-        1e3 * *least * clip.position_noise_m, 1e3 * *most * clip.position_noise_m));
+    clip.notes.push_back(
+        fmt::format("the noise of a position grows with the speed: {} mm at the slowest, {} mm at the fastest; the "
+                    "lines' intervals allow for it",
+                    base::digits_text(1e3 * *least * clip.position_noise_m, 2),
+                    base::digits_text(1e3 * *most * clip.position_noise_m, 2)));
   }
   if (clip.rounding_m && lines == LineMethod::ordinary) {
     clip.notes.push_back(

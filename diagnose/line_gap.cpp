@@ -63,7 +63,7 @@ LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSoluti
   gap.standard_error = std::sqrt(0.5 / static_cast<double>(lines.size()) + 0.5 / static_cast<double>(scatter.freedom));
   if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - 1.0);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    gap.held_out.push_back(fmt::format("{:.0f} g, {} deg, v {} 0", 1000.0 * lines[i].mass_kg, lines[i].incline_deg,
+    gap.held_out.push_back(fmt::format("{:.0f} g, {}°, v {} 0", 1000.0 * lines[i].mass_kg, lines[i].incline_deg,
                                        lines[i].direction > 0 ? ">" : "<"));
     gap.before_by_clip.push_back(gap_of_line(before, scatter, i));
     gap.after_by_clip.push_back(gap_of_line(after, scatter, i));

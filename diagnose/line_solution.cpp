@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/dense.h"
+#include "base/size_text.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -20,11 +21,13 @@ constexpr int kMostTurns = 50;
 constexpr double kLeastUnseen = 0.05;  // part of a line that its own prediction must not see
 
 std::string impossible(const LineTerm& term, double size) {
+  const auto [name, unit] = base::name_and_unit(term.key);
+  const std::string needed = fmt::format("{} would have to be {}", name, base::size_text(size, 2, unit));
   if (!term.both_signs && !(size > 0.0)) {
-    return fmt::format("{} would have to be {:.2g}, and it cannot be below zero", term.key, size);
+    return needed + ", and it cannot be below zero";
   }
   if (std::abs(size) > term.largest) {
-    return fmt::format("{} would have to be {:.2g}, and more than {:.2g} is absurd", term.key, size, term.largest);
+    return fmt::format("{}, and more than {} is absurd", needed, base::size_text(term.largest, 2, unit));
   }
   return {};
 }

@@ -51,7 +51,7 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   const std::string steps =
       relative > 2.0 ? fmt::format("{:.2g} times as large", 1.0 + relative)
                      : fmt::format("{:.1f} % {}", 100.0 * std::abs(relative), relative < 0.0 ? "smaller" : "larger");
-  finding.words = fmt::format("{}; steps between pixels are {} at the edges of 8 x 8 blocks {} elsewhere.",
+  finding.words = fmt::format("{}; steps between pixels are {} at the edges of 8 × 8 blocks {} elsewhere.",
                               lossy > 0      ? fmt::format("The file is compressed with loss ({})", lossy_codec)
                               : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
                                              : std::string("What the file was compressed with is not known"),

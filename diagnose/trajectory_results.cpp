@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/number_text.h"
 #include "core/estimate.h"
 #include "core/quantile.h"
 #include "core/stated_values.h"
@@ -90,10 +91,10 @@ void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::
   }
   if (std::isfinite(fit.degrees)) {
     result.notes.push_back(
-        fmt::format("the positions scatter {:.2f} times as far about the fitted motion as their noise, or one part of "
+        fmt::format("the positions scatter {} times as far about the fitted motion as their noise, or one part of "
                     "the motion disagrees with others by more than it explains: the intervals are widened ({:.0f} "
                     "degrees of freedom)",
-                    fit.scatter, fit.degrees));
+                    base::number_text(fit.scatter, 3), fit.degrees));
   }
 }
 

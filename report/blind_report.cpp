@@ -151,12 +151,12 @@ std::string cases_table(const BlindRun& run) {
       truth += (truth.empty() ? "" : " + ") + escape(cause.id);
       gain += (gain.empty() ? "" : ", ") + number_text(cause.gain, 2);
     }
-    if (said == "none") p = number_text(outcome.verdict.none, 2);
-    if (said == "unknown") p = number_text(outcome.verdict.unknown, 2);
+    if (said == "none") p = digits_text(outcome.verdict.none, 2);
+    if (said == "unknown") p = digits_text(outcome.verdict.unknown, 2);
     if (!outcome.verdict.effects.empty()) said.clear();
     for (const auto& effect : outcome.verdict.effects) {
       said += (said.empty() ? "" : " + ") + escape(effect.id);
-      p += (p.empty() ? "" : ", ") + number_text(effect.probability, 2);
+      p += (p.empty() ? "" : ", ") + digits_text(effect.probability, 2);
       for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
     }
     table.row({fmt::format("{}", outcome.index), truth, gain, said, p, same});

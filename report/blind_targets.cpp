@@ -59,9 +59,9 @@ std::vector<BlindTarget> blind_targets(const validate::BlindScore& score) {
            0.97,
            false},
           {"nothing: another verdict than none", score.false_alarm, 0.05, true},
-          {"outside the library, strong: unknown", share_of(score.recognised, "strong"), 0.85, false},
-          {"outside the library, all: unknown", all_of(score.recognised), 0.85, false},
-          {"outside the library: a name with probability over 0.8", score.wrong_name, 0.03, true},
+          {"outside the list, strong: unknown", share_of(score.recognised, "strong"), 0.85, false},
+          {"outside the list, all: unknown", all_of(score.recognised), 0.85, false},
+          {"outside the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
           {"two effects: both named", score.methods.front().pair, 0.75, false},
           {"gap shrinks by 0.95 or more of what the true effect's own fit reaches", score.shrunk, 0.95, false}};
 }

@@ -71,7 +71,8 @@ std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
       "set xlabel 'exposure (ms)'\nset ylabel 'mean above dark (DN)'\nset xrange [0:*]\nset yrange [0:*]\nunset "
       "key\nplot $levels using 1:2 with linespoints pt 7 ps 0.7 lc rgb '{}'\n",
       color(0));
-  return {{Drawing{script, std::vector<PlotData>{data}}, "Linearity: mean over exposure",
+  return {{Drawing{script, std::vector<PlotData>{data}},
+           "Linearity: the mean of every level over its exposure, a straight line up to saturation",
            "Mean of every level over its exposure"}};
 }
 
@@ -102,23 +103,27 @@ std::string camera_meaning(const core::CameraMeasurement& camera) {
   } else {
     text = "What these frames do not tell is “–” below, with the reason. ";
   }
-  return meaning_section("<p>" + text +
-                         "camera.toml beside this page has the numbers as a scenario's [sensor], to rehearse an "
-                         "experiment with this camera.</p>\n");
+  return meaning_section(
+      "<p>" + text +
+      "<code>camera.toml</code> beside this page has the numbers as a scenario's <code>[sensor]</code>, to rehearse an "
+      "experiment with this camera.</p>\n");
 }
 
 }  // namespace
 
 Page camera_report(const core::CameraMeasurement& camera) {
   Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} x {} pixels, {} bits, by photon "
+      "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} × {} pixels, {} bits, by photon "
       "transfer (EMVA 1288).</p>\n",
       escape(camera.folder.name), camera.frames, camera.picture.width, camera.picture.height, camera.folder.bit_depth);
   body += camera_meaning(camera);
   body += "<h2>Numbers</h2>\n" + numbers_table(camera);
-  body += fmt::format(
-      "<p>Pixels that stand out of the pattern: {} hot, {} dead, {} in all; they are not in the numbers.</p>\n",
-      camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
+  body += camera.outlying_pixels == 0
+              ? std::string("<p>No pixel stands out of the pattern as hot or dead.</p>\n")
+              : fmt::format(
+                    "<p>Pixels that stand out of the pattern: {} hot, {} dead, {} in all; they are not in the "
+                    "numbers.</p>\n",
+                    camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
   if (!camera.notes.empty()) {
     body += "<div class=\"note\"><ul>";
     for (const std::string& note : camera.notes) body += fmt::format("<li>{}</li>", escape(note));

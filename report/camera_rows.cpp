@@ -21,14 +21,14 @@ CameraRow row(const char* key, const char* name, const char* unit, const core::M
 
 std::vector<CameraRow> camera_rows(const core::CameraMeasurement& camera) {
   constexpr double kPercent = 100.0;
-  return {row("gain_dn_per_e", "gain K", "DN/e-", camera.gain_dn_per_e),
-          row("read_noise_e", "read noise", "e-", camera.read_noise_e),
+  return {row("gain_dn_per_e", "gain K", "DN/e⁻", camera.gain_dn_per_e),
+          row("read_noise_e", "read noise", "e⁻", camera.read_noise_e),
           row("offset_dn", "offset", "DN", camera.offset_dn),
-          row("full_well_e", "full well", "e-", camera.full_well_e, 1.0, "> "),
-          row("saturation_capacity_e", "saturation capacity", "e-", camera.saturation_capacity_e),
-          row("dark_signal_e_s", "dark signal", "e-/s", camera.dark_signal_e_s),
+          row("full_well_e", "full well", "e⁻", camera.full_well_e, 1.0, "> "),
+          row("saturation_capacity_e", "saturation capacity", "e⁻", camera.saturation_capacity_e),
+          row("dark_signal_e_s", "dark signal", "e⁻/s", camera.dark_signal_e_s),
           row("prnu", "PRNU", "%", camera.prnu, kPercent),
-          row("dsnu_e", "DSNU", "e-", camera.dsnu_e),
+          row("dsnu_e", "DSNU", "e⁻", camera.dsnu_e),
           row("linearity_error", "linearity error", "%", camera.linearity_error, kPercent)};
 }
 

@@ -148,7 +148,7 @@ Html pattern_section(const core::RecordingCheck& check) {
   HtmlTable table({"picture", "pattern", "off by (px, rms)", "tilt (°)"}, 2);
   for (const core::PatternView& view : pattern.views) {
     table.row({escape(view.file), view.plane ? "found; plane of motion" : "found",
-               pattern.calibration ? number_text(view.rms_px, 2) : "–",
+               pattern.calibration ? digits_text(view.rms_px, 2) : "–",
                pattern.calibration ? fmt::format("{:.0f}", view.tilt_deg) : "–"});
   }
   for (const std::string& file : pattern.without) {
@@ -176,14 +176,14 @@ const std::vector<ClipRow> kClipRows = {
        return clip.pictures ? fmt::format("{}, {}", clip.jumps, std::max(clip.repeated, clip.stalls))
                             : std::string("–");
      }},
-    {"speed (m/s)", [](const core::ClipCheck& clip) { return number_text(clip.top_speed_m_s, 3); }},
+    {"speed (m/s)", [](const core::ClipCheck& clip) { return digits_text(clip.top_speed_m_s, 3); }},
     {"blur (px)",
      [](const core::ClipCheck& clip) {
        if (!clip.pictures) return std::string("–");
-       return clip.blur_px ? number_text(*clip.blur_px, 2) : "&lt; " + number_text(clip.longest_blur_px, 2);
+       return clip.blur_px ? digits_text(*clip.blur_px, 2) : "&lt; " + number_text(clip.longest_blur_px, 2);
      }},
     {"marker (px)",
-     [](const core::ClipCheck& clip) { return clip.pictures ? number_text(clip.marker_px, 3) : std::string("–"); }},
+     [](const core::ClipCheck& clip) { return clip.pictures ? digits_text(clip.marker_px, 3) : std::string("–"); }},
     {"contrast",
      [](const core::ClipCheck& clip) { return clip.contrast ? percent(*clip.contrast) : std::string("–"); }},
     {"over noise",
@@ -197,7 +197,7 @@ const std::vector<ClipRow> kClipRows = {
      }},
     {"noise (mm)",
      [](const core::ClipCheck& clip) {
-       return clip.position_noise_m ? number_text(1e3 * *clip.position_noise_m, 2) : std::string("–");
+       return clip.position_noise_m ? digits_text(1e3 * *clip.position_noise_m, 2) : std::string("–");
      }},
 };
 

@@ -31,7 +31,7 @@ std::vector<std::string> cells_of(const validate::CoverageRow& row) {
           sd_text(row.sd),
           sd_text(row.stated_sd),
           row.cramer_rao_sd ? sd_text(*row.cramer_rao_sd) : "–",
-          row.efficiency ? number_text(*row.efficiency, 2) : "–",
+          row.efficiency ? digits_text(*row.efficiency, 2) : "–",
           fmt::format("{:.1f} % ({:.1f} – {:.1f})", 100.0 * row.coverage, 100.0 * row.low95, 100.0 * row.high95),
           fmt::format("{}", row.determined)};
 }
@@ -60,7 +60,7 @@ std::string level_table(const validate::Coverage& coverage) {
                one.row.estimator == row.estimator && one.row.quantity == row.quantity;
       });
       cells.push_back(fmt::format("{0}{1:.1f} % (p {2}){3}", fails ? "<b class=\"bad\">" : "", 100.0 * at.coverage,
-                                  at.p_value < 1e-4 ? "< 0.0001" : number_text(at.p_value, 2), fails ? "</b>" : ""));
+                                  at.p_value < 1e-4 ? "< 0.0001" : digits_text(at.p_value, 2), fails ? "</b>" : ""));
     }
     table.row(cells);
   }
@@ -75,8 +75,8 @@ std::string level_table(const validate::Coverage& coverage) {
 std::string noise_text(const validate::Coverage& coverage) {
   if (coverage.noise_sd_m.empty()) return "no";
   const auto [least, most] = std::minmax_element(coverage.noise_sd_m.begin(), coverage.noise_sd_m.end());
-  const std::string from = number_text(*least * 1e6, 3), to = number_text(*most * 1e6, 3);
-  return from == to ? from + " µm" : fmt::format("{} to {} µm", from, to);
+  const std::string from = digits_text(*least * 1e6, 3), to = digits_text(*most * 1e6, 3);
+  return from == to ? number_text(*least * 1e6, 3) + " µm" : fmt::format("{} to {} µm", from, to);
 }
 
 /// "µ of m1 by the generalised lines (41.0 % of 50 %, 88.0 % of 95 %)": the levels of a row stand together.

@@ -32,13 +32,16 @@ std::string probability_text(double probability) {
   return probability > 0.9995 ? "> 0.999" : probability < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", probability);
 }
 
+bool one_model(const diagnose::Diagnosis& diagnosis) {
+  return diagnosis.verdict == "none" && (!diagnosis.gap || diagnosis.gap->before == diagnosis.gap->after);
+}
+
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words) {
   std::string text = tile(probability_text(diagnosis.none), "nothing is missing") +
                      tile(probability_text(diagnosis.unknown), "something without a name");
   if (!diagnosis.gap) return text;
-  return text +
-         tile(fmt::format("{} → {}", number_text(diagnosis.gap->before, 3), number_text(diagnosis.gap->after, 3)),
-              gap_words);
+  const std::string before = number_text(diagnosis.gap->before, 3);
+  return text + tile(one_model(diagnosis) ? before : before + " → " + number_text(diagnosis.gap->after, 3), gap_words);
 }
 
 std::string diagnosis_meaning(const diagnose::Diagnosis& diagnosis) {

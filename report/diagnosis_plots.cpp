@@ -11,6 +11,7 @@
 #include "report/diagnosis_lead.h"
 #include "report/effect_names.h"
 #include "report/gnuplot.h"
+#include "report/plot_axis.h"
 #include "report/plot_style.h"
 
 namespace glidelab::report {
@@ -22,6 +23,7 @@ constexpr std::size_t kLongName = 66;  // characters that a plot of bars has roo
 constexpr std::size_t kCurves = 3;     // of those that fill the gap, the likeliest
 constexpr std::size_t kPoints = 800;   // of a clip
 constexpr std::size_t kInFull = 8;     // clips of which every residual is drawn; of k times as many one in k
+constexpr int kMarks = 6;              // steps of an axis whose labels have room beside each other
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Room around the points but at the left: time begins at 0, and room there would make an axis that begins before it.
 constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
@@ -52,13 +54,18 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
           "Bar chart of the probabilities of the explanations"};
 }
 
-/// `of_lines`: what was held out are published lines, whose own scatter stands for the noise.
-Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines) {
+/// `of_lines`: what was held out are published lines, whose own scatter stands for the noise. `one`: of one model
+/// alone.
+Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
+  constexpr double kWide = 8.0, kLeft = 0.5;  // times the noise: from where on the axis is logarithmic, where it begins
   PlotData data{"gaps", {}, {"row", "gap before / noise", "gap after / noise"}};
-  double most = 2.0;
+  double most = 2.0, least = kLeft;
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
     data.rows.push_back({-static_cast<double>(c), gap.before_by_clip[c], gap.after_by_clip[c]});
     most = std::max({most, gap.before_by_clip[c], gap.after_by_clip[c]});
+    for (const double size : {gap.before_by_clip[c], gap.after_by_clip[c]}) {
+      if (size > 0.0) least = std::min(least, 0.8 * size);
+    }
   }
   std::string script(kFrame);
   script += fmt::format(
@@ -66,17 +73,18 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines) {
       of_lines ? "off the prediction by the other lines / own scatter" : "residuals of the held-out clip / noise");
   script += chart_labels(gap.held_out) +
             fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
-  script += most > 8.0 ? fmt::format("set logscale x\nset xrange [0.5:{}]\n", 1.5 * most)
-                       : fmt::format("set xrange [0:{}]\n", 1.1 * most);
+  script += most > kWide ? fmt::format("set logscale x\nset xrange [{}:{}]\n", least, 1.5 * most)
+                         : fmt::format("set xrange [0:{}]\n", 1.1 * most);
   script += fmt::format(
       "set arrow from 1, graph 0 to 1, graph 1 nohead lw 1.5 lc rgb '{}'\n"
-      "plot $gaps using 2:1 with points pt 6 ps 1.1 lw 2 lc rgb '{}' title 'before', "
-      "$gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'\n",
-      kGrey, kColors[1], kColors[0]);
+      "plot $gaps using 2:1 with points pt 6 ps 1.1 lw 2 lc rgb '{}' title '{}'",
+      kGrey, kColors[1], one ? kUsualModel : "before");
+  if (!one) script += fmt::format(", $gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'", kColors[0]);
+  script += "\n";
   return {Drawing{script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}},
           of_lines ? "How far each line is off the prediction by the others: 1 (grey line) is the lines' own scatter"
                    : "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
-          "Dots for each clip's gap before and after"};
+          one ? "Dots for each clip's gap" : "Dots for each clip's gap before and after"};
 }
 
 /// `alternatives` is how many curves are shown, each of which fills the gap by itself.
@@ -88,6 +96,9 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
   for (std::size_t i = 0; i < curve.at.size(); ++i) data.rows.push_back({curve.at[i], curve.size[i], curve.sd[i]});
   std::string script(kFrame);
   script += fmt::format("set xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), curve.what, curve.unit);
+  if (const auto [low, high] = std::minmax_element(curve.at.begin(), curve.at.end()); low != high && *low < *high) {
+    script += even_tics("x", *low, *high, kMarks);
+  }
   script += fmt::format(
       "plot $curve using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25 "
       "title 'two standard deviations', $curve using 1:2 with lines lw 2 lc rgb '{}' title 'likeliest', 0 with lines "
@@ -107,30 +118,41 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& vari
   const std::string axis = axis_of(variable);
   PlotData before{"before", {}, {axis, "measured - model before (mm)"}};
   PlotData after{"after", {}, {axis, "measured - model after (mm)"}};
+  const bool one = one_model(diagnosis);
+  double from = std::numeric_limits<double>::infinity(), to = -from;
   const std::size_t share = std::max<std::size_t>(1, curves.size() / kInFull);
   for (const diagnose::ResidualCurve& curve : curves) {
     const std::vector<double>& at = along(curve, variable);
     for (std::size_t p = 0; p < at.size(); p += share) {
       before.rows.push_back({at[p], 1000.0 * curve.before_m[p]});
       after.rows.push_back({at[p], 1000.0 * curve.after_m[p]});
+      from = std::min(from, at[p]);
+      to = std::max(to, at[p]);
     }
   }
   // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
   std::string script(kFrame);
   if (variable == "t_s") script += kFromStart;
+  if (to > from) script += even_tics("x", from, to, kMarks);
   script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis);
   script += fmt::format(
       "plot $before using 1:2 with points pt 7 ps 0.35 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
-      "'{0}' title 'before', $after using 1:2 with points pt 7 ps 0.15 lc rgb '{1}' notitle, keyentry with points pt 7 "
-      "ps 0.8 lc rgb '{1}' title 'after'\n",
-      kColors[1], kColors[0]);
+      "'{0}' title '{1}'",
+      kColors[1], one ? kUsualModel : "before");
+  if (!one) {
+    script += fmt::format(
+        ", $after using 1:2 with points pt 7 ps 0.15 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
+        "'{0}' title 'after'",
+        kColors[0]);
+  }
+  script += "\n";
   return {Drawing{script, std::vector{never_empty(before), never_empty(after)}},
           fmt::format("What the fit leaves of all clips, over {}{}",
                       variable == "x_m"     ? "the place"
                       : variable == "v_m_s" ? "the speed"
                                             : "the time",
                       diagnosis.verdict == "unknown" ? "; after: with the likeliest curve without a name" : ""),
-          "Residuals before and after"};
+          one ? "Residuals" : "Residuals before and after"};
 }
 
 Plot lengthening_plot(const diagnose::PictureCurve& curve) {
@@ -229,7 +251,7 @@ std::string chart_labels(const std::vector<std::string>& names) {
 std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots = {probabilities(diagnosis)};
   if (diagnosis.gap && !diagnosis.gap->held_out.empty()) {
-    plots.push_back(clip_gaps(*diagnosis.gap, diagnosis.lines.has_value()));
+    plots.push_back(clip_gaps(*diagnosis.gap, diagnosis.lines.has_value(), one_model(diagnosis)));
   }
   return plots;
 }
@@ -293,20 +315,25 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
     data.rows.emplace_back();
   }
   std::string script(kFrame);
-  script += "unset key\nunset grid\nset offsets 0,0,0,0\n" + chart_labels(effect_names(isolability.ids));
-  script += "set xtics rotate by 90 right scale 0 noenhanced (";  // upright: slanting names of sixteen effects overlap
-  for (std::size_t i = 0; i < n; ++i)
-    script += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(effect_name(isolability.ids[i])), i);
+  // Names stand once, at the rows, with the numbers of the columns: sixteen of them upright were too small to read.
+  std::string rows, columns;
+  for (std::size_t i = 0; i < n; ++i) {
+    const char* const comma = i > 0 ? ", " : "";
+    rows += fmt::format("{}{} {}", comma, gnuplot_quoted(fmt::format("{}  {}", effect_name(isolability.ids[i]), i + 1)),
+                        -static_cast<double>(i));
+    columns += fmt::format("{}'{}' {}", comma, i + 1, i);
+  }
   script += fmt::format(
-      ")\nset xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
+      "unset key\nunset grid\nset offsets 0,0,0,0\nset ytics ({}) scale 0 noenhanced\nset xtics ({}) scale 0\nset "
+      "xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
       "'#9ecae1', "
-      "0.95 '#3182bd', 1 '#08306b')\nset cblabel 'likeness'\nset rmargin at screen 0.84\nset bmargin at screen 0.40\n"
+      "0.95 '#3182bd', 1 '#08306b')\nset rmargin at screen 0.9\n"
       "plot $cells using 1:2:3 with image pixels\n",
-      static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
+      rows, columns, static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {
-      {Drawing{script, std::vector{data}, {680, 620}},
-       "How alike what two effects do to these clips is, after everything else is fitted: 1 cannot be told apart, 0 "
-       "can",
+      {Drawing{script, std::vector{data}, {600, 60 + 24 * std::max(6, static_cast<int>(n))}},
+       "How alike what two effects do to these clips is (a row's and a numbered column's), after everything else is "
+       "fitted: at 1 they cannot be told apart, at 0 they can",
        "Matrix of likeness between effects"}};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "report/diagnosis_lead.h"
 #include "report/diagnosis_plots.h"
@@ -83,7 +84,10 @@ std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string z_text(const std::optional<double>& z) {
-  return z ? fmt::format("{:+.1f}", *z) : std::string("–");
+  if (!z) return "–";
+  constexpr double kTenths = 100.0;  // beyond, a tenth of a standard deviation tells nothing
+  if (std::abs(*z) >= kTenths) return fmt::format("{}{}", *z > 0.0 ? "+" : "", number_text(*z, 3));
+  return error_text(*z, 1.0);
 }
 
 std::string quantity_text(const std::optional<diagnose::DiagnosedParameter>& of) {
@@ -100,19 +104,22 @@ std::string parameter_table(const diagnose::GapSizes& gap) {
   return table.empty() ? "" : table.str();
 }
 
-std::string gap_tables(const diagnose::GapSizes& gap) {
-  HtmlTable clips({"held out", "before", "after"});
+std::string gap_tables(const diagnose::GapSizes& gap, bool one) {
+  HtmlTable clips(one ? std::vector<std::string>{"held out", "gap"}
+                      : std::vector<std::string>{"held out", "before", "after"});
+  const auto row = [&](const std::string& name, const std::string& before, const std::string& after) {
+    clips.row(one ? std::vector<std::string>{name, before} : std::vector<std::string>{name, before, after});
+  };
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
-    clips.row({escape(gap.held_out[c]), number_text(gap.before_by_clip[c], 3), number_text(gap.after_by_clip[c], 3)});
+    row(escape(gap.held_out[c]), digits_text(gap.before_by_clip[c], 3), digits_text(gap.after_by_clip[c], 3));
   }
   const diagnose::GapIntervals& over_clips = gap.interval95;
-  clips.row({"all", number_text(gap.before, 4), number_text(gap.after, 4)});
-  clips.row({"all: 95 % over clips", interval_text(over_clips.before), interval_text(over_clips.after)});
+  row("all", digits_text(gap.before, 3), digits_text(gap.after, 3));
+  row("all: 95 % over clips", interval_text(over_clips.before), interval_text(over_clips.after));
   if (gap.acceleration_before && gap.acceleration_after) {
-    clips.row({"acceleration, all (m/s²)", number_text(*gap.acceleration_before, 3),
-               number_text(*gap.acceleration_after, 3)});
-    clips.row({"acceleration: 95 % over clips", interval_text(over_clips.acceleration_before),
-               interval_text(over_clips.acceleration_after)});
+    row("acceleration, all (m/s²)", digits_text(*gap.acceleration_before, 3), digits_text(*gap.acceleration_after, 3));
+    row("acceleration: 95 % over clips", interval_text(over_clips.acceleration_before),
+        interval_text(over_clips.acceleration_after));
   }
   std::string text = clips.str();
   text += fmt::format(
@@ -203,7 +210,7 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
   const std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
   if (!alike.empty()) body += "<h2>What these data can tell apart</h2>\n" + figures(alike);
   body += "<h2>Numbers</h2>\n" + ranking_table(diagnosis);
-  if (diagnosis.gap) body += "<h3>The gap, clip by clip</h3>\n" + gap_tables(*diagnosis.gap);
+  if (diagnosis.gap) body += "<h3>The gap, clip by clip</h3>\n" + gap_tables(*diagnosis.gap, one_model(diagnosis));
   body +=
       "<h2>Method</h2>\n<p>The usual model, m dv/dt = m g sin α − K v − sign(v) µ m g cos α, is fitted to all "
       "positions of "

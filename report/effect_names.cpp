@@ -69,7 +69,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 25> kMeaning
     {"light_flicker", "brightness changes by this depth, with frequency f"},
     {"light_gradient", "how much brighter it is on one side of the marker"},
     {"heavy_tailed_noise", "this fraction of the positions is outliers"},
-    {"smoothing_bias", "intercepts are off by intercept_s2 times (K/m)²"},
+    {"smoothing_bias", "intercepts are off by this for each 1/s² of (K/m)²"},
 }};
 
 std::string_view name_of(std::string_view id) {

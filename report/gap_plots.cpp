@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/normal95.h"
+#include "report/diagnosis_lead.h"
 #include "report/diagnosis_plots.h"
 #include "report/plot_style.h"
 
@@ -33,7 +34,7 @@ std::vector<double> bar(double left, double value, double middle, double half) {
   return {0.5 * (left + std::max(left, value)), middle, left, std::max(left, value), middle - half, middle + half};
 }
 
-Plot phase_plot(const diagnose::PhaseGap& gap) {
+Plot phase_plot(const diagnose::PhaseGap& gap, bool one) {
   PlotData data{"bins",
                 {},
                 {"v (m/s)", "a measured - modelled before (m/s²)", "half of its 95 % interval (m/s²)", "after (m/s²)",
@@ -47,10 +48,15 @@ Plot phase_plot(const diagnose::PhaseGap& gap) {
       "set xlabel '{0}'\nset ylabel 'a measured − a modelled  (m/s²)'\n"
       "plot 0 with lines lw 1 lc rgb '{1}' notitle, "
       "$bins using 1:($2-$3):($2+$3) with filledcurves fillcolor rgb '{2}' fillstyle transparent solid 0.25 notitle, "
-      "$bins using 1:2 with linespoints lw 2 pt 6 ps 0.8 lc rgb '{2}' title 'before', "
-      "$bins using 1:($4-$5):($4+$5) with filledcurves fillcolor rgb '{3}' fillstyle transparent solid 0.25 notitle, "
-      "$bins using 1:4 with linespoints lw 2 pt 7 ps 0.6 lc rgb '{3}' title 'after'\n",
-      axis_of("v_m_s"), kGrey, kColors[1], kColors[0]);
+      "$bins using 1:2 with linespoints lw 2 pt 6 ps 0.8 lc rgb '{2}' title '{3}'",
+      axis_of("v_m_s"), kGrey, kColors[1], one ? kUsualModel : "before");
+  if (!one) {
+    script += fmt::format(
+        ", $bins using 1:($4-$5):($4+$5) with filledcurves fillcolor rgb '{0}' fillstyle transparent solid 0.25 "
+        "notitle, $bins using 1:4 with linespoints lw 2 pt 7 ps 0.6 lc rgb '{0}' title 'after'",
+        kColors[0]);
+  }
+  script += "\n";
   return {Drawing{script, std::vector{data}},
           "How much more the glider accelerates than the model at the same speed, both through the same smoothing: the "
           "mean over stretches of speed, with the band in which the noise alone would put it 95 times in 100. A curve "
@@ -58,7 +64,7 @@ Plot phase_plot(const diagnose::PhaseGap& gap) {
           "Measured less modelled acceleration over the speed"};
 }
 
-Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps) {
+Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps, bool one) {
   std::vector<PlotData> data;
   std::string script(kFrame), curves;
   for (const diagnose::PhaseGap& gap : gaps) {
@@ -77,7 +83,8 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps) {
   script +=
       fmt::format("set xlabel '{}'\nset ylabel 'a measured − a modelled  (m/s²)'\nplot {}\n", axis_of("v_m_s"), curves);
   return {Drawing{script, std::move(data)},
-          "The same of each mass, before: where the masses differ, what is missing does not grow with the load",
+          one ? "The same of each mass: where the masses differ, what is missing does not grow with the load"
+              : "The same of each mass, before: where the masses differ, what is missing does not grow with the load",
           "Measured less modelled acceleration over the speed, by mass"};
 }
 
@@ -105,10 +112,10 @@ Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& ce
       map.low, map.high, 0.5 - static_cast<double>(cells.size()), kDeepest, kDeepest);
   const int height = 110 + std::clamp(22 * static_cast<int>(cells.size()), 190, 700);
   return {Drawing{script, std::vector{data}, {520, height}},
-          fmt::format("What the fit leaves of each clip, {1}: a few neighbouring positions together, over what their "
+          fmt::format("What the fit leaves of each clip{1}: a few neighbouring positions together, over what their "
                       "noise allows (0: nothing; {0:g} and -{0:g}: as many standard deviations or more)",
                       kDeepest, when),
-          fmt::format("Map of the residuals by clip {}", when)};
+          fmt::format("Map of the residuals by clip{}", when)};
 }
 
 }  // namespace
@@ -116,43 +123,50 @@ Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& ce
 std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.gap || diagnosis.gap->domains.empty()) return {};
   const std::vector<diagnose::GapDomain>& domains = diagnosis.gap->domains;
-  double most = 1.0;
+  const bool one = one_model(diagnosis);
+  double most = 1.0, least = kLogFrom;
   std::vector<std::string> names;
   for (const diagnose::GapDomain& domain : domains) {
     most = std::max({most, domain.before, domain.after.value_or(0.0)});
+    for (const double size : {domain.before, domain.after.value_or(0.0)}) {
+      if (size > 0.0) least = std::min(least, 0.8 * size);
+    }
     names.push_back(domain_name(domain.domain));
   }
-  const double left = most > kWide ? kLogFrom : 0.0;
+  const double left = most > kWide ? least : 0.0;
   const std::vector<std::string> columns = {"middle of the bar (gap / noise)", "row", "from", "to", "low", "high"};
   PlotData before{"before", {}, columns}, after{"after", {}, columns};
   for (std::size_t d = 0; d < domains.size(); ++d) {
     const double middle = -static_cast<double>(d);
-    before.rows.push_back(bar(left, domains[d].before, middle + 0.19, 0.17));
+    before.rows.push_back(bar(left, domains[d].before, middle + (one ? 0.0 : 0.19), one ? 0.3 : 0.17));
     after.rows.push_back(domains[d].after ? bar(left, *domains[d].after, middle - 0.19, 0.17)
                                           : std::vector<double>(6, kNan));
   }
   std::string script(kFrame);
   script += "set offsets 0,0,0,0\nset xlabel 'gap / noise'\n" + chart_labels(names);
   script += fmt::format("set yrange [{}:0.6]\n", 0.4 - static_cast<double>(domains.size()));
-  script += most > kWide ? fmt::format("set logscale x\nset xrange [{}:{}]\n", kLogFrom, 1.5 * most)
+  script += most > kWide ? fmt::format("set logscale x\nset xrange [{}:{}]\n", left, 1.5 * most)
                          : fmt::format("set xrange [0:{}]\n", 1.15 * most);
   script += fmt::format(
       "set style fill solid 0.85 noborder\nset arrow from 1, graph 0 to 1, graph 1 nohead front lw 1.5 lc rgb '{}'\n"
-      "plot $before using 1:2:3:4:5:6 with boxxyerror lc rgb '{}' title 'before', "
-      "$after using 1:2:3:4:5:6 with boxxyerror lc rgb '{}' title 'after'\n",
-      color(6), kColors[1], kColors[0]);
+      "plot $before using 1:2:3:4:5:6 with boxxyerror lc rgb '{}' title '{}'",
+      color(6), kColors[1], one ? kUsualModel : "before");
+  if (!one) script += fmt::format(", $after using 1:2:3:4:5:6 with boxxyerror lc rgb '{}' title 'after'", kColors[0]);
+  script += "\n";
   return {
       {Drawing{script, std::vector{before, after}, {620, std::max(240, 110 + 48 * static_cast<int>(domains.size()))}},
-       "How many times what the noise alone would make (line at 1) the gap is in each domain, with the usual model "
-       "and with what is missing. A bar that is not there cannot be said",
-       "Bars of the gap in each domain, before and after"}};
+       one ? "How many times what the noise alone would make (line at 1) the gap is in each domain"
+           : "How many times what the noise alone would make (line at 1) the gap is in each domain, with the usual "
+             "model and with what is missing. Where there is no bar, it cannot be said",
+       one ? "Bars of the gap in each domain" : "Bars of the gap in each domain, before and after"}};
 }
 
 std::vector<Plot> phase_gap_plots(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.gap || diagnosis.gap->phase_plane.empty()) return {};
   const std::vector<diagnose::PhaseGap>& gaps = diagnosis.gap->phase_plane;
-  std::vector<Plot> plots = {phase_plot(gaps.front())};
-  if (gaps.size() > 2) plots.push_back(phase_plot_by_mass(gaps));
+  const bool one = one_model(diagnosis);
+  std::vector<Plot> plots = {phase_plot(gaps.front(), one)};
+  if (gaps.size() > 2) plots.push_back(phase_plot_by_mass(gaps, one));
   return plots;
 }
 
@@ -200,7 +214,8 @@ std::vector<Plot> residual_maps(const diagnose::Diagnosis& diagnosis) {
   }
   const ResidualMap map = residual_map(diagnosis.residuals, variable, kCells);
   if (!(map.high > map.low)) return {};
-  return {map_plot(map, map.before, variable, "before"), map_plot(map, map.after, variable, "after")};
+  if (one_model(diagnosis)) return {map_plot(map, map.before, variable, "")};
+  return {map_plot(map, map.before, variable, ", before"), map_plot(map, map.after, variable, ", after")};
 }
 
 }  // namespace glidelab::report

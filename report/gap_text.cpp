@@ -8,7 +8,7 @@ namespace glidelab::report {
 
 std::string interval_text(const std::optional<diagnose::GapInterval>& interval) {
   if (!interval) return "–";
-  return fmt::format("{} to {}", number_text(interval->low, 3), number_text(interval->high, 3));
+  return fmt::format("{} to {}", digits_text(interval->low, 3), digits_text(interval->high, 3));
 }
 
 std::string shrink_text(const diagnose::GapSizes& gap) {

@@ -9,7 +9,7 @@
 
 #include "base/staged_output.h"
 #include "report/gnuplot.h"
-#include "report/minus_signs.h"
+#include "report/typeset_numbers.h"
 
 namespace glidelab::report {
 namespace {
@@ -35,8 +35,8 @@ a { color: var(--accent); }
 code { overflow-wrap: anywhere; }
 /* Where a table is cut there is a shadow: the paper that hides it scrolls with the table, the shadow does not. */
 .scroll { overflow-x: auto; margin: 0.6rem 0; background:
-  linear-gradient(to right, var(--paper) 40%, transparent) left / 2.5rem 100% no-repeat local,
-  linear-gradient(to left, var(--paper) 40%, transparent) right / 2.5rem 100% no-repeat local,
+  linear-gradient(to right, var(--paper) 40%, transparent) left / 2.5rem calc(100% + 2px) no-repeat local,
+  linear-gradient(to left, var(--paper) 40%, transparent) right / 2.5rem calc(100% + 2px) no-repeat local,
   linear-gradient(to right, var(--edge), transparent) left / 0.9rem 100% no-repeat scroll,
   linear-gradient(to left, var(--edge), transparent) right / 0.9rem 100% no-repeat scroll; }
 table { border-collapse: collapse; font-size: 0.94rem; font-variant-numeric: tabular-nums; }
@@ -45,6 +45,7 @@ th { background: var(--veil); font-weight: 600; vertical-align: bottom; }
 table.name td:first-child { min-width: 13ch; }
 table.names td:first-child { min-width: 24ch; }  /* long names: few lines, and the table scrolls */
 td.n, th.n { text-align: right; }
+th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */
 td.n, td.s { white-space: nowrap; }
 td.t { min-width: 22ch; }
 tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }
@@ -56,12 +57,18 @@ td.why { white-space: normal; color: var(--soft); }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(340px, 100%), 1fr)); gap: 0.8rem;
            align-items: start; margin: 0.8rem 0; }
 .figures.large { grid-template-columns: repeat(auto-fit, minmax(min(480px, 100%), 1fr)); }
+@media (min-width: 700px) {  /* four pictures: no row with one of them */
+  .figures:has(> :nth-child(4):last-child) { grid-template-columns: repeat(2, 1fr); }
+}
+@media (min-width: 1150px) { .figures:not(.large):has(> :nth-child(4):last-child) { grid-template-columns: repeat(4, 1fr); } }
 figure { margin: 0; border: 1px solid var(--line); border-radius: 8px; overflow: hidden; background: var(--tint); max-width: 620px; }
 figure img, figure video { display: block; width: 100%; height: auto; background: #ffffff; }
 figure video { background: #22282e; }  /* until it is loaded */
 figcaption { padding: 0.4rem 0.7rem 0.5rem; }
 nav ul { columns: 16rem; padding-left: 1.2rem; }
-.note { border-left: 4px solid var(--accent); background: var(--tint); padding: 0.5rem 0.9rem; margin: 0.8rem 0; }
+.note { border-left: 4px solid var(--accent); background: var(--tint); padding: 0.5rem 0.9rem; margin: 0.8rem 0;
+        max-width: 78ch; }
+.note ul { margin: 0; padding-left: 1.2rem; }
 .good { color: var(--good); } .bad { color: var(--bad); }
 /* Plots are drawn on white paper; their hues stay, photographs and videos are as they are. */
 @media screen and (prefers-color-scheme: dark) {
@@ -74,11 +81,13 @@ nav ul { columns: 16rem; padding-left: 1.2rem; }
   body { font-size: 10.5pt; }
   table { font-size: 8pt; }
   th, td { padding: 0.2rem 0.4rem; }
-  figure, tr, .tile { break-inside: avoid; }
+  th.w { min-width: 0; }
+  figure, tr, .tile, .note { break-inside: avoid; }
   h2, h3 { break-after: avoid; }
   figure:has(video), nav { display: none; }
   .scroll { overflow: visible; background: none; }
   .figures, .figures.large { grid-template-columns: repeat(2, 1fr); }
+  .figures:has(video):has(> :nth-child(4):last-child) { grid-template-columns: repeat(3, 1fr); }  /* the film is not printed */
 }
 )css";
 
@@ -168,7 +177,10 @@ std::string HtmlTable::str() const {
   const char* kind = longest_name_ > kLong ? " class=\"names\"" : longest_name_ > kShort ? " class=\"name\"" : "";
   std::string text = fmt::format("<div class=\"scroll\"><table{}><thead><tr>", kind);
   for (std::size_t i = 0; i < header_.size(); ++i) {
-    text += fmt::format("<th{}>{}</th>", i >= first_number_ ? " class=\"n\"" : "", header_[i]);
+    const char* number = i >= first_number_ ? "n" : "";
+    const char* wide = i > 0 && seen_length(header_[i]) > kShort ? "w" : "";
+    const std::string kinds = fmt::format("{}{}{}", number, *number != 0 && *wide != 0 ? " " : "", wide);
+    text += fmt::format("<th{}>{}</th>", kinds.empty() ? "" : fmt::format(" class=\"{}\"", kinds), header_[i]);
   }
   return text + "</tr></thead><tbody>\n" + rows_ + "</tbody></table></div>\n";
 }
@@ -234,7 +246,7 @@ Page page(std::string_view title, const Html& body) {
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
       "<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-      escape(title), kStyle, with_minus_signs(text));
+      escape(title), kStyle, typeset_numbers(text));
   return made;
 }
 

@@ -58,7 +58,7 @@ const std::string_view kFilmScript = R"js(<style>
 .law .rows li { position: absolute; right: .5rem; top: calc((100% - 4.2rem) * var(--row) + .2rem); padding: .1rem .4rem; font-size: .8rem; line-height: 1.2; color: #fff;
   background: #000a; border-radius: 4px; pointer-events: none; max-width: 90%; }
 .law .rows i { display: inline-block; width: .7rem; height: .7rem; margin-right: .35rem; border-radius: 50%; border: 1px solid #fff; }
-@media screen and (prefers-color-scheme: dark) { .law canvas { filter: invert(0.9) hue-rotate(180deg); } }  /* as the plots */
+@media screen and (prefers-color-scheme: dark) { .law canvas, .law .rows i { filter: invert(0.9) hue-rotate(180deg); } }  /* as the plots */
 @media print { .law canvas { height: auto; } }  /* as drawn for the screen */
 </style>
 <script>

@@ -64,9 +64,9 @@ std::string region_table(const diagnose::Diagnosis& diagnosis) {
 std::string gap_table(const diagnose::GapSizes& gap) {
   HtmlTable table({"line", "before", "after"});
   for (std::size_t i = 0; i < gap.held_out.size(); ++i) {
-    table.row({escape(gap.held_out[i]), number_text(gap.before_by_clip[i], 3), number_text(gap.after_by_clip[i], 3)});
+    table.row({escape(gap.held_out[i]), digits_text(gap.before_by_clip[i], 3), digits_text(gap.after_by_clip[i], 3)});
   }
-  table.row({"all", number_text(gap.before, 3), number_text(gap.after, 3)});
+  table.row({"all", digits_text(gap.before, 3), digits_text(gap.after, 3)});
   std::string text = table.str();
   text += fmt::format(
       "<p class=\"soft\">Each line predicted by the others: root mean square of what its intercept and its slope are "
@@ -120,7 +120,7 @@ std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& 
     if (!candidate.left_out.empty()) continue;
     if (!candidate.words.empty() && ++unnamed > kUnnamedRows) continue;
     rows.push_back({name_of(candidate), sizes_text(candidate), probability_text(candidate.probability),
-                    candidate.chi2 ? number_text(*candidate.chi2, 3) : "–",
+                    candidate.chi2 ? digits_text(*candidate.chi2, 3) : "–",
                     candidate.gap ? fmt::format("{:.2f}", *candidate.gap) : "–",
                     candidate.id == "none" ? "0" : gain_text(candidate.log_likelihood_gain),
                     candidate.id == "none" ? "0" : gain_text(candidate.log_evidence_gain)});
@@ -182,7 +182,9 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
   if (!alike.empty()) {
     alike[0].caption =
-        "How alike what two effects do to these lines is, with the usual model fitted: 1 cannot be told apart, 0 can";
+        "How alike what two effects do to these lines is (a row's and a numbered column's), with the usual model "
+        "fitted: at 1 they cannot be told apart, at 0 "
+        "they can";
     body += "<h2>What these lines can tell apart</h2>\n" + figures(alike);
   }
   if (diagnosis.gap) body += "<h2>The gap, line by line</h2>\n" + gap_table(*diagnosis.gap);

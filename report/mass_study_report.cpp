@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "report/html.h"
 #include "report/number_text.h"
 
@@ -13,17 +16,27 @@ using validate::FallAnswer;
 using validate::MassRow;
 
 std::string fall_text(double fall, double se) {
-  return se > 0.0 ? value_and_sd_text(fall, se) : number_text(fall, 2);
+  return se > 0.0 ? value_and_sd_text(fall, se) : digits_text(fall, 2);
+}
+
+/// Two values with the decimals of the one that has more.
+std::pair<std::string, std::string> with_equal_decimals(double one, double other) {
+  const auto decimals = [](double value) {
+    const std::string text = number_text(value, 4);
+    return text.size() - std::min(text.find('.'), text.size() - 1) - 1;
+  };
+  const std::size_t most = std::max(decimals(one), decimals(other));
+  return {fmt::format("{:.{}f}", one, most), fmt::format("{:.{}f}", other, most)};
 }
 
 std::string answer_text(const FallAnswer& answer) {
   const double published = answer.published.mu_lightest - answer.published.mu_heaviest;
   const MassRow& widest = answer.widest;
+  const auto [from, to] = with_equal_decimals(answer.published.mu_lightest, answer.published.mu_heaviest);
   std::string text =
       fmt::format("<p><b>{}{}:</b> {} has a fall of µ from {} to {}, by {}. ", escape(answer.published.configuration),
-                  answer.others.empty() ? "" : ", " + escape(answer.others), escape(answer.published.source),
-                  number_text(answer.published.mu_lightest, 4), number_text(answer.published.mu_heaviest, 4),
-                  number_text(published, 2));
+                  answer.others.empty() ? "" : ", " + escape(answer.others), escape(answer.published.source), from, to,
+                  digits_text(published, 2));
   if (answer.whole) {
     text += fmt::format("Smoothing alone makes all of it with h = {} s, and its lines then have R² = {}. ",
                         number_text(answer.whole->bandwidth_s, 2), r2_text(answer.whole->r2));
@@ -64,7 +77,7 @@ std::string mass_study_section(const validate::MassStudy& study) {
     before = of;
     std::vector<std::string> cells = {number_text(row.bandwidth_s, 4)};
     for (const validate::MassPoint& point : row.masses) {
-      cells.push_back(point.se > 0.0 ? value_and_sd_text(point.mu, point.se) : number_text(point.mu, 4));
+      cells.push_back(point.se > 0.0 ? value_and_sd_text(point.mu, point.se) : digits_text(point.mu, 4));
     }
     cells.insert(cells.end(), {fall_text(row.fall(), row.fall_se()), r2_text(row.r2())});
     table.row(cells);
@@ -73,7 +86,7 @@ std::string mass_study_section(const validate::MassStudy& study) {
          "<p class=\"soft\">Lines through every smoothed point, kernels over ends and reversals included. The fall is "
          "µ of the lightest glider less that of the heaviest; ± is one standard error over the runs, and missing where "
          "the positions are exact, for then nothing is chance. R² is the least of a run's lines, the mean over its "
-         "runs. Between two bandwidths that were run the fall and the logarithm of 1 - R² are taken to lie on "
+         "runs. Between two bandwidths that were run the fall and the logarithm of 1 − R² are taken to lie on "
          "straight lines.</p>\n";
 }
 

@@ -5,6 +5,7 @@
 
 namespace glidelab::report {
 
+using base::digits_text;
 using base::error_text;
 using base::gain_text;
 using base::number_text;
@@ -12,5 +13,6 @@ using base::r2_text;
 using base::sd_text;
 using base::value_and_sd_text;
 using base::value_text;
+using base::with_raised_power;
 
 }  // namespace glidelab::report

@@ -178,9 +178,9 @@ std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool f
                                 harmonic.mean, harmonic.cosine, harmonic.sine, color(1), color(0));
   return {{Drawing{script, data},
            fmt::format("Error of the marker's centre over its place within a pixel ({}), with means; a finder that is "
-                       "drawn to pixels shows a wave. First harmonic: {} ± {} px",
+                       "drawn to pixels shows a wave. First harmonic: {} px",
                        from_truth ? "against the truth" : "against the smoothed motion",
-                       number_text(locking->amplitude_px, 2), number_text(locking->sd_px, 2)),
+                       value_and_sd_text(locking->amplitude_px, locking->sd_px)),
            "Error of the centre over the sub-pixel phase"}};
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/number_text.h"
+
 namespace glidelab::report {
 namespace {
 
@@ -26,10 +28,31 @@ std::string with_minus(std::string number) {
   return number;
 }
 
+std::size_t letters_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
 }  // namespace
 
 double tick_step(double span, int most) {
   return round_up(span / most);
+}
+
+std::string even_tics(std::string_view axis, double from, double to, int most) {
+  const double step = tick_step(to - from, most);
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+  return fmt::format("set {0}tics {1:.9g}\nset format {0} '%.{2}f'\n", axis, step, decimals);
+}
+
+std::string tic_label(double value) {
+  return with_minus(with_raised_power(fmt::format("{:.4g}", value)));
+}
+
+std::string labelled_tics(std::string_view axis, const std::vector<double>& at) {
+  std::string tics;
+  for (const double value : at) tics += fmt::format("{}'{}' {:.6g}", tics.empty() ? "" : ", ", tic_label(value), value);
+  return fmt::format("set {}tics ({})\n", axis, tics);
 }
 
 std::vector<double> ladder_of(double from, double to) {
@@ -93,8 +116,9 @@ std::vector<double> ValueAxis::marks() const {
 std::string ValueAxis::script(double points) const {
   constexpr double kLetter = 10.0, kGap = 10.0;  // points
   const std::vector<double> all = marks();
-  const auto text = [](double value) { return fmt::format("{:.4g}", value); };
-  const auto half = [&](double value) { return 0.5 * (kLetter * static_cast<double>(text(value).size()) + kGap); };
+  const auto half = [](double value) {
+    return 0.5 * (kLetter * static_cast<double>(letters_of(tic_label(value))) + kGap);
+  };
   const auto place = [&](double value) { return points * (to_axis(value) - from_) / (to_ - from_); };
   std::vector<bool> labelled(all.size(), false);
   double free_from = -points;
@@ -107,7 +131,7 @@ std::string ValueAxis::script(double points) const {
   }
   std::string tics;  // placed to the digits that the data are written with
   for (std::size_t i = 0; i < all.size(); ++i) {
-    tics += fmt::format("{}'{}' {:.9g}", i == 0 ? "" : ", ", labelled[i] ? with_minus(text(all[i])) : "", all[i]);
+    tics += fmt::format("{}'{}' {:.9g}", i == 0 ? "" : ", ", labelled[i] ? tic_label(all[i]) : "", all[i]);
   }
   return fmt::format("{}set xrange [{:.9g}:{:.9g}]\nset xtics ({})\n", logarithmic_ ? "set logscale x\n" : "",
                      from_axis(from_), from_axis(to_), tics);

@@ -3,12 +3,23 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glidelab::report {
 
 /// 1, 2 or 5 times a power of ten: marks that far apart are `most` + 1 at most on an axis of that length, above 0.
 double tick_step(double span, int most);
+
+/// gnuplot: marks of the axis ("x" or "y") that far apart, `most` + 1 at most over these ends, with as many decimals as
+/// the step has: "−0.5", "0.0", and no powers of ten. The ends differ.
+std::string even_tics(std::string_view axis, double from, double to, int most);
+
+/// As a mark is labelled: four digits, "5·10⁻⁶" below 0.0001, with minus signs.
+std::string tic_label(double value);
+
+/// gnuplot: the axis' marks at these places, so labelled.
+std::string labelled_tics(std::string_view axis, const std::vector<double>& at);
 
 /// 1, 2 and 5 times powers of ten from the first that is not above `from` to the first that is not below `to`, both
 /// above 0.

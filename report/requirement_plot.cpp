@@ -73,8 +73,7 @@ struct LogAxis {
   std::string script(const std::string& name) const {
     std::vector<double> tics = ladder_of(from, to);
     std::erase_if(tics, [this](double value) { return value < from || value > to; });
-    return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3:.6g})\n", name, from, to,
-                       fmt::join(tics, ", "));
+    return fmt::format("set {}range [{:.6g}:{:.6g}]\n", name, from, to) + labelled_tics(name, tics);
   }
 };
 
@@ -130,7 +129,7 @@ Plot requirement_plot(const Requirement& requirement) {
     }
   }
   std::vector<PlotData> data;
-  std::string script = std::string(kFrame) + "set logscale xy\nset format x '%g'\nset format y '%g'\n";
+  std::string script = std::string(kFrame) + "set logscale xy\n";
   script +=
       fmt::format("set xlabel {}\nset ylabel {}\n",
                   gnuplot_quoted(requirement.by_price ? "price, middle of its class (EUR)" : "million pixels a second"),

@@ -49,7 +49,7 @@ std::string same_unit(const Target& target) {
 }
 
 std::string bound_text(const std::optional<double>& bound, double scale) {
-  return bound && std::isfinite(*bound) ? number_text(*bound / scale, 2) : "–";
+  return bound && std::isfinite(*bound) ? digits_text(*bound / scale, 2) : "–";
 }
 
 /// "rms error of µ at most 0.0005, 95 % error of α (°) at most 0.01".

@@ -154,6 +154,7 @@ std::string as_sentence(std::string text) {
 Html camera_section(const core::AnalysisResults& results) {
   if (results.calibrations.empty() && results.plumbs.empty()) return {};
   Html text = "<h2 id=\"camera\">Camera and plumb line</h2>\n";
+  std::vector<Plot> plots;
   for (const core::CalibrationResult& calibration : results.calibrations) {
     text += fmt::format(
         "<p>{}: calibrated from {} views, corners reprojected to {} px (rms). In the plane of motion the pattern's "
@@ -187,11 +188,14 @@ Html camera_section(const core::AnalysisResults& results) {
       table.row({names[i], fixed ? "0 (left out)" : value_and_sd_text(calibration.distortion[i], sd_of(4 + i))});
     }
     if (!table.empty()) text += table.str();
-    text +=
-        figures(calibration_plots(calibration.rests, results.calibrations.size() > 1 ? calibration.experiment : ""));
+    for (Plot& plot :
+         calibration_plots(calibration.rests, results.calibrations.size() > 1 ? calibration.experiment : "")) {
+      plots.push_back(std::move(plot));
+    }
     text += notes_html(calibration.notes);
   }
-  text += figures(pixel_phase_plot(phase_points(results), false));
+  for (Plot& plot : pixel_phase_plot(phase_points(results), false)) plots.push_back(std::move(plot));
+  text += figures(plots);
   if (!results.plumbs.empty()) {
     HtmlTable table({"group", "inclination against the plumb line"});
     for (const core::PlumbResult& plumb : results.plumbs) {
@@ -237,8 +241,8 @@ std::string corrections_html(const core::AnalysisResults& results) {
 }  // namespace
 
 std::string recovered_section(const core::AnalysisResults& results) {
-  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)", "R² (v&lt;0)",
-                   "R² (v&gt;0)"});
+  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)",
+                   "R² (v &lt; 0)", "R² (v &gt; 0)"});
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),

@@ -100,7 +100,8 @@ std::string bandwidths_of(const SweepSummary& summary) {
 }
 
 std::string at_text(const validate::AxisSummary& axis, const GroupStatistics& group) {
-  return axis.words ? escape(group.label) : number_text(group.position, 3);
+  if (axis.words) return escape(group.label);
+  return fmt::format("{}{}{}", number_text(group.position, 4), axis.unit.empty() ? "" : " ", escape(axis.unit));
 }
 
 /// ", over 4 of 6 combinations of all else": where not all have an answer.
@@ -109,7 +110,7 @@ std::string part_of(const validate::Likeness& of, std::string_view what) {
   return fmt::format(", over those {} of {} {}", of.alike, of.combinations, what);
 }
 
-/// "0.001 1/s at 500 and 0.004 1/s at 31.2, 4 times as much"; empty where one value has answers or none errs.
+/// "0.001 1/s at 500 Hz and 0.004 1/s at 31.25 Hz, 4 times as much"; empty where one value has answers or none errs.
 std::string span_of(const validate::AxisSummary& axis, const Series& series) {
   const GroupStatistics *least = nullptr, *most = nullptr;
   const auto rms = [&](const GroupStatistics& of) { return validate::comparable(series, of)->rms; };
@@ -171,7 +172,7 @@ std::string changes_of(const SweepSummary& summary, const Series& best) {
                                    : "no combination of all else has one at each value"));
   }
   if (list.empty()) return {};
-  return fmt::format("<p>The rms error of {} by {} is</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
+  return fmt::format("<p>The rms error of {} by {} is:</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
                      escape(best.estimator), list);
 }
 

@@ -54,7 +54,7 @@ std::string error_axis(const std::vector<PlotData>& data) {
   if (ladder.size() > kMost) {
     std::erase_if(ladder, [](double value) { return std::abs(std::remainder(std::log10(value), 1.0)) > 1e-6; });
   }
-  return fmt::format("set yrange [{:.6g}:{:.6g}]\nset ytics ({:.6g})\n", from, to, fmt::join(ladder, ", "));
+  return fmt::format("set yrange [{:.6g}:{:.6g}]\n", from, to) + labelled_tics("y", ladder);
 }
 
 bool whole(const validate::Likeness& of) {
@@ -226,7 +226,7 @@ Plot error_plot(const AxisSummary& axis, const std::vector<Series>& all, std::st
   const std::string symbol = symbol_of(quantity);
   std::string script =
       frame.script + fmt::format(
-                         "set ylabel {}\nset logscale y\nset format y '%g'\nset offsets 0,0,0,0\n"
+                         "set ylabel {}\nset logscale y\nset offsets 0,0,0,0\n"
                          "{}plot ",
                          gnuplot_quoted(with_unit("error of " + symbol, unit_of(quantity))), error_axis(frame.data));
   bool bound = false;
@@ -252,11 +252,21 @@ Plot error_plot(const AxisSummary& axis, const std::vector<Series>& all, std::st
 }
 
 Plot bias_plot(const AxisSummary& axis, const Frame& frame, std::string_view quantity) {
+  constexpr int kMarks = 8;
+  double least = 0.0, most = 0.0;
+  for (const PlotData& block : frame.data) {
+    for (const std::vector<double>& row : block.rows) {
+      const double reach = std::isfinite(row[5]) ? row[5] : 0.0;
+      least = std::min(least, row[4] - reach);
+      most = std::max(most, row[4] + reach);
+    }
+  }
   const std::string symbol = symbol_of(quantity);
   std::string script = frame.script + fmt::format(
                                           "set ylabel {}\nset offsets 0,0,graph 0.06,graph 0.06\n"
-                                          "set xzeroaxis lt 1 lc rgb '#555555'\nplot ",
-                                          gnuplot_quoted(with_unit("mean error of " + symbol, unit_of(quantity))));
+                                          "set xzeroaxis lt 1 lc rgb '#555555'\n{}plot ",
+                                          gnuplot_quoted(with_unit("mean error of " + symbol, unit_of(quantity))),
+                                          most > least ? even_tics("y", least, most, kMarks) : "");
   for (std::size_t i = 0; i < frame.data.size(); ++i) {
     script += fmt::format(
         "{0}${1} using 10:5 with {2} pt {5} ps 0.5 lc rgb '{3}' title {4}, "

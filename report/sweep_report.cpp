@@ -23,9 +23,9 @@ using validate::SweepSummary;
 std::vector<std::string> cells_of(const ErrorStatistics& of) {
   return {fmt::format("{} / {}", of.answered, of.runs),
           of.answered == 0 ? "–" : value_and_sd_text(of.bias, of.bias_sd),
-          of.answered == 0 ? "–" : number_text(of.rms, 3),
-          of.answered == 0 ? "–" : number_text(of.sd, 3),
-          of.least_sd ? number_text(*of.least_sd, 3) : "–",
+          of.answered == 0 ? "–" : digits_text(of.rms, 3),
+          of.answered == 0 ? "–" : digits_text(of.sd, 3),
+          of.least_sd ? digits_text(*of.least_sd, 3) : "–",
           of.answered == 0 ? "–" : fmt::format("{:.1f} %", 100.0 * of.coverage)};
 }
 
@@ -76,11 +76,11 @@ std::string acceleration_table(const SweepSummary& summary) {
     header.insert(header.end(), {"times that of the best possible bandwidth, median", "times that, in 90 % at most"});
   }
   HtmlTable table(header, 1);
-  const auto ratio = [](const std::optional<double>& value) { return value ? number_text(*value, 3) : "–"; };
+  const auto ratio = [](const std::optional<double>& value) { return value ? digits_text(*value, 3) : "–"; };
   const auto add = [&](const std::vector<validate::AccelerationError>& all) {
     for (const validate::AccelerationError& of : all) {
       std::vector<std::string> row = {escape(of.estimator), fmt::format("{}", of.clips),
-                                      number_text(of.median_m_s2, 3)};
+                                      digits_text(of.median_m_s2, 3)};
       if (compared) row.insert(row.end(), {ratio(of.regret), ratio(of.regret90)});
       table.row(row);
     }

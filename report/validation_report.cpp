@@ -41,7 +41,7 @@ std::string comparison_table(const validate::Comparison& comparison) {
     table.row({escape(heading_of(q.quantity)), cell(q.truth, value_text, sd),
                q.value ? value_text(*q.value, sd) : fmt::format("<span title=\"{}\">–</span>", escape(q.why)),
                q.sd ? sd_text(*q.sd) : "–", cell(q.error, error_text, sd), in_sd,
-               relative ? fmt::format("{:+.3f} %", 100.0 * *q.error / *q.truth) : "",
+               relative ? fmt::format("{:+.3f} %", 100.0 * *q.error / *q.truth) : "–",
                q.cramer_rao_sd ? sd_text(*q.cramer_rao_sd) : "–", q.efficiency ? number_text(*q.efficiency, 2) : "–"});
   }
   return table.str();

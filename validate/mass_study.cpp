@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/number_text.h"
 #include "validate/sweep_groups.h"
 
 namespace glidelab::validate {
@@ -23,7 +24,9 @@ const Axis* axis_of_masses(const Sweep& sweep) {
 
 std::string text_of(SqlStatement& rows, int column) {
   const auto number = rows.maybe_number(column);
-  return number && *number != 0.0 ? fmt::format("{:.4g}", *number) : rows.text(column);
+  if (number && *number != 0.0) return base::number_text(*number);
+  const std::string text = rows.text(column);  // a word, which is 0 as a number, or 0
+  return text == "0.0" ? "0" : text;
 }
 
 /// Row's place: configuration, values of the other axes, bandwidth (s).

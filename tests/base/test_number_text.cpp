@@ -36,9 +36,31 @@ TEST_CASE("a number has plain digits where they are few, and a power of ten beyo
   CHECK(number_text(2.5, 1) == "2");
 }
 
-TEST_CASE("an error shows its sign") {
+TEST_CASE("an error shows its sign, and none where it rounds to zero") {
   CHECK(error_text(0.00312, 0.0041) == "+0.0031");
   CHECK(error_text(-0.00312, 0.0041) == "-0.0031");
+  CHECK(error_text(-0.00001, 0.0041) == "0.0000");
+  CHECK(error_text(0.0, 0.0041) == "0.0000");
+  CHECK(error_text(-0.00006, 0.0041) == "-0.0001");
+}
+
+TEST_CASE("numbers of one column keep the zeros at their end") {
+  CHECK(digits_text(1.1, 3) == "1.10");
+  CHECK(digits_text(10.0, 3) == "10.0");
+  CHECK(digits_text(500.2, 3) == "500");
+  CHECK(digits_text(0.00009, 3) == "0.0000900");
+  CHECK(digits_text(412.3, 2) == "410");
+  CHECK(digits_text(412.3, 1) == "400");
+  CHECK(digits_text(9.996, 3) == "10.0");
+  CHECK(digits_text(7.2e8, 3) == "7.20e+08");
+  CHECK(digits_text(0.0, 3) == "0");
+  CHECK(digits_text(std::nan(""), 3) == "–");
+}
+
+TEST_CASE("a power of ten is written as by hand, and a number without one stays") {
+  CHECK(with_raised_power("1.957e-05") == "1.957·10⁻⁵");
+  CHECK(with_raised_power("-2e+12") == "-2·10¹²");
+  CHECK(with_raised_power("0.0003") == "0.0003");
 }
 
 TEST_CASE("R² is never rounded up to 1") {

@@ -29,7 +29,7 @@ TEST_CASE("every effect with a size says what the letters of its size mean, on t
     INFO(effect.id);
     CHECK(report::effect_meaning(effect.id).empty() == (effect.id == std::string_view("compression")));
   }
-  CHECK(report::effect_meaning("smoothing_bias") == "intercepts are off by intercept_s2 times (K/m)²");
+  CHECK(report::effect_meaning("smoothing_bias") == "intercepts are off by this for each 1/s² of (K/m)²");
   CHECK(report::effect_meaning("none").empty());
   diagnose::Diagnosis of;
   of.verdict = "effect";

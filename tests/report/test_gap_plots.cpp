@@ -56,6 +56,7 @@ TEST_CASE("sizes come in the unit that leaves them a readable number") {
   CHECK(report::parameter_text("x_mid_m.flat_s", 0.0123, 0.0012) == "x_mid.flat_s = 12.3 ± 1.2 mm");
   CHECK(report::parameter_text("f_hz", 6.00001, 0.00013) == "f = 6.00001 ± 0.00013 Hz");
   CHECK(report::parameter_text("e", 0.0101, 0.0012) == "e = 0.0101 ± 0.0012");
+  CHECK(report::parameter_text("intercept_s2_m_s2", 0.0052, 0.001) == "intercept = 0.0052 ± 0.0010 m/s² for each 1/s²");
 }
 
 TEST_CASE("a cell of the residual map is a standard normal deviate of its positions together") {
@@ -99,7 +100,7 @@ TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curve
   one.curves.pop_back();
   CHECK_FALSE(has(report::where_plots(one).front().caption, "any one"));
   const std::string page = report::diagnosis_report("two masses", diagnosis).html;
-  CHECK(has(page, "−3.6 mm"));
+  CHECK(has(page, "−3.6\u00a0mm"));
   CHECK(has(page, "How large the gap is"));
   CHECK(has(page, "Map of the residuals by clip"));
   // In a dark page black is nothing and the light colours are far: by numbers, not by colours.
@@ -111,12 +112,52 @@ TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curve
   CHECK(report::residual_maps(lines).empty());
 }
 
+TEST_CASE("where nothing is missing a page shows the usual model once, not the same twice as before and after") {
+  diagnose::Diagnosis none = two_masses();
+  none.verdict = "none";
+  none.gap->before = none.gap->after = 1.1;
+  none.gap->held_out = {"up"};
+  none.gap->before_by_clip = none.gap->after_by_clip = {1.1};
+  const std::string page = report::diagnosis_report("none", none).html;
+  CHECK(has(page, "<b>1.1</b><span>gap of held-out clips"));
+  CHECK(has(page, "<th>held out</th><th class=\"n\">gap</th>"));
+  CHECK(has(page, "<td>up</td><td class=\"n\">1.10</td></tr>"));
+  CHECK(report::residual_maps(none).size() == 1);
+  for (const auto& plots : {report::domain_plots(none), report::phase_gap_plots(none), report::where_plots(none),
+                            report::verdict_plots(none)}) {
+    for (const report::Plot& plot : plots) CHECK_FALSE(has(plot.drawing.script, "'after'"));
+  }
+  diagnose::Diagnosis unknown = two_masses();
+  CHECK(report::residual_maps(unknown).size() == 2);
+  CHECK(has(report::domain_plots(unknown).front().drawing.script, "'after'"));
+}
+
+TEST_CASE("a logarithmic axis of gaps begins below the smallest of them") {
+  diagnose::Diagnosis of = two_masses();
+  of.gap->held_out = {"up", "down"};
+  of.gap->before_by_clip = {20.0, 30.0};
+  of.gap->after_by_clip = {0.25, 1.0};
+  CHECK(has(report::verdict_plots(of).back().drawing.script, "set xrange [0.2:45]"));
+  of.gap->domains = {{"positions", 30.0, 0.25}};
+  CHECK(has(report::domain_plots(of).front().drawing.script, "set xrange [0.2:45]"));
+  CHECK(report::domain_plots(of).front().drawing.data.at(1).rows.at(0).at(3) == Approx(0.25));
+}
+
+TEST_CASE("standard deviations off have no sign at zero, and no tenths beyond a hundred") {
+  diagnose::Diagnosis of = two_masses();
+  of.gap->parameters[0].z_before = -0.04;
+  of.gap->parameters[1].z_before = 1105.9;
+  const std::string page = report::diagnosis_report("z", of).html;
+  CHECK(has(page, "<td class=\"n\">0.0</td>"));
+  CHECK(has(page, "<td class=\"n\">+1110</td>"));
+}
+
 TEST_CASE("the table of a gap's places gives the largest size with its own deviation and where it is") {
   diagnose::Diagnosis of = two_masses();
   of.regions.front().size_sd = 2e-4;
   of.regions.front().at = 0.0712;
   const std::string page = report::diagnosis_report("places", of).html;
-  CHECK(has(page, "−3.60 ± 0.20 mm</td><td class=\"n\">0.0712</td><td class=\"n\">12</td>"));
+  CHECK(has(page, "−3.60\u00a0±\u00a00.20\u00a0mm</td><td class=\"n\">0.0712</td><td class=\"n\">12</td>"));
   CHECK(has(report::diagnosis_json(of), "\"at\": 0.0712"));
 }
 

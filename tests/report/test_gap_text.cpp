@@ -62,10 +62,10 @@ TEST_CASE("where there are too few clips for an interval, the file and the text 
 }
 
 TEST_CASE("intervals read as from what to what") {
-  CHECK(report::interval_text(diagnose::GapInterval{4.0, 6.25}) == "4 to 6.25");
+  CHECK(report::interval_text(diagnose::GapInterval{4.0, 6.25}) == "4.00 to 6.25");
   CHECK(report::interval_text({}) == "–");
   CHECK(report::shrink_text(*with_gap().gap) == "95.0 % (90.0 to 100.0 %)");
   const std::string text = report::diagnosis_text(with_gap());
-  CHECK(text.find("4 to 6.25 before, 1 to 1.44 after") != std::string::npos);
-  CHECK(text.find("0.02 m/s² (0.01 to 0.04) before, 0.01 m/s² after") != std::string::npos);
+  CHECK(text.find("4.00 to 6.25 before, 1.00 to 1.44 after") != std::string::npos);
+  CHECK(text.find("0.02 m/s² (0.0100 to 0.0400) before, 0.01 m/s² after") != std::string::npos);
 }

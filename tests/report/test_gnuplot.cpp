@@ -10,6 +10,7 @@
 #include "base/errors.h"
 #include "base/staged_output.h"
 #include "catch.h"
+#include "report/plot_style.h"
 #include "temp_dir.h"
 
 using namespace glidelab;
@@ -75,6 +76,22 @@ TEST_CASE("the numbers beside a plot say what its axes show and what each column
         "# x axis: v  (m/s)\n# y axis: a  (m/s²)\n# first\n# v (m/s),a (m/s²)\n0,1\n1,2\n\n\n# last\n"
         "# v (m/s),of a clip\n2,3\n");
   CHECK(plot.svg == drawn({script, bare}).svg);
+}
+
+TEST_CASE("a point with an error bar covers nothing of the bar but what the point itself covers") {
+  const report::DrawnPlot plot = drawn({std::string(report::kFrame) + "plot $p using 1:2:3 with yerrorbars pt 7 ps 0.5",
+                                        {{"p", {{1.0, 1.0, 0.02}, {2.0, 1.1, 0.3}}}}});
+  // gnuplot clears a disc below each point: the SVG has it in white, with its size as the scale.
+  double largest = 0.0, point = 0.0;
+  const std::string use = "xlink:href='#gpPt6'";
+  for (std::size_t at = plot.svg.find(use); at != std::string::npos; at = plot.svg.find(use, at + 1)) {
+    const std::string line = plot.svg.substr(at, plot.svg.find("/>", at) - at);
+    if (line.find("scale(") == std::string::npos) continue;
+    const double scale = std::stod(line.substr(line.find("scale(") + 6));
+    (line.find("#FFFFFF") != std::string::npos ? largest : point) = scale;
+  }
+  CHECK(point > 1.0);
+  CHECK(largest < 0.1 * point);
 }
 
 TEST_CASE("blocks of data are found whatever blank lines stand in them") {

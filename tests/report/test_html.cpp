@@ -1,9 +1,9 @@
 #include "report/html.h"
-#include "report/minus_signs.h"
 
 #include "catch.h"
 #include "made_results.h"
 #include "report/analysis_report.h"
+#include "report/typeset_numbers.h"
 
 using namespace glidelab;
 
@@ -23,17 +23,37 @@ TEST_CASE("a table of long names gives them a wide column, one of short names or
   CHECK(links.str().find("<table>") != std::string::npos);  // what is not seen takes no room
 }
 
+TEST_CASE("a long title of a column gets width for few lines, a short one and the first column's do not") {
+  const std::string table = report::HtmlTable({"a long first title", "gap", "standard deviations off, before"}).str();
+  CHECK(table.find("<th>a long first title</th><th class=\"n\">gap</th><th class=\"n w\">standard") !=
+        std::string::npos);
+  CHECK(report::HtmlTable({"a", "what the pictures show"}, 2).str().find("<th class=\"w\">what") != std::string::npos);
+}
+
 TEST_CASE("a hyphen before a number becomes a minus sign on a page, one in a name, a date, a tag or code does not") {
-  CHECK(report::with_minus_signs("-0.3, (-5) ± -2") == "−0.3, (−5) ± −2");
-  CHECK(report::with_minus_signs("10×-3, “-4”, ±-5") == "10×−3, “−4”, ±−5");
-  CHECK(report::with_minus_signs("<td class=\"n\">-1.2</td>") == "<td class=\"n\">−1.2</td>");
+  CHECK(report::typeset_numbers("-0.3, (-5) ± -2") == "−0.3, (−5) ± −2");
+  CHECK(report::typeset_numbers("10×-3, “-4”, ±-5") == "10×−3, “−4”, ±−5");
+  CHECK(report::typeset_numbers("<td class=\"n\">-1.2</td>") == "<td class=\"n\">−1.2</td>");
   for (const std::string same :
        {"m1-2", "maß-2", "Δ-1", "ход-3", "µ-4", "1e-07", "2026-11-23", "a - b", "--cases 3", "<a href=\"#-1\">x</a>",
         "<code>-1</code>", "<script>x = -1;</script>", "<style>a { top: -1px }</style>", "-", "<", "<code"}) {
-    CHECK(report::with_minus_signs(same) == same);
+    CHECK(report::typeset_numbers(same) == same);
   }
-  CHECK(report::with_minus_signs("<code>-1</code>-1") == "<code>-1</code>−1");
+  CHECK(report::typeset_numbers("<code>-1</code>-1") == "<code>-1</code>−1");
   CHECK(report::page("p", "<p>-4</p>").html.find("<p>−4</p>") != std::string::npos);
+}
+
+TEST_CASE("a number keeps to its unit and its standard deviation on one line, and a word behind a number does not") {
+  const std::string space = "\u00a0";
+  CHECK(report::typeset_numbers("0.351 ± 0.022 m/s of 53 %)") ==
+        "0.351" + space + "±" + space + "0.022" + space + "m/s of 53" + space + "%)");
+  CHECK(report::typeset_numbers("c = 0.0012 kg/m, 0.5 N s/m.") ==
+        "c = 0.0012" + space + "kg/m, 0.5" + space + "N" + space + "s/m.");
+  CHECK(report::typeset_numbers("(0.2 ± 0.1) mm") == "(0.2" + space + "±" + space + "0.1)" + space + "mm");
+  for (const std::string same : {"3 more", "1 m-up", "4 mmol", "m s", "12 bits", "5 of 6", "<code>5 mm</code>",
+                                 "K v becomes K v", "<a title=\"5 mm\">x</a>"}) {
+    CHECK(report::typeset_numbers(same) == same);
+  }
 }
 
 TEST_CASE("a quantity's name with one letter has its subscript, and what is longer or a file's key stays text") {
@@ -57,10 +77,10 @@ TEST_CASE("a page needs nothing but itself, says its values, and stays small for
   results.clips[0] = tests::made_clip("m1-up", 2.768, 0.8063, 0.667, 25000);
   const report::Page made = report::analysis_report("a long track", results, {});
   const std::string& page = made.html;
-  CHECK(page.find("2.7680 ± 0.0060") != std::string::npos);
+  CHECK(page.find("2.7680\u00a0±\u00a00.0060") != std::string::npos);
   // How many points a value rests on, and how well the noise itself is known: 0.021 mm / sqrt(2 x 24945 points).
   CHECK(page.find("<br><small>100 points</small>") != std::string::npos);
-  CHECK(page.find("Position noise 0.021000 ± 0.000094 mm") != std::string::npos);
+  CHECK(page.find("Position noise 0.021000\u00a0±\u00a00.000094\u00a0mm") != std::string::npos);
   CHECK(page.find("src=\"http") == std::string::npos);
   CHECK(page.find("href=\"http") == std::string::npos);
   CHECK(page.find("src=\"data:image/svg+xml;base64,") != std::string::npos);
@@ -71,7 +91,7 @@ TEST_CASE("a page needs nothing but itself, says its values, and stays small for
 TEST_CASE("what the camera's model says begins as a sentence does") {
   core::AnalysisResults results = tests::made_results();
   results.calibrations[0].model = "distortion: none <b>";
-  CHECK(report::analysis_report("camera", results, {}).html.find(" px. Distortion: none &lt;b&gt;.") !=
+  CHECK(report::analysis_report("camera", results, {}).html.find("px. Distortion: none &lt;b&gt;.") !=
         std::string::npos);
 }
 

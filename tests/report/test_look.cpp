@@ -97,6 +97,33 @@ TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one l
   CHECK(says(*dom, "spare=\"true\""));  // 13ch are some 125 pixels
 }
 
+TEST_CASE("four pictures stand in one row or two by two, a note with a list is as wide as one without") {
+  const tests::TempDir temp;
+  std::string pictures;
+  for (int i = 0; i < 4; ++i) pictures += "<figure><figcaption>picture</figcaption></figure>";
+  std::string html =
+      report::page("look", "<div class=\"figures\">" + pictures +
+                               "</div><p class=\"note\">text</p><div class=\"note\"><ul><li>text</li></ul>"
+                               "</div>")
+          .html;
+  html.insert(html.find("</body>"),
+              "<script>const rows = new Set([...document.querySelectorAll('.figures figure')].map(f => f.offsetTop));\n"
+              "document.documentElement.dataset.rows = rows.size;\n"
+              "const [one, other] = document.querySelectorAll('.note');\n"
+              "document.documentElement.dataset.wide = one.clientWidth == other.clientWidth;</script>");
+  base::write_file(temp / "page.html", html);
+  for (const auto& [width, rows] : {std::pair(1280, 1), std::pair(900, 2)}) {
+    const auto dom = browser(temp.path(), {"--window-size=" + std::to_string(width) + ",900", "--dump-dom",
+                                           "file://" + (temp / "page.html").string()});
+    if (!dom) {
+      WARN("skipped: no chromium program");
+      return;
+    }
+    CHECK(says(*dom, "rows=\"" + std::to_string(rows) + "\""));
+    CHECK(says(*dom, "wide=\"true\""));
+  }
+}
+
 TEST_CASE("a printed page has its photographs and no empty box where a film was") {
   const tests::TempDir temp;
   base::write_file(temp / "page.html", page_with(""));

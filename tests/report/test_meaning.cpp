@@ -165,7 +165,7 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   const auto page = [&] { return report::check_report(check, {}); };
   CHECK(tells(page(), "Usable as it is.</b> Nothing needs to be recorded again"));
   CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
-  CHECK(tells(page(), "off by 0.0036 mm or less"));
+  CHECK(tells(page(), "off by 0.0036\u00a0mm or less"));
   check.findings = {{core::Severity::change, "m1", "dark", "more light"}};
   CHECK(tells(page(), "should it be recorded again"));
   check.findings = {{core::Severity::unusable, "m1", "black", "more light"}};
@@ -188,7 +188,8 @@ TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and 
   camera.read_noise_e.value = 7.0;
   camera.full_well_e.value = 10000.0;
   CHECK(tells(report::camera_report(camera), "by 7 electrons (3.5 codes)"));
-  CHECK(tells(report::camera_report(camera), "full at 10000 electrons, where it wavers by 1 %"));  // 1 / sqrt(10^4)
+  CHECK(
+      tells(report::camera_report(camera), "full at 10000 electrons, where it wavers by 1\u00a0%"));  // 1 / sqrt(10^4)
 }
 
 TEST_CASE("an analysis leaves an effect out, but puts lost frames right") {

@@ -39,6 +39,20 @@ TEST_CASE("marks below zero are written with a minus sign, and steps are round n
   CHECK(report::tick_step(3600.0, 6) == 1000.0);
 }
 
+TEST_CASE("marks of an axis have the decimals of their step, and no power of ten is written with an e") {
+  CHECK(report::even_tics("x", -0.6, 0.8, 6) == "set xtics 0.5\nset format x '%.1f'\n");
+  CHECK(report::even_tics("y", -8e-5, 1e-4, 8) == "set ytics 5e-05\nset format y '%.5f'\n");
+  CHECK(report::even_tics("x", 0.0, 12.0, 6) == "set xtics 2\nset format x '%.0f'\n");
+  CHECK(report::tic_label(-1.957e-5) == "−1.957·10⁻⁵");
+  CHECK(report::tic_label(0.0002) == "0.0002");
+  CHECK(report::labelled_tics("y", {5e-5, 1e-4}) == "set ytics ('5·10⁻⁵' 5e-05, '0.0001' 0.0001)\n");
+  const std::vector<Tic> tics = tics_of(report::ValueAxis({5e-6, 1.957e-5, 7.663e-5, 3e-4}, true).script(360.0));
+  REQUIRE(tics.size() == 4);
+  CHECK(tics[0].label == "5·10⁻⁶");
+  CHECK(tics[1].label == "1.957·10⁻⁵");  // eight letters in fourteen bytes have room
+  CHECK(tics[3].label == "0.0003");
+}
+
 TEST_CASE("values that were run have marks of their own, and labels only where there is room for them") {
   const report::ValueAxis axis({120.0, 60.0, 240.0, 60.0}, false);
   CHECK(axis.size() == 3);

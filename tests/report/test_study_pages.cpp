@@ -88,7 +88,7 @@ TEST_CASE("the numbers in the plot of require are those of its tables, the cheap
   CHECK(has(plotted, "e-05,2.600"));
   CHECK(has(plotted, "# missed\n10,0.002,2,"));
   CHECK(has(page.html, "1 of 2 reach the target. <b>1. webcam</b> is the one with the fewest pixels"));
-  CHECK(has(page.html, "its rms error of µ is (19.8 ± 5.4) · 10⁻⁶, 25 times within the target"));
+  CHECK(has(page.html, "its rms error of µ is (19.8\u00a0±\u00a05.4) · 10⁻⁶, 25 times within the target"));
 }
 
 TEST_CASE("points of require that lie close together share one label") {
@@ -149,7 +149,8 @@ TEST_CASE("the films of laws have every motion's name as text, which steers noth
   CHECK(has(page, "&lt;/script&gt;&lt;b&gt;up</li>"));
   CHECK_FALSE(has(page, "</script><b>up"));
   CHECK(has(page, "src=\"data:video/mp4;base64,ZmlsbQ==\""));
-  CHECK(has(page, "1.0 s, in real time"));
+  CHECK(has(page, "1.0\u00a0s, in real time"));
+  CHECK(has(page, ".law canvas, .law .rows i { filter: invert"));  // a dark page's names have the curves' hues
 }
 
 TEST_CASE("the page of laws tells coming to rest from tending to it, and marks what is unstable as such") {
@@ -162,7 +163,7 @@ TEST_CASE("the page of laws tells coming to rest from tending to it, and marks w
   const report::Page page = report::laws_report({study}, {validate::LawFilm{}});
   CHECK(has(page.html,
             "viscous (0°): tends to rest; coulomb (0°): comes to rest; "
-            "stribeck (2°): unstable at 0.1805 m/s, tends to v<sub>lim</sub> = 0.4874 m/s"));
+            "stribeck (2°): unstable at 0.1805\u00a0m/s, tends to v<sub>lim</sub> = 0.4874\u00a0m/s"));
   const auto script = std::ranges::find_if(
       page.files, [](const auto& file) { return file.first.ends_with(".gp") && has(file.first, "a-v"); });
   REQUIRE(script != page.files.end());

@@ -55,7 +55,7 @@ TEST_CASE("every sweep's page says first who errs least, along which key it chan
   validate::SweepSummary of = summary();
   const std::string meaning = report::sweep_meaning(of);
   CHECK(has(meaning, "least rms error over all runs is that of trajectory in µ (0.0001)"));
-  CHECK(has(meaning, "<li>along rate_hz: 0.0001 at 200 and 0.0002 at 50, 2 times as much</li>"));
+  CHECK(has(meaning, "<li>along rate_hz: 0.0001 at 200 Hz and 0.0002 at 50 Hz, 2 times as much</li>"));
   CHECK(has(meaning, "turning: 0.00008; straight: 0.00016"));
   CHECK(has(meaning, "as often as they say"));
   of.overall[0].groups[0].statistics.coverage = 0.9;  // 4.6 binomial standard errors of 400
@@ -103,7 +103,7 @@ TEST_CASE("where runs have no answer the page compares like runs, or says that i
   }
   const std::string meaning = report::sweep_meaning(of);
   CHECK(has(meaning,
-            "along rate_hz: 0.0001 at 200 and 0.00015 at 50, 1.5 times as much, over those 4 of 6 "
+            "along rate_hz: 0.0001 at 200 Hz and 0.00015 at 50 Hz, 1.5 times as much, over those 4 of 6 "
             "combinations of all else that have an answer at each value"));
   of.axes[0].of_configurations.clear();
   std::vector<report::Plot> plots = report::sweep_plots(of.axes[0], "mu");
@@ -222,5 +222,5 @@ TEST_CASE("the question of mu and mass is answered in words, with its standard e
   study.answers[0].at_r2 = validate::FallAt{0.07, 0.0007, 0.0, 0.9996};
   text = report::mass_study_section(study);
   CHECK(has(text, "makes all of it with h = 0.13 s, and its lines then have R² = 0.9971"));
-  CHECK(has(text, "R² of 0.99960 it can make 0.0007, 29 % of the fall, at h = 0.07 s"));
+  CHECK(has(text, "R² of 0.99960 it can make 0.00070, 29 % of the fall, at h = 0.07 s"));
 }

@@ -1,4 +1,4 @@
-#include "report/minus_signs.h"
+#include "report/typeset_numbers.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,11 @@ namespace glidelab::report {
 namespace {
 
 constexpr std::array<std::string_view, 3> kVerbatim = {"code", "script", "style"};
+constexpr std::string_view kNoBreak = "\u00a0", kPlusMinus = " ± ";
+constexpr std::array<std::string_view, 36> kUnits = {
+    "%",     "°",     "m",   "mm",  "µm",   "nm",   "s",   "ms",    "µs",    "ns",  "kg",   "g",
+    "N",     "mN",    "µN",  "Hz",  "px",   "px²",  "ppm", "EUR",   "DN",    "m/s", "mm/s", "m/s²",
+    "mm/s²", "µm/s²", "1/s", "1/m", "1/m²", "kg/m", "N/m", "N s/m", "DN/e⁻", "e⁻",  "e⁻/s", "px/s"};
 
 bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
@@ -54,9 +59,34 @@ std::size_t end_of_markup(std::string_view html, std::size_t at) {
   return behind;
 }
 
+/// Of a longer word: the first byte of what could go on a unit.
+bool goes_on(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return std::isalnum(byte) != 0 || byte >= 0x80u || c == '/' || c == '_' || c == '-';
+}
+
+/// The unit behind the space at `at`, without the space; "" where there is none.
+std::string_view unit_behind(std::string_view html, std::size_t at) {
+  const std::string_view rest = html.substr(at + 1);
+  std::string_view longest;
+  for (const std::string_view unit : kUnits) {
+    const bool whole = rest.starts_with(unit) && (rest.size() == unit.size() || !goes_on(rest[unit.size()]));
+    if (whole && unit.size() > longest.size()) longest = unit;
+  }
+  return longest;
+}
+
+/// How many bytes from the space at `at` on belong to the number before it; 0 where a line may begin there.
+std::size_t joined_behind(std::string_view html, std::size_t at) {
+  if (html[at] != ' ' || at == 0) return 0;
+  if (is_digit(html[at - 1]) && html.substr(at).starts_with(kPlusMinus)) return kPlusMinus.size();
+  const std::string_view unit = is_digit(html[at - 1]) || html[at - 1] == ')' ? unit_behind(html, at) : "";
+  return unit.empty() ? 0 : 1 + unit.size();
+}
+
 }  // namespace
 
-std::string with_minus_signs(std::string_view html) {
+std::string typeset_numbers(std::string_view html) {
   std::string text;
   text.reserve(html.size());
   for (std::size_t i = 0; i < html.size();) {
@@ -64,6 +94,11 @@ std::string with_minus_signs(std::string_view html) {
       const std::size_t end = end_of_markup(html, i);
       text += html.substr(i, end - i);
       i = end;
+      continue;
+    }
+    if (const std::size_t joined = joined_behind(html, i); joined > 0) {
+      for (const char c : html.substr(i, joined)) text += c == ' ' ? kNoBreak : std::string_view(&c, 1);
+      i += joined;
       continue;
     }
     const bool minus =
