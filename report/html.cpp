@@ -45,7 +45,6 @@ th { background: var(--veil); font-weight: 600; vertical-align: bottom; }
 table.name td:first-child { min-width: 13ch; }
 table.names td:first-child { min-width: 24ch; }  /* long names: few lines, and the table scrolls */
 td.n, th.n { text-align: right; }
-th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */
 td.n, td.s { white-space: nowrap; }
 td.t { min-width: 22ch; }
 tr.heading td { border-top: 2px solid var(--line); font-weight: 600; padding-top: 0.55rem; }
@@ -74,14 +73,16 @@ nav ul { columns: 16rem; padding-left: 1.2rem; }
 @media screen and (prefers-color-scheme: dark) {
   figure img[src^="data:image/svg"] { filter: invert(0.9) hue-rotate(180deg); }
 }
-@media (max-width: 600px) { th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } main { padding: 0.8rem 0.8rem 2rem; } }
+@media (max-width: 600px) {
+  th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } main { padding: 0.8rem 0.8rem 2rem; }
+  th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */
+}
 @media print {
   :root { color-scheme: light; --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --tint: #f4f4f4;
           --veil: #f4f4f4; --accent: #000000; --good: #000000; --bad: #000000; }
   body { font-size: 10.5pt; }
   table { font-size: 8pt; }
   th, td { padding: 0.2rem 0.4rem; }
-  th.w { min-width: 0; }
   figure, tr, .tile, .note { break-inside: avoid; }
   h2, h3 { break-after: avoid; }
   figure:has(video), nav { display: none; }

@@ -46,7 +46,11 @@ std::string even_tics(std::string_view axis, double from, double to, int most) {
 }
 
 std::string tic_label(double value) {
-  return with_minus(with_raised_power(fmt::format("{:.4g}", value)));
+  constexpr double kPlain = 1e-4;
+  if (value == 0.0 || std::abs(value) >= kPlain) return with_minus(number_text(value, 4));
+  const std::string label = with_minus(with_raised_power(fmt::format("{:.4g}", value)));
+  constexpr std::string_view kOne = "1·";  // of a power of ten alone
+  return label.starts_with("1·10") ? label.substr(kOne.size()) : label;
 }
 
 std::string labelled_tics(std::string_view axis, const std::vector<double>& at) {

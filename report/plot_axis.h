@@ -15,7 +15,7 @@ double tick_step(double span, int most);
 /// the step has: "−0.5", "0.0", and no powers of ten. The ends differ.
 std::string even_tics(std::string_view axis, double from, double to, int most);
 
-/// As a mark is labelled: four digits, "5·10⁻⁶" below 0.0001, with minus signs.
+/// As a mark is labelled: four digits, "5·10⁻⁶" and "10⁻⁶" below 0.0001, with minus signs.
 std::string tic_label(double value);
 
 /// gnuplot: the axis' marks at these places, so labelled.

@@ -165,7 +165,8 @@ std::string meaning(const Requirement& requirement) {
     text += ".";
   }
   if (!undecided.empty()) {
-    text += fmt::format(" Of {} the errors span the target: more runs decide.", undecided.size());
+    text += fmt::format(" For {} more the error spans the target within its standard deviation: more runs decide.",
+                        undecided.size());
   }
   if (!possible.empty()) {
     text += fmt::format(" Of {} the bound allows it, and nothing was run.", possible.size());

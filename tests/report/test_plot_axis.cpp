@@ -44,7 +44,9 @@ TEST_CASE("marks of an axis have the decimals of their step, and no power of ten
   CHECK(report::even_tics("y", -8e-5, 1e-4, 8) == "set ytics 5e-05\nset format y '%.5f'\n");
   CHECK(report::even_tics("x", 0.0, 12.0, 6) == "set xtics 2\nset format x '%.0f'\n");
   CHECK(report::tic_label(-1.957e-5) == "−1.957·10⁻⁵");
+  CHECK(report::tic_label(1e-6) == "10⁻⁶");
   CHECK(report::tic_label(0.0002) == "0.0002");
+  CHECK(report::tic_label(10000.0) == "10000");
   CHECK(report::labelled_tics("y", {5e-5, 1e-4}) == "set ytics ('5·10⁻⁵' 5e-05, '0.0001' 0.0001)\n");
   const std::vector<Tic> tics = tics_of(report::ValueAxis({5e-6, 1.957e-5, 7.663e-5, 3e-4}, true).script(360.0));
   REQUIRE(tics.size() == 4);
