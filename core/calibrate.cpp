@@ -187,7 +187,9 @@ std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vec
   std::size_t unrefined = 0;
   for (const BoardView* view : used) unrefined += view->corners.unrefined;
   if (unrefined > 0) {
-    notes.push_back(fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
+    notes.push_back(unrefined == 1
+                        ? "one corner could not be refined and keeps the detector's place"
+                        : fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
   }
   if (follows_badly(calibration.noise)) {
     notes.push_back(fmt::format(
