@@ -42,13 +42,13 @@ bool parse_number(std::string_view text, double& value) {
 double worth_of_last_digit(std::string_view number) {
   const std::size_t power = std::min(number.find_first_of("eE"), number.size());
   const std::size_t point = number.find('.');
-  int exponent = 0;
+  double exponent = 0.0;  // a zero may have any: "0.0e-99999999999"
   if (power < number.size()) {
     std::string_view text = number.substr(power + 1);
     if (text.starts_with('+')) text.remove_prefix(1);
     std::from_chars(text.data(), text.data() + text.size(), exponent);
   }
-  if (point < power) exponent -= static_cast<int>(power - point) - 1;
+  if (point < power) exponent -= static_cast<double>(power - point) - 1.0;
   return std::pow(10.0, exponent);
 }
 

@@ -58,6 +58,8 @@ TEST_CASE("a column knows what the last digit of its numbers is worth, the fines
   is("b", 1.0);
   is("c", 1e-4);
   is("d", 1.0);
+  write_file(temp / "t.csv", "a\n0.0e-2147483648\n0.0e-99999999999\n");  // exponents beyond any whole number
+  CHECK(read_csv(temp / "t.csv", {"a"}).last_digit_of("a") == 0.0);
 }
 
 TEST_CASE("numbers written read back as the same doubles") {
