@@ -8,6 +8,11 @@
 #include "base/csv.h"
 
 namespace glidelab::diagnose {
+namespace {
+
+constexpr double kSmallest = 1e-6, kLargest = 1e6;  // kg, m/s², 1/s: beyond all tables, and squares stay numbers
+
+}  // namespace
 
 std::vector<TableLine> read_lines(const std::filesystem::path& file) {
   const base::CsvTable table =
@@ -23,10 +28,11 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file) {
     const auto wrong = [&](const char* key, double value, const char* expected) {
       issues.push_back({file.string(), table.line[i], key, fmt::format("{}", value), expected});
     };
-    if (!(mass[i] > 0.0)) wrong("mass_kg", mass[i], "a number above 0");
+    if (!(mass[i] >= kSmallest && mass[i] <= kLargest)) wrong("mass_kg", mass[i], "a number from 1e-6 to 1e6");
     if (!(std::abs(incline[i]) < 90.0)) wrong("incline_deg", incline[i], "an angle between -90 and 90");
     if (direction[i] != 1.0 && direction[i] != -1.0) wrong("direction", direction[i], "1 or -1, the sign of v");
-    if (!(k[i] > 0.0)) wrong("k_over_m_1_s", k[i], "a number above 0");
+    if (!(std::abs(a0[i]) <= kLargest)) wrong("a0_m_s2", a0[i], "a number from -1e6 to 1e6");
+    if (!(k[i] >= kSmallest && k[i] <= kLargest)) wrong("k_over_m_1_s", k[i], "a number from 1e-6 to 1e6");
     lines.push_back({mass[i], incline[i], direction[i] > 0.0 ? 1 : -1, a0[i], k[i], table.last_digit_of("a0_m_s2"),
                      table.last_digit_of("k_over_m_1_s")});
   }

@@ -63,6 +63,24 @@ TEST_CASE("diagnose: a table of lines cannot be planned, and what is left out mu
   CHECK(without.err.find("\"nonsense\"") != std::string::npos);
 }
 
+TEST_CASE("diagnose: a table's absurd number is wrong input, with its line, and not a probability that is none") {
+  const tests::TempDir temp;
+  const auto refusal = [&](const std::string& line) {
+    std::ofstream table(temp / "lines.csv");
+    table << "mass_kg,incline_deg,direction,a0_m_s2,k_over_m_1_s\n";
+    for (const double mass : {0.2, 0.3, 0.4, 0.5, 0.6, 0.7}) table << mass << ",0,1,-0.06," << 0.9 / mass << "\n";
+    table << line << "\n";
+    table.close();
+    const tests::ProcessResult done =
+        tests::glidelab({"diagnose", temp / "lines.csv", "--no-page", "-o", temp / "out", "-q"});
+    CHECK(done.status == 1);
+    return done.err;
+  };
+  CHECK(refusal("0.3,0,-1,1e300,3").find("lines.csv:8: a0_m_s2: found 1e+300") != std::string::npos);
+  CHECK(refusal("0.3,0,-1,0.06,1e-300").find("lines.csv:8: k_over_m_1_s: found 1e-300") != std::string::npos);
+  CHECK(refusal("1e-300,0,-1,0.06,3").find("lines.csv:8: mass_kg: found 1e-300") != std::string::npos);
+}
+
 TEST_CASE("diagnose: a table of lines in no folder is diagnosed as in a folder, and another table is refused") {
   const tests::TempDir temp;
   write_table(temp.path());
