@@ -27,9 +27,8 @@ struct Grouping {
   std::string expression = "0";
   double from = 0.0, to = 0.0;  ///< of the bins
   bool binned = false, logarithmic = false, words = false;
-  bool switched = false;  ///< the words are false and true
-  bool as_written =
-      false;  ///< the words are files of which two have the same name, so that their folders tell them apart
+  bool switched = false;    ///< the words are false and true
+  bool as_written = false;  ///< the words are files, two of one name, which their folders tell apart
   /// Two SQL expressions, of what has to be answered in every group to be compared; empty where the design has no such.
   std::string combination = {};
   std::uint64_t combinations = 0;  ///< how many there are, of one configuration
