@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/local_cubic.h"
-#include "core/phase_diagram.h"
+#include "core/analysis/analyze_motion.h"
+#include "core/motion/smoothing/local_cubic.h"
 
 namespace {
 

@@ -9,10 +9,10 @@
 #include <memory>
 #include <vector>
 
-#include "render/clip_renderer.h"
-#include "render/marker_truth.h"
-#include "render/static_painter.h"
-#include "render/video_writer.h"
+#include "render/film/clip_renderer.h"
+#include "render/film/marker_truth.h"
+#include "render/paint/static_painter.h"
+#include "render/video/video_writer.h"
 
 namespace {
 

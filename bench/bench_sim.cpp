@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "sim/force_terms.h"
-#include "sim/simulate.h"
+#include "sim/force/force_terms.h"
+#include "sim/motion/simulate.h"
 
 namespace {
 

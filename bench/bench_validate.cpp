@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "diagnose/trajectory_results.h"
-#include "render/clip_set.h"
-#include "validate/coverage.h"
-#include "validate/film_studio.h"
-#include "validate/made_tracks.h"
-#include "validate/sweep_run.h"
+#include "fit/trajectory/trajectory_results.h"
+#include "render/film/clip_set.h"
+#include "validate/film/film_studio.h"
+#include "validate/study/coverage/interval_coverage.h"
+#include "validate/study/sweep/sweep_run.h"
+#include "validate/tracks/made_tracks.h"
 
 namespace {
 
@@ -55,7 +55,7 @@ void trajectory_fit_of_twelve_clips(benchmark::State& state) {
     for (const core::TrackData& track : made.noisy.tracks) points += track.x_m.size();
   }
   for (auto _ : state) {
-    for (const Made& made : paper()) benchmark::DoNotOptimize(diagnose::with_trajectory_fits(made.lines));
+    for (const Made& made : paper()) benchmark::DoNotOptimize(fit::with_trajectory_fits(made.lines));
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * static_cast<std::int64_t>(points));
 }
@@ -187,7 +187,7 @@ void clips_through_the_whole_chain(benchmark::State& state) {
     base::for_each_parallel(studios.size(), 2, [&](std::size_t i) {
       const validate::MadeTracks made =
           studios[i] ? studios[i]->film(scenario, seed + i, 1) : validate::film_tracks(scenario, seed + i, 1);
-      benchmark::DoNotOptimize(diagnose::with_trajectory_fits(validate::analyze_tracks(made, core::MotionOptions{})));
+      benchmark::DoNotOptimize(fit::with_trajectory_fits(validate::analyze_tracks(made, core::MotionOptions{})));
       clips += std::ssize(made.tracks);
     });
     seed += studios.size();

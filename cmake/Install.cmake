@@ -25,7 +25,7 @@ install(FILES README.md CHANGELOG.md CONVENTIONS.md DESTINATION ${CMAKE_INSTALL_
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/glidelab)
-foreach(room base sim core render diagnose validate report)
+foreach(room base sim core render fit diagnose validate report teach)
   set_target_properties(glidelab_${room} PROPERTIES EXPORT_NAME ${room})
   install(TARGETS glidelab_${room} EXPORT glidelab ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/glidelab)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glidelab FILES_MATCHING PATTERN "*.h")

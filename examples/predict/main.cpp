@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "core/phase_diagram.h"
-#include "sim/force_terms.h"
-#include "sim/simulate.h"
+#include "core/analysis/analyze_motion.h"
+#include "sim/force/force_terms.h"
+#include "sim/motion/simulate.h"
 
 int main() {
   using namespace glidelab;

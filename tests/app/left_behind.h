@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "run_process.h"
+#include "tests/app/run_process.h"
 
 namespace glidelab::tests {
 

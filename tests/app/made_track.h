@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "base/csv.h"
-#include "base/staged_output.h"
+#include "base/files/staged_output.h"
+#include "base/text/csv.h"
 
 namespace glidelab::tests {
 

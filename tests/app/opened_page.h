@@ -9,8 +9,8 @@
 #include <regex>
 #include <string>
 
-#include "base/staged_output.h"
-#include "run_process.h"
+#include "base/files/staged_output.h"
+#include "tests/app/run_process.h"
 
 namespace glidelab::tests {
 

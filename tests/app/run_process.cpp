@@ -1,4 +1,4 @@
-#include "run_process.h"
+#include "tests/app/run_process.h"
 
 #include <fcntl.h>
 #include <grp.h>
@@ -8,7 +8,7 @@
 
 #include <stdexcept>
 
-#include "base/staged_output.h"
+#include "base/files/staged_output.h"
 #include "test_paths.h"
 
 namespace glidelab::tests {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/temporary_folder.h"
+#include "base/files/temporary_folder.h"
 
 namespace glidelab::tests {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "base/staged_output.h"
-#include "catch.h"
-#include "run_process.h"
-#include "temp_dir.h"
+#include "base/files/staged_output.h"
 #include "test_paths.h"
+#include "tests/app/run_process.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
 
 using namespace glidelab;
 namespace fs = std::filesystem;
@@ -30,14 +30,17 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"core", {"base"}},
     {"sim", {"base"}},
     {"render", {"base", "sim"}},
-    {"diagnose", {"base", "core", "sim"}},
-    {"validate", {"base", "core", "sim", "render", "diagnose"}},
+    {"fit", {"base", "core", "sim"}},
+    {"diagnose", {"base", "core", "fit"}},
+    {"validate", {"base", "core", "sim", "render", "fit", "diagnose"}},
+    {"teach", {"base", "sim", "render", "report"}},
     {"report",
-     {"base", "core/results.h", "core/preview.h", "core/camera_measurement.h", "core/recording_check.h",
-      "validate/comparison.h", "validate/sweep_summary.h", "validate/requirement.h", "validate/law_study.h",
-      "validate/law_film.h", "validate/coverage.h", "validate/blind_score.h", "validate/phase_explorer.h",
-      "diagnose/diagnosis.h", "validate/twin_motions.h", "diagnose/plan.h"}},  // the result types
-    {"app", {"base", "core", "sim", "render", "diagnose", "validate", "report"}},
+     {"base", "core/result/results.h", "core/analysis/preview.h", "core/characterize/camera_measurement.h",
+      "core/check/recording_check.h", "validate/truth/comparison.h", "validate/study/sweep/sweep_summary.h",
+      "validate/study/requirement/requirement.h", "validate/study/coverage/interval_coverage.h",
+      "validate/blind/blind_score.h", "diagnose/result/diagnosis.h", "validate/film/twin_motions.h",
+      "diagnose/next/plan.h"}},  // the result types
+    {"app", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
 };
 
 /// C libraries that live behind one file (a header and its source) each, by how their headers start.
@@ -171,13 +174,13 @@ TEST_CASE("an include that the table does not allow is found") {
   const auto one = [](const char* path, const char* text) { return violations({{path, text}}); };
   CHECK(one("core/a.cpp", "#include \"sim/simulate.h\"\n") ==
         std::vector<std::string>{"core/a.cpp includes sim/simulate.h"});
-  CHECK(one("core/a.cpp", "  #  include <render/scenario.h>\n").size() == 1);
+  CHECK(one("core/a.cpp", "  #  include <render/scenario/scenario.h>\n").size() == 1);
   CHECK(one("render/a.h", "#include \"core/results.h\"\n").size() == 1);
-  CHECK(one("report/a.h", "#include \"core/analyze.h\"\n").size() == 1);
-  CHECK(one("sim/a.h", "#include \"../core/results.h\"\n").size() == 1);
+  CHECK(one("report/a.h", "#include \"core/analysis/analyze.h\"\n").size() == 1);
+  CHECK(one("sim/a.h", "#include \"../core/result/results.h\"\n").size() == 1);
   CHECK(one("base/a.h", "#include \"core/results.h\"\n").size() == 1);
   CHECK(one("core/a.cpp", "#include \"tests/made_results.h\"\n").size() == 1);
-  CHECK(one("report/a.h", "#include \"core/results.h\"\n#include <vector>\n").empty());
+  CHECK(one("report/a.h", "#include \"core/result/results.h\"\n#include <vector>\n").empty());
   CHECK(one("validate/a.h", "#include \"render/scenario.h\"\n").empty());
   CHECK(one("core/a.cpp", "// no #include of \"sim/simulate.h\" here\n").empty());
 }

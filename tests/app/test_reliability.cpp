@@ -7,14 +7,14 @@
 #include <random>
 #include <thread>
 
-#include "base/staged_output.h"
-#include "catch.h"
-#include "left_behind.h"
-#include "made_track.h"
-#include "run_process.h"
-#include "temp_dir.h"
+#include "base/files/staged_output.h"
 #include "test_paths.h"
-#include "tiny_scenario.h"
+#include "tests/app/left_behind.h"
+#include "tests/app/made_track.h"
+#include "tests/app/run_process.h"
+#include "tests/app/tiny_scenario.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
 
 using namespace glidelab;
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "base/staged_output.h"
-#include "one_glider.h"
+#include "base/files/staged_output.h"
+#include "tests/one_glider.h"
 
 namespace glidelab::tests {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-#include "catch.h"
+#include "tests/catch.h"
 
 using namespace glidelab::base;
 

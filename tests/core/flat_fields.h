@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/staged_output.h"
+#include "base/files/staged_output.h"
 
 namespace glidelab::tests {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/chessboard.h"
+#include "core/pictures/board/chessboard.h"
 
 namespace glidelab::tests {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "catch.h"
-#include "core/analyze.h"
-#include "temp_dir.h"
+#include "core/analysis/analyze.h"
 #include "test_paths.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
 
 namespace glidelab::tests {
 

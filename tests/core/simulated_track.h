@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "core/experiment.h"
-#include "core/track_data.h"
+#include "core/experiment/experiment.h"
+#include "core/track/track_data.h"
 
 namespace glidelab::tests {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "painter.h"
+#include "tests/core/painter.h"
 
 namespace glidelab::tests {
 

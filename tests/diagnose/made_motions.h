@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/experiment.h"
-#include "core/phase_diagram.h"
-#include "core/results.h"
-#include "core/track_data.h"
+#include "core/analysis/analyze_motion.h"
+#include "core/experiment/experiment.h"
+#include "core/result/results.h"
+#include "core/track/track_data.h"
 
 namespace glidelab::tests {
 

@@ -1,7 +1,7 @@
 /// The stored errors of an analysis (validate --baseline), compared with themselves once read.
-#include "validate/baseline.h"
+#include "validate/study/baseline/baseline.h"
 
-#include "target.h"
+#include "tests/fuzz/target.h"
 
 using namespace glidelab;
 

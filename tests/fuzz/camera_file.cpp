@@ -1,9 +1,9 @@
 /// A camera of the catalogue, taken over by a scenario that states nothing of its own camera.
-#include "render/camera_file.h"
+#include "render/scenario/camera_catalogue.h"
 
-#include "one_glider.h"
-#include "render/scenario.h"
-#include "target.h"
+#include "render/scenario/scenario.h"
+#include "tests/fuzz/target.h"
+#include "tests/one_glider.h"
 
 using namespace glidelab;
 

@@ -1,6 +1,6 @@
 /// experiment.toml, in a folder in which the files of the seeds exist.
-#include "core/experiment.h"
-#include "target.h"
+#include "core/experiment/experiment.h"
+#include "tests/fuzz/target.h"
 
 using namespace glidelab;
 

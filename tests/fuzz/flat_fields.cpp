@@ -1,6 +1,6 @@
 /// characterize.toml, in a folder with the least sets of frames.
-#include "core/flat_field_folder.h"
-#include "target.h"
+#include "core/characterize/flat_field_folder.h"
+#include "tests/fuzz/target.h"
 
 using namespace glidelab;
 

@@ -1,8 +1,8 @@
 /// The motions of a scenario without a solver: forces, configurations, clips. Quick, and so run far more often than
 /// the whole scenario.
-#include "base/strict_toml.h"
-#include "sim/scenario.h"
-#include "target.h"
+#include "base/toml/strict_toml.h"
+#include "sim/motion/motion_scenario.h"
+#include "tests/fuzz/target.h"
 
 using namespace glidelab;
 

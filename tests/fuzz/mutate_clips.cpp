@@ -21,11 +21,11 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/staged_output.h"
-#include "base/temporary_folder.h"
-#include "core/analyze.h"
-#include "damage.h"
-#include "one_glider.h"
+#include "base/files/staged_output.h"
+#include "base/files/temporary_folder.h"
+#include "core/analysis/analyze.h"
+#include "tests/fuzz/damage.h"
+#include "tests/one_glider.h"
 
 using namespace glidelab;
 namespace fs = std::filesystem;

@@ -1,9 +1,9 @@
 /// sweep.toml beside a small scenario and a camera. A sweep whose scenario cannot be solved is refused by
 /// NumericalError.
-#include "validate/sweep.h"
+#include "validate/study/sweep/design/sweep.h"
 
-#include "one_glider.h"
-#include "target.h"
+#include "tests/fuzz/target.h"
+#include "tests/one_glider.h"
 
 using namespace glidelab;
 

@@ -1,7 +1,7 @@
 /// truth.json with the trajectory that the seed names.
-#include "validate/truth.h"
+#include "validate/truth/truth_folder.h"
 
-#include "target.h"
+#include "tests/fuzz/target.h"
 
 using namespace glidelab;
 

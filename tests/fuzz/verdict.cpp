@@ -1,7 +1,7 @@
 /// A diagnosis.json, as a blind study reads what another process has written.
-#include "validate/blind_score.h"
+#include "validate/blind/blind_score.h"
 
-#include "target.h"
+#include "tests/fuzz/target.h"
 
 using namespace glidelab;
 

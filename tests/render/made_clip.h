@@ -5,11 +5,11 @@
 #include <memory>
 #include <string>
 
-#include "base/staged_output.h"
-#include "render/clip_renderer.h"
-#include "render/marker_truth.h"
-#include "render/static_painter.h"
-#include "temp_dir.h"
+#include "base/files/staged_output.h"
+#include "render/film/clip_renderer.h"
+#include "render/film/marker_truth.h"
+#include "render/paint/static_painter.h"
+#include "tests/temp_dir.h"
 
 namespace glidelab::render::tests {
 

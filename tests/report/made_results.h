@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/results.h"
+#include "core/result/results.h"
 
 namespace glidelab::tests {
 

@@ -1,13 +1,13 @@
 /// The pages of require, coverage and laws: units, digits and names as a reader meets them.
 #include <algorithm>
 
-#include "catch.h"
-#include "report/coverage_report.h"
-#include "report/html.h"
-#include "report/laws_report.h"
-#include "report/plan_report.h"
-#include "report/requirement_plot.h"
-#include "report/requirement_report.h"
+#include "report/coverage/coverage_report.h"
+#include "report/diagnosis/plan_report.h"
+#include "report/html/html.h"
+#include "report/requirement/requirement_plot.h"
+#include "report/requirement/requirement_report.h"
+#include "teach/page/laws_report.h"
+#include "tests/catch.h"
 
 using namespace glidelab;
 
@@ -137,15 +137,15 @@ TEST_CASE("coverage names what scatters farther than it states, and the naive li
 }
 
 TEST_CASE("the films of laws have every motion's name as text, which steers nothing") {
-  validate::LawStudy study;
+  teach::LawStudy study;
   study.name = "viscous";
   study.curves = {{"level", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0}}, {0}}};
   study.motions = {{"</script><b>up", "level", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
-  validate::LawFilm film;
+  teach::LawFilm film;
   film.mp4 = "film";
   film.frames = 26;
   film.frame_rate_hz = 25.0;
-  const std::string page = report::laws_report({study}, {film}).html;
+  const std::string page = teach::laws_report({study}, {film}).html;
   CHECK(has(page, "&lt;/script&gt;&lt;b&gt;up</li>"));
   CHECK_FALSE(has(page, "</script><b>up"));
   CHECK(has(page, "src=\"data:video/mp4;base64,ZmlsbQ==\""));
@@ -154,13 +154,13 @@ TEST_CASE("the films of laws have every motion's name as text, which steers noth
 }
 
 TEST_CASE("the page of laws tells coming to rest from tending to it, and marks what is unstable as such") {
-  validate::LawStudy study;
+  teach::LawStudy study;
   study.name = "three";
   study.curves = {{"viscous", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0, true, false}}, {}},
                   {"coulomb", 0.0, {}, {}, {0.0, 1.0}, {-0.1, -0.1}, {{0.0, true, true}}, {}},
                   {"stribeck", 2.0, {}, {}, {0.0, 1.0}, {-0.2, -0.1}, {{0.1805, false}, {0.4874, true}}, {}}};
   study.motions = {{"down", "viscous", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
-  const report::Page page = report::laws_report({study}, {validate::LawFilm{}});
+  const report::Page page = teach::laws_report({study}, {teach::LawFilm{}});
   CHECK(has(page.html,
             "viscous (0°): tends to rest; coulomb (0°): comes to rest; "
             "stribeck (2°): unstable at 0.1805\u00a0m/s, tends to v<sub>lim</sub> = 0.4874\u00a0m/s"));

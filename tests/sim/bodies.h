@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "sim/force_terms.h"
-#include "sim/simulate.h"
+#include "sim/force/force_terms.h"
+#include "sim/motion/simulate.h"
 
 namespace glidelab::tests {
 

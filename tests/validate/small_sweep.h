@@ -5,10 +5,10 @@
 #include <string>
 
 #include "base/errors.h"
-#include "base/staged_output.h"
-#include "one_glider.h"
-#include "temp_dir.h"
-#include "validate/sweep.h"
+#include "base/files/staged_output.h"
+#include "tests/one_glider.h"
+#include "tests/temp_dir.h"
+#include "validate/study/sweep/design/sweep.h"
 
 namespace glidelab::tests {
 

@@ -1,21 +1,21 @@
-#include "report/explorer_page.h"
+#include "teach/page/explorer_page.h"
 
 #include <fmt/format.h>
 
-#include "catch.h"
-#include "validate/phase_explorer.h"
+#include "teach/study/phase_explorer.h"
+#include "tests/catch.h"
 
 using namespace glidelab;
 
 TEST_CASE("the explorer's sliders end where its motions were checked") {
-  const std::string html = report::explorer_page(validate::PhaseExplorer{}).html;
+  const std::string html = teach::explorer_page(teach::PhaseExplorer{}).html;
   const auto holds = [&](const char* id, double low, double high) {
     INFO(id);
     CHECK(html.find(fmt::format("id=\"{}\" min=\"{}\" max=\"{}\"", id, low, high)) != std::string::npos);
   };
-  holds("k", 0.0, validate::kDragRange.high);  // below its range's low end: no drag
-  holds("mu", validate::kMuRange.low, validate::kMuRange.high);
-  holds("alpha", validate::kInclineRange.low, validate::kInclineRange.high);
-  holds("v0", validate::kStartRange.low, validate::kStartRange.high);
-  holds("t", 0.0, validate::kExplorerTime);
+  holds("k", 0.0, teach::kDragRange.high);  // below its range's low end: no drag
+  holds("mu", teach::kMuRange.low, teach::kMuRange.high);
+  holds("alpha", teach::kInclineRange.low, teach::kInclineRange.high);
+  holds("v0", teach::kStartRange.low, teach::kStartRange.high);
+  holds("t", 0.0, teach::kExplorerTime);
 }

@@ -1,0 +1,23 @@
+/// What `analyze` and `validate` both write and show of an analysis.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "base/progress.h"
+#include "core/analysis/preview.h"
+#include "core/experiment/bare_track.h"
+#include "core/result/results.h"
+
+namespace glidelab::app {
+
+/// results.json, phase-<clip>.csv and motion-<clip>.csv.
+void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir);
+
+/// One preview for each clip of the results, which come from these folders in this order. The first two clips with
+/// pictures get a video, the others one frame.
+std::vector<core::Preview> previews_of(const std::vector<std::filesystem::path>& folders,
+                                       const core::AnalysisResults& results, const base::Progress& progress,
+                                       const core::BareTrackOptions& bare = {});
+
+}  // namespace glidelab::app

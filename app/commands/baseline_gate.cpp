@@ -1,0 +1,119 @@
+#include "app/commands/baseline_gate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/shell/interrupt.h"
+#include "app/shell/progress_display.h"
+#include "base/errors.h"
+#include "base/files/staged_output.h"
+#include "base/text/number_text.h"
+#include "render/scenario/scenario.h"
+#include "report/analysis/text_table.h"
+#include "validate/study/baseline/baseline.h"
+#include "validate/study/baseline/baseline_power.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string table(const validate::Baseline& baseline) {
+  std::vector<std::vector<std::string>> rows = {
+      {"configuration", "estimator", "quantity", "answers", "mean error", "sd of errors", "covered", "efficiency"}};
+  for (const validate::ErrorRecord& record : baseline.records) {
+    rows.push_back({record.configuration, record.estimator, record.quantity,
+                    fmt::format("{} / {}", record.answers, record.runs), base::number_text(record.mean, 3),
+                    base::number_text(record.sd, 3), fmt::format("{} / {}", record.covered, record.answers),
+                    record.efficiency > 0.0 ? base::number_text(record.efficiency, 2) : "–"});
+  }
+  return report::text_table(rows, 3);
+}
+
+/// What would have to become worse to be found, and where that is much.
+void say_power(const CommonOptions& common, const validate::Baseline& then, const validate::Baseline& now,
+               const validate::BaselineComparison& comparison) {
+  std::vector<std::vector<std::string>> rows = {
+      {"configuration", "estimator", "quantity", "errors times", "or mean farther off by"}};
+  std::size_t weak = 0;
+  std::uint64_t runs = 0;
+  for (const validate::Detectable& of : validate::detectable(then, now, comparison)) {
+    rows.push_back({of.configuration, of.estimator, of.quantity,
+                    of.factor ? base::number_text(*of.factor, 3) : "none is found",
+                    of.bias ? base::number_text(*of.bias, 2) : "–"});
+    if (!of.weak()) continue;
+    ++weak;
+    runs = std::max(runs, of.runs_for_weak);
+  }
+  say(common, fmt::format("the smallest worsening that is found with probability {}:\n{}", validate::kFound,
+                          report::text_table(rows, 3)));
+  if (weak == 0) return;
+  say(common, fmt::format("warning: a weak gate: of {} of {} quantities it finds with probability {} only what is more "
+                          "than {} times as large; about {} runs would do, of the baseline and now (--runs)",
+                          weak, rows.size() - 1, validate::kFound, validate::kWeak, runs));
+}
+
+}  // namespace
+
+void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file) {
+  if (!gate.write.empty()) {
+    check_file_writable(gate.write);
+    check_own_file(gate.write, "--write-baseline", "{");
+    std::error_code error;  // of a file that is not there
+    if (!gate.compare.empty() && fs::equivalent(gate.compare, gate.write, error)) {
+      throw base::InputError(base::Issue{gate.write, 0, "--write-baseline", "the file of --baseline",
+                                         "another one: what is compared with is kept"});
+    }
+  }
+  const std::string text = base::read_file(scenario_file);
+  const render::Scenario scenario = render::read_scenario(text, scenario_file, render::ScenarioChecks::values);
+  std::optional<validate::Baseline> then;
+  if (!gate.compare.empty()) then = validate::read_baseline(gate.compare);
+  if (then && then->scenario != text) {
+    throw base::InputError(base::Issue{gate.compare, 0, "scenario", "the text of another scenario",
+                                       fmt::format("that of {}, as when the baseline was written", scenario_file)});
+  }
+  if (then && gate.noise_m && *gate.noise_m != then->noise_m) {
+    throw base::InputError(
+        base::Issue{gate.compare, 0, "--noise-m", fmt::format("{}", *gate.noise_m),
+                    fmt::format("{}, with which the baseline was made, or the option left out", then->noise_m)});
+  }
+  if (then && then->seed && common.seed == then->seed) {
+    throw base::InputError(base::Issue{
+        gate.compare, 0, "--seed", fmt::format("{}, with which the baseline was made", *then->seed),
+        "another one, or the option left out: with the same noise an unchanged analysis would prove nothing"});
+  }
+  validate::BaselineOptions options;
+  options.noise_m = then ? then->noise_m : gate.noise_m.value_or(options.noise_m);
+  options.runs = gate.runs;
+  options.seed = common.seed.value_or(then ? validate::other_seed(*then) : options.seed);
+  options.jobs = common.jobs;
+  ProgressDisplay display(common.quiet, common.verbose);
+  const validate::Baseline now =
+      validate::measure_baseline(scenario, text, options, validate::analyze_both, display.callback());
+  display.clear();
+  throw_if_interrupted();
+  print_result(common.json ? validate::baseline_json(now) : table(now));
+  if (!gate.write.empty()) write_whole(gate.write, validate::baseline_json(now));
+  if (!then) return;
+  const validate::BaselineComparison comparison = validate::compare_baselines(*then, now);
+  say(common,
+      fmt::format("{} tests at {} together; errors 1.5 times as large are found with probability {:.2f}, a bias "
+                  "of half a standard deviation with {:.2f}, a doubled bandwidth with {:.2f}",
+                  comparison.tests, comparison.significance, comparison.power_spread, comparison.power_bias,
+                  comparison.power_doubled));
+  say_power(common, *then, now, comparison);
+  if (comparison.worse.empty()) {
+    say(common, "nothing is worse than the baseline");
+    return;
+  }
+  std::string what;
+  for (const validate::Worse& worse : comparison.worse) {
+    what += fmt::format("{} {} {}: {} was {}, is {} (p {:.1g})\n", worse.configuration, worse.estimator, worse.quantity,
+                        worse.what, base::number_text(worse.then, 3), base::number_text(worse.now, 3), worse.p);
+  }
+  throw base::NotMet(fmt::format("worse than {}:\n{}", gate.compare, what));
+}
+
+}  // namespace glidelab::app

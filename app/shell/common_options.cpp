@@ -1,0 +1,181 @@
+#include "app/shell/common_options.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/files/made_files.h"
+#include "base/files/staged_output.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostJobs = 1024;
+
+int number_of_cores() {
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, static_cast<unsigned>(kMostJobs)));
+}
+
+bool holds_files(const fs::path& folder) {
+  return fs::is_directory(folder) && !fs::is_empty(folder);
+}
+
+/// "scenarios/level.toml" gives "level", "data/run-1/" gives "run-1", "." the name of the working folder.
+std::string name_of(const fs::path& input) {
+  const fs::path whole = fs::absolute(input).lexically_normal();
+  const fs::path last = whole.has_filename() ? whole : whole.parent_path();
+  return (last.extension() == ".toml" ? last.stem() : last.filename()).string();
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& command, CommonOptions& options, const std::string& default_out,
+                        const std::string& seed_help) {
+  options.jobs = number_of_cores();
+  command.set_help_flag("-h,--help", "Show this help");
+  command.add_option("-o,--out", options.out, "Folder for the results; default: " + default_out)
+      ->type_name("DIR")
+      ->check([](const std::string& text) {
+        if (text.empty()) return std::string("the name is empty");
+        return text.front() == '-' ? fmt::format("found \"{}\", expected the name of a folder", text) : std::string();
+      });
+  command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_whole_number);
+  command
+      .add_option("--jobs", options.jobs,
+                  fmt::format("Threads to use; default: the number of cores ({})", options.jobs))
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostJobs));
+  command.add_flag("--json", options.json, "Print the result on standard output as one JSON object");
+  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet, "No progress and no messages but errors");
+  command.add_flag("-v,--verbose", options.verbose, "Say how long each stage took")->excludes(quiet);
+}
+
+fs::path named_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
+  const fs::path wanted = options.out.empty() ? fs::path("glidelab-out") / fmt::format("{}-{}", command, name_of(input))
+                                              : fs::path(options.out);
+  std::error_code error;  // what cannot be resolved (a file in the way) shows where the folder is made
+  const fs::path resolved = fs::weakly_canonical(fs::absolute(wanted), error);
+  const fs::path folder = error ? fs::absolute(wanted).lexically_normal() : resolved;
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+fs::path output_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
+  const fs::path folder = named_folder(options, command, input);
+  for (const char* const recording : {"experiment.toml", "characterize.toml"}) {
+    std::error_code ignored;  // what cannot be looked into shows where the folder is written
+    if (!fs::exists(folder / recording, ignored)) continue;
+    throw CommandLineError(base::describe({folder.string(), 0, "--out", fmt::format("a recording ({})", recording),
+                                           "another folder, or a new one inside it"}));
+  }
+  return folder;
+}
+
+fs::path truth_beside(const fs::path& experiment) {
+  return experiment.parent_path() / (experiment.filename().string() + ".truth");
+}
+
+void check_replaceable(const fs::path& experiment, const fs::path& truth) {
+  for (const fs::path& folder : {experiment, truth}) {
+    if (!holds_files(folder)) continue;
+    const bool made = fs::exists(folder / base::kMadeList);
+    const std::vector<base::OwnFile> own = base::own_files(folder);
+    if (made && own.empty()) continue;
+    constexpr std::size_t kMost = 4;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(own.size(), kMost); ++i) {
+      names += fmt::format("{}{}{}", i == 0 ? "" : ", ", own[i].name.string(), own[i].changed ? " (changed)" : "");
+    }
+    if (own.size() > kMost) names += fmt::format(" and {} more", own.size() - kMost);
+    throw base::InputError(
+        base::Issue{folder.string(), 0, "--out",
+                    "a folder with files that render did not make, or that were changed since: " + names,
+                    "a new folder, an empty one, or one that holds only what render made; nothing was touched"});
+  }
+}
+
+void check_own_file(const fs::path& file, const std::string& option, std::string_view head) {
+  if (!fs::exists(file) || fs::is_empty(file) || base::read_file(file).starts_with(head)) return;
+  throw base::InputError(base::Issue{file.string(), 0, option, "a file that this option did not write",
+                                     "a new name, or what it wrote before"});
+}
+
+void check_writable(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder, error) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    base::throw_system_error(folder.string(), "output folder cannot be written", errno);
+  }
+  struct stat own = {};
+  struct stat parent = {};
+  if (::stat(folder.c_str(), &own) == 0 && ::stat(folder.parent_path().c_str(), &parent) == 0 &&
+      own.st_dev != parent.st_dev) {
+    throw base::EnvironmentError(fmt::format(
+        "{}: is a file system of its own, where results cannot be put in place at once; give a folder inside it",
+        folder.string()));
+  }
+}
+
+void check_file_writable(const fs::path& file) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  std::error_code error;
+  if (fs::is_directory(file, error)) base::throw_system_error(file.string(), "cannot be written", EISDIR);
+  if (!fs::is_directory(folder, error)) {
+    base::throw_system_error(file.string(), "cannot be written", fs::exists(folder, error) ? ENOTDIR : ENOENT);
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) base::throw_system_error(file.string(), "cannot be written", errno);
+}
+
+std::string check_whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return {};
+  return fmt::format("\"{}\" is not a whole number from 0 to {}", text, std::numeric_limits<std::uint64_t>::max());
+}
+
+void write_whole(const fs::path& file, std::string_view text) {
+  const fs::path part = file.string() + ".part";
+  try {
+    base::write_file(part, text);
+    fs::rename(part, file);
+  } catch (...) {
+    std::error_code ignored;  // what is wrong with the file is what is said
+    fs::remove(part, ignored);
+    throw;
+  }
+}
+
+std::string check_above_0(const std::string& text) {
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
+  return fmt::format("\"{}\" is no number above 0", text);
+}
+
+std::string check_noise_m(const std::string& text) {
+  constexpr double kLeast_m = 1e-9, kMost_m = 1.0;
+  double value = 0.0;
+  if (CLI::detail::lexical_cast(text, value) && value >= kLeast_m && value <= kMost_m) return {};  // NaN is neither
+  return fmt::format("\"{}\" is no number of metres from {} to {}", text, kLeast_m, kMost_m);
+}
+
+void print_result(std::string_view text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0) base::throw_system_error("standard output", "cannot be written", errno);
+}
+
+void say(const CommonOptions& options, std::string_view line) {
+  if (!options.quiet) fmt::print(stderr, "{}\n", line);
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,103 @@
+#include "base/text/number_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace glidelab::base {
+namespace {
+
+constexpr int kMostDecimals = 9;  // beyond that a power of ten reads better
+constexpr int kLeastPlainPower = -7, kMostPlainPower = 5;
+
+/// Decimals that show two significant digits of `sd` (after rounding: 0.0996 becomes 0.10).
+int decimals_of(double sd) {
+  const int exponent = static_cast<int>(std::floor(std::log10(sd * (1.0 + 0.5e-2))));
+  return std::max(0, 1 - exponent);
+}
+
+bool usable(double sd) {
+  return std::isfinite(sd) && sd > 0.0 && decimals_of(sd) <= kMostDecimals;
+}
+
+/// "4.1e+02" as 410, "1.80e-05" as 0.0000180, as far as these are short.
+std::string plain(const std::string& text) {
+  const std::size_t power = text.find('e');
+  if (power == std::string::npos) return text;
+  const int exponent = std::stoi(text.substr(power + 1));
+  if (exponent < kLeastPlainPower || exponent > kMostPlainPower) return text;
+  // What stands before the power of ten, moved to its place: 4.1e+02 becomes 410, 1.8e-05 becomes 0.000018.
+  const std::size_t point = text.find('.');
+  const int behind_point = point < power ? static_cast<int>(power - point) - 1 : 0;
+  return fmt::format("{:.{}f}", std::stod(text), std::max(0, behind_point - exponent));
+}
+
+}  // namespace
+
+std::string number_text(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  return value == 0.0 ? "0" : plain(fmt::format("{:.{}g}", value, digits));
+}
+
+std::string digits_text(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0.0) return "0";
+  const std::string text = fmt::format("{:.{}e}", value, digits - 1);  // rounded: 9.996 has its power of ten from here
+  const int exponent = std::stoi(text.substr(text.find('e') + 1));
+  if (exponent < kLeastPlainPower || exponent > kMostPlainPower) return text;
+  return fmt::format("{:.{}f}", std::stod(text), std::max(0, digits - 1 - exponent));
+}
+
+std::string value_text(double value, double sd) {
+  if (!std::isfinite(value) || !usable(sd)) return number_text(value, 6);
+  return fmt::format("{:.{}f}", value, decimals_of(sd));
+}
+
+std::string sd_text(double sd) {
+  if (!usable(sd)) return number_text(sd, 2);
+  return fmt::format("{:.{}f}", sd, decimals_of(sd));
+}
+
+std::string value_and_sd_text(double value, double sd) {
+  return fmt::format("{} ± {}", value_text(value, sd), sd_text(sd));
+}
+
+std::string error_text(double error, double sd) {
+  if (!std::isfinite(error)) return number_text(error);
+  if (!usable(sd)) return fmt::format("{:+.3g}", error);
+  const std::string text = fmt::format("{:+.{}f}", error, decimals_of(sd));
+  return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
+}
+
+std::string with_raised_power(const std::string& number) {
+  const std::size_t power = number.find('e');
+  if (power == std::string::npos) return number;
+  constexpr std::array<const char*, 10> kRaised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string raised;
+  for (const char digit : std::to_string(std::stoi(number.substr(power + 1)))) {
+    raised += digit == '-' ? "⁻" : kRaised[static_cast<std::size_t>(digit - '0')];
+  }
+  return number.substr(0, power) + "·10" + raised;
+}
+
+std::string gain_text(double gain) {
+  constexpr double kDecimalsBelow = 1e3, kDigitsBelow = 1e6;
+  if (!std::isfinite(gain)) return number_text(gain);
+  if (std::abs(gain) < kDecimalsBelow) return fmt::format("{:+.1f}", gain);
+  if (std::abs(gain) < kDigitsBelow) return fmt::format("{:+.0f}", gain);
+  return with_raised_power(fmt::format("{:+.3e}", gain));
+}
+
+std::string r2_text(double r2) {
+  if (!std::isfinite(r2)) return "–";
+  // Never rounded up to 1: 0.99999996 keeps its digits.
+  for (int decimals = 5; decimals < kMostDecimals; ++decimals) {
+    std::string text = fmt::format("{:.{}f}", r2, decimals);
+    if (r2 >= 1.0 || !text.starts_with("1.")) return text;
+  }
+  return fmt::format("{:.{}f}", r2, kMostDecimals);
+}
+
+}  // namespace glidelab::base

@@ -1,0 +1,68 @@
+/// What lies behind a TomlFile and its TomlTables: the parsed document, and of each table that was handed out which
+/// keys were asked for; and the parse of its text. Private to base/: strict_toml.cpp, toml_table.cpp and toml_set.cpp
+/// include it.
+#pragma once
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/toml/strict_toml.h"
+
+namespace glidelab::base {
+
+struct TomlFile::Document {
+  std::string name;
+  toml::table tree;
+  std::vector<Issue> issues;
+  std::vector<std::shared_ptr<TomlTable::Node>> nodes;  // every table that was handed out
+};
+
+struct TomlTable::Node {
+  TomlFile::Document* document;  // nodes live in the document, so this never dangles
+  const toml::table* table;      // null: a table that was required and is missing
+  std::string prefix;            // "camera." or "clip[2]."
+  int line;
+  std::set<std::string, std::less<>> known;
+  std::set<std::string, std::less<>> ignored;
+  std::map<std::string, std::shared_ptr<Node>, std::less<>> children;
+  std::set<std::string, std::less<>> unread = {};  // keys whose value is not what was asked for
+
+  const toml::node* find(std::string_view key) {
+    known.emplace(key);
+    return table == nullptr ? nullptr : table->get(key);
+  }
+  /// `at`: what is wrong, or nothing where it is the table itself.
+  void reject(std::string_view key, const toml::node* at, std::string found, std::string expected);
+  /// The value cannot be read.
+  void reject(std::string_view key, const toml::node* found, std::string expected);
+};
+
+/// InputError, in the file `shown_as`, where the text is no TOML.
+inline toml::table parsed_toml(std::string_view text, const std::string& shown_as) {
+  try {
+    return toml::parse(text, shown_as);
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw InputError(Issue{shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
+                           fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
+  }
+}
+
+/// The file that a value comes from.
+inline std::string file_of(const toml::node& node, const std::string& otherwise) {
+  return node.source().path ? *node.source().path : otherwise;
+}
+
+inline int line_of(const toml::node& node) {
+  return static_cast<int>(node.source().begin.line);
+}
+
+}  // namespace glidelab::base

@@ -1,0 +1,111 @@
+#include "core/analysis/analyze.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <set>
+
+#include "base/errors.h"
+#include "base/parallel.h"
+#include "core/analysis/analyze_motion.h"
+#include "core/analysis/clip_to_track.h"
+#include "core/experiment/require_clips.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
+
+namespace glidelab::core {
+namespace {
+
+std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folders, const BareTrackOptions& bare) {
+  if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
+  std::vector<Experiment> experiments;
+  std::set<std::filesystem::path> seen;
+  for (const auto& folder : folders) {
+    const auto file = is_bare_track(folder) ? folder : folder / "experiment.toml";
+    if (!seen.insert(std::filesystem::weakly_canonical(file)).second) {
+      throw base::InputError(base::Issue{folder.string(), 0, "", "the folder a second time", "each folder once"});
+    }
+    experiments.push_back(read_input(folder, bare));
+    const Experiment& read = experiments.back();
+    require_clips(read);
+    if (read.gravity_m_s2 != experiments.front().gravity_m_s2) {
+      throw base::InputError(
+          base::Issue{read.file.string(), 0, "gravity_m_s2", fmt::format("{}", read.gravity_m_s2),
+                      fmt::format("{} as in {}: folders analysed together share the track",
+                                  experiments.front().gravity_m_s2, experiments.front().file.string())});
+    }
+  }
+  return experiments;
+}
+
+/// Names of clips that occur in one folder only stay; the others get their folder's in front.
+void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipSetup>& setups) {
+  std::multiset<std::string> names;
+  for (const ClipSetup& setup : setups) names.insert(setup.name);
+  std::set<std::string> taken;
+  std::size_t clip = 0;
+  for (const Experiment& experiment : experiments) {
+    const std::string folder = std::filesystem::absolute(experiment.folder / "x").parent_path().filename().string();
+    for (std::size_t i = 0; i < experiment.clips.size(); ++i, ++clip) {
+      std::string& name = setups[clip].name;
+      if (names.count(name) > 1) name = folder + "-" + name;
+      const std::string wanted = name;
+      for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}-{}", wanted, again);
+    }
+  }
+}
+
+}  // namespace
+
+AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
+                        const base::Progress& progress) {
+  if (options.bandwidth_s && !(std::isfinite(*options.bandwidth_s) && *options.bandwidth_s > 0.0)) {
+    throw base::InputError(
+        base::Issue{"", 0, "bandwidth", fmt::format("{}", *options.bandwidth_s), "a time in seconds above 0"});
+  }
+  if (!options.bandwidth_rule.empty() && !make_bandwidth_rule(options.bandwidth_rule)) {
+    throw base::InputError(base::Issue{"", 0, "bandwidth", options.bandwidth_rule,
+                                       fmt::format("{}", fmt::join(bandwidth_rule_names(), ", "))});
+  }
+  const std::vector<Experiment> experiments = read_all(folders, options.bare);
+  AnalysisResults results;
+  std::vector<ClipSetup> setups;
+  std::vector<TrackData> tracks;
+  std::size_t modes = 0;  // of the cameras so far: folders share none
+  std::vector<const Experiment*> experiment_of;
+  for (const Experiment& experiment : experiments) {
+    PictureResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.pictures);
+    for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
+      setups.push_back(experiment.clips[i]);
+      tracks.push_back(std::move(seen.tracks[i]));
+      tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
+      if (is_bare_track(experiment.file) && !options.bare.mass_kg) {
+        tracks.back().notes.emplace_back(
+            "no mass is stated: 1 kg stands for it (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)");
+      }
+      experiment_of.push_back(&experiment);
+    }
+    modes += seen.modes;
+    if (seen.calibration) results.calibrations.push_back(std::move(*seen.calibration));
+    for (PlumbResult& plumb : seen.plumbs) {
+      plumb.experiment = experiment.name;
+      results.plumbs.push_back(std::move(plumb));
+    }
+  }
+  name_uniquely(experiments, setups);
+  results.clips.resize(setups.size());
+  std::atomic<std::size_t> done = 0;
+  base::for_each_parallel(setups.size(), options.jobs, [&](std::size_t i) {
+    results.clips[i] = analyze_motion(
+        setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule, options.lines, options.lost_frames});
+    results.clips[i].experiment = experiment_of[i]->name;
+    results.clips[i].pictures = tracks[i].pictures;
+    progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
+  });
+  results.gravity_m_s2 = experiments.front().gravity_m_s2;
+  results.configurations = join_configurations(setups, results.clips, experiments.front().gravity_m_s2, options.lines);
+  if (options.lines == LineMethod::generalised) results.estimator = "phase-diagram-gls";
+  return results;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,38 @@
+/// The whole analysis: experiment folders in, K/m, mu, alpha and v_lim out.
+///
+///     clips  ─ frame_source ─ marker ─ marker_track ─ restitution ─ motion_axis ─┐
+///     tracks ─ track_csv ───────────────────────────────────────────────────────┴─ local_cubic ─ free_motion ─
+///     line_fit ─ configuration
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "core/analysis/analyze_motion.h"
+#include "core/experiment/bare_track.h"
+#include "core/experiment/experiment.h"
+#include "core/pictures/frames/frame_source.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+struct AnalysisOptions {
+  std::optional<double> bandwidth_s;  ///< given; otherwise chosen for each clip by the documented rule (bandwidth.h)
+  int jobs = 1;                       ///< clips analysed at the same time
+  FrameOpener open = open_frames;     ///< where the clips' frames come from
+  std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: that of bandwidth.h
+  LineMethod lines = LineMethod::ordinary;
+  LostFrameTimes lost_frames = LostFrameTimes::put_right;
+  bool pictures = false;       ///< keep what the clips' pictures show besides the motion (ClipResult::pictures)
+  BareTrackOptions bare = {};  ///< for inputs that are a track's file
+};
+
+/// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, and nothing of the
+/// camera. InputError for what is wrong with a folder; the progress tells frames.
+AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
+                        const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::core

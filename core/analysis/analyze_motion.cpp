@@ -1,0 +1,251 @@
+#include "core/analysis/analyze_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "base/text/number_text.h"
+#include "core/analysis/clip_frames.h"
+#include "core/math/quantile.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/motion/bandwidth/rule_lines.h"
+#include "core/motion/free/free_blocks.h"
+#include "core/motion/free/free_motion.h"
+#include "core/motion/free/lost_frames.h"
+#include "core/motion/free/motion.h"
+#include "core/motion/free/outliers.h"
+#include "core/motion/free/stretch_noise.h"
+#include "core/motion/lines/gls_line.h"
+#include "core/motion/lines/law_bias.h"
+#include "core/motion/lines/line_fit.h"
+#include "core/motion/lines/line_input.h"
+#include "core/motion/lines/stretch_points.h"
+#include "core/motion/smoothing/noise.h"
+
+namespace glidelab::core {
+namespace {
+
+/// Replaces the clip's lines by generalised ones, which may exist where the others do not, and the other way round.
+void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput input, ClipResult& clip) {
+  const std::vector<FreePiece> pieces = free_pieces(motion, free, input.bandwidth_s, input.autocovariance);
+  const std::vector<LineFit> ordinary = std::exchange(clip.segments, {});
+  for (const int direction : {-1, 1}) {
+    const auto start = std::find_if(ordinary.begin(), ordinary.end(),
+                                    [&](const LineFit& line) { return line.direction == direction; });
+    input.k_start_1_s = start != ordinary.end() ? start->k_over_m_1_s.value : 0.0;
+    auto line = fit_line_gls(direction, motion, pieces, input);
+    if (line) {
+      clip.notes.push_back(
+          fmt::format("v {} 0: the line rests on {} positions of free motion, up to its ends and reversals",
+                      direction > 0 ? ">" : "<", line->points));
+      if (start != ordinary.end()) line->r2 = start->r2;  // of the diagram as it is shown
+      clip.segments.push_back(std::move(*line));
+    } else if (start != ordinary.end()) {
+      clip.notes.push_back(fmt::format("v {} 0: the generalised least squares did not settle; there is no line",
+                                       direction > 0 ? ">" : "<"));
+    }
+  }
+}
+
+/// v_lim of the lines with their kernel's bias taken off.
+Quantity recovered_limit(const std::vector<LineFit>& lines) {
+  std::vector<LineFit> straight;
+  for (const LineFit& line : lines) straight.push_back(without_law_bias(line));
+  Quantity limit = limit_velocity(straight);
+  const Quantity as_fitted = limit_velocity(lines);
+  const bool biased =
+      std::any_of(lines.begin(), lines.end(), [](const LineFit& line) { return line.parts.law.has_value(); });
+  if (biased && limit.estimate && as_fitted.estimate) {
+    limit.smoothing_correction = limit.estimate->value - as_fitted.estimate->value;
+  }
+  return limit;
+}
+
+/// A rule sees y, which is x without the known force's part, in the stretches that count.
+BandwidthChoice by_rule(const std::string& name, const Motion& motion, const FreeMotion& free,
+                        const PositionNoise& noise) {
+  BandwidthProblem problem;
+  problem.noise = noise;
+  problem.step_s = motion.step_s;
+  for (const FreeStretch& stretch : free.stretches) {
+    if (stretch.whole != LeftOut::used) continue;
+    problem.parts.push_back({std::span(motion.t_s).subspan(stretch.first, stretch.count),
+                             std::span(motion.y_m).subspan(stretch.first, stretch.count)});
+  }
+  const auto rule = make_bandwidth_rule(name);
+  assert(rule);
+  const auto pick = rule->choose(problem);
+  if (pick) return {pick->bandwidth_s, pick->method, 0.0};
+  return {free.pilot_bandwidth_s, "that of the first smoothing: the motion is too short for the rule " + name, 0.0};
+}
+
+/// That of the options, or as they have it chosen.
+BandwidthChoice bandwidth_of(const Motion& motion, const FreeMotion& free, const MotionOptions& options) {
+  if (options.bandwidth_s) return {*options.bandwidth_s, "given", 0.0};
+  const PositionNoise noise = noise_at(motion, free.stretches, free.pilot_bandwidth_s);
+  return options.bandwidth_rule.empty() ? choose_bandwidth(motion, free.stretches, noise, free.pilot_bandwidth_s)
+                                        : by_rule(options.bandwidth_rule, motion, free, noise);
+}
+
+/// What the lines of a clip rest on beside its points.
+struct LineWeights {
+  std::vector<double> law_m_s2;  ///< f(v(t)) of the first smoothing
+  std::vector<double> factors;   ///< of each point's noise; empty: all 1
+};
+
+/// The line of each direction that has one, by least squares.
+std::vector<LineFit> ordinary_lines(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights) {
+  const std::vector<double> bias = smoothing_bias(clip.motion, clip.free.stretches, weights.law_m_s2, clip.points);
+  std::vector<LineFit> lines;
+  for (const int direction : {-1, 1}) {
+    LineInput input = line_input(clip.motion, clip.points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
+    input.noise_factor = weights.factors;
+    input.calibration = calibration_shifts(clip.motion, input, clip.track.shared_m);
+    auto line = fit_line(direction, input, clip.noise.autocovariance, clip.track.scale_sd_relative);
+    if (!line) continue;
+    line->parts.law = law_bias(input, *line, clip.noise.autocovariance);
+    if (line->parts.law) {
+      line->parts.smoothing_k = line->parts.smoothing_a0 = 0.0;
+      complete_line(*line);
+    }
+    lines.push_back(std::move(*line));
+  }
+  return lines;
+}
+
+GlsInput gls_input(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights) {
+  GlsInput input;
+  input.bandwidth_s = clip.bandwidth_s;
+  input.autocovariance = clip.noise.autocovariance;
+  input.noise_factor = weights.factors;
+  input.scale_sd_relative = clip.track.scale_sd_relative;
+  input.mass_kg = setup.mass_kg;
+  input.mass_sd_kg = setup.mass_sd_kg;
+  input.law_m_s2 = weights.law_m_s2;
+  input.shared_m = clip.track.shared_m;
+  return input;
+}
+
+std::vector<LostFrames> lost_frames(const TrackData& track, double mass_kg) {
+  return find_lost_frames(track, motion_of(track, mass_kg));
+}
+
+/// start_s and end_s are by the file's times.
+ClipSetup later(ClipSetup setup, const std::vector<LostFrames>& lost, double step_s) {
+  if (setup.start_s) setup.start_s = core::put_right(*setup.start_s, lost, step_s);
+  if (setup.end_s) setup.end_s = core::put_right(*setup.end_s, lost, step_s);
+  return setup;
+}
+
+void note_lost_frames(const std::vector<LostFrames>& lost, LostFrameTimes times, std::vector<std::string>& notes) {
+  if (lost.empty()) return;
+  std::size_t frames = 0;
+  std::vector<std::string> places;
+  for (const LostFrames& gap : lost) {
+    frames += gap.count;
+    places.push_back(fmt::format("{:.3f} s", gap.after_s));
+  }
+  constexpr std::size_t kNamed = 6;
+  const bool more = places.size() > kNamed;
+  places.resize(std::min(places.size(), kNamed));
+  notes.push_back(fmt::format(
+      "{} frame{} missing without a gap in the times (after {}{}): the motion jumps there by whole frames' way; {}",
+      frames, frames == 1 ? " is" : "s are", fmt::join(places, ", "), more ? ", …" : "",
+      times == LostFrameTimes::put_right ? "the times behind are put right" : "the times are left as they are"));
+}
+
+void note_findings(const Motion& motion, std::size_t outliers, const std::vector<double>& factors, LineMethod lines,
+                   ClipResult& clip) {
+  const std::vector<double>& covariance_m2 = clip.noise_autocovariance_m2;
+  if (outliers > 0) {
+    clip.notes.push_back(
+        fmt::format("{} of {} positions lie off the motion and are left out", outliers, outliers + motion.t_s.size()));
+  }
+  if (covariance_m2.size() > 1) {
+    clip.notes.push_back(
+        fmt::format("the noise of neighbouring positions is correlated ({:.2f}); the intervals allow for it",
+                    covariance_m2[1] / covariance_m2[0]));
+  }
+  for (const LineFit& line : clip.segments) {
+    if (std::isinf(line.parts.degrees)) continue;
+    clip.notes.push_back(
+        fmt::format("v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; "
+                    "its intervals are widened",
+                    line.direction > 0 ? ">" : "<", line.parts.scatter));
+  }
+  if (!factors.empty()) {
+    const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+    clip.notes.push_back(
+        fmt::format("the noise of a position grows with the speed: {} mm at the slowest, {} mm at the fastest; the "
+                    "lines' intervals allow for it",
+                    base::digits_text(1e3 * *least * clip.position_noise_m, 2),
+                    base::digits_text(1e3 * *most * clip.position_noise_m, 2)));
+  }
+  if (clip.rounding_m && lines == LineMethod::ordinary) {
+    clip.notes.push_back(
+        fmt::format("positions are rounded to {:.3g} m and often repeat: the noise is not random", *clip.rounding_m));
+  }
+}
+
+}  // namespace
+
+ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const MotionOptions& options) {
+  ClipResult clip;
+  clip.lost_frames = lost_frames(filed, stated.mass_kg);
+  const bool put_right = options.lost_frames == LostFrameTimes::put_right;
+  const ClipSetup setup = put_right ? later(stated, clip.lost_frames, median_step(filed.frame_t_s)) : stated;
+  const TrackData track = put_right ? core::put_right(filed, clip.lost_frames) : filed;
+  clip.name = setup.name;
+  clip.frames = track.frame_t_s.size();
+  clip.detected = track.t_s.size();
+  clip.frame_rate_hz = track.frame_rate_hz;
+  clip.sightings = track.sightings;
+  clip.scale_sd_relative = track.scale_sd_relative;
+  clip.notes = track.notes;
+  note_lost_frames(clip.lost_frames, options.lost_frames, clip.notes);
+
+  const Motion measured = motion_of(track, setup.mass_kg);
+  const std::vector<std::size_t> outliers = find_outliers(measured);
+  const Motion motion = without(measured, outliers);
+  const FreeMotion free = find_free_motion(motion, setup);
+  clip.forced = motion.forced;
+  clip.against_launch = free.against_launch;
+  if (free.against_launch) clip.notes.push_back(sentence(*free.against_launch));
+
+  const BandwidthChoice choice = bandwidth_of(motion, free, options);
+  clip.bandwidth_s = choice.bandwidth_s;
+  clip.bandwidth_method = choice.method;
+  const PositionNoise noise = noise_at(motion, free.stretches, clip.bandwidth_s);
+  clip.position_noise_m = noise.sd_m;
+  clip.noise_autocovariance_m2 = noise.autocovariance;
+  clip.rounding_m = coarse_rounding(motion, noise);
+  clip.blocks = free_blocks(motion, free.stretches, track.shared_m, clip.bandwidth_s);
+
+  const std::vector<StretchPoint> points = smooth_stretches(motion, free.stretches, clip.bandwidth_s);
+  const SmoothedClip smoothed{track, motion, free, noise, points, clip.bandwidth_s, setup.mass_kg};
+  const LineWeights weights{pilot_law(motion, free.stretches, law_bandwidth(motion, free.pilot_bandwidth_s)),
+                            noise_factors(motion, free.stretches, clip.bandwidth_s)};
+  clip.segments = ordinary_lines(smoothed, setup, weights);
+  if (options.lines == LineMethod::generalised && clip.rounding_m) {
+    clip.notes.push_back(fmt::format(
+        "positions are rounded to {:.3g} m and often repeat: the error of that lasts over frames, and generalised "
+        "lines, which weigh points by the covariance of their noise, are not fitted; the ordinary ones stand in "
+        "their place",
+        *clip.rounding_m));
+  } else if (options.lines == LineMethod::generalised) {
+    generalise_lines(motion, free, gls_input(smoothed, setup, weights), clip);
+  }
+  clip.v_lim_m_s = recovered_limit(clip.segments);
+
+  clip.motion = frames_of(smoothed);
+  clip.shared_m = shared_of_frames(track);
+  clip.left_out = intervals_of(clip.motion);
+  clip.stretches = used_stretches(smoothed);
+  note_findings(motion, outliers.size(), weights.factors, options.lines, clip);
+  return clip;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,166 @@
+#include "core/analysis/preview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "base/errors.h"
+#include "base/files/staged_output.h"
+#include "base/files/temporary_folder.h"
+#include "core/experiment/experiment.h"
+#include "core/pictures/frames/frame_source.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPlaybackHz = 30.0;         // a rate that every screen and player takes
+constexpr std::size_t kMostFrames = 360;     // 12 s of it
+constexpr std::size_t kMostBytes = 1 << 20;  // what a page can carry a few times
+constexpr std::size_t kPathDots = 60;
+const cv::Scalar kMarkerColor(0, 140, 255);  // orange in BGR: seen on black, grey and white
+const cv::Scalar kPathColor(255, 170, 60);   // light blue
+
+/// Small pictures in colour, of even size as H.264's 4:2:0 needs.
+class Shrinker {
+ public:
+  Shrinker(cv::Size size, int width_px, int bit_depth) : bit_depth_(bit_depth) {
+    scale_ = std::min(1.0, static_cast<double>(width_px) / size.width);
+    const auto even = [this](int length) {
+      return std::max(2, 2 * static_cast<int>(std::lround(length * scale_ / 2)));
+    };
+    size_ = {even(size.width), even(size.height)};
+  }
+  cv::Mat operator()(const Frame& frame) const {
+    cv::Mat picture = frame.color.empty() ? frame.grey : frame.color;
+    if (picture.depth() == CV_16U) picture.convertTo(picture, CV_8U, 255.0 / ((1 << bit_depth_) - 1));
+    cv::Mat small;
+    cv::resize(picture, small, size_, 0.0, 0.0, cv::INTER_AREA);
+    if (small.channels() == 1) cv::cvtColor(small, small, cv::COLOR_GRAY2BGR);
+    return small;
+  }
+  /// A place in the picture, in the small one's sixteenths of a pixel; centres of first pixels are (0, 0) in both.
+  cv::Point place(double u_px, double v_px) const {
+    const auto fixed = [this](double p) { return static_cast<int>(std::lround(((p + 0.5) * scale_ - 0.5) * 16.0)); };
+    return {fixed(u_px), fixed(v_px)};
+  }
+  double scale() const { return scale_; }
+  cv::Size size() const { return size_; }
+
+ private:
+  int bit_depth_;
+  double scale_ = 1.0;
+  cv::Size size_;
+};
+
+void circle_marker(cv::Mat& picture, const MarkerSighting& sighting, const Shrinker& shrink) {
+  const double radius = std::max(sighting.radius_px * shrink.scale() + 2.5, 5.0);
+  cv::circle(picture, shrink.place(sighting.u_px, sighting.v_px), static_cast<int>(std::lround(radius * 16.0)),
+             kMarkerColor, 1, cv::LINE_AA, 4);
+}
+
+void dot_path(cv::Mat& picture, const std::vector<MarkerSighting>& sightings, const Shrinker& shrink) {
+  const std::size_t step = std::max<std::size_t>(1, sightings.size() / kPathDots);
+  for (std::size_t i = 0; i < sightings.size(); i += step) {
+    cv::circle(picture, shrink.place(sightings[i].u_px, sightings[i].v_px), 16, kPathColor, cv::FILLED, cv::LINE_AA, 4);
+  }
+}
+
+std::string jpeg_of(const cv::Mat& picture) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 88});
+  return {bytes.begin(), bytes.end()};
+}
+
+/// The sightings whose frames are shown: spread evenly from the first to the last.
+std::vector<std::size_t> frames_to_show(const std::vector<MarkerSighting>& sightings, int count) {
+  std::vector<std::size_t> frames;
+  if (sightings.empty() || count <= 0) return frames;
+  const auto n = static_cast<std::size_t>(count);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t at = n == 1 ? 0 : i * (sightings.size() - 1) / (n - 1);
+    if (frames.empty() || sightings[at].frame != frames.back()) frames.push_back(sightings[at].frame);
+  }
+  return frames;
+}
+
+/// Encodes what it is given; whether a browser-playable encoder is there shows when the first frame comes.
+class VideoFile {
+ public:
+  void add(const cv::Mat& picture) {
+    if (failed_) return;
+    if (!writer_.isOpened()) {
+      const int h264 = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
+      failed_ = !writer_.open(file().string(), cv::CAP_FFMPEG, h264, kPlaybackHz, picture.size());
+      if (failed_) return;
+    }
+    writer_.write(picture);
+  }
+  /// The file's bytes, or the reason why there are none.
+  std::pair<std::string, std::string> finish() {
+    writer_.release();
+    std::error_code error;
+    const auto size = fs::file_size(file(), error);
+    if (failed_ || error || size == 0) return {"", "no H.264 encoder is installed"};
+    if (size > kMostBytes) return {"", fmt::format("it would take {:.1f} MB", static_cast<double>(size) * 1e-6)};
+    return {base::read_file(file()), ""};
+  }
+
+ private:
+  fs::path file() const { return folder_ / "clip.mp4"; }
+  base::TemporaryFolder folder_{"preview"};
+  cv::VideoWriter writer_;
+  bool failed_ = false;
+};
+
+const MarkerSighting* sighting_of(const std::vector<MarkerSighting>& sightings, std::size_t frame) {
+  const auto found = std::lower_bound(sightings.begin(), sightings.end(), frame,
+                                      [](const MarkerSighting& s, std::size_t f) { return s.frame < f; });
+  return found != sightings.end() && found->frame == frame ? &*found : nullptr;
+}
+
+}  // namespace
+
+Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const ClipResult& result,
+                     const PreviewOptions& options) {
+  Preview preview;
+  if (setup.file.empty() || !experiment.camera) return preview;
+  const std::vector<std::size_t> shown = frames_to_show(result.sightings, options.frames);
+  if (shown.empty() && !options.video) return preview;
+  const std::unique_ptr<FrameSource> source = open_frames(setup.file, *experiment.camera, true, std::nullopt);
+  const std::size_t step = std::max<std::size_t>(1, (result.frames + kMostFrames - 1) / kMostFrames);
+  std::optional<Shrinker> shrink;
+  std::optional<VideoFile> video;
+  if (options.video) video.emplace();
+  std::size_t next_shown = 0;
+  while (std::optional<Frame> frame = source->next()) {
+    const bool show = next_shown < shown.size() && frame->index == shown[next_shown];
+    const bool film = video && frame->index % step == 0;
+    if (!show && !film) continue;
+    if (!shrink) shrink.emplace(frame->grey.size(), options.width_px, experiment.camera->bit_depth);
+    cv::Mat picture = (*shrink)(*frame);
+    if (const MarkerSighting* sighting = sighting_of(result.sightings, frame->index)) {
+      circle_marker(picture, *sighting, *shrink);
+    }
+    if (film) video->add(picture);
+    if (show) {
+      dot_path(picture, result.sightings, *shrink);
+      preview.frames.push_back({frame->index, frame->t_s, jpeg_of(picture)});
+      ++next_shown;
+    }
+    if (!video && next_shown == shown.size()) break;
+  }
+  if (video) {
+    std::tie(preview.mp4, preview.why_no_video) = video->finish();
+    preview.slow_motion = experiment.camera->frame_rate_hz / (kPlaybackHz * static_cast<double>(step));
+  }
+  return preview;
+}
+
+}  // namespace glidelab::core

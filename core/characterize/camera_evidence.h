@@ -1,0 +1,31 @@
+/// Reads the frames of a flat-field folder and takes the decisions on which the numbers rest: which pixels stand out,
+/// which cells are saturated, which levels belong to the linear range, what the quantisation hides.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "base/progress.h"
+#include "core/characterize/flat_field_folder.h"
+#include "core/characterize/photon_numbers.h"
+
+namespace glidelab::core {
+
+struct CameraEvidence {
+  Evidence evidence;
+  TileGrid grid{cv::Size(kSmallestFlatFieldPx, kSmallestFlatFieldPx)};
+  std::size_t frames = 0;
+  bool mosaic = false;
+  bool dark_clipped = false;  ///< dark frames hold code 0, so that their mean and noise are cut
+  std::size_t hot_pixels = 0;
+  std::size_t dead_pixels = 0;
+  std::size_t outlying_pixels = 0;
+  std::optional<std::size_t> middle_level;  ///< the one used nearest to 50 % of saturation
+};
+
+CameraEvidence gather_evidence(const FlatFieldFolder& folder, const base::Progress& progress);
+
+}  // namespace glidelab::core

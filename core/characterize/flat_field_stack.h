@@ -1,0 +1,75 @@
+/// What the frames of one set have in common and how they differ: mean and temporal variance, tile by tile.
+///
+/// A picture is cut into tiles, and the pixels of a tile into four cells by their place in the 2 x 2 mosaic of a colour
+/// sensor (on a monochrome one the four are alike). With y_pf the code of pixel p in frame f, and m_f the mean of the
+/// cell in frame f,
+///
+///     e_pf = y_pf - m_f,     temporal variance = mean over p of [sum_f (e_pf - mean_f e_pf)^2 / (L - 1)] n / (n - 1)
+///
+/// which for two frames is half the variance of their difference (EMVA standard 1288, release 3.1, equation for the
+/// temporal variance from two images). Taking out each cell's own mean makes it blind to a light that flickers or
+/// drifts from frame to frame; working on each pixel's own differences makes it blind to shading and fixed patterns.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/characterize/flat_field_folder.h"
+#include "core/characterize/flat_field_frame.h"
+
+namespace glidelab::core {
+
+/// How a picture is cut: about 50 to 150 tiles, at least 16 pixels wide and high.
+class TileGrid {
+ public:
+  explicit TileGrid(cv::Size picture);
+  cv::Size picture() const { return picture_; }
+  std::size_t tiles() const { return static_cast<std::size_t>(columns_ * rows_); }
+  std::size_t cells() const { return 4 * tiles(); }
+  cv::Rect tile(std::size_t index) const;
+  /// Cell of a pixel of that tile.
+  static std::size_t cell(std::size_t tile, int x, int y) {
+    return 4 * tile + 2 * static_cast<std::size_t>(y & 1) + static_cast<std::size_t>(x & 1);
+  }
+
+ private:
+  cv::Size picture_;
+  int columns_;
+  int rows_;
+};
+
+struct CellStatistics {
+  double pixels = 0.0;        ///< that are not masked
+  double mean_dn = 0.0;       ///< over pixels and frames
+  double temporal_dn2 = 0.0;  ///< variance of a pixel from frame to frame, quantisation included
+  double total_dn2 = 0.0;     ///< variance over the pixels and frames of the cell
+  double at_zero = 0.0;       ///< part of the samples at code 0
+  double at_largest = 0.0;    ///< part of the samples at the largest code
+};
+
+struct FlatFieldStack {
+  std::size_t frames = 0;
+  std::vector<CellStatistics> cells;
+  CellStatistics all;                  ///< over the whole picture; variances are means over the cells
+  std::vector<double> frame_means_dn;  ///< of the whole picture, frame by frame
+  cv::Mat mean_dn;                     ///< CV_32F, mean of the frames
+  cv::Mat contrast_dn;  ///< CV_32F, even frames minus odd ones, as noisy as the mean and without its pattern
+  /// Correlation of the noise (difference of the first two frames) of pixels side by side and one above the other;
+  /// 0 where there is no noise.
+  double correlation_right = 0.0;
+  double correlation_below = 0.0;
+  /// Variance of the differences of frames that follow each other over that of frames two apart; 1 for noise that is
+  /// new in every frame. Nothing for two frames, or without noise.
+  std::optional<double> successive_ratio;
+};
+
+/// Reads the frames of a set one after the other (never more than three at once). `mask`, CV_8U, is 255 where a pixel
+/// counts; empty: all count. InputError (file, found, expected) for a file that is no picture, one with colours, one of
+/// another size or depth, a code above `largest_code`, and a frame that repeats the one before.
+FlatFieldStack stack_frames(const FrameSet& set, const FrameForm& form, int largest_code, const TileGrid& grid,
+                            const cv::Mat& mask);
+
+}  // namespace glidelab::core

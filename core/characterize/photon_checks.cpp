@@ -1,0 +1,233 @@
+#include "core/characterize/photon_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kCorrelationNoted = 0.015;
+constexpr double kCorrelationRefused = 0.05;  // takes 10 to 20 % off the variance
+constexpr double kSuccessiveNoted = 0.98;
+constexpr double kSuccessiveRefused = 0.95;
+constexpr double kBendNoted = 0.02;
+constexpr double kBendRefused = 0.10;
+constexpr double kLinearityNoted = 0.01;
+constexpr double kLinearityRefused = 0.05;
+constexpr double kSignificant = 5.0;  // standard deviations; there may be a hundred levels
+constexpr double kSeen = 3.0;
+constexpr double kGainTooUncertain = 0.2;
+constexpr double kFlickerNoted = 0.01;
+constexpr double kKneeFrom = 0.75;  // of saturation: above the linear range
+constexpr double kKneeTo = 0.90;    // from here on a full well of a few hundred electrons cuts the noise itself
+constexpr double kKneeVariance = 0.5;
+
+double square(double value) {
+  return value * value;
+}
+
+double neighbour_correlation(const FlatFieldStack& stack) {
+  return std::max(std::abs(stack.correlation_right), std::abs(stack.correlation_below));
+}
+
+/// Mean variance over that of the line, of the cells between 75 and 90 % of saturation; nothing where there are none.
+std::optional<double> variance_below_saturation(const CameraEvidence& gathered, const PhotonNumbers& numbers) {
+  const Evidence& evidence = gathered.evidence;
+  double seen = 0.0;
+  double expected = 0.0;
+  for (const FlatFieldStack& flat : evidence.flats) {
+    for (std::size_t c = 0; c < flat.cells.size(); ++c) {
+      const CellStatistics& cell = flat.cells[c];
+      const double light = cell.mean_dn - evidence.darks.front().cells[c].mean_dn;
+      if (light < kKneeFrom * evidence.saturation.level_dn || light > kKneeTo * evidence.saturation.level_dn) continue;
+      seen += cell.pixels * (cell.temporal_dn2 - kQuantisation);
+      expected += cell.pixels * (numbers.intercept_dn2 + numbers.gain * light);
+    }
+  }
+  if (expected <= 0.0) return std::nullopt;
+  return seen / expected;
+}
+
+TransferPoint point_of(const Evidence& evidence, const FrameSet& set, std::size_t level) {
+  const FlatFieldStack& flat = evidence.flats[level];
+  LevelPoint point = level_point(evidence, level, std::nullopt);
+  const double picture_dn = flat.all.mean_dn - evidence.darks.front().all.mean_dn;
+  const bool used = evidence.weight[level] > 0.0;
+  if (!used) {
+    point.mean_dn = picture_dn;
+    point.variance_dn2 = flat.all.temporal_dn2 - kQuantisation;
+    point.sampling_dn4 = 2.0 * square(flat.all.temporal_dn2) / (flat.all.pixels * static_cast<double>(flat.frames - 1));
+  }
+  return {set.name,
+          set.exposure_s,
+          point.mean_dn,
+          picture_dn,
+          point.variance_dn2,
+          std::sqrt(point.sampling_dn4),
+          flat.all.at_largest,
+          used};
+}
+
+}  // namespace
+
+LineQuality line_quality(const CameraEvidence& gathered, const FlatFieldFolder& folder, const PhotonNumbers& numbers) {
+  const Evidence& evidence = gathered.evidence;
+  LineQuality quality;
+  double chi2 = 0.0;
+  for (std::size_t level = 0; level < evidence.flats.size(); ++level) {
+    const TransferPoint point = point_of(evidence, folder.flats[level], level);
+    quality.curve.push_back(point);
+    if (!point.used) continue;
+    ++quality.points;
+    quality.most_dn = std::max(quality.most_dn, point.mean_dn);
+    const double line = numbers.intercept_dn2 + numbers.gain * point.mean_dn;
+    const double off2 = square(point.variance_dn2 - line);
+    chi2 += off2 * evidence.weight[level];
+    if (off2 * evidence.weight[level] > square(kSignificant)) {
+      quality.bend = std::max(quality.bend, std::sqrt(off2) / std::max(line, point.sd_dn2));
+    }
+  }
+  if (evidence.dark_weight > 0.0) {
+    ++quality.points;
+    chi2 +=
+        square(evidence.darks.front().all.temporal_dn2 - kQuantisation - numbers.intercept_dn2) * evidence.dark_weight;
+  }
+  const double degrees = quality.points - 2.0;
+  if (degrees > 0.0 && chi2 > degrees + kSeen * std::sqrt(2.0 * degrees)) quality.misfit = std::sqrt(chi2 / degrees);
+  std::sort(quality.curve.begin(), quality.curve.end(),
+            [](const TransferPoint& a, const TransferPoint& b) { return a.mean_dn < b.mean_dn; });
+  const std::optional<double> ratio = variance_below_saturation(gathered, numbers);
+  if (ratio && *ratio < kKneeVariance) quality.knee = *ratio;
+  return quality;
+}
+
+std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quality, const FittedLine& line,
+                        const Measured& linearity) {
+  const Evidence& evidence = gathered.evidence;
+  const bool dark_in_line = evidence.dark_weight > 0.0;
+  if (quality.points < 3) {
+    return fmt::format(
+        "{} usable point{} in the diagram, at least 3 are needed: levels above the quantisation noise and below 70 % "
+        "of saturation{}",
+        quality.points, quality.points == 1 ? "" : "s",
+        dark_in_line ? "" : " (the dark frames show no noise beyond the quantisation)");
+  }
+  const FlatFieldStack& bright = evidence.flats[*gathered.middle_level];
+  if (neighbour_correlation(bright) > kCorrelationRefused) {
+    return fmt::format(
+        "the noise of neighbouring pixels is correlated ({:.2f}), as demosaicing, denoising, scaling and lossy "
+        "compression do; raw pictures are needed",
+        neighbour_correlation(bright));
+  }
+  if (bright.successive_ratio && *bright.successive_ratio < kSuccessiveRefused) {
+    return fmt::format(
+        "the noise of successive frames is correlated (their differences have {:.0f} % of the variance of those two "
+        "apart), as denoising over time does; raw pictures are needed",
+        100.0 * *bright.successive_ratio);
+  }
+  const std::string curve =
+      ": the codes are not linear in the light (gamma, tone curve, video range), or the light is not constant; linear "
+      "or raw pictures are needed";
+  if (!(line.gain > 0.0)) return "the variance does not rise with the mean" + curve;
+  if (quality.bend > kBendRefused) {
+    return fmt::format("the variance departs from a line over the mean by {:.0f} %{}", 100.0 * quality.bend, curve);
+  }
+  const double at_half = 0.5 * line.gain * quality.most_dn;
+  const double slack = kBendRefused * at_half + kSeen * line.intercept_sd_dn2;
+  if (!dark_in_line && !gathered.dark_clipped && line.intercept_dn2 > square(kHiddenNoise_dn) + slack) {
+    return "the line of variance over mean meets the dark level far above the dark frames' noise" + curve;
+  }
+  if (line.intercept_dn2 < -slack) {
+    return "the line of variance over mean meets the dark level below zero" + curve;
+  }
+  if (linearity.value && *linearity.value > kLinearityRefused) {
+    return fmt::format("the mean departs from a line over the exposure by {:.0f} %{}", 100.0 * *linearity.value, curve);
+  }
+  if (line.gain_sd > kGainTooUncertain * line.gain) {
+    return fmt::format(
+        "it comes out as {:.2g} with a standard deviation of {:.2g}: more light, frames or pixels are needed",
+        line.gain, line.gain_sd);
+  }
+  return {};
+}
+
+namespace {
+
+std::string flicker_note(const Evidence& evidence) {
+  double most = 0.0;
+  std::size_t levels = 0;
+  for (const FlatFieldStack& flat : evidence.flats) {
+    const auto [low, high] = std::minmax_element(flat.frame_means_dn.begin(), flat.frame_means_dn.end());
+    const double change = (*high - *low) / (flat.all.mean_dn - evidence.darks.front().all.mean_dn);
+    if (!(change > kFlickerNoted) || *high - *low < 0.5) continue;  // half a code: the dark level moves by as much
+    most = std::max(most, change);
+    ++levels;
+  }
+  if (levels == 0) return {};
+  return fmt::format(
+      "The light changes from frame to frame by up to {:.1f} %, in {} of {} levels: the lamp flickers, or the exposure "
+      "is automatic. The gain does not mind.",
+      100.0 * most, levels, evidence.flats.size());
+}
+
+std::string correlation_note(const FlatFieldStack& bright) {
+  const double correlation = neighbour_correlation(bright);
+  if (correlation <= std::max(kCorrelationNoted, kSignificant / std::sqrt(bright.all.pixels))) return {};
+  return fmt::format(
+      "The noise of neighbouring pixels is correlated by {:.3f}: the gain may be too small by a few per cent.",
+      correlation);
+}
+
+}  // namespace
+
+std::vector<std::string> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,
+                                         const Measured& linearity, bool gain_known) {
+  const Evidence& evidence = gathered.evidence;
+  const FlatFieldStack& dark = evidence.darks.front();
+  std::vector<std::string> notes;
+  const auto note = [&](std::string text) {
+    if (!text.empty()) notes.push_back(std::move(text));
+  };
+  if (gathered.mosaic) {
+    note(
+        "The places of the 2 x 2 mosaic see different brightness: raw codes of a colour sensor. PRNU is measured "
+        "colour by colour.");
+  }
+  if (gain_known) {
+    const FlatFieldStack& bright = evidence.flats[*gathered.middle_level];
+    if (quality.bend > kBendNoted) {
+      note(
+          fmt::format("The variance departs from a line over the mean by up to {:.1f} %: the sensor is not quite "
+                      "linear, or the light not constant.",
+                      100.0 * quality.bend));
+    }
+    if (linearity.value && *linearity.value > kLinearityNoted) {
+      note(
+          fmt::format("The mean departs from a line over the exposure by {:.1f} %: where that is a tone curve and not "
+                      "the lamp or the shutter, the gain is off by several times as much.",
+                      100.0 * *linearity.value));
+    }
+    note(correlation_note(bright));
+    if (bright.successive_ratio && *bright.successive_ratio < kSuccessiveNoted) {
+      note(fmt::format("Differences of successive frames have {:.1f} % of the variance of those two apart.",
+                       100.0 * *bright.successive_ratio));
+    }
+  }
+  note(flicker_note(evidence));
+  if (neighbour_correlation(dark) > std::max(kCorrelationRefused, kSignificant / std::sqrt(dark.all.pixels))) {
+    note(
+        fmt::format("The noise of the dark frames is correlated by {:.2f} between neighbouring pixels: rows or columns "
+                    "are read out with a noise of their own.",
+                    neighbour_correlation(dark)));
+  }
+  if (static_cast<double>(gathered.outlying_pixels) > 0.01 * gathered.grid.picture().area()) {
+    note(
+        "More than 1 % of the pixels stand out of the pattern: the patterns are not normal, PRNU and DSNU describe "
+        "their cores.");
+  }
+  return notes;
+}
+
+}  // namespace glidelab::core

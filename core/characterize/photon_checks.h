@@ -1,0 +1,41 @@
+/// Whether pictures are what photon transfer assumes: codes in proportion to light, noise that is new in every pixel
+/// and frame. What is not so is said, in place of a gain that would be wrong, or as a note.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/characterize/camera_evidence.h"
+#include "core/characterize/camera_measurement.h"
+
+namespace glidelab::core {
+
+/// How well the levels lie on the line.
+struct LineQuality {
+  std::vector<TransferPoint> curve;  ///< by rising mean
+  int points = 0;                    ///< in the fit, the dark frames among them
+  double misfit = 1.0;               ///< factor on standard deviations; above 1 where chi² is, significantly
+  double bend = 0.0;                 ///< largest significant departure of a level from the line, relative
+  double most_dn = 0.0;              ///< the brightest level in the fit
+  std::optional<double> knee;  ///< variance over the line between 75 and 90 % of saturation, where it is below half
+};
+LineQuality line_quality(const CameraEvidence& gathered, const FlatFieldFolder& folder, const PhotonNumbers& numbers);
+
+/// The line, with the standard deviations of its parameters.
+struct FittedLine {
+  double gain = 0.0;
+  double gain_sd = 0.0;
+  double intercept_dn2 = 0.0;
+  double intercept_sd_dn2 = 0.0;
+};
+
+/// Why the variance over the mean does not give the gain; empty where it does.
+std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quality, const FittedLine& line,
+                        const Measured& linearity);
+
+/// What a reader should know of how the pictures were taken.
+std::vector<std::string> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,
+                                         const Measured& linearity, bool gain_known);
+
+}  // namespace glidelab::core

@@ -1,0 +1,164 @@
+#include "core/check/check_clip.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/check/marker_smear.h"
+#include "core/math/median.h"
+#include "core/math/quantile.h"
+#include "core/motion/smoothing/noise.h"
+#include "core/track/track_csv.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kTopSpeed = 0.99;        // quantile: single frames may be wrong
+constexpr std::size_t kSpeedLag = 4;      // frames over which a speed is taken
+constexpr std::size_t kPathPlaces = 200;  // of the marker's path that are kept
+constexpr double kEdgeRadii = 3.0;        // of the marker: nearer to the picture's edge it may have come from outside
+constexpr double kBeyondTone = 2.0;       // times the stated exposure
+constexpr double kBeyondPlace = 0.5;      // marker diameters: less a marker may lengthen by where it is (perspective)
+// A step counts as a stall where the two on either side lie within an eighth of a straight line, and the rest of it is
+// six standard deviations of its noise: a clip has thousands of steps, and a codec's errors are no bell.
+constexpr double kAgree = 0.125, kStall = 0.4, kClearOfNoise = 15.0;
+
+struct Speeds {
+  double px_s = 0.0, m_s = 0.0;
+  double px_per_m = 0.0;  ///< along the path; 0 where nothing moves
+};
+
+Speeds speeds_of(const TrackData& track) {
+  std::vector<double> px_s, m_s;
+  double px = 0.0, m = 0.0;
+  for (std::size_t i = kSpeedLag; i < track.x_m.size(); ++i) {
+    const std::size_t k = i - kSpeedLag;
+    const double dt_s = track.t_s[i] - track.t_s[k];
+    if (track.frame[i] - track.frame[k] != kSpeedLag) continue;
+    const double way_m = std::abs(track.x_m[i] - track.x_m[k]);
+    m_s.push_back(way_m / dt_s);
+    if (track.sightings.empty()) continue;
+    const double way_px = std::hypot(track.sightings[i].u_px - track.sightings[k].u_px,
+                                     track.sightings[i].v_px - track.sightings[k].v_px);
+    px_s.push_back(way_px / dt_s);
+    px += way_px;
+    m += way_m;
+  }
+  return {quantile(px_s, kTopSpeed), quantile(m_s, kTopSpeed), m > 0.0 ? px / m : 0.0};
+}
+
+/// Steps from frame to frame that are far shorter than their neighbours, of which two on either side agree.
+std::size_t stalls_of(const std::vector<MarkerSighting>& sightings, double noise_px) {
+  std::size_t stalls = 0;
+  const auto step = [&](std::size_t i) {
+    return std::hypot(sightings[i + 1].u_px - sightings[i].u_px, sightings[i + 1].v_px - sightings[i].v_px);
+  };
+  for (std::size_t i = 2; i + 3 < sightings.size(); ++i) {
+    if (sightings[i + 3].frame - sightings[i - 2].frame != 5) continue;
+    const std::array<double, 4> around = {step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
+    // A speed that changes evenly makes the four a straight line.
+    const double middle = 0.25 * (around[0] + around[1] + around[2] + around[3]);
+    const double rise = 0.1 * (2.0 * (around[3] - around[0]) + around[2] - around[1]);
+    const std::array<double, 4> place = {-2.0, -1.0, 1.0, 2.0};
+    double off = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) off = std::max(off, std::abs(around[k] - middle - rise * place[k]));
+    if (middle < kClearOfNoise * noise_px || off > kAgree * middle) continue;
+    stalls += step(i) < kStall * middle ? 1 : 0;
+  }
+  return stalls;
+}
+
+/// Closer to the picture's edge than a marker's diameter and a half, and its smear: it may have come from outside.
+bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip) {
+  const double margin_px = kEdgeRadii * sighting.radius_px + clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
+  return std::min({sighting.u_px, sighting.v_px, clip.width_px - 1.0 - sighting.u_px,
+                   clip.height_px - 1.0 - sighting.v_px}) < margin_px;
+}
+
+/// By how the marker lengthens with its speed, where that is more than the stated exposure explains.
+void measure_smear(const CameraSettings& camera, const ClipAttempt& attempt, ClipCheck& clip) {
+  const auto smear = marker_smear(attempt.track.sightings, attempt.fits, camera.frame_rate_hz);
+  if (!smear) return;
+  const double blur_px = clip.top_speed_px_s * smear->exposure_s;
+  const bool longer = !camera.exposure_s || smear->exposure_s > kBeyondTone * *camera.exposure_s;
+  if (!longer || blur_px <= kBeyondPlace * clip.marker_px) return;
+  clip.measured_exposure_s = smear->exposure_s;
+  clip.measured_blur_px = blur_px;
+}
+
+void take_look(const ClipLook& look, ClipCheck& clip) {
+  clip.width_px = look.size.width;
+  clip.height_px = look.size.height;
+  clip.container_rate_hz = look.file.container_rate_hz;
+  clip.repeated = look.file.repeated;
+  clip.irregular_steps = look.file.irregular_steps;
+  clip.drift_frames = look.file.drift_frames;
+  clip.saturated = look.exposure.saturated;
+  clip.dark = look.exposure.dark;
+  clip.bright_level = look.exposure.bright_level;
+  clip.contrast = look.contrast;
+  clip.marker_level = look.marker_level;
+  clip.pixel_noise = look.pixel_noise;
+}
+
+void check_pictures(const Experiment& experiment, const ClipAttempt& attempt, const ClipWatch& watch, double px_per_m,
+                    ClipCheck& clip) {
+  const TrackData& track = attempt.track;
+  MarkerSetup marker = *experiment.marker;
+  if (track.dark_marker) marker.color_bgr = cv::Vec3b(0, 0, 0);
+  take_look(watch.look(marker, track.sightings, attempt.fits), clip);
+  std::vector<double> radii, sds;
+  for (const MarkerSighting& sighting : track.sightings) {
+    radii.push_back(sighting.radius_px);
+    sds.push_back(sighting.sd_px);
+  }
+  clip.marker_px = 2.0 * median_of(radii);
+  clip.centre_sd_px = median_of(sds);
+  clip.marker_expected_px = experiment.marker->diameter_m * px_per_m;
+  const CameraSettings& camera = *experiment.camera;
+  if (camera.exposure_s) clip.blur_px = clip.top_speed_px_s * *camera.exposure_s;
+  measure_smear(camera, attempt, clip);
+  clip.entered = at_edge(track.sightings.front(), clip);
+  clip.left = at_edge(track.sightings.back(), clip);
+  clip.longest_blur_px = clip.top_speed_px_s / camera.frame_rate_hz;
+  clip.stalls = stalls_of(track.sightings, std::max(clip.centre_sd_px, clip.position_noise_m.value_or(0.0) * px_per_m));
+  const std::size_t every = track.sightings.size() / kPathPlaces + 1;
+  for (std::size_t i = 0; i < track.sightings.size(); i += every) {
+    clip.path.push_back({track.sightings[i].u_px, track.sightings[i].v_px});
+  }
+  clip.sightings = track.sightings;
+}
+
+}  // namespace
+
+ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const ClipAttempt& attempt,
+                     const ClipWatches& watches) {
+  const TrackData& track = attempt.track;
+  ClipCheck clip;
+  clip.name = setup.name;
+  clip.pictures = !setup.file.empty();
+  clip.failure = attempt.failure;
+  if (!clip.failure.empty()) return clip;
+  clip.notes = track.notes;
+  clip.frames = track.frame_t_s.size();
+  clip.seen = track.x_m.size();
+  if (!track.frame.empty()) {
+    clip.first = track.frame.front();
+    clip.spanned = track.frame.back() - clip.first + 1;
+  }
+  clip.frame_rate_hz = track.frame_rate_hz;
+  if (track.x_m.size() >= kFewestTrackPoints) clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
+  if (!track.x_m.empty()) {
+    const auto [least, most] = std::minmax_element(track.x_m.begin(), track.x_m.end());
+    clip.way_m = *most - *least;
+  }
+  const Speeds speeds = speeds_of(track);
+  clip.top_speed_m_s = speeds.m_s;
+  clip.top_speed_px_s = speeds.px_s;
+  if (clip.pictures && !track.sightings.empty()) {
+    check_pictures(experiment, attempt, watches.of(setup.file), speeds.px_per_m, clip);
+  }
+  return clip;
+}
+
+}  // namespace glidelab::core

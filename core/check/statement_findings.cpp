@@ -1,0 +1,218 @@
+#include "core/check/statement_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/check/finding_words.h"
+#include "core/pictures/camera/camera_and_planes.h"
+#include "core/result/stated_values.h"
+
+namespace glidelab::core {
+namespace {
+
+// What each limit rests on is in docs/check.md.
+constexpr double kSizeAgrees = 0.15;       // of the logarithm
+constexpr double kSizeContradicts = 0.26;  // 30 %
+constexpr double kSharp = 0.5;             // marker diameters of smear, above which an outline is no measure of size
+constexpr double kAgainstLaunch = 0.25;    // share of the points that move freely
+constexpr double kBeyondTrack = 1.05;      // of length_m
+
+double size_off(const ClipCheck& clip) {
+  return clip.marker_expected_px > 0.0 && clip.marker_px > 0.0
+             ? std::abs(std::log(clip.marker_px / clip.marker_expected_px))
+             : 0.0;
+}
+
+/// The keys that turn pixels, or a file's numbers, into metres.
+std::string lengths_of(const Experiment& experiment) {
+  std::vector<std::string> keys;
+  if (experiment.calibration) keys.emplace_back("square_m");
+  if (experiment.scale) keys.emplace_back("[scale]");
+  const auto is_track = [](const ClipSetup& clip) { return clip.file.empty(); };
+  if (std::any_of(experiment.clips.begin(), experiment.clips.end(), is_track)) {
+    keys.emplace_back("the unit of x in the tracks (metres)");
+  }
+  return fmt::format("{}", fmt::join(keys, ", "));
+}
+
+/// Gliders of one track do not differ so; grams and kilograms do.
+void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) {
+  const auto lighter = [](const ClipSetup& a, const ClipSetup& b) { return a.mass_kg < b.mass_kg; };
+  const auto least = std::min_element(experiment.clips.begin(), experiment.clips.end(), lighter);
+  std::vector<std::string> heavy;
+  for (const ClipSetup& clip : experiment.clips) {
+    if (clip.mass_kg >= kMassRatio * least->mass_kg)
+      heavy.push_back(fmt::format("{} ({:.6g})", clip.name, clip.mass_kg));
+  }
+  if (heavy.empty()) return;
+  findings.push_back({Severity::unusable, "masses",
+                      fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", list_of(heavy), kMassRatio,
+                                  least->name, least->mass_kg),
+                      "state every mass in kilograms: one looks like grams"});
+}
+
+/// One finding for all clips: they share the marker and the scale.
+void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clips, std::vector<Finding>& findings) {
+  std::vector<std::string> names;
+  const ClipCheck* worst = nullptr;
+  bool contradicts = false;
+  for (const ClipCheck& clip : clips) {
+    if (!size_disagrees(clip)) continue;
+    names.push_back(clip.name);
+    if (worst == nullptr || size_off(clip) > size_off(*worst)) worst = &clip;
+    contradicts = contradicts || (size_off(clip) > kSizeContradicts && likely_blur_px(clip) <= kSharp * clip.marker_px);
+  }
+  if (worst == nullptr) return;
+  const std::string length = experiment.scale ? "[scale]" : "square_m";
+  findings.push_back(
+      {contradicts ? Severity::unusable : Severity::change, list_of(names),
+       fmt::format("the marker is {:.3g} px wide, and diameter_m and {} make it {:.3g} px: {:.0f} % off",
+                   worst->marker_px, length, worst->marker_expected_px, 100.0 * std::expm1(size_off(*worst))),
+       fmt::format("measure diameter_m and {} again: one length is wrong, and if it is not diameter_m all speeds and "
+                   "accelerations are with it",
+                   length)});
+}
+
+/// A marker cannot run farther than the track is long.
+void judge_way(const Experiment& experiment, const std::vector<ClipCheck>& clips, std::vector<Finding>& findings) {
+  if (!experiment.track.length_m) return;
+  std::vector<std::string> names;
+  double way_m = 0.0;
+  for (const ClipCheck& clip : clips) {
+    if (clip.way_m <= kBeyondTrack * *experiment.track.length_m) continue;
+    names.push_back(clip.name);
+    way_m = std::max(way_m, clip.way_m);
+  }
+  if (names.empty()) return;
+  findings.push_back({Severity::unusable, list_of(names),
+                      fmt::format("the glider runs over {:.3g} m, and length_m in [track] says {:.3g} m", way_m,
+                                  *experiment.track.length_m),
+                      fmt::format("measure the track again, and see {}", lengths_of(experiment))});
+}
+
+/// The configuration of a group that is farthest off what is stated, and by what.
+struct Worst {
+  const ConfigurationResult* configuration = nullptr;
+  InclineContradiction contradiction;
+};
+
+void keep_worse(const ConfigurationResult& configuration, const std::optional<InclineContradiction>& found,
+                std::map<std::string, Worst>& worst) {
+  if (!found) return;
+  Worst& of_group = worst[configuration.group];
+  if (of_group.configuration != nullptr && std::pair(of_group.contradiction.gross, of_group.contradiction.off_deg) >=
+                                               std::pair(found->gross, found->off_deg)) {
+    return;
+  }
+  of_group = {&configuration, *found};
+}
+
+/// One finding for a group: its clips share the inclination.
+void judge_incline(const Experiment& experiment, const RecordingCheck& check, std::vector<Finding>& findings) {
+  std::map<std::string, Worst> by_key, by_plumb;
+  for (const ConfigurationResult& configuration : check.configurations) {
+    const auto against = [&](const StatedIncline& stated) {
+      return incline_contradiction(configuration, experiment.gravity_m_s2, stated);
+    };
+    keep_worse(configuration, against(stated_incline(configuration)), by_key);
+    for (const PlumbResult& plumb : check.plumbs) {
+      if (plumb.group != configuration.group || !plumb.plumb_deg.estimate) continue;
+      const Estimate& angle = *plumb.plumb_deg.estimate;
+      keep_worse(configuration, against({angle.value, angle.sd, "the plumb line"}), by_plumb);
+    }
+  }
+  for (const auto* worst_of : {&by_key, &by_plumb}) {
+    for (const auto& [group, worst] : *worst_of) {
+      if (worst_of == &by_plumb && by_key.contains(group)) continue;  // said
+      findings.push_back({worst.contradiction.gross ? Severity::unusable : Severity::change,
+                          list_of(worst.configuration->clips), worst.contradiction.sentence,
+                          fmt::format("one of these is not as on the bench: {}, gravity_m_s2, {}{}",
+                                      worst_of == &by_key ? "incline_deg" : "the plumb line", lengths_of(experiment),
+                                      experiment.camera ? ", frame_rate_hz (it counts twice)" : "")});
+    }
+  }
+}
+
+/// A hand rests or pushes before the glider goes its way; free motion turns.
+bool moves_against_launch(const ClipCheck& clip) {
+  if (!clip.against_launch || clip.against_launch->share < kAgainstLaunch) return false;
+  return !clip.against_launch->until_s || clip.against_launch->at_a_turn;
+}
+
+/// The two keys that say where the launch went, of one clip.
+struct StatedLaunch {
+  bool own_downhill = false;  ///< of its [group], not of [track]
+  std::string sentence;       ///< "launched = "up" and downhill = "+X""
+};
+
+StatedLaunch stated_launch(const Experiment& experiment, const ClipSetup& clip) {
+  const GroupSetup* group = group_of(experiment, clip.group);
+  StatedLaunch stated{group != nullptr && group->downhill.has_value(), {}};
+  const int downhill = stated.own_downhill ? *group->downhill : experiment.track.downhill;
+  const std::string launched = clip.launched == Launched::up     ? "up"
+                               : clip.launched == Launched::down ? "down"
+                                                                 : "released";
+  stated.sentence = fmt::format("launched = \"{}\" and downhill = \"{}\"", launched, downhill > 0 ? "+X" : "-X");
+  return stated;
+}
+
+/// One finding for all clips, with the worst of them: one wrong key in [track] turns them all.
+void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& clips, std::vector<Finding>& findings) {
+  std::vector<std::string> names;
+  const ClipCheck* worst = nullptr;
+  StatedLaunch of_worst;
+  bool own = false, shared = false;  // where the downhill stands that these clips go by
+  for (const ClipCheck& clip : clips) {
+    const auto setup = std::find_if(experiment.clips.begin(), experiment.clips.end(),
+                                    [&](const ClipSetup& of) { return of.name == clip.name; });
+    if (setup == experiment.clips.end() || !moves_against_launch(clip)) continue;
+    StatedLaunch stated = stated_launch(experiment, *setup);
+    names.push_back(clip.name);
+    (stated.own_downhill ? own : shared) = true;
+    if (worst != nullptr && clip.against_launch->share <= worst->against_launch->share) continue;
+    worst = &clip;
+    of_worst = std::move(stated);
+  }
+  if (worst == nullptr) return;
+  const bool many = names.size() > 1;
+  const std::string whose =
+      many ? fmt::format("{} of {} clips move freely against their launch; most of all {}: ", names.size(),
+                         clips.size(), worst->name)
+           : "";
+  findings.push_back(
+      {Severity::unusable, list_of(names),
+       fmt::format("{}{}, as {} say; that is {} of its free motion", whose, sentence(*worst->against_launch),
+                   of_worst.sentence, percent(worst->against_launch->share)),
+       fmt::format("see which of the two is wrong: launched of {}, or downhill in {}; if neither is, "
+                   "start_s says where the hand lets go",
+                   many ? "these clips" : "this clip",
+                   own && shared ? "[track] or [group]"
+                   : own         ? "[group]"
+                                 : "[track]")});
+}
+
+}  // namespace
+
+bool size_disagrees(const ClipCheck& clip) {
+  return size_off(clip) > kSizeAgrees;
+}
+
+double likely_blur_px(const ClipCheck& clip) {
+  return std::max(clip.measured_blur_px.value_or(0.0),
+                  clip.blur_px.value_or(clip.measured_blur_px ? 0.0 : clip.longest_blur_px));
+}
+
+std::vector<Finding> statement_findings(const Experiment& experiment, const RecordingCheck& check) {
+  std::vector<Finding> findings;
+  judge_masses(experiment, findings);
+  judge_size(experiment, check.clips, findings);
+  judge_way(experiment, check.clips, findings);
+  judge_incline(experiment, check, findings);
+  judge_launch(experiment, check.clips, findings);
+  return findings;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,285 @@
+#include "core/experiment/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/errors.h"
+#include "base/toml/strict_toml.h"
+#include "core/experiment/experiment_groups.h"
+#include "core/experiment/folder_files.h"
+
+namespace glidelab::core {
+namespace fs = std::filesystem;
+using base::TomlTable;
+
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+constexpr long kLargestPicturePx = 100000;  // larger than any sensor; keeps rectangles within int
+
+CameraSettings read_camera(const TomlTable& table) {
+  CameraSettings camera;
+  camera.frame_rate_hz = table.number("frame_rate_hz", base::above(0.0));
+  camera.exposure_s = table.maybe_number("exposure_s", base::above(0.0));
+  camera.shutter =
+      table.word("shutter", {"global", "rolling"}, "global") == "rolling" ? Shutter::rolling : Shutter::global;
+  camera.line_readout_s = camera.shutter == Shutter::rolling
+                              ? table.number("line_readout_s", base::at_least(0.0))
+                              : table.number_or("line_readout_s", 0.0, base::at_least(0.0));
+  camera.bottom_row_first = table.word("first_row", {"top", "bottom"}, "top") == "bottom";
+  if (camera.shutter == Shutter::global && camera.bottom_row_first) {
+    table.reject("first_row", "\"bottom\" with a global shutter", "shutter = \"rolling\"");
+  }
+  camera.bit_depth = static_cast<int>(table.integer_or("bit_depth", 8, 8, 16));
+  camera.time =
+      table.word("time", {"rate", "container"}, "rate") == "container" ? TimeSource::container : TimeSource::rate;
+  if (camera.shutter == Shutter::global && camera.line_readout_s > 0.0) {
+    table.reject("line_readout_s", fmt::format("{} with a global shutter", camera.line_readout_s),
+                 "0, or shutter = \"rolling\"");
+  }
+  // One frame's exposure ends before the next one's starts; 1 % for rates that are stated rounded (240 for 239.76).
+  if (camera.exposure_s && *camera.exposure_s * camera.frame_rate_hz > 1.01) {
+    table.reject("exposure_s", fmt::format("{}", *camera.exposure_s),
+                 fmt::format("at most the time from one frame to the next, {:.6g} s", 1.0 / camera.frame_rate_hz));
+  }
+  return camera;
+}
+
+CalibrationSetup read_calibration(const TomlTable& table, const FolderFiles& folder) {
+  CalibrationSetup setup;
+  table.word("pattern", {"chessboard"});
+  const std::vector<double> corners = table.numbers("inner_corners", 2, base::between(3, 100));
+  if (std::all_of(corners.begin(), corners.end(), [](double n) { return n == std::floor(n); })) {
+    setup.inner_corners = cv::Size(static_cast<int>(corners[0]), static_cast<int>(corners[1]));
+  } else if (std::isfinite(corners[0])) {
+    table.reject("inner_corners", fmt::format("[{}, {}]", corners[0], corners[1]), "two whole numbers");
+  }
+  setup.square_m = table.number("square_m", base::above(0.0));
+  setup.views = folder.files(table, "views");
+  if (table.has("plane")) setup.planes = folder.files(table, "plane");
+  return setup;
+}
+
+ScaleSetup read_scale(const TomlTable& table) {
+  ScaleSetup setup;
+  const bool from_points = table.has("from_px") || table.has("to_px") || table.has("length_m");
+  const double sd = table.number_or("px_per_m_sd", 0.0, base::at_least(0.0));
+  if (!from_points) {
+    setup.px_per_m = table.number("px_per_m", base::above(0.0));
+    setup.px_per_m_sd = sd;
+    return setup;
+  }
+  if (table.has("px_per_m")) {
+    table.reject("px_per_m", "a value beside from_px, to_px and length_m", "either px_per_m or those three");
+  }
+  const std::vector<double> from = table.numbers("from_px", 2);
+  const std::vector<double> to = table.numbers("to_px", 2);
+  const double length_m = table.number("length_m", base::above(0.0));
+  const double length_px = std::hypot(to[0] - from[0], to[1] - from[1]);
+  if (length_px == 0.0) table.reject("to_px", "the same point as from_px", "another point");
+  setup.px_per_m = length_px / length_m;
+  // Both ends are read off the picture to one pixel; a value that is given counts instead.
+  setup.px_per_m_sd = table.has("px_per_m_sd") ? sd : std::numbers::sqrt2 / length_m;
+  return setup;
+}
+
+PlumbSetup read_plumb(const TomlTable& table, const FolderFiles& folder) {
+  PlumbSetup setup;
+  setup.view = folder.file(table, "view");
+  const std::vector<double> region = table.numbers("region", 4, base::between(0, kLargestPicturePx));
+  if (!std::isfinite(region[0])) return setup;
+  if (region[2] < 3.0 || region[3] < 3.0) {
+    table.reject("region", fmt::format("{} x {} pixels", region[2], region[3]),
+                 "a width and a height of at least 3 pixels");
+  }
+  const auto whole = [](double value) { return static_cast<int>(std::lround(value)); };
+  setup.region = cv::Rect(whole(region[0]), whole(region[1]), whole(region[2]), whole(region[3]));
+  return setup;
+}
+
+std::optional<cv::Vec3b> read_color(const TomlTable& table) {
+  const std::optional<std::string> text = table.maybe_text("color");
+  if (!text || text->empty()) return std::nullopt;
+  const bool is_hex =
+      text->size() == 7 && text->front() == '#' &&
+      std::all_of(text->begin() + 1, text->end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
+  if (!is_hex) {
+    table.reject("color", fmt::format("text \"{}\"", *text), "a colour \"#rrggbb\"");
+    return std::nullopt;
+  }
+  const unsigned long rgb = std::stoul(text->substr(1), nullptr, 16);
+  return cv::Vec3b(static_cast<uchar>(rgb & 0xff), static_cast<uchar>((rgb >> 8) & 0xff),
+                   static_cast<uchar>((rgb >> 16) & 0xff));
+}
+
+MarkerSetup read_marker(const TomlTable& table) {
+  MarkerSetup setup;
+  setup.diameter_m = table.number("diameter_m", base::above(0.0));
+  setup.height_m = table.number_or("height_m", 0.0);
+  setup.color_bgr = read_color(table);
+  if (const auto start = table.maybe_numbers("start_px", 2, base::at_least(0.0))) {
+    setup.start_px = cv::Point2d((*start)[0], (*start)[1]);
+  }
+  return setup;
+}
+
+int read_downhill(const TomlTable& table) {
+  return table.word("downhill", {"+X", "-X"}) == "-X" ? -1 : 1;
+}
+
+Launched read_launched(const TomlTable& table) {
+  const std::string word = table.word("launched", {"up", "down", "released"});
+  if (word == "up") return Launched::up;
+  return word == "down" ? Launched::down : Launched::released;
+}
+
+ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
+  ClipSetup clip;
+  clip.name = table.text("name");
+  // The name becomes part of file names (phase-NAME.csv).
+  if (clip.name.find_first_of("/\\") != std::string::npos ||
+      std::any_of(clip.name.begin(), clip.name.end(), [](unsigned char c) { return c < 0x20; })) {
+    table.reject("name", fmt::format("text \"{}\"", clip.name), "a name without slashes and control characters");
+  }
+  if (table.has("file") && table.has("track")) {
+    table.reject("track", "a track beside a file", "either file or track");
+  }
+  if (table.has("track")) {
+    clip.track = folder.file(table, "track");
+    clip.column = table.maybe_text("column").value_or("");
+    if (table.has("file"))
+      clip.file = folder.folder / table.text("file");  // an error already; the sections are asked for
+  } else {
+    clip.file = folder.file(table, "file", true);
+  }
+  clip.mass_kg = table.number("mass_kg", base::above(0.0));
+  clip.mass_sd_kg = table.number_or("mass_sd_kg", 0.0, base::at_least(0.0));
+  clip.incline_rad = table.number("incline_deg", base::between_open(-90.0, 90.0)) * kRadiansPerDegree;
+  if (const auto sd_deg = table.maybe_number("incline_sd_deg", base::at_least(0.0))) {
+    clip.incline_sd_rad = *sd_deg * kRadiansPerDegree;
+  }
+  clip.launched = read_launched(table);
+  clip.start_s = table.maybe_number("start_s");
+  clip.end_s = table.maybe_number("end_s");
+  if (clip.start_s && clip.end_s && *clip.start_s >= *clip.end_s) {
+    table.reject("end_s", fmt::format("{}", *clip.end_s), fmt::format("a time after start_s = {}", *clip.start_s));
+  }
+  clip.group = table.maybe_text("group").value_or("");
+  return clip;
+}
+
+GroupSetup read_group(const TomlTable& table, const FolderFiles& folder) {
+  GroupSetup group;
+  group.name = table.text("name");
+  if (table.has("plane")) group.planes = folder.files(table, "plane");
+  if (const auto plumb = table.maybe_table("plumb")) group.plumb = read_plumb(*plumb, folder);
+  if (table.has("downhill")) group.downhill = read_downhill(table);
+  return group;
+}
+
+bool stated_by_all_groups(const Experiment& experiment, bool only_pictures, bool (*states)(const GroupSetup&)) {
+  return std::all_of(experiment.clips.begin(), experiment.clips.end(), [&](const ClipSetup& clip) {
+    if (only_pictures && clip.file.empty()) return true;
+    return std::any_of(experiment.groups.begin(), experiment.groups.end(),
+                       [&](const GroupSetup& group) { return group.name == clip.group && states(group); });
+  });
+}
+
+/// The sections that clips made of pictures cannot do without.
+void check_sections(const Experiment& experiment, const TomlTable& root) {
+  if (experiment.calibration && experiment.scale) {
+    root.reject("scale", "a table [scale] beside [calibration]", "one of the two");
+  }
+  const auto picture = std::find_if(experiment.clips.begin(), experiment.clips.end(),
+                                    [](const ClipSetup& clip) { return !clip.file.empty(); });
+  if (picture == experiment.clips.end()) return;
+  const std::string needed_by = fmt::format("for clip \"{}\"", picture->name);
+  if (!experiment.camera) root.reject("camera", "nothing", fmt::format("a table [camera], {}", needed_by));
+  if (!experiment.marker) root.reject("marker", "nothing", fmt::format("a table [marker], {}", needed_by));
+  if (!experiment.calibration && !experiment.scale) {
+    root.reject("calibration", "nothing", fmt::format("a table [calibration] or [scale], {}", needed_by));
+  }
+  if (experiment.calibration && experiment.calibration->planes.empty() && !root.table("calibration").has("plane") &&
+      !stated_by_all_groups(experiment, true, [](const GroupSetup& group) { return !group.planes.empty(); })) {
+    root.table("calibration").reject("plane", "nothing", "a text, the view with the pattern in the plane of motion");
+  }
+}
+
+/// The first thing that goes wrong in a first hour: no folder, another one, or a file of it.
+void check_folder(const fs::path& path) {
+  const std::string wanted = "a folder with an experiment.toml (glidelab new FOLDER makes one that explains every key)";
+  const auto refuse = [&](const std::string& found, const std::string& expected) {
+    throw base::InputError(base::Issue{path.string(), 0, "", found, expected});
+  };
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (status.type() == fs::file_type::none) refuse(failure.message(), wanted);
+  if (!fs::exists(status)) refuse("nothing", wanted);
+  if (path.filename() == "experiment.toml") {
+    refuse("a file",
+           fmt::format("the folder that it is in, {}", path.has_parent_path() ? path.parent_path().string() : "."));
+  }
+  if (!fs::is_directory(status)) refuse("a file", wanted);
+  if (!fs::exists(path / "experiment.toml", failure)) refuse("a folder without experiment.toml", wanted);
+}
+
+}  // namespace
+
+Experiment read_experiment(const fs::path& path) {
+  return read_experiment(path, OutsideFiles::refused);
+}
+
+Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
+  check_folder(path);
+  const FolderFiles folder{path, outside};
+  Experiment experiment;
+  experiment.folder = path;
+  experiment.file = path / "experiment.toml";
+  const base::TomlFile file = base::TomlFile::load(experiment.file);
+  const TomlTable root = file.root();
+
+  root.integer("format", 1, 1);
+  root.ignore("extra");
+  experiment.name = root.text("name");
+  experiment.gravity_m_s2 = root.number_or("gravity_m_s2", experiment.gravity_m_s2, base::above(0.0));
+  if (const auto table = root.maybe_table("camera")) experiment.camera = read_camera(*table);
+  if (const auto table = root.maybe_table("calibration")) experiment.calibration = read_calibration(*table, folder);
+  if (const auto table = root.maybe_table("scale")) experiment.scale = read_scale(*table);
+  if (const auto table = root.maybe_table("plumb")) experiment.plumb = read_plumb(*table, folder);
+  if (const auto table = root.maybe_table("marker")) experiment.marker = read_marker(*table);
+  if (root.has("lines")) experiment.lines = folder.file(root, "lines");
+
+  const std::vector<TomlTable> clip_tables =
+      experiment.lines || root.has("lines") ? root.tables_or_none("clip") : root.tables("clip");
+  for (const TomlTable& table : clip_tables) experiment.clips.push_back(read_clip(table, folder));
+  if (experiment.lines && !clip_tables.empty()) {
+    root.reject("lines", "a table of lines beside [[clip]]", "either lines or clips");
+  }
+  name_groups(experiment.clips);
+  const std::vector<TomlTable> group_tables = root.tables_or_none("group");
+  for (const TomlTable& table : group_tables) experiment.groups.push_back(read_group(table, folder));
+  check_names(experiment.clips, clip_tables, experiment.groups, group_tables);
+  check_readings(experiment.clips, clip_tables);
+
+  // A group may have its own downhill; [track] is needed where one has not.
+  const auto track = root.maybe_table("track");
+  if (track) experiment.track.length_m = track->maybe_number("length_m", base::above(0.0));
+  if (track && track->has("downhill")) {
+    experiment.track.downhill = read_downhill(*track);
+  } else if (!stated_by_all_groups(experiment, false,
+                                   [](const GroupSetup& group) { return group.downhill.has_value(); })) {
+    if (track) {
+      read_downhill(*track);
+    } else {
+      root.table("track");
+    }
+  }
+  check_sections(experiment, root);
+  file.finish();
+  return experiment;
+}
+
+}  // namespace glidelab::core

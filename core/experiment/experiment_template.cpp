@@ -1,0 +1,124 @@
+#include "core/experiment/experiment_template.h"
+
+#include <fmt/format.h>
+
+#include "base/toml/toml_set.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::string_view kToml =
+    R"(# Lengths are in metres, times in seconds, angles in degrees, masses in kilograms.
+# A line "#key = value" is a key that you may use: take the # away. A misspelt key is an error, not ignored.
+
+#gravity_m_s2 = 9.80665            # at your place: 9.78 (equator) to 9.83 (poles); this is the default
+
+# ---- The camera: what it was told to do, or what its data sheet says.
+[camera]
+frame_rate_hz = 240.0              # what it filmed at, whatever rate the file plays at
+#exposure_s = 0.001                # exposure time of one frame; a short one keeps the marker sharp
+#shutter = "global"                # or "rolling" (phones, webcams): then line_readout_s says how slowly it rolls
+#line_readout_s = 0.00002          # rolling only: time from one row to the next
+#first_row = "top"                 # rolling only: the row that is read first, "top" or "bottom" (camera upside down)
+#bit_depth = 8                     # 8 to 16
+#time = "rate"                     # frame k is at k / frame_rate_hz; "container": at the file's own time stamp
+
+# ---- The pattern: the chessboard that "glidelab pattern" draws, printed and glued to something flat.
+[calibration]
+pattern = "chessboard"
+inner_corners = [9, 6]             # where four squares meet; a board of 10 x 7 squares has 9 x 6
+square_m = 0.025                   # side of one square AS PRINTED: measure 9 in a row with a ruler
+views = "calibration/view-*.png"   # a dozen pictures: tilted to all sides, near and far, out to the picture's corners
+plane = "calibration/plane.png"    # the pattern where the marker moves, its long side along the track; several pictures
+                                   # along the track are better: "calibration/plane-*.png"
+
+# ---- Or, instead of [calibration], one scale: no lens is corrected, and all lengths are as good as this one.
+#[scale]
+#px_per_m = 480.0                  # or from_px, to_px and length_m together
+#from_px = [100.0, 240.0]          # two points of the picture ...
+#to_px = [580.0, 240.0]
+#length_m = 1.0                    # ... and how far they are apart in the plane of motion
+#px_per_m_sd = 5.0                 # how far the scale may be off
+
+# ---- A plumb line in the picture, which tells the inclination (and with it mu of a single direction).
+#[plumb]
+#view = "plumb.png"
+#region = [40, 0, 120, 500]        # x, y, width, height in pixels, around the line
+
+# ---- The marker: a disc or ball that contrasts with everything near its path.
+[marker]
+diameter_m = 0.016                 # AS PRINTED: the sheet of "glidelab pattern" has discs of 8, 12, 16 and 24 mm
+#height_m = 0.0                    # its centre off the pattern's plane, towards the camera
+#color = "#101010"                 # a black disc (left out, a bright one is looked for first); or the hue of an object, as "#e04020"
+#start_px = [400, 120]             # where it is in the first frame, should something else move as well
+
+[track]
+downhill = "+X"                    # which way is down along the pattern's long row, which runs from the side with black
+                                   # corner squares to that with white ones; level track: which way you call positive
+#length_m = 2.0
+
+# ---- The clips, one [[clip]] a motion. mu and the inclination need both directions: launch it both ways, or up a
+#      slope that it comes back down. More masses tell more.
+[[clip]]
+name = "m1-up"
+file = "clips/m1-up.mp4"           # a video, or a folder of frames
+#track = "tracks/m1-up.csv"        # instead of file, for a motion tracked elsewhere: t_s,x_m; an export of Tracker, ...
+#column = "x"                      # of an export with several columns: which one is x, by header or number
+mass_kg = 0.335                    # glider with marker and load
+#mass_sd_kg = 0.0005               # how far the mass may be off
+incline_deg = 4.0                  # of the track, as set; one reading for all clips of a group
+#incline_sd_deg = 0.3              # how far that may be off
+launched = "up"                    # "up" (towards -x), "down" (towards +x) or "released"
+#start_s = 0.2                     # the part of the clip in which the glider moves freely; ...
+#end_s = 1.8                       # ... left out, the analysis finds it
+#group = "slope"                   # clips that share one inclination; default: those of equal incline_deg
+
+[[clip]]
+name = "m1-down"
+file = "clips/m1-down.mp4"
+mass_kg = 0.335
+incline_deg = 4.0
+launched = "down"
+
+# ---- What one set-up has of its own, where the track or camera was moved between clips.
+#[[group]]
+#name = "slope"
+#plane = "calibration/plane.png"
+#plumb = { view = "plumb.png", region = [40, 0, 120, 500] }
+#downhill = "+X"
+
+# ---- Your own notes; nothing here is read.
+[extra]
+notes = ""
+)";
+
+constexpr std::string_view kReadme = R"(
+What goes where, and what follows. `experiment.toml` explains every key.
+
+1. **Pattern.** `glidelab pattern` draws a chessboard and markers to print. Print at 100 %, check the ruler line, glue the
+   board flat, and write the side of a square *as measured* into `experiment.toml`.
+2. **Camera.** On something that does not move, at right angles to the track. Focus, exposure and zoom fixed; short exposure, much
+   light. From here on nothing of the camera is touched.
+3. **`calibration/`.** `view-00.png`, `view-01.png`, …: a dozen pictures of the board, tilted to all sides, near and far, reaching
+   into all corners of the picture. `plane.png`: the board held where the marker will move, its long side along the track.
+4. **`clips/`.** One clip a motion, both directions, and more than one mass if you can. Say of each in `experiment.toml` its
+   mass, the inclination and how it was launched.
+
+Then, before you put anything away:
+
+    glidelab check .       # is the recording good enough? says what to change
+    glidelab analyze .     # K/m, mu, inclination, limit velocity
+    glidelab diagnose .    # what the simple law does not explain, if anything
+)";
+
+}  // namespace
+
+std::string experiment_template(std::string_view name) {
+  return fmt::format("format = 1\nname = {}\n\n{}", base::toml_string(name), kToml);
+}
+
+std::string experiment_readme(std::string_view name) {
+  return fmt::format("# {}\n{}", name, kReadme);
+}
+
+}  // namespace glidelab::core

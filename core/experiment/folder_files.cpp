@@ -1,0 +1,56 @@
+#include "core/experiment/folder_files.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include "core/experiment/file_glob.h"
+
+namespace glidelab::core {
+namespace fs = std::filesystem;
+namespace {
+
+/// The name without detours, or nothing where it is recorded as an error.
+std::optional<std::string> name_within(const base::TomlTable& table, std::string_view key, OutsideFiles outside) {
+  const std::string name = table.text(key);
+  if (name.empty()) return std::nullopt;
+  if (name.find('\0') != std::string::npos) {
+    table.reject(key, "a name with a zero byte", "the name of a file");
+    return std::nullopt;
+  }
+  const fs::path plain = fs::path(name).lexically_normal();
+  if (outside == OutsideFiles::refused && (plain.is_absolute() || *plain.begin() == "..")) {
+    table.reject(key, fmt::format("\"{}\", outside the folder", name),
+                 "a file in the experiment's folder (--allow-outside takes others)");
+    return std::nullopt;
+  }
+  return plain.string();
+}
+
+}  // namespace
+
+std::vector<fs::path> FolderFiles::files(const base::TomlTable& table, std::string_view key) const {
+  const auto pattern = name_within(table, key, outside);
+  if (!pattern) return {};
+  std::vector<fs::path> files = files_matching(folder, *pattern);
+  if (files.empty()) {
+    table.reject(key, fmt::format("no file {}", (folder / *pattern).string()),
+                 "the name of one or more files that exist");
+  }
+  return files;
+}
+
+fs::path FolderFiles::file(const base::TomlTable& table, std::string_view key, bool or_folder) const {
+  const auto name = name_within(table, key, outside);
+  if (!name) return {};
+  fs::path path = folder / *name;
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored) || (or_folder && fs::is_directory(path, ignored))) return path;
+  table.reject(key, fmt::format("no file {}", path.string()),
+               or_folder ? "the name of a file or a folder of frames that exists" : "the name of a file that exists");
+  return path;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,32 @@
+/// The files that experiment.toml names, and where they may lie.
+///
+/// A name counts from the folder and is taken as it is written (a/../b is b). One that leaves the folder, or that is
+/// absolute, is refused unless the person who runs the program allows it: a folder that came from elsewhere cannot make
+/// the program open what is not in it. A symbolic link in the folder is followed: whoever put it there asked for it.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "base/toml/strict_toml.h"
+#include "core/experiment/experiment.h"
+
+namespace glidelab::core {
+
+enum class OutsideFiles { refused, allowed };
+
+struct FolderFiles {
+  std::filesystem::path folder;
+  OutsideFiles outside = OutsideFiles::refused;
+
+  /// The files that a key with wildcards names; at least one, else that is recorded as an error of the key.
+  std::vector<std::filesystem::path> files(const base::TomlTable& table, std::string_view key) const;
+  /// The one file that a key names, or where `or_folder` the folder of frames; that it exists is checked.
+  std::filesystem::path file(const base::TomlTable& table, std::string_view key, bool or_folder = false) const;
+};
+
+/// read_experiment() of experiment.h, of which files outside the folder are a choice.
+Experiment read_experiment(const std::filesystem::path& folder, OutsideFiles outside);
+
+}  // namespace glidelab::core

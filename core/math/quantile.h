@@ -1,0 +1,33 @@
+/// Quantiles of some numbers, and the time step of a series.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/math/normal95.h"
+
+namespace glidelab::core {
+
+using base::kNormal95;
+
+/// Standard deviation of normal numbers about zero over the median of their magnitudes: over the quantile of 0.75.
+inline constexpr double kSdOverMedian = 1.0 / 0.674489750196082;
+
+/// The value below which the given part of the numbers lies (the lower of two neighbours); 0 where there are none.
+inline double quantile(std::vector<double> values, double part) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// The median step between times that rise; 0 for fewer than two.
+inline double median_step(std::span<const double> t_s) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);
+  return quantile(std::move(steps), 0.5);
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,110 @@
+// Rules that look at how a changes with the bandwidth, point by point.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/math/quantile.h"
+#include "core/motion/bandwidth/bandwidth_derivative_rules.h"
+#include "core/motion/bandwidth/bandwidth_scan.h"
+
+namespace glidelab::core {
+namespace {
+
+/// a and its variance at every probe (inner) for every bandwidth (outer) of the grid; where a kernel holds too few
+/// points the variance is infinite.
+struct Estimates {
+  std::vector<std::vector<double>> a, variance;
+};
+
+Estimates estimates_of(const BandwidthScan& scan) {
+  Estimates estimates;
+  for (const double h : scan.grid()) {
+    const std::vector<LocalPolynomial> smoothers = scan.smoothers(h);
+    RowVariance variance(scan.problem().noise.autocovariance);
+    auto& a = estimates.a.emplace_back();
+    auto& of_a = estimates.variance.emplace_back();
+    for (const Probe& probe : scan.probes()) {
+      const auto row = smoothers[probe.part].row_of_point(probe.point);
+      a.push_back(row ? weighted_sums(*row, scan.problem().parts[probe.part].x_m).a_m_s2 : 0.0);
+      of_a.push_back(row ? variance.of_a(*row) : std::numeric_limits<double>::infinity());
+    }
+  }
+  return estimates;
+}
+
+/// c_1 h^2 of c_0 + c_1 h^2 by least squares through the bandwidths from … to - 1.
+double empirical_bias(const std::vector<double>& grid, const Estimates& estimates, std::size_t from, std::size_t to,
+                      std::size_t at, std::size_t probe) {
+  double n = 0.0, s = 0.0, a = 0.0, ss = 0.0, sa = 0.0;
+  for (std::size_t i = from; i < to; ++i) {
+    const double square = grid[i] * grid[i] / (grid[at] * grid[at]);
+    n += 1.0;
+    s += square;
+    a += estimates.a[i][probe];
+    ss += square * square;
+    sa += square * estimates.a[i][probe];
+  }
+  return (sa - s * a / n) / (ss - s * s / n);
+}
+
+}  // namespace
+
+std::optional<BandwidthPick> EmpiricalBias::choose(const BandwidthProblem& problem) const {
+  constexpr std::size_t kEachSide = 4;
+  const BandwidthScan scan(problem);
+  const std::vector<double>& grid = scan.grid();
+  if (grid.size() <= 2 * kEachSide || scan.probes().empty()) return {};
+  const Estimates estimates = estimates_of(scan);
+  std::vector<double> criterion(grid.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = kEachSide; i + kEachSide < grid.size(); ++i) {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < scan.probes().size(); ++p) {
+      const double bias = empirical_bias(grid, estimates, i - kEachSide, i + kEachSide + 1, i, p);
+      sum += bias * bias + estimates.variance[i][p];
+    }
+    criterion[i] = std::isfinite(sum) ? sum : std::numeric_limits<double>::quiet_NaN();
+  }
+  const auto best = least(criterion);
+  if (!best) return {};
+  BandwidthPick pick;
+  pick.bandwidth_s = grid[*best];
+  pick.method = fmt::format("empirical bias: noise and bias of a together {:.2g} m/s^2",
+                            std::sqrt(criterion[*best] / static_cast<double>(scan.probes().size())));
+  if (*best == kEachSide) pick.method += " (the narrowest tried)";
+  if (*best + kEachSide + 1 == grid.size()) pick.method += " (the widest tried)";
+  return pick;
+}
+
+std::optional<BandwidthPick> IntersectionOfIntervals::choose(const BandwidthProblem& problem) const {
+  const BandwidthScan scan(problem);
+  const std::vector<double>& grid = scan.grid();
+  if (grid.empty() || scan.probes().empty()) return {};
+  const Estimates estimates = estimates_of(scan);
+  BandwidthPick pick;
+  std::vector<double> chosen;
+  std::size_t widest = 0;
+  for (std::size_t p = 0; p < scan.probes().size(); ++p) {
+    double low = -std::numeric_limits<double>::infinity(), high = -low;
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const double half = kIciWidth * std::sqrt(estimates.variance[i][p]);
+      low = std::max(low, estimates.a[i][p] - half);
+      high = std::min(high, estimates.a[i][p] + half);
+      if (low > high) break;
+      taken = i;
+    }
+    if (taken + 1 == grid.size()) ++widest;
+    pick.local.push_back({scan.time(scan.probes()[p]), grid[taken]});
+    chosen.push_back(grid[taken]);
+  }
+  pick.bandwidth_s = quantile(chosen, 0.5);
+  const auto [low, high] = std::minmax_element(chosen.begin(), chosen.end());
+  pick.method =
+      fmt::format("intersection of confidence intervals: median of {:.1f} to {:.1f} ms", 1e3 * *low, 1e3 * *high);
+  if (2 * widest > chosen.size()) pick.method += " (the widest tried)";
+  return pick;
+}
+
+}  // namespace glidelab::core

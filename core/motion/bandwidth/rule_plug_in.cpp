@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/orthogonal_polynomials.h"
+#include "core/motion/bandwidth/bandwidth_derivative_rules.h"
+#include "core/motion/bandwidth/bandwidth_scan.h"
+#include "core/motion/smoothing/kernel_constants.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kGlobalOrder = 6;
+constexpr double kClear = 2.0;  // standard deviations by which the mean square of x'''' must stand out
+
+/// Sums over the points of a part: of x''''^2 as fitted, of its expectation by noise, and the variance of the first
+/// sum.
+struct FourthDerivative {
+  double square = 0.0, by_noise = 0.0, variance = 0.0;
+  std::size_t points = 0;
+};
+
+FourthDerivative fourth_derivative(const MotionPart& part, double noise_variance) {
+  FourthDerivative sums;
+  const std::size_t n = part.t_s.size();
+  if (n < 2 * (kGlobalOrder + 1)) return sums;
+  const double middle = 0.5 * (part.t_s.front() + part.t_s.back()), half = 0.5 * (part.t_s.back() - part.t_s.front());
+  std::vector<double> u, one(n, 1.0);
+  for (const double t : part.t_s) u.push_back((t - middle) / half);
+  const auto basis = OrthogonalPolynomials::make(kGlobalOrder, u, one);
+  if (!basis) return sums;
+  std::vector<double> coefficient;  // of p_k over its norm's root: independent, of the noise's variance
+  for (int k = 0; k <= kGlobalOrder; ++k) {
+    double projection = 0.0;
+    for (std::size_t i = 0; i < n; ++i) projection += basis->at_points(k)[i] * (part.x_m[i] - part.x_m[0]);
+    coefficient.push_back(projection / std::sqrt(basis->norm(k)));
+  }
+  // x''''(t) = sum_k c_k q_k(t); its sum of squares is c'Gc with G = sum over the points of q q'.
+  constexpr int kFirst = 4, kCount = kGlobalOrder - kFirst + 1;
+  double gram[kCount][kCount] = {};
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::vector<double> d = basis->derivatives(u[i], 4);
+    double q[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      q[k] = d[static_cast<std::size_t>((kFirst + k) * 5 + 4)] / std::sqrt(basis->norm(kFirst + k)) / std::pow(half, 4);
+    }
+    for (int r = 0; r < kCount; ++r) {
+      for (int c = 0; c < kCount; ++c) gram[r][c] += q[r] * q[c];
+    }
+  }
+  for (int r = 0; r < kCount; ++r) {
+    double of_row = 0.0;
+    for (int c = 0; c < kCount; ++c) {
+      of_row += gram[r][c] * coefficient[static_cast<std::size_t>(kFirst + c)];
+      sums.variance += 2.0 * gram[r][c] * gram[r][c] * noise_variance * noise_variance;
+    }
+    sums.square += coefficient[static_cast<std::size_t>(kFirst + r)] * of_row;
+    sums.by_noise += gram[r][r] * noise_variance;
+  }
+  sums.points = n;
+  return sums;
+}
+
+}  // namespace
+
+std::optional<BandwidthPick> PlugIn::choose(const BandwidthProblem& problem) const {
+  const BandwidthScan scan(problem);
+  if (scan.grid().empty()) return {};
+  const double white = sum_over_lags(problem.noise.autocovariance);
+  FourthDerivative all;
+  for (const MotionPart& part : problem.parts) {
+    const FourthDerivative of = fourth_derivative(part, white);
+    all.square += of.square;
+    all.by_noise += of.by_noise;
+    all.variance += of.variance;
+    all.points += of.points;
+  }
+  if (all.points == 0) return {};
+  BandwidthPick pick;
+  const double signal = all.square - all.by_noise;
+  const double narrowest = scan.grid().front(), widest = scan.grid().back();
+  if (signal <= kClear * std::sqrt(all.variance)) {
+    pick.bandwidth_s = widest;
+    pick.method = "plug-in: x'''' does not stand out of the noise; the widest tried";
+    return pick;
+  }
+  const double mean_square = signal / static_cast<double>(all.points);
+  const double ideal = std::pow(kGaussianA.best_h9() * white * problem.step_s / mean_square, 1.0 / 9.0);
+  pick.bandwidth_s = std::clamp(ideal, narrowest, widest);
+  pick.method = fmt::format("plug-in: rms x'''' of {:.3g} m/s^4", std::sqrt(mean_square));
+  if (pick.bandwidth_s != ideal) {
+    pick.method += fmt::format(" asks for {:.1f} ms, {}", 1e3 * ideal,
+                               ideal < narrowest ? "narrower than the frames allow" : "wider than the motion allows");
+  }
+  return pick;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/math/orthogonal_polynomials.h"
+#include "core/motion/bandwidth/bandwidth_derivative_rules.h"
+#include "core/motion/bandwidth/bandwidth_scan.h"
+#include "core/motion/smoothing/kernel_constants.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kOrder = 3;
+
+/// RSC at one point; NaN where the kernel holds too few points.
+double residual_squares(const MotionPart& part, std::size_t point, double bandwidth_s) {
+  const double at = part.t_s[point], reach = kKernelReach * bandwidth_s;
+  std::vector<double> u, kernel, x;
+  std::size_t from = point;
+  while (from > 0 && at - part.t_s[from - 1] <= reach) --from;
+  for (std::size_t i = from; i < part.t_s.size() && part.t_s[i] - at <= reach; ++i) {
+    u.push_back((part.t_s[i] - at) / bandwidth_s);
+    kernel.push_back(kernel_value(Kernel::gaussian, u.back()));
+    x.push_back(part.x_m[i] - part.x_m[point]);
+  }
+  const auto basis = OrthogonalPolynomials::make(kOrder, u, kernel);
+  if (u.size() < kOrder + 2 || !basis) return std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> at_zero = basis->derivatives(0.0, 0);
+  double squares = 0.0, trace = 0.0, variance = 0.0;
+  std::vector<double> fit(u.size(), 0.0), weight(u.size(), 0.0);
+  for (int k = 0; k <= kOrder; ++k) {
+    const auto p = basis->at_points(k);
+    double projection = 0.0, own = 0.0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      projection += kernel[i] * p[i] * x[i];
+      own += kernel[i] * kernel[i] * p[i] * p[i];
+    }
+    trace -= own / basis->norm(k);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      fit[i] += projection / basis->norm(k) * p[i];
+      weight[i] += at_zero[static_cast<std::size_t>(k)] * kernel[i] * p[i] / basis->norm(k);
+    }
+  }
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    squares += kernel[i] * (x[i] - fit[i]) * (x[i] - fit[i]);
+    trace += kernel[i];
+    variance += weight[i] * weight[i];
+  }
+  return squares / trace * (1.0 + (kOrder + 1) * variance);
+}
+
+}  // namespace
+
+std::optional<BandwidthPick> ResidualSquares::choose(const BandwidthProblem& problem) const {
+  const BandwidthScan scan(problem);
+  std::vector<double> criterion;
+  for (const double h : scan.grid()) {
+    double sum = 0.0;
+    for (const Probe& probe : scan.probes()) sum += residual_squares(problem.parts[probe.part], probe.point, h);
+    criterion.push_back(scan.probes().empty() ? std::numeric_limits<double>::quiet_NaN() : sum);
+  }
+  const auto best = least(criterion);
+  if (!best) return {};
+  const double found = scan.grid()[*best];
+  BandwidthPick pick;
+  pick.bandwidth_s = found * std::pow(kGaussianA.best_h9() / kResidualSquaresH9, 1.0 / 9.0);
+  pick.method = fmt::format("residual squares criterion: least at {:.1f} ms{}, converted for a", 1e3 * found,
+                            at_edge(scan.grid(), *best));
+  return pick;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,232 @@
+#include "core/motion/free/free_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/math/point_range.h"
+#include "core/motion/free/law_consensus.h"
+#include "core/motion/free/motion_runs.h"
+#include "core/motion/free/pilot.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kNearEvent = 3.0;       // pilot bandwidths within which the pilot mixes both sides
+constexpr double kRealBandwidths = 4.0;  // a stretch shorter than this is no motion to fit
+constexpr std::size_t kRealPoints = 8;
+constexpr double kHardlyAny = 0.05;  // of the points against the launch: slivers of it are no motion with it
+constexpr double kShortest = 0.574;  // of the longest: 4^(-2/5), see the header
+
+class Finder {
+ public:
+  Finder(const Motion& motion, const ClipSetup& setup)
+      : motion_(motion),
+        setup_(setup),
+        pilot_(first_smoothing(motion)),
+        runs_(find_runs(motion, pilot_)),
+        direction_(runs_.direction),
+        n_(motion.t_s.size()) {}
+
+  FreeMotion find() {
+    reason_.assign(n_, LeftOut::used);
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (direction_[i] == 0) reason_[i] = LeftOut::rest;
+    }
+    flag_handling();
+    FreeMotion free;
+    free.pilot_bandwidth_s = pilot_.bandwidth_s;
+    leave_out_backswing(free);
+    free.stretches = stretches();
+    free.reason = reason_;
+    return free;
+  }
+
+ private:
+  double span_s(const PointRange& range) const { return motion_.t_s[range.to - 1] - motion_.t_s[range.from]; }
+
+  bool near_time(const std::vector<double>& times, double t_s) const {
+    const double reach = kNearEvent * pilot_.bandwidth_s;
+    const auto found = std::lower_bound(times.begin(), times.end(), t_s - reach);
+    return found != times.end() && *found <= t_s + reach;
+  }
+
+  void flag_handling() {
+    if (setup_.start_s && setup_.end_s) return;
+    std::optional<ConsensusLine> line[2];
+    for (const int direction : {-1, 1}) {
+      LawPoints points;
+      for (std::size_t i = 0; i < n_; ++i) {
+        if (direction_[i] != direction || !std::isfinite(pilot_.sd_a_m_s2[i])) continue;
+        points.v_m_s.push_back(pilot_.v_m_s[i]);
+        points.a_m_s2.push_back(pilot_.a_m_s2[i]);
+        points.sd_m_s2.push_back(std::max(pilot_.sd_a_m_s2[i], 1e-12));
+      }
+      line[direction > 0] = find_consensus(points);
+    }
+    std::vector<char> handled(n_, 0);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const int direction = direction_[i];
+      if (direction == 0 || !line[direction > 0] || !std::isfinite(pilot_.sd_a_m_s2[i])) continue;
+      const ConsensusLine& own = *line[direction > 0];
+      double low = own.at(pilot_.v_m_s[i]), high = low;
+      if (near_time(runs_.turns_s, motion_.t_s[i])) {  // the pilot mixes both directions' accelerations here
+        const auto& other = line[direction < 0];
+        const double beyond = other ? other->at(pilot_.v_m_s[i]) : 2.0 * low;
+        low = std::min(low, beyond);
+        high = std::max(high, beyond);
+      }
+      if (near_time(runs_.rest_edges_s, motion_.t_s[i])) {
+        low = std::min(low, 0.0);
+        high = std::max(high, 0.0);
+      }
+      const double tolerance = own.tolerance(pilot_.sd_a_m_s2[i]);
+      handled[i] = pilot_.a_m_s2[i] < low - tolerance || pilot_.a_m_s2[i] > high + tolerance;
+    }
+    name_handling(handled);
+  }
+
+  bool is_real(const PointRange& range) const {
+    return range.to - range.from >= kRealPoints && span_s(range) >= kRealBandwidths * pilot_.bandwidth_s;
+  }
+
+  /// Hand before the first real stretch, stop after it. What is too short to be a stretch and lies between handled
+  /// points is handled as well.
+  void name_handling(const std::vector<char>& handled) {
+    std::vector<int> kind(n_);  // direction of free motion, 0 at rest, 2 handled
+    for (std::size_t i = 0; i < n_; ++i) kind[i] = handled[i] ? 2 : direction_[i];
+    const std::vector<PointRange> ranges = ranges_of(kind);
+    std::size_t first_real = n_, last_real = 0;
+    for (const PointRange& range : ranges) {
+      if (std::abs(kind[range.from]) != 1 || !is_real(range)) continue;
+      first_real = std::min(first_real, range.from);
+      last_real = range.to;
+    }
+    for (std::size_t r = 0; r < ranges.size(); ++r) {
+      const PointRange& range = ranges[r];
+      const auto is_handled = [&](std::size_t other) { return kind[ranges[other].from] == 2; };
+      const bool sliver = std::abs(kind[range.from]) == 1 && !is_real(range) &&
+                          ((r > 0 && is_handled(r - 1)) || (r + 1 < ranges.size() && is_handled(r + 1)));
+      if (kind[range.from] != 2 && !sliver) continue;
+      const bool before = range.from < first_real;
+      if ((before && setup_.start_s) || (range.from >= last_real && setup_.end_s)) continue;  // the user's word
+      fill_range(reason_, range, before ? LeftOut::hand : LeftOut::stop);
+    }
+  }
+
+  /// What moves against the direction of the launch, before anything moves with it, is the hand.
+  void leave_out_backswing(FreeMotion& free) {
+    if (setup_.start_s || motion_.forced) return;
+    int launched = 0;
+    if (setup_.launched == Launched::up) launched = -1;
+    if (setup_.launched == Launched::down) launched = 1;
+    if (setup_.launched == Launched::released && setup_.incline_rad != 0.0)
+      launched = setup_.incline_rad > 0.0 ? 1 : -1;
+    if (launched == 0) return;
+    std::size_t end = n_;
+    for (const PointRange& range : ranges_of(direction_)) {
+      if (direction_[range.from] != launched || reason_[range.from] != LeftOut::used || !is_real(range)) continue;
+      end = range.from;
+      break;
+    }
+    std::size_t against = 0, with = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (reason_[i] != LeftOut::used) continue;
+      against += direction_[i] == -launched && i < end;
+      with += direction_[i] == launched;
+    }
+    if (against == 0) return;
+    AgainstLaunch found;
+    found.direction = -launched;
+    found.share = share_of_free(against);
+    if (end == n_) {  // it never moves as launched: nothing to tell a hand from
+      if (static_cast<double>(with) > kHardlyAny * static_cast<double>(against)) return;
+      free.against_launch = found;
+      return;
+    }
+    found.until_s = motion_.t_s[end];
+    for (const PointRange& range : ranges_of(direction_)) {
+      if (range.to != end || direction_[range.from] != -launched) continue;
+      found.at_a_turn = is_real(range) && reason_[range.to - 1] == LeftOut::used;
+    }
+    for (std::size_t i = 0; i < end; ++i) {
+      if (direction_[i] == -launched && reason_[i] == LeftOut::used) reason_[i] = LeftOut::hand;
+    }
+    free.against_launch = found;
+  }
+
+  double share_of_free(std::size_t count) const {
+    const auto free = std::count(reason_.begin(), reason_.end(), LeftOut::used);
+    return static_cast<double>(count) / static_cast<double>(free);
+  }
+
+  std::vector<FreeStretch> stretches() const {
+    std::vector<int> free(n_);
+    for (std::size_t i = 0; i < n_; ++i) free[i] = reason_[i] == LeftOut::used ? direction_[i] : 0;
+    const auto across = [&](std::size_t i) { return free[i - 1] * free[i] < 0; };
+    std::vector<FreeStretch> found;
+    for (const PointRange& range : ranges_of(free)) {
+      if (free[range.from] == 0) continue;
+      FreeStretch stretch{range.from, range.to - range.from, free[range.from], LeftOut::kernel_end,
+                          LeftOut::kernel_end};
+      if (range.from > 0 && across(range.from)) stretch.start = LeftOut::kernel_reversal;
+      if (range.to < n_ && across(range.to)) stretch.end = LeftOut::kernel_reversal;
+      found.push_back(stretch);
+    }
+    double longest_s[2] = {};
+    const auto time_of = [&](const FreeStretch& of) { return span_s({of.first, of.first + of.count}); };
+    for (const FreeStretch& of : found)
+      longest_s[of.direction > 0] = std::max(longest_s[of.direction > 0], time_of(of));
+    for (FreeStretch& of : found) {
+      if (time_of(of) < kShortest * longest_s[of.direction > 0]) of.whole = LeftOut::short_stretch;
+    }
+    return found;
+  }
+
+  const Motion& motion_;
+  const ClipSetup& setup_;
+  const Pilot pilot_;
+  const MotionRuns runs_;
+  const std::vector<int>& direction_;  // of every point; 0 at rest
+  const std::size_t n_;
+  std::vector<LeftOut> reason_;
+};
+
+Motion between(const Motion& motion, std::size_t from, std::size_t to) {
+  std::vector<std::size_t> outside;
+  for (std::size_t i = 0; i < motion.t_s.size(); ++i) {
+    if (i < from || i >= to) outside.push_back(i);
+  }
+  return without(motion, outside);
+}
+
+}  // namespace
+
+std::string sentence(const AgainstLaunch& against) {
+  const std::string way = against.direction > 0 ? "+x" : "-x", launch = against.direction > 0 ? "-x" : "+x";
+  if (!against.until_s) return fmt::format("it moves towards {} only: the launch was towards {}", way, launch);
+  return fmt::format("what moves towards {} before {:.3f} s is left out as the hand: the launch was towards {}", way,
+                     *against.until_s, launch);
+}
+
+FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
+  const auto& t = motion.t_s;
+  const auto from = setup.start_s ? std::lower_bound(t.begin(), t.end(), *setup.start_s) - t.begin() : 0;
+  const auto to = setup.end_s ? std::upper_bound(t.begin(), t.end(), *setup.end_s) - t.begin()
+                              : static_cast<std::ptrdiff_t>(t.size());
+  FreeMotion free;
+  if (to - from >= static_cast<std::ptrdiff_t>(kRealPoints)) {
+    free = Finder(between(motion, static_cast<std::size_t>(from), static_cast<std::size_t>(to)), setup).find();
+  } else {
+    free.reason.assign(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, to - from)), LeftOut::kernel_gap);
+    free.pilot_bandwidth_s = 2.0 * motion.step_s;
+  }
+  free.reason.insert(free.reason.begin(), static_cast<std::size_t>(from), LeftOut::before_start);
+  free.reason.resize(t.size(), LeftOut::after_end);
+  for (FreeStretch& stretch : free.stretches) stretch.first += static_cast<std::size_t>(from);
+  return free;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,53 @@
+/// Which parts of a measured motion are free: not in the hand, not at rest, not against a stop or a bumper, and each in
+/// one direction.
+///
+/// A first smoothing (the pilot) takes the least bandwidth at which the noise of a is 10 % of the median |a| of the
+/// moving glider. On it:
+///  - Directions, reversals and rests are told apart (motion_runs.h).
+///  - Hand, stop: the points (v, a) of one direction of free motion lie about one line. For each direction the line is
+///    taken on which most points agree (candidates: lines through parts of the motion that are contiguous in time). A
+///    point is not free where its a is off that line by more than a quarter of the line's own size AND by more than the
+///    noise and the common scatter of the points allow (five standard deviations). Before the first free stretch that
+///    is the hand, later a stop. What deviates less is left in: it is physics, not handling.
+///  - A stretch of duration T determines its acceleration with a standard deviation that goes with T^(-5/2). What is
+///    four times worse than the longest of its direction (T below 0.57 of it) is left out: least squares gives all
+///    points one weight, so its points would add noise and no information.
+///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. A
+///    launch that nobody stated has no wrong direction.
+/// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter.
+/// Each stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an
+/// impact or a release; times of those need to be known only well enough to keep their far side out.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+#include "core/motion/free/motion.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+/// Points first … first + count - 1 of the motion, all moving freely in one direction.
+struct FreeStretch {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  int direction = 0;
+  LeftOut start = LeftOut::kernel_end;  ///< what lies before it: kernel_end or kernel_reversal
+  LeftOut end = LeftOut::kernel_end;    ///< what lies behind it
+  LeftOut whole = LeftOut::used;        ///< short_stretch where none of it counts
+};
+
+struct FreeMotion {
+  std::vector<FreeStretch> stretches;  ///< in the order of time; they share no point
+  std::vector<LeftOut> reason;         ///< of every point; `used` within the stretches
+  double pilot_bandwidth_s = 0.0;
+  std::optional<AgainstLaunch> against_launch;
+};
+
+/// The setup's start_s and end_s, where given, are taken at their word: nothing after the one counts as hand, nothing
+/// before the other as stop, and with both everything between is free where it moves.
+FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
+
+}  // namespace glidelab::core

@@ -1,0 +1,32 @@
+/// The measured motion of one clip as the analysis of it starts from.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/track/track_data.h"
+
+namespace glidelab::core {
+
+/// Points in the order of time. `y_m` is the position with the motion taken off that the known force alone would give,
+///
+///     y(t) = x(t) - integral integral F/m,   so that   y'' = a - F/m   is what gravity and friction do,
+///
+/// with F linear between its samples. Smoothing y as x is smoothed gives a and F/m the same kernel and so the same
+/// bias. Without a force y is x.
+struct Motion {
+  std::vector<double> t_s;
+  std::vector<double> x_m;
+  std::vector<double> y_m;
+  std::vector<std::size_t> point;  ///< index in the track
+  double step_s = 0.0;             ///< median time step
+  double noise_m = 0.0;            ///< standard deviation of one position, from its neighbours (pilot_noise)
+  bool forced = false;
+};
+
+Motion motion_of(const TrackData& track, double mass_kg);
+
+/// The same without the points of the given indices (rising).
+Motion without(const Motion& motion, const std::vector<std::size_t>& points);
+
+}  // namespace glidelab::core

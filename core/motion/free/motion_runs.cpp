@@ -1,0 +1,161 @@
+#include "core/motion/free/motion_runs.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/point_range.h"
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kLeastMotion = 20.0;    // standard deviations of a position that a run must cover to be motion
+constexpr double kRestBandwidths = 3.0;  // a reversal is still for less than one pilot bandwidth
+constexpr std::size_t kRestPoints = 6;
+constexpr double kRestGrowth = 3.0;  // standard deviations of a position
+
+class RunFinder {
+ public:
+  RunFinder(const Motion& motion, const Pilot& pilot)
+      : motion_(motion), pilot_(pilot), direction_(motion.t_s.size(), 0), resting_(motion.t_s.size(), 0) {}
+
+  MotionRuns find() {
+    assign_significant();
+    find_rests();
+    settle_between_runs();
+    MotionRuns runs;
+    for (std::size_t i = 1; i < direction_.size(); ++i) {
+      if (direction_[i] * direction_[i - 1] < 0) runs.turns_s.push_back(motion_.t_s[i]);
+      if (resting_[i] != resting_[i - 1]) runs.rest_edges_s.push_back(motion_.t_s[i]);
+    }
+    runs.direction = std::move(direction_);
+    return runs;
+  }
+
+ private:
+  double span_s(const PointRange& range) const { return motion_.t_s[range.to - 1] - motion_.t_s[range.from]; }
+  double least_way() const { return kLeastMotion * motion_.noise_m; }
+
+  void assign_significant() {
+    for (std::size_t i = 0; i < direction_.size(); ++i) {
+      if (std::abs(pilot_.v_m_s[i]) > still_below(pilot_, i)) direction_[i] = pilot_.v_m_s[i] > 0.0 ? 1 : -1;
+    }
+    for (const PointRange& run : ranges_of(direction_)) {
+      if (direction_[run.from] == 0) continue;
+      const auto begin = motion_.x_m.begin();
+      const auto [low, high] = std::minmax_element(begin + static_cast<std::ptrdiff_t>(run.from),
+                                                   begin + static_cast<std::ptrdiff_t>(run.to));
+      if (*high - *low < least_way()) fill_range(direction_, run, 0);
+    }
+  }
+
+  /// Next to no slope and curvature of x in the middle part of the range.
+  bool is_rest(const PointRange& range) const {
+    if (range.size() < kRestPoints || span_s(range) < kRestBandwidths * pilot_.bandwidth_s) return false;
+    const std::size_t cut = range.size() / 5;
+    const PointRange middle{range.from + cut, range.to - cut};
+    const auto count = static_cast<Eigen::Index>(middle.size());
+    const double half_s = 0.5 * span_s(middle), centre_s = motion_.t_s[middle.from] + half_s;
+    Eigen::MatrixX3d design(count, 3);
+    Eigen::VectorXd x(count);
+    for (Eigen::Index r = 0; r < count; ++r) {
+      const std::size_t i = middle.from + static_cast<std::size_t>(r);
+      const double u = (motion_.t_s[i] - centre_s) / half_s;
+      design.row(r) << 1.0, u, u * u;
+      x[r] = motion_.x_m[i] - motion_.x_m[middle.from];
+    }
+    const Eigen::Vector3d fit = (design.transpose() * design).ldlt().solve(design.transpose() * x);
+    // fit[1] is the way over half the range, fit[2] how far its ends lie off: next to none is a fifth of the speed that
+    // counts as still, or what a position's noise covers.
+    const double little = std::max(0.2 * kStillShare * pilot_.top_speed_m_s * half_s, kRestGrowth * motion_.noise_m);
+    return std::abs(fit[1]) <= little && std::abs(fit[2]) <= little;
+  }
+
+  void find_rests() {
+    for (const PointRange& range : ranges_of(direction_)) {
+      if (direction_[range.from] != 0) continue;
+      if (range.size() == direction_.size()) return rest(range);
+      if (is_rest(range)) grow_rest(range);
+    }
+    for (std::size_t i = 0; i < direction_.size(); ++i) {
+      if (resting_[i]) direction_[i] = 0;
+    }
+  }
+
+  void grow_rest(const PointRange& range) {
+    const std::size_t cut = range.size() / 5;
+    PointRange grown{range.from + cut, range.to - cut};
+    const auto begin = motion_.x_m.begin();
+    const double place =
+        quantile({begin + static_cast<std::ptrdiff_t>(grown.from), begin + static_cast<std::ptrdiff_t>(grown.to)}, 0.5);
+    const auto near = [&](std::size_t i) {
+      return i < motion_.x_m.size() && std::abs(motion_.x_m[i] - place) <= kRestGrowth * motion_.noise_m;
+    };
+    // One point off may be noise, two are not.
+    while (grown.from > 0 && (near(grown.from - 1) || (grown.from > 1 && near(grown.from - 2)))) --grown.from;
+    while (grown.to < motion_.x_m.size() && (near(grown.to) || near(grown.to + 1))) ++grown.to;
+    rest(grown);
+  }
+
+  void rest(const PointRange& range) { fill_range(resting_, range, char{1}); }
+
+  /// Points of no significant v that do not rest belong to the run before or after.
+  void settle_between_runs() {
+    for (const PointRange& range : ranges_of(direction_)) {
+      if (direction_[range.from] != 0) continue;
+      for (std::size_t i = range.from; i < range.to; ++i) {
+        if (resting_[i]) continue;
+        PointRange part{i, i};
+        while (part.to < range.to && !resting_[part.to]) ++part.to;
+        settle(part, i > 0 ? direction_[i - 1] : 0, part.to < direction_.size() ? direction_[part.to] : 0);
+        i = part.to - 1;
+      }
+    }
+  }
+
+  void settle(const PointRange& range, int before, int after) {
+    if (before == after && before != 0) return fill_range(direction_, range, before);
+    if (before == 0 && after == 0) {
+      const double way = pilot_.x_m[range.to - 1] - pilot_.x_m[range.from];
+      if (std::abs(way) < least_way()) return rest(range);
+      return fill_range(direction_, range, way > 0.0 ? 1 : -1);
+    }
+    // x is largest (smallest) where a motion towards +x (-x) turns, or where one towards -x (+x) begins.
+    const int outward = before != 0 ? before : -after;
+    std::size_t turn = range.from;
+    for (std::size_t i = range.from; i < range.to; ++i) {
+      if (outward * (pilot_.x_m[i] - pilot_.x_m[turn]) > 0.0) turn = i;
+    }
+    const PointRange first{range.from, turn}, second{turn, range.to};
+    if (before != 0 && after != 0) {
+      fill_range(direction_, first, before);
+      return fill_range(direction_, second, after);
+    }
+    // On one side is an end of the data or a rest. What goes too little way there to be motion is rest, if it is long.
+    const int known = before != 0 ? before : after;
+    const PointRange& outer = before != 0 ? first : second;
+    const PointRange& inner = before != 0 ? second : first;
+    fill_range(direction_, outer, known);
+    if (inner.size() == 0) return;
+    if (std::abs(pilot_.x_m[inner.to - 1] - pilot_.x_m[inner.from]) >= least_way()) {
+      return fill_range(direction_, inner, -known);
+    }
+    if (span_s(inner) < kRestBandwidths * pilot_.bandwidth_s) return fill_range(direction_, inner, known);
+    rest(inner);
+  }
+
+  const Motion& motion_;
+  const Pilot& pilot_;
+  std::vector<int> direction_;
+  std::vector<char> resting_;
+};
+
+}  // namespace
+
+MotionRuns find_runs(const Motion& motion, const Pilot& pilot) {
+  return RunFinder(motion, pilot).find();
+}
+
+}  // namespace glidelab::core

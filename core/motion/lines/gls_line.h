@@ -1,0 +1,70 @@
+/// The line a = a0 - (K/m) v by generalised least squares: smoothed points with their known covariance, errors in both
+/// v and a, and no bias by the kernel.
+///
+/// Ordinary least squares (line_fit.h) gives every smoothed point one weight, although neighbours share their noise and
+/// a sum of a over many points knows far more than its parts; it leaves out the points near ends and reversals, which
+/// know most; it keeps the kernel's bias; and noise in v draws its slope to zero. Here, for stretches smoothed with
+/// their own points alone (one-sided at ends and events), nodes about one bandwidth apart are taken, end to end, with
+///
+///     rho_j = a_j + k v_j - a0 p_j(k) - v0 q_j(k),     C(k) = (W_a + k W_v) Sigma (W_a + k W_v)',
+///
+/// W_a, W_v the kernels' weights and Sigma the noise of the positions, and  rho' C(k)^-1 rho  is made least in k and
+/// a0. For normal noise that is maximum likelihood with the true v_j free: errors in both v and a, and their
+/// covariances. (Points closer than a bandwidth add nothing but an ill-conditioned C; at twice that, information is
+/// lost.)
+///
+/// The kernel's bias: in a stretch under the line's own law x = x_0 + v0 phi(t) + a0 psi(t), with
+///
+///     phi = (1 - exp(-k t))/k,   psi = (t - phi)/k,   p = (W_a + k W_v) psi,   q = (W_a + k W_v) phi,
+///
+/// and without bias p = 1, q = 0. v0 is taken from the smoothed v. With a known force v obeys no such law: p = 1,
+/// q = 0, and the bias of `law` is stated as an uncertainty, as line_fit.h does.
+///
+/// Covariance (A' C^-1 A)^-1, A = -d rho / d(k, a0). Where chi^2 is above its degrees of freedom by more than chance
+/// makes it (the law is no line) it grows by what blocks of whitened residuals scatter, as in line_fit.h; where there
+/// are four stretches or more, leaving them out one at a time is compared as there.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/motion/free/event_time.h"
+#include "core/motion/free/free_motion.h"
+#include "core/motion/free/motion.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+/// Points first … first + count - 1 of the motion: free, of one direction, up to the events at their ends.
+struct FreePiece {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  int direction = 0;
+};
+
+/// The stretches up to their estimated ends. Where a stretch turns into the reversed one or comes to rest the event's
+/// time is estimated from three bandwidths on both sides (event_time.h), and the stretch reaches up to two standard
+/// deviations from it; where that fails, and at other borders (a hand, a bumper), a bandwidth is left out. At the
+/// data's own ends nothing is.
+std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free, double bandwidth_s,
+                                   const std::vector<double>& autocovariance);
+
+struct GlsInput {
+  double bandwidth_s = 0.0;
+  std::vector<double> autocovariance;
+  std::vector<double> noise_factor = {};  ///< of every point of the motion (speed_noise.h); empty: 1
+  double k_start_1_s = 0.0;               ///< where the search for k begins
+  double scale_sd_relative = 0.0;
+  double mass_kg = 0.0;  ///< with a known force only
+  double mass_sd_kg = 0.0;
+  std::vector<double> law_m_s2;               ///< with a known force only: f(v(t)) at every point (bandwidth.h)
+  std::vector<std::vector<double>> shared_m;  ///< as in TrackData
+};
+
+/// LineFit::points counts the positions that the line rests on, r2 is that of the nodes. Nothing where no piece of the
+/// direction is four bandwidths long, or the search does not settle.
+std::optional<LineFit> fit_line_gls(int direction, const Motion& motion, const std::vector<FreePiece>& pieces,
+                                    const GlsInput& input);
+
+}  // namespace glidelab::core

@@ -1,0 +1,254 @@
+#include "core/motion/lines/line_fit.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/math/line_sums.h"
+#include "core/math/quantile.h"
+#include "core/result/estimate.h"
+#include "core/result/jackknife.h"
+
+namespace glidelab::core {
+namespace {
+
+Eigen::Matrix2d normal_matrix(const std::vector<double>& v_m_s) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  for (const double v : v_m_s) {
+    const Eigen::Vector2d design(-v, 1.0);
+    normal += design * design.transpose();
+  }
+  return normal;
+}
+
+/// (A'A)^-1 A' y
+Eigen::Vector2d coefficients(const Eigen::Matrix2d& inverse, const std::vector<double>& v_m_s,
+                             const std::vector<double>& y) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t j = 0; j < y.size(); ++j) sum += Eigen::Vector2d(-v_m_s[j], 1.0) * y[j];
+  return inverse * sum;
+}
+
+LineShift shift_by(const LineInput& input, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& line,
+                   const std::vector<MotionShift>& mode) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (std::size_t j = 0; j < mode.size(); ++j) {
+    const Eigen::Vector2d design(-input.v_m_s[j], 1.0);
+    const double residual = input.a_m_s2[j] - design.dot(line);
+    sum += design * (mode[j].a_m_s2 + line[0] * mode[j].v_m_s);
+    sum[0] -= mode[j].v_m_s * residual;
+  }
+  const Eigen::Vector2d change = inverse * sum;
+  return {change[0], change[1]};
+}
+
+double squared_correlation(const std::vector<double>& x, const std::vector<double>& y) {
+  PairCorrelation correlation;
+  for (std::size_t j = 0; j < x.size(); ++j) correlation.add(x[j], y[j]);
+  return correlation.squared();
+}
+
+/// L Sigma L' for the rows L_k, L_a0 over all positions.
+void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, double k,
+                     const std::vector<double>& autocovariance, LineUncertainty& parts) {
+  std::vector<double> weight_k(input.track_points, 0.0), weight_a0(input.track_points, 0.0);
+  for (std::size_t j = 0; j < input.rows.size(); ++j) {
+    const Eigen::Vector2d gain = inverse * Eigen::Vector2d(-input.v_m_s[j], 1.0);
+    const KernelWeights& weights = *input.rows[j].weights;
+    for (std::size_t i = 0; i < weights.a.size(); ++i) {
+      const double of_residual = weights.a[i] + k * weights.v[i];
+      weight_k[input.rows[j].first + i] += gain[0] * of_residual;
+      weight_a0[input.rows[j].first + i] += gain[1] * of_residual;
+    }
+  }
+  for (std::size_t i = 0; i < input.noise_factor.size(); ++i) {
+    weight_k[i] *= input.noise_factor[i];
+    weight_a0[i] *= input.noise_factor[i];
+  }
+  parts.var_k = noise_variance(weight_k, autocovariance);
+  parts.var_a0 = noise_variance(weight_a0, autocovariance);
+  std::vector<double> sum(weight_k.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = weight_k[i] + weight_a0[i];
+  parts.cov = 0.5 * (noise_variance(sum, autocovariance) - parts.var_k - parts.var_a0);
+}
+
+constexpr std::size_t kFewestBlocks = 8;
+
+/// How many of `count` residuals are worth an independent one: their noise is correlated over the kernel.
+double independent(const std::vector<double>& weights, std::size_t count) {
+  double sum = 0.0, variance = 0.0;
+  for (std::size_t lag = 0; lag < weights.size(); ++lag) {
+    double product = 0.0;
+    for (std::size_t i = 0; i + lag < weights.size(); ++i) product += weights[i] * weights[i + lag];
+    if (lag == 0) variance = product;
+    sum += (lag == 0 ? 1.0 : 2.0) * product * product / (variance * variance);
+  }
+  return std::max(1.0, static_cast<double>(count) / sum);
+}
+
+/// Sets parts.scatter, and widens the covariance where it is above what noise leaves.
+void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& line,
+                const std::vector<double>& autocovariance, LineUncertainty& parts) {
+  const std::size_t n = input.v_m_s.size();
+  std::vector<double> residual(n);
+  for (std::size_t j = 0; j < n; ++j) residual[j] = input.a_m_s2[j] - (line[1] - line[0] * input.v_m_s[j]);
+  const Scatter scatter = scatter_of(input, residual, line[0], autocovariance);
+  parts.scatter = std::sqrt(scatter.ratio);
+  if (!scatter.significant()) return;
+  const std::size_t length = std::max<std::size_t>(1, n / kFewestBlocks);
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  double blocks = 0.0;
+  for (std::size_t from = 0; from < n;) {
+    Eigen::Vector2d score = Eigen::Vector2d::Zero();
+    std::size_t to = from;
+    for (; to < n && to < from + length && input.stretch[to] == input.stretch[from]; ++to) {
+      score += Eigen::Vector2d(-input.v_m_s[to], 1.0) * residual[to];
+    }
+    sum += score * score.transpose();
+    blocks += 1.0;
+    from = to;
+  }
+  if (blocks < 3.0) return;
+  const Eigen::Matrix2d wider = inverse * sum * inverse * ((1.0 - 1.0 / scatter.ratio) * blocks / (blocks - 2.0));
+  const double total = parts.var_a0 + wider(1, 1);
+  // Welch and Satterthwaite: the part from the blocks has blocks - 2 degrees of freedom.
+  parts.degrees = std::max(1.0, (blocks - 2.0) * total * total / (wider(1, 1) * wider(1, 1)));
+  parts.var_k += wider(0, 0);
+  parts.cov += wider(0, 1);
+  parts.var_a0 = total;
+}
+
+constexpr std::size_t kFewestStretches = 4;
+
+/// Delete-one-stretch jackknife: how far the line moves when one stretch is left out. It knows of no noise model, and
+/// replaces the covariance where it is the larger one.
+void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& normal, const Eigen::Vector2d& line,
+                            LineUncertainty& parts) {
+  std::vector<Eigen::Vector2d> without;
+  for (std::size_t from = 0; from < input.stretch.size();) {
+    Eigen::Matrix2d part = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d score = Eigen::Vector2d::Zero();
+    std::size_t to = from;
+    for (; to < input.stretch.size() && input.stretch[to] == input.stretch[from]; ++to) {
+      const Eigen::Vector2d design(-input.v_m_s[to], 1.0);
+      part += design * design.transpose();
+      score += design * (input.a_m_s2[to] - design.dot(line));
+    }
+    const Eigen::Matrix2d rest = normal - part;
+    if (!(rest.determinant() > 1e-9 * normal.determinant())) return;  // one stretch holds the line alone
+    without.push_back(-(rest.inverse() * score));
+    from = to;
+  }
+  if (without.size() < kFewestStretches) return;
+  if (widen_by_jackknife(without, parts)) parts.jackknife = true;
+}
+
+}  // namespace
+
+Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, double k_1_s,
+                   const std::vector<double>& autocovariance) {
+  double squares = 0.0, expected = 0.0, variance = 0.0;
+  std::vector<double> weights;
+  const KernelWeights* known = nullptr;
+  for (std::size_t j = 0; j < residual.size(); ++j) {
+    squares += residual[j] * residual[j];
+    if (input.rows[j].weights.get() != known) {
+      known = input.rows[j].weights.get();
+      weights = known->a;
+      for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += k_1_s * known->v[i];
+      variance = noise_variance(weights, autocovariance);
+    }
+    // Noise that changes with the speed changes little over a kernel.
+    const std::size_t middle = input.rows[j].first + weights.size() / 2;
+    const double factor = input.noise_factor.empty() ? 1.0 : input.noise_factor[middle];
+    expected += factor * factor * variance;
+  }
+  if (!(expected > 0.0)) return {};
+  return {squares / expected, chi2_ratio_limit(independent(weights, residual.size()))};
+}
+
+std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
+                                double scale_sd_relative, Misfit misfit) {
+  assert(input.v_m_s.size() == input.a_m_s2.size() && input.rows.size() == input.v_m_s.size());
+  if (input.v_m_s.size() < kFewestLinePoints) return {};
+  const Eigen::Matrix2d normal = normal_matrix(input.v_m_s);
+  if (!(normal.determinant() > 1e-12 * normal(0, 0) * normal(1, 1))) return {};
+  const Eigen::Matrix2d inverse = normal.inverse();
+  const Eigen::Vector2d line = coefficients(inverse, input.v_m_s, input.a_m_s2);
+  LineFit fit;
+  fit.direction = direction;
+  fit.points = input.v_m_s.size();
+  fit.k_over_m_1_s.value = line[0];
+  fit.a0_m_s2.value = line[1];
+  fit.r2 = squared_correlation(input.v_m_s, input.a_m_s2);
+  const auto [low, high] = std::minmax_element(input.v_m_s.begin(), input.v_m_s.end());
+  fit.from_v_m_s = *low;
+  fit.to_v_m_s = *high;
+  fit.parts.degrees = std::numeric_limits<double>::infinity();
+  propagate_noise(input, inverse, line[0], autocovariance, fit.parts);
+  if (misfit == Misfit::widens) {
+    add_misfit(input, inverse, line, autocovariance, fit.parts);
+    compare_with_jackknife(input, normal, line, fit.parts);
+  }
+  const Eigen::Vector2d bias = coefficients(inverse, input.v_m_s, input.bias_a_m_s2);
+  fit.parts.smoothing_k = bias[0];
+  fit.parts.smoothing_a0 = bias[1];
+  const Eigen::Vector2d mass = coefficients(inverse, input.v_m_s, input.mass_part_m_s2);
+  fit.parts.mass_k = mass[0];
+  fit.parts.mass_a0 = mass[1];
+  fit.parts.scale_relative = scale_sd_relative;
+  for (const std::vector<MotionShift>& mode : input.calibration) {
+    fit.parts.calibration.push_back(mode.empty() ? LineShift{} : shift_by(input, inverse, line, mode));
+  }
+  complete_line(fit);
+  return fit;
+}
+
+std::vector<LineShift> shared_shifts(const LineFit& line) {
+  const LineUncertainty& parts = line.parts;
+  const LineShift law = parts.law ? parts.law->shift : LineShift{};
+  std::vector<LineShift> shifts{
+      {parts.smoothing_k, parts.smoothing_a0},
+      law,
+      {parts.mass_k, parts.mass_a0},
+      {0.0, parts.scale_relative * line.a0_m_s2.value},
+      {kClockSdRelative * line.k_over_m_1_s.value, 2.0 * kClockSdRelative * line.a0_m_s2.value}};
+  shifts.insert(shifts.end(), parts.calibration.begin(), parts.calibration.end());
+  return shifts;
+}
+
+void complete_line(LineFit& line) {
+  const LineUncertainty& parts = line.parts;
+  double var_k = parts.var_k, var_a0 = parts.var_a0;
+  line.covariance = parts.cov;
+  for (const LineShift& shift : shared_shifts(line)) {
+    var_k += shift.k * shift.k;
+    var_a0 += shift.a0 * shift.a0;
+    line.covariance += shift.k * shift.a0;
+  }
+  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, std::sqrt(var_k), parts.degrees);
+  line.a0_m_s2 = estimate(line.a0_m_s2.value, std::sqrt(var_a0), parts.degrees);
+}
+
+Quantity limit_velocity(const std::vector<LineFit>& lines) {
+  const auto found = std::find_if(lines.begin(), lines.end(), [](const LineFit& line) { return line.direction > 0; });
+  if (found == lines.end()) return undetermined("no line for v > 0");
+  const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
+  if (k - kNormal95 * found->k_over_m_1_s.sd <= 0.0) {
+    return undetermined("K/m for v > 0 is not above zero by more than its uncertainty");
+  }
+  if (a0 - kNormal95 * found->a0_m_s2.sd <= 0.0) {
+    return undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
+  }
+  const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
+  const LineUncertainty& parts = found->parts;
+  const double random = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
+  double variance = random;
+  for (const LineShift& shift : shared_shifts(*found)) variance += std::pow(by_k * shift.k + by_a0 * shift.a0, 2);
+  return determined(estimate(a0 / k, std::sqrt(variance), parts.degrees), std::sqrt(random));
+}
+
+}  // namespace glidelab::core

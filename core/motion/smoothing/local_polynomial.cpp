@@ -1,0 +1,221 @@
+#include "core/motion/smoothing/local_polynomial.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/math/orthogonal_polynomials.h"
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kUniform = 1e-9;  // steps that differ by less than this part are one step
+constexpr std::size_t kMostPolynomials = 6;
+
+bool has_tails(Kernel kernel) {
+  return kernel == Kernel::gaussian || kernel == Kernel::bimodal;
+}
+
+/// The weights of points at u (in bandwidths) with the kernel's values; false where they do not determine the
+/// polynomial.
+bool polynomial_weights(int order, const std::vector<double>& u, const std::vector<double>& kernel, double bandwidth_s,
+                        KernelWeights& weights) {
+  const auto basis = OrthogonalPolynomials::make(order, u, kernel);
+  if (!basis) return false;
+  const std::size_t n = u.size();
+  const std::vector<double> at_zero = basis->derivatives(0.0, 2);
+  weights.x.resize(n);
+  weights.v.resize(n);
+  weights.a.resize(order >= 2 ? n : 0);
+  struct Share {
+    double x = 0.0, v = 0.0, a = 0.0;
+    const double* polynomial = nullptr;
+  };
+  std::array<Share, kMostPolynomials> shares;
+  for (int k = 0; k <= order; ++k) {
+    const double* const d = at_zero.data() + 3 * k;
+    const double per_norm = 1.0 / basis->norm(k);
+    shares[static_cast<std::size_t>(k)] = {d[0] * per_norm, d[1] * per_norm / bandwidth_s,
+                                           d[2] * per_norm / (bandwidth_s * bandwidth_s), basis->at_points(k).data()};
+  }
+  const auto used = std::span(shares).first(static_cast<std::size_t>(order) + 1);
+  const auto sum_to = [&](std::vector<double>& to, double Share::*part) {
+    if (used.size() == 4) {  // the usual order, in one pass
+      const double c0 = used[0].*part, c1 = used[1].*part, c2 = used[2].*part, c3 = used[3].*part;
+      const double *const p0 = used[0].polynomial, *const p1 = used[1].polynomial, *const p2 = used[2].polynomial,
+                          *const p3 = used[3].polynomial;
+      for (std::size_t i = 0; i < to.size(); ++i)
+        to[i] = kernel[i] * (c0 * p0[i] + c1 * p1[i] + c2 * p2[i] + c3 * p3[i]);
+      return;
+    }
+    std::ranges::fill(to, 0.0);
+    for (const Share& share : used) {
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] += share.*part * (kernel[i] * share.polynomial[i]);
+    }
+  };
+  sum_to(weights.x, &Share::x);
+  sum_to(weights.v, &Share::v);
+  sum_to(weights.a, &Share::a);
+  return true;
+}
+
+}  // namespace
+
+double kernel_value(Kernel kernel, double s) {
+  const double r = std::abs(s);
+  switch (kernel) {
+    case Kernel::gaussian:
+      return std::exp(-0.5 * s * s);
+    case Kernel::epanechnikov:
+      return r < 1.0 ? 1.0 - s * s : 0.0;
+    case Kernel::tricube:
+      return r < 1.0 ? std::pow(1.0 - r * r * r, 3) : 0.0;
+    case Kernel::uniform:
+      return r <= 1.0 + kUniform ? 1.0 : 0.0;
+    case Kernel::bimodal:
+      return s * s * std::exp(-s * s);
+  }
+  assert(false);
+  return 0.0;
+}
+
+LocalPolynomial::LocalPolynomial(std::span<const double> t_s, PolynomialOptions options)
+    : t_s_(t_s.begin(), t_s.end()), options_(std::move(options)) {
+  assert(options_.bandwidth_s > 0.0 && options_.order >= 1 && options_.order <= 5 && options_.reach > 0.0);
+  assert(options_.weights.empty() || options_.weights.size() == t_s.size());
+  const double bandwidth = options_.bandwidth_s;
+  reach_s_ = (has_tails(options_.kernel) ? options_.reach : 1.0) * bandwidth * (1.0 + kUniform);
+  if (t_s_.size() < static_cast<std::size_t>(options_.order) + 2 || !options_.weights.empty()) return;
+  const double step = median_step(t_s_);
+  if (!(step > 0.0)) return;
+  const auto half = static_cast<std::size_t>(std::min(reach_s_ / step, 1e9));
+  run_.assign(t_s_.size(), 0);
+  std::size_t longest = 0;
+  for (std::size_t j = 1; j < t_s_.size(); ++j) {
+    if (std::abs(t_s_[j] - t_s_[j - 1] - step) <= kUniform * step) run_[j] = run_[j - 1] + 1;
+    longest = std::max(longest, run_[j]);
+  }
+  kernel_.resize(std::min(half, longest) + 1);
+  for (std::size_t i = 0; i < kernel_.size(); ++i) {
+    kernel_[i] = kernel_value(options_.kernel, static_cast<double>(i) * step / bandwidth);
+  }
+  if (half < 2 || longest < 2 * half) return;
+  std::vector<double> u(2 * half + 1), kernel(2 * half + 1);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[i] = (static_cast<double>(i) - static_cast<double>(half)) * step / bandwidth;
+    kernel[i] = kernel_[i < half ? half - i : i - half];
+  }
+  auto weights = std::make_shared<KernelWeights>();
+  if (std::count_if(kernel.begin(), kernel.end(), [](double k) { return k > 0.0; }) < options_.order + 2) return;
+  if (!polynomial_weights(options_.order, u, kernel, bandwidth, *weights)) return;
+  half_ = half;
+  filter_ = std::move(weights);
+}
+
+bool LocalPolynomial::interior(std::size_t j) const {
+  return half_ > 0 && j >= half_ && j + half_ < t_s_.size() && run_[j + half_] >= 2 * half_;
+}
+
+/// Of a point whose window has the uniform step the kernel's values are known (its weights are exact for any kernel).
+std::optional<KernelRow> LocalPolynomial::general_row(double at_s, std::optional<std::size_t> point) const {
+  const auto from = std::lower_bound(t_s_.begin(), t_s_.end(), at_s - reach_s_);
+  const auto to = std::upper_bound(from, t_s_.end(), at_s + reach_s_);
+  const auto first = static_cast<std::size_t>(from - t_s_.begin());
+  std::vector<double> u(static_cast<std::size_t>(to - from)), kernel(u.size());
+  const std::size_t before = point ? *point - first : 0, after = u.size() - before - 1;
+  const bool uniform = point && std::max(before, after) < kernel_.size() && run_[first + u.size() - 1] + 1 >= u.size();
+  int within = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[i] = (t_s_[first + i] - at_s) / options_.bandwidth_s;
+    kernel[i] = uniform ? kernel_[i < before ? before - i : i - before] : kernel_value(options_.kernel, u[i]);
+    if (kernel[i] > 0.0) ++within;
+    if (!options_.weights.empty()) kernel[i] *= options_.weights[first + i];
+  }
+  if (within < options_.order + 2) return {};
+  auto weights = std::make_shared<KernelWeights>();
+  if (!polynomial_weights(options_.order, u, kernel, options_.bandwidth_s, *weights)) return {};
+  return KernelRow{first, std::move(weights)};
+}
+
+std::optional<KernelRow> LocalPolynomial::row(double at_s) const {
+  const auto found = std::lower_bound(t_s_.begin(), t_s_.end(), at_s);
+  if (found != t_s_.end() && *found == at_s) return row_of_point(static_cast<std::size_t>(found - t_s_.begin()));
+  return general_row(at_s);
+}
+
+std::optional<KernelRow> LocalPolynomial::row_of_point(std::size_t j) const {
+  assert(j < t_s_.size());
+  if (interior(j)) return KernelRow{j - half_, filter_};
+  return general_row(t_s_[j], j);
+}
+
+void LocalPolynomial::filter(std::span<const double> values, std::size_t from, std::size_t to,
+                             std::vector<std::optional<SmoothedPoint>>& out) const {
+  constexpr std::size_t kBlock = 512;  // outputs at a time: the three sums stay in the cache while the taps go by
+  std::array<double, kBlock> x{}, v{}, a{};
+  const bool has_a = !filter_->a.empty();
+  const double* const wx = filter_->x.data() + half_;
+  const double* const wv = filter_->v.data() + half_;
+  const double* const wa = has_a ? filter_->a.data() + half_ : wx;
+  for (std::size_t start = from; start < to; start += kBlock) {
+    const std::size_t count = std::min(kBlock, to - start);
+    const double* const centre = values.data() + start;
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = wx[0] * centre[i];
+      v[i] = 0.0;
+      a[i] = wa[0] * centre[i];
+    }
+    for (std::size_t k = 1; k <= half_; ++k) {  // x and a are even in the lag, v is odd
+      const double* const right = centre + k;
+      const double* const left = centre - k;
+      const double cx = wx[k], cv = wv[k], ca = wa[k];
+      for (std::size_t i = 0; i < count; ++i) {
+        const double sum = right[i] + left[i];
+        x[i] += cx * sum;
+        v[i] += cv * (right[i] - left[i]);
+        a[i] += ca * sum;
+      }
+    }
+    if (!has_a) a.fill(std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < count; ++i) out[start + i] = SmoothedPoint{x[i], v[i], a[i]};
+  }
+}
+
+std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<const double> values) const {
+  assert(values.size() == t_s_.size());
+  std::vector<std::optional<SmoothedPoint>> out(t_s_.size());
+  for (std::size_t j = 0; j < t_s_.size();) {
+    if (interior(j)) {
+      std::size_t to = j + 1;
+      while (to < t_s_.size() && interior(to)) ++to;
+      filter(values, j, to, out);
+      j = to;
+      continue;
+    }
+    if (const auto row = general_row(t_s_[j], j)) out[j] = weighted_sums(*row, values);
+    ++j;
+  }
+  return out;
+}
+
+SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values) {
+  const KernelWeights& weights = *row.weights;
+  assert(row.first + weights.x.size() <= values.size());
+  // About the first value, so that a far origin costs no digits.
+  const double origin = values[row.first];
+  using Numbers = Eigen::Map<const Eigen::ArrayXd>;
+  const auto count = static_cast<Eigen::Index>(weights.x.size());
+  const Numbers value(values.data() + row.first, count);
+  const auto sum = [&](const std::vector<double>& of) { return (Numbers(of.data(), count) * (value - origin)).sum(); };
+  SmoothedPoint point;
+  point.x_m = sum(weights.x);
+  point.v_m_s = sum(weights.v);
+  point.a_m_s2 = weights.a.empty() ? std::numeric_limits<double>::quiet_NaN() : sum(weights.a);
+  point.x_m += origin;
+  return point;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,192 @@
+#include "core/motion/smoothing/noise.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kFewestResiduals = 20;
+constexpr std::size_t kFewestForCorrelation = 60;
+
+double autocorrelation(const std::vector<double>& filter, std::size_t lag) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + lag < filter.size(); ++i) sum += filter[i] * filter[i + lag];
+  return sum;
+}
+
+/// p = 1 - s on a uniform grid of the step.
+std::vector<double> residual_filter(double bandwidth_s, double step_s) {
+  const auto half = static_cast<std::size_t>(std::ceil(kKernelReach * bandwidth_s / step_s)) + 1;
+  std::vector<double> t(2 * half + 1);
+  for (std::size_t i = 0; i < t.size(); ++i) t[i] = static_cast<double>(i) * step_s;
+  const auto row = LocalCubic(t, bandwidth_s).row_of_point(half);
+  std::vector<double> filter(t.size(), 0.0);
+  if (row) {
+    for (std::size_t i = 0; i < row->weights->x.size(); ++i) filter[row->first + i] = -row->weights->x[i];
+  }
+  filter[half] += 1.0;
+  return filter;
+}
+
+struct Residuals {
+  std::vector<double> product;  // mean of r_j r_(j+k)
+  std::size_t count = 0;
+};
+
+Residuals residuals_of(const std::vector<NoisePiece>& pieces, std::size_t lags) {
+  Residuals residuals;
+  residuals.product.assign(lags + 1, 0.0);
+  std::vector<std::size_t> pairs(lags + 1, 0);
+  for (const NoisePiece& piece : pieces) {
+    const std::span<const double> t = piece.cubic->times();
+    const double margin = kCompleteKernel * piece.cubic->bandwidth_s();
+    const auto smoothed = piece.cubic->smooth(piece.x_m);
+    std::vector<double> r;
+    for (std::size_t j = 0; j < t.size(); ++j) {
+      if (t[j] < t.front() + margin || t[j] > t.back() - margin || !smoothed[j]) continue;
+      r.push_back(piece.x_m[j] - smoothed[j]->x_m);
+    }
+    residuals.count += r.size();
+    for (std::size_t lag = 0; lag <= lags && lag < r.size(); ++lag) {
+      for (std::size_t j = 0; j + lag < r.size(); ++j) residuals.product[lag] += r[j] * r[j + lag];
+      pairs[lag] += r.size() - lag;
+    }
+  }
+  for (std::size_t lag = 0; lag <= lags; ++lag) {
+    if (pairs[lag] > 0) residuals.product[lag] /= static_cast<double>(pairs[lag]);
+  }
+  return residuals;
+}
+
+bool looks_white(const Residuals& residuals, const std::vector<double>& passed) {
+  const std::size_t lags = std::min<std::size_t>({10, passed.size() - 1, residuals.product.size() - 1});
+  double chi2 = 0.0;
+  for (std::size_t lag = 1; lag <= lags; ++lag) {
+    const double off = residuals.product[lag] / residuals.product[0] - passed[lag] / passed[0];
+    chi2 += off * off * static_cast<double>(residuals.count);
+  }
+  // Four standard deviations of chi^2, to allow for residuals that the filter itself correlates a little.
+  const auto degrees = static_cast<double>(lags);
+  return chi2 < degrees + 4.0 * std::sqrt(2.0 * degrees);
+}
+
+struct Mixture {
+  double white = 0.0, correlated = 0.0, rho = 0.0;
+  double misfit = std::numeric_limits<double>::infinity();
+};
+
+/// Least squares of the products for white noise and a part rho^|lag|, neither of them negative.
+Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, double rho) {
+  const auto lags = static_cast<Eigen::Index>(residuals.product.size());
+  Eigen::MatrixXd design(lags, 2);
+  const Eigen::Map<const Eigen::VectorXd> seen(residuals.product.data(), lags);
+  const auto reach = static_cast<long>(passed.size()) - 1;
+  for (Eigen::Index lag = 0; lag < lags; ++lag) {
+    design(lag, 0) = passed[static_cast<std::size_t>(lag)];
+    double sum = 0.0;
+    for (long l = -reach; l <= reach; ++l) {  // sum over the lag of P
+      sum += passed[static_cast<std::size_t>(std::abs(l))] * std::pow(rho, static_cast<double>(std::abs(lag - l)));
+    }
+    design(lag, 1) = sum;
+  }
+  Eigen::Vector2d part = design.colPivHouseholderQr().solve(seen);
+  for (int i = 0; i < 2; ++i) {
+    if (part[i] >= 0.0) continue;
+    part[i] = 0.0;
+    part[1 - i] = std::max(0.0, design.col(1 - i).dot(seen) / design.col(1 - i).squaredNorm());
+  }
+  return {part[0], part[1], rho, (design * part - seen).squaredNorm()};
+}
+
+}  // namespace
+
+double rounding_step(std::span<const double> x_m) {
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < x_m.size(); ++i) {
+    const double change = std::abs(x_m[i] - x_m[i - 1]);
+    if (change > 1e-12 * std::abs(x_m[i])) step = std::min(step, change);
+  }
+  if (!std::isfinite(step)) return 0.0;
+  for (std::size_t i = 1; i < x_m.size(); ++i) {
+    const double multiple = (x_m[i] - x_m[0]) / step;
+    if (std::abs(multiple - std::round(multiple)) > 1e-3) return 0.0;
+  }
+  return step;
+}
+
+double pilot_noise(std::span<const double> t_s, std::span<const double> x_m) {
+  std::vector<double> squares;
+  for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
+    double off = x_m[i], gain = 1.0;
+    for (const std::size_t a : {i - 2, i - 1, i + 1, i + 2}) {
+      double weight = 1.0;  // Lagrange's, of the neighbour a at t_i
+      for (const std::size_t b : {i - 2, i - 1, i + 1, i + 2}) {
+        if (b != a) weight *= (t_s[i] - t_s[b]) / (t_s[a] - t_s[b]);
+      }
+      off -= weight * x_m[a];
+      gain += weight * weight;
+    }
+    squares.push_back(off * off / gain);
+  }
+  double sd = 0.0;
+  if (!squares.empty()) {
+    std::sort(squares.begin(), squares.end());
+    const std::size_t half = (squares.size() + 1) / 2;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < half; ++i) sum += squares[i];
+    // Mean of z^2 over the smaller half of |z|, z normal: 1 - 2 q phi(q) / 0.5 at the quartile q = 0.6745.
+    constexpr double kOfSmallerHalf = 0.14267;
+    sd = std::sqrt(sum / static_cast<double>(half) / kOfSmallerHalf);
+  }
+  return std::max(sd, rounding_step(x_m) / std::sqrt(12.0));
+}
+
+double sum_over_lags(const std::vector<double>& autocovariance) {
+  double sum = 0.0;
+  for (std::size_t lag = 0; lag < autocovariance.size(); ++lag) sum += (lag == 0 ? 1.0 : 2.0) * autocovariance[lag];
+  return sum;
+}
+
+PositionNoise estimate_noise(const std::vector<NoisePiece>& pieces, double at_least_m) {
+  PositionNoise noise{at_least_m, {at_least_m * at_least_m}};
+  std::size_t points = 0;
+  std::vector<double> steps;
+  for (const NoisePiece& piece : pieces) {
+    points += piece.x_m.size();
+    const auto t = piece.cubic->times();
+    for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  }
+  if (steps.empty()) return noise;
+  const double step = quantile(std::move(steps), 0.5), bandwidth = pieces.front().cubic->bandwidth_s();
+  const std::vector<double> filter = residual_filter(bandwidth, step);
+  const auto lags = static_cast<std::size_t>(
+      std::clamp(std::ceil(3.0 * bandwidth / step), 4.0, std::max(4.0, static_cast<double>(points) / 10.0)));
+  const Residuals residuals = residuals_of(pieces, lags);
+  if (residuals.count < kFewestResiduals) return noise;
+  std::vector<double> passed(std::max(filter.size(), lags + 1), 0.0);
+  for (std::size_t lag = 0; lag < filter.size(); ++lag) passed[lag] = autocorrelation(filter, lag);
+  const double variance = residuals.product[0] / passed[0];
+  noise.sd_m = std::sqrt(variance);
+  noise.autocovariance = {variance};
+  if (variance == 0.0 || residuals.count < kFewestForCorrelation || looks_white(residuals, passed)) return noise;
+  Mixture best;
+  for (const double rho : {-0.8, -0.6, -0.4, -0.2, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95}) {
+    const Mixture tried = mixture(residuals, passed, rho);
+    if (tried.misfit < best.misfit) best = tried;
+  }
+  if (best.correlated <= 0.0) return noise;
+  noise.autocovariance = {best.white + best.correlated};
+  noise.sd_m = std::sqrt(noise.autocovariance[0]);
+  for (double part = best.correlated * best.rho; std::abs(part) > 1e-3 * best.correlated; part *= best.rho) {
+    noise.autocovariance.push_back(part);
+  }
+  return noise;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,100 @@
+#include "core/pictures/board/board_views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/errors.h"
+#include "base/parallel.h"
+#include "core/math/median.h"
+#include "core/pictures/frames/read_image.h"
+
+namespace glidelab::core {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kFewestViews = 3;  // two give no more than the focal length
+constexpr double kOutlierPx = 0.2;       // of a view's corners, rms
+constexpr double kOutlierRatio = 5.0;    // over the median of the views
+
+}  // namespace
+
+std::string names_of(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<cv::Point3d> pattern_points(cv::Size grid, double square_m) {
+  std::vector<cv::Point3d> points;
+  for (int j = 0; j < grid.height; ++j) {
+    for (int i = 0; i < grid.width; ++i) points.emplace_back(i * square_m, j * square_m, 0.0);
+  }
+  return points;
+}
+
+BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_corners, int jobs) {
+  std::vector<fs::path> unique;
+  for (const fs::path& file : files) {
+    if (std::find(unique.begin(), unique.end(), file) == unique.end()) unique.push_back(file);
+  }
+  std::vector<std::optional<BoardCorners>> corners(unique.size());
+  std::vector<cv::Size> sizes(unique.size());
+  base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
+    const cv::Mat grey = read_grey_picture(unique[i]);
+    sizes[i] = grey.size();
+    corners[i] = find_board(grey, inner_corners);
+  });
+  BoardViews found;
+  for (std::size_t i = 0; i < unique.size(); ++i) {
+    if (i == 0) found.picture_size = sizes[0];
+    if (sizes[i] != found.picture_size) {
+      throw base::InputError(base::Issue{unique[i].string(), 0, "",
+                                         fmt::format("{} x {} pixels", sizes[i].width, sizes[i].height),
+                                         fmt::format("{} x {} pixels, as {}", found.picture_size.width,
+                                                     found.picture_size.height, unique[0].filename().string())});
+    }
+    if (corners[i]) {
+      found.views.push_back({unique[i], std::move(*corners[i])});
+    } else {
+      found.without.push_back(unique[i]);
+    }
+  }
+  return found;
+}
+
+std::vector<const BoardView*> checked_views(const BoardViews& boards) {
+  if (boards.views.size() < kFewestViews) {
+    const fs::path any =
+        boards.views.empty() ? boards.without.empty() ? fs::path() : boards.without.front() : boards.views.front().file;
+    throw base::InputError(
+        base::Issue{any.parent_path().string(), 0, "calibration.views",
+                    fmt::format("{} pictures with a visible pattern{}", boards.views.size(),
+                                boards.without.empty() ? "" : fmt::format(" (none in {})", names_of(boards.without))),
+                    "at least 3, with all inner corners in sight"});
+  }
+  std::vector<const BoardView*> views;
+  for (const BoardView& view : boards.views) views.push_back(&view);
+  return views;
+}
+
+KeptViews without_outliers(const std::vector<const BoardView*>& views, const std::vector<double>& errors_px) {
+  const double limit_px = std::max(kOutlierPx, kOutlierRatio * median_of(errors_px));
+  const auto off =
+      std::count_if(errors_px.begin(), errors_px.end(), [&](double error) { return !(error <= limit_px); });
+  const bool enough = views.size() - static_cast<std::size_t>(off) >= kFewestViews;
+  KeptViews kept;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const bool is_off = !(errors_px[i] <= limit_px);
+    if (!is_off || !enough) kept.views.push_back(views[i]);
+    if (!is_off) continue;
+    kept.notes.push_back(fmt::format("{} is off the fit of the camera by {:.3g} px and {}",
+                                     views[i]->file.filename().string(), errors_px[i],
+                                     enough ? "left out" : "kept all the same: without it there are fewer than three"));
+  }
+  return kept;
+}
+
+}  // namespace glidelab::core

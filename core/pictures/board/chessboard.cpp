@@ -1,0 +1,230 @@
+#include "core/pictures/board/chessboard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/pictures/board/corner_fit.h"
+#include "core/pictures/image/pixel_noise.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kLargestForDetection = 1600;  // px; larger pictures are halved for finding, not for refining
+constexpr int kLeastSide = 20;        // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
+constexpr double kNoisy = 8.0;        // codes
+constexpr int kMostBlurs = 5;         // by 1 px
+constexpr double kWindowShare = 0.7;  // of the distance to the next edge
+constexpr double kLargestWindowPx = 14.0;
+
+/// 8 bits for the detectors, the darkest and brightest half per cent clipped.
+cv::Mat to_8_bits(const cv::Mat& grey) {
+  if (grey.depth() == CV_8U) return grey;
+  cv::Mat flat = grey.reshape(1, 1).clone();
+  std::vector<std::uint16_t> values;
+  for (int i = 0; i < flat.cols; i += 7) values.push_back(flat.at<std::uint16_t>(0, i));
+  const auto quantile = [&](double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return static_cast<double>(*at);
+  };
+  const double low = quantile(0.005);
+  const double high = std::max(quantile(0.995), low + 1.0);
+  cv::Mat eight;
+  grey.convertTo(eight, CV_8U, 255.0 / (high - low), -low * 255.0 / (high - low));
+  return eight;
+}
+
+/// The detectors look through the outlines of all dark spots, pairs of them too: noise makes so many that they take
+/// hours. Blurred until it is below kNoisy; the corners' places are refined in the picture itself.
+cv::Mat without_specks(const cv::Mat& eight) {
+  cv::Mat seen = eight, values;
+  for (int pass = 0; pass < kMostBlurs; ++pass) {
+    seen.convertTo(values, CV_32F);
+    if (noise_of(values) < kNoisy) break;
+    cv::Mat softer;
+    cv::GaussianBlur(seen, softer, {}, 1.0);
+    seen = softer;
+  }
+  return seen;
+}
+
+std::vector<cv::Point2f> detect(const cv::Mat& picture, cv::Size inner_corners, BoardDetector detector) {
+  if (std::min(picture.cols, picture.rows) < kLeastSide) return {};
+  const cv::Mat eight = without_specks(picture);
+  std::vector<cv::Point2f> corners;
+  bool found = false;
+  if (detector != BoardDetector::sector_based) {
+    found = cv::findChessboardCorners(eight, inner_corners, corners,
+                                      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+  }
+  if (!found && detector != BoardDetector::classic) {
+    found = cv::findChessboardCornersSB(eight, inner_corners, corners,
+                                        cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
+  }
+  const bool whole = found && corners.size() == static_cast<std::size_t>(inner_corners.area());
+  return whole ? corners : std::vector<cv::Point2f>{};
+}
+
+template <class Pixel>
+double mean_around(const cv::Mat& grey, cv::Point2d centre, double radius) {
+  double sum = 0.0;
+  int count = 0;
+  for (int v = static_cast<int>(std::ceil(centre.y - radius)); v <= centre.y + radius; ++v) {
+    for (int u = static_cast<int>(std::ceil(centre.x - radius)); u <= centre.x + radius; ++u) {
+      if (u < 0 || v < 0 || u >= grey.cols || v >= grey.rows) continue;
+      sum += static_cast<double>(grey.at<Pixel>(v, u));
+      ++count;
+    }
+  }
+  return count == 0 ? 0.0 : sum / count;
+}
+
+double mean_around(const cv::Mat& grey, cv::Point2d centre, double radius) {
+  return grey.depth() == CV_8U ? mean_around<std::uint8_t>(grey, centre, radius)
+                               : mean_around<std::uint16_t>(grey, centre, radius);
+}
+
+/// How much brighter the squares (i + j even) between inner corners are than the others; each square is compared with
+/// its neighbours, so that uneven light does not matter.
+double even_minus_odd(const cv::Mat& grey, const BoardCorners& board) {
+  const auto square = [&](int i, int j) {
+    const cv::Point2d a = board.at(i, j);
+    const cv::Point2d b = board.at(i + 1, j + 1);
+    const cv::Point2d c = board.at(i + 1, j);
+    const cv::Point2d d = board.at(i, j + 1);
+    const double side = std::min({cv::norm(c - a), cv::norm(d - a), cv::norm(b - c), cv::norm(b - d)});
+    return mean_around(grey, 0.25 * (a + b + c + d), std::max(0.51, 0.2 * side));
+  };
+  double sum = 0.0;
+  for (int j = 0; j + 1 < board.grid.height; ++j) {
+    for (int i = 0; i + 1 < board.grid.width; ++i) {
+      const double sign = (i + j) % 2 == 0 ? 1.0 : -1.0;
+      const double here = square(i, j);
+      if (i + 2 < board.grid.width) sum += sign * (here - square(i + 1, j));
+      if (j + 2 < board.grid.height) sum += sign * (here - square(i, j + 1));
+    }
+  }
+  return sum;
+}
+
+BoardCorners transposed(const BoardCorners& board) {
+  BoardCorners other;
+  other.grid = cv::Size(board.grid.height, board.grid.width);
+  for (int j = 0; j < other.grid.height; ++j) {
+    for (int i = 0; i < other.grid.width; ++i) other.points.push_back(board.at(j, i));
+  }
+  return other;
+}
+
+BoardCorners flipped(const BoardCorners& board, bool in_x, bool in_y) {
+  BoardCorners other;
+  other.grid = board.grid;
+  for (int j = 0; j < board.grid.height; ++j) {
+    for (int i = 0; i < board.grid.width; ++i) {
+      other.points.push_back(board.at(in_x ? board.grid.width - 1 - i : i, in_y ? board.grid.height - 1 - j : j));
+    }
+  }
+  return other;
+}
+
+/// From the first to the last corner of the rows (the columns), on average.
+cv::Point2d along_x(const BoardCorners& board) {
+  cv::Point2d sum;
+  for (int j = 0; j < board.grid.height; ++j) sum += board.at(board.grid.width - 1, j) - board.at(0, j);
+  return sum;
+}
+cv::Point2d along_y(const BoardCorners& board) {
+  cv::Point2d sum;
+  for (int i = 0; i < board.grid.width; ++i) sum += board.at(i, board.grid.height - 1) - board.at(i, 0);
+  return sum;
+}
+
+/// The window reaches most of the way to the nearest edge that is not the corner's own.
+CornerSurroundings surroundings_of(const BoardCorners& board, int i, int j) {
+  const cv::Point2d here = board.at(i, j);
+  const int left = std::max(i - 1, 0);
+  const int right = std::min(i + 1, board.grid.width - 1);
+  const int up = std::max(j - 1, 0);
+  const int down = std::min(j + 1, board.grid.height - 1);
+  const cv::Point2d x = board.at(right, j) - board.at(left, j);
+  const cv::Point2d y = board.at(i, down) - board.at(i, up);
+  // Perpendicular distance of a neighbour from the edge through this corner.
+  const auto distance = [&](cv::Point2d neighbour, cv::Point2d edge) {
+    return std::abs((neighbour - here).cross(edge)) / cv::norm(edge);
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const int n : {left, right}) {
+    if (n != i) nearest = std::min(nearest, distance(board.at(n, j), y));
+  }
+  for (const int n : {up, down}) {
+    if (n != j) nearest = std::min(nearest, distance(board.at(i, n), x));
+  }
+  return {std::min(kWindowShare * nearest, kLargestWindowPx), std::atan2(x.y, x.x), std::atan2(y.y, y.x)};
+}
+
+}  // namespace
+
+BoardCorners orient_board(const cv::Mat& grey, cv::Size inner_corners, const std::vector<cv::Point2f>& corners) {
+  BoardCorners board;
+  board.grid = inner_corners;
+  for (const cv::Point2f& corner : corners) board.points.emplace_back(corner.x, corner.y);
+  const bool square = board.grid.width == board.grid.height;
+  if (board.grid.width < board.grid.height || (square && std::abs(along_y(board).x) > std::abs(along_x(board).x))) {
+    board = transposed(board);
+  }
+  // A corner square has the colour of the square between inner corners that touches it at its corner, so the squares
+  // between inner corners tell. The ends differ where the board has an odd number of columns and an even one of rows.
+  const bool ends_differ = board.grid.width % 2 == 1 && board.grid.height % 2 == 0;
+  const cv::Point2d x = along_x(board);
+  const bool turn_x = ends_differ ? even_minus_odd(grey, board) > 0.0 : x.x < 0.0 || (x.x == 0.0 && x.y < 0.0);
+  if (turn_x) board = flipped(board, true, false);
+  if (along_x(board).cross(along_y(board)) < 0.0) board = flipped(board, false, true);
+  board.sd_px.assign(board.points.size(), 0.0);
+  board.unrefined = board.points.size();
+  return board;
+}
+
+BoardCorners refine_board(const cv::Mat& grey, BoardCorners board) {
+  const BoardCorners start = board;
+  board.unrefined = 0;
+  for (int j = 0; j < board.grid.height; ++j) {
+    for (int i = 0; i < board.grid.width; ++i) {
+      const auto index = static_cast<std::size_t>(j * board.grid.width + i);
+      const auto refined = fit_corner(grey, start.points[index], surroundings_of(start, i, j));
+      if (!refined) {
+        ++board.unrefined;
+        continue;
+      }
+      board.points[index] = refined->point;
+      board.sd_px[index] = refined->sd_px;
+    }
+  }
+  return board;
+}
+
+std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corners, BoardDetector detector) {
+  const cv::Mat eight = to_8_bits(grey);
+  const int largest = std::max(eight.cols, eight.rows);
+  const double shrink = largest > kLargestForDetection ? static_cast<double>(kLargestForDetection) / largest : 1.0;
+  cv::Mat small = eight;
+  const auto shrunk = [shrink](int length) { return std::max(1, static_cast<int>(std::lround(shrink * length))); };
+  if (shrink < 1.0) cv::resize(eight, small, {shrunk(eight.cols), shrunk(eight.rows)}, 0.0, 0.0, cv::INTER_AREA);
+  std::vector<cv::Point2f> corners = detect(small, inner_corners, detector);
+  if (corners.empty() && shrink < 1.0) {  // small squares may have got lost
+    small = eight;
+    corners = detect(small, inner_corners, detector);
+  }
+  if (corners.empty()) return std::nullopt;
+  const cv::Size2d factor(static_cast<double>(eight.cols) / small.cols, static_cast<double>(eight.rows) / small.rows);
+  for (cv::Point2f& corner : corners) {
+    corner.x = static_cast<float>((corner.x + 0.5) * factor.width - 0.5);
+    corner.y = static_cast<float>((corner.y + 0.5) * factor.height - 0.5);
+  }
+  return refine_board(grey, orient_board(grey, inner_corners, corners));
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,191 @@
+#include "core/pictures/camera/motion_axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "base/errors.h"
+#include "core/math/median.h"
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kMaxIterations = 30;
+constexpr double kTukey = 6.0;  // scaled median deviations; 99 % efficient for Gaussian residuals
+// Anything above zero keeps exact data's weights defined; a tenth of a micrometre is below any camera.
+constexpr double kLeastScale = 1e-7;
+
+/// One point of every small cell, so that a marker that rests does not outvote its motion; at most about 80.
+std::vector<cv::Point2d> thinned(const std::vector<cv::Point2d>& points) {
+  cv::Point2d low = points.front(), high = points.front();
+  for (const cv::Point2d& point : points) {
+    low = {std::min(low.x, point.x), std::min(low.y, point.y)};
+    high = {std::max(high.x, point.x), std::max(high.y, point.y)};
+  }
+  const double cell = std::max(high.x - low.x, high.y - low.y) / 60.0;
+  std::set<std::pair<long, long>> taken;
+  std::vector<cv::Point2d> kept;
+  for (const cv::Point2d& point : points) {
+    if (!(cell > 0.0)) break;
+    if (!taken.emplace(std::lround((point.x - low.x) / cell), std::lround((point.y - low.y) / cell)).second) continue;
+    kept.push_back(point);
+  }
+  return kept;
+}
+
+/// The line through two of the points from which the median distance is least: half of the points may lie anywhere.
+std::optional<PlaneLine> least_median_line(const std::vector<cv::Point2d>& points) {
+  const std::vector<cv::Point2d> few = thinned(points);
+  std::optional<PlaneLine> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    for (std::size_t j = i + 1; j < few.size(); ++j) {
+      PlaneLine line;
+      line.through = few[i];
+      line.direction = (few[j] - few[i]) / cv::norm(few[j] - few[i]);
+      std::vector<double> distances;
+      for (const cv::Point2d& point : few) distances.push_back(std::abs(line.across(point)));
+      const double median = median_of(distances);
+      if (median >= least) continue;
+      least = median;
+      best = line;
+    }
+  }
+  return best;
+}
+
+/// Variance of the direction by the scatter of ten blocks of points along the line, which holds also where the points'
+/// errors are correlated (a picture's sampling, a track that is not straight): (sum of w l e over a block)^2 over the
+/// lever arms' square, as a multiple of what independent points give. 1 where it is not significantly above that.
+double excess_of_blocks(const PlaneLine& line, const std::vector<cv::Point2d>& points,
+                        const std::vector<double>& weights) {
+  constexpr std::size_t kBlocks = 10, kFewest = 3;  // points in a block
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (weights[i] > 0.0) order.push_back(i);
+  }
+  if (order.size() < kBlocks * kFewest) return 1.0;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return line.along(points[a]) < line.along(points[b]); });
+  double scatter = 0.0, independent = 0.0;
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    double sum = 0.0;
+    for (std::size_t k = block * order.size() / kBlocks; k < (block + 1) * order.size() / kBlocks; ++k) {
+      const std::size_t i = order[k];
+      const double score = weights[i] * line.along(points[i]) * line.across(points[i]);
+      sum += score;
+      independent += score * score;
+    }
+    scatter += sum * sum;
+  }
+  if (!(independent > 0.0)) return 1.0;
+  // Two parameters are fitted; the ratio of independent points scatters by sqrt(2 / 10) about 1.
+  const double ratio = scatter / independent * kBlocks / (kBlocks - 2.0);
+  return ratio > 1.0 + 2.0 * std::sqrt(2.0 / kBlocks) ? ratio : 1.0;
+}
+
+/// Through the points that lie near the start; through all where there is none.
+PlaneLine fit_from(const std::optional<PlaneLine>& start, const std::vector<cv::Point2d>& points, double least_scale) {
+  if (points.empty()) throw base::NumericalError("no points to fit a line to");
+  std::vector<double> weights(points.size(), 1.0);
+  if (start) {
+    std::vector<double> distances;
+    for (const cv::Point2d& point : points) distances.push_back(std::abs(start->across(point)));
+    // A generous scale: the line through two noisy points is itself off by some noise.
+    const double scale = std::max(3.0 * kSdOverMedian * median_of(distances), least_scale);
+    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = distances[i] < kTukey * scale ? 1.0 : 0.0;
+  }
+  PlaneLine line;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    double sum = 0.0;
+    cv::Point2d mean;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      sum += weights[i];
+      mean += weights[i] * points[i];
+    }
+    mean /= sum;
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const cv::Point2d off = points[i] - mean;
+      xx += weights[i] * off.x * off.x;
+      xy += weights[i] * off.x * off.y;
+      yy += weights[i] * off.y * off.y;
+    }
+    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+    const PlaneLine before = line;
+    line.through = mean;
+    line.direction = {std::cos(angle), std::sin(angle)};
+    double length2 = 0.0, across2 = 0.0, lever2 = 0.0;
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double across = line.across(points[i]);
+      length2 = std::max(length2, std::pow(line.along(points[i]), 2));
+      lever2 += weights[i] * std::pow(line.along(points[i]), 2);
+      across2 += weights[i] * across * across;
+      distances.push_back(std::abs(across));
+    }
+    if (!(length2 > 0.0)) throw base::NumericalError("the points of a line all lie in one place");
+    const double scale = std::max(kSdOverMedian * median_of(distances), least_scale);
+    line.used = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double share = distances[i] / (kTukey * scale);
+      weights[i] = share < 1.0 ? std::pow(1.0 - share * share, 2) : 0.0;
+      if (weights[i] > 0.5) ++line.used;
+    }
+    line.rms_across = std::sqrt(across2 / sum);
+    line.sd_angle_rad = line.rms_across / std::sqrt(lever2);
+    if (iteration > 0 && cv::norm(line.direction - before.direction) < 1e-14 &&
+        cv::norm(line.through - before.through) <= 1e-14 * std::sqrt(length2)) {
+      break;
+    }
+  }
+  line.sd_angle_rad *= std::sqrt(excess_of_blocks(line, points, weights));
+  return line;
+}
+
+}  // namespace
+
+PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_scale) {
+  return fit_from(points.empty() ? std::nullopt : least_median_line(points), points, least_scale);
+}
+
+MotionAxis MotionAxis::directed(const PlaneLine& line, int downhill) {
+  MotionAxis axis;
+  axis.line_ = line;
+  if (axis.line_.direction.x * downhill < 0.0) axis.line_.direction = -axis.line_.direction;
+  return axis;
+}
+
+MotionAxis MotionAxis::through(const std::vector<cv::Point2d>& points, int downhill) {
+  return directed(fit_plane_line(points, kLeastScale), downhill);
+}
+
+MotionAxis MotionAxis::moved_through(const std::vector<cv::Point2d>& points, int downhill) const {
+  return directed(fit_from(line_, points, kLeastScale), downhill);
+}
+
+MotionAxis MotionAxis::along_x(int downhill) {
+  MotionAxis axis;
+  axis.line_.direction = {static_cast<double>(downhill), 0.0};
+  axis.line_.sd_angle_rad = std::numeric_limits<double>::infinity();
+  return axis;
+}
+
+MotionAxis MotionAxis::turned(const MotionAxis& to, const MotionAxis& from) const {
+  const double cosine = from.line_.direction.dot(to.line_.direction);
+  const double sine = from.line_.direction.cross(to.line_.direction);
+  MotionAxis axis = *this;
+  const cv::Point2d d = line_.direction;
+  axis.line_.direction = {cosine * d.x - sine * d.y, sine * d.x + cosine * d.y};
+  return axis;
+}
+
+double MotionAxis::angle_to_x_rad() const {
+  return std::atan(line_.direction.y / line_.direction.x);
+}
+
+}  // namespace glidelab::core

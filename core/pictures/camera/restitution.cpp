@@ -1,0 +1,167 @@
+#include "core/pictures/camera/restitution.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/math/dense.h"
+
+namespace glidelab::core {
+namespace {
+
+/// Of the marker's outline; an ellipse's centre comes out exactly for any even number.
+constexpr int kOutlinePoints = 48;
+
+/// The directions from the outline's centre to its points.
+const std::array<cv::Point2d, kOutlinePoints> kAround = [] {
+  std::array<cv::Point2d, kOutlinePoints> around;
+  for (int k = 0; k < kOutlinePoints; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / kOutlinePoints;
+    around[static_cast<std::size_t>(k)] = {std::cos(angle), std::sin(angle)};
+  }
+  return around;
+}();
+
+/// Columns whose products sum up to the covariance, one for each direction that has a variance: the eigenvectors of
+/// the correlations, so that the parameters' units do not matter.
+Eigen::MatrixXd square_root(const Eigen::MatrixXd& covariance) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
+    if (covariance(k, k) > 0.0) free.push_back(k);
+  }
+  const auto size = static_cast<Eigen::Index>(free.size());
+  if (size == 0) return Eigen::MatrixXd::Zero(covariance.rows(), 0);
+  Eigen::VectorXd sd(size);
+  for (Eigen::Index k = 0; k < size; ++k)
+    sd[k] = std::sqrt(covariance(free[static_cast<std::size_t>(k)], free[static_cast<std::size_t>(k)]));
+  const Eigen::MatrixXd part = covariance(free, free);
+  const Eigen::MatrixXd correlations = sd.cwiseInverse().asDiagonal() * part * sd.cwiseInverse().asDiagonal();
+  const base::SymmetricEigen eigen = base::symmetric_eigen(correlations);
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(covariance.rows(), size);
+  root(free, Eigen::all) = sd.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return root;
+}
+
+}  // namespace
+
+Restitution Restitution::from_pattern(const Calibration& calibration, const std::vector<BoardCorners>& planes,
+                                      double square_m, double marker_height_m, double marker_diameter_m) {
+  Restitution restitution;
+  restitution.calibration_ = calibration;
+  restitution.views_ = planes;
+  restitution.square_m_ = square_m;
+  restitution.plane_ = fit_plane(calibration.camera, planes, square_m, calibration.noise.correlated_px);
+  restitution.height_m_ = marker_height_m;
+  restitution.radius_m_ = 0.5 * marker_diameter_m;
+  return restitution;
+}
+
+Restitution Restitution::from_scale(const ScaleSetup& scale, double marker_diameter_m) {
+  Restitution restitution;
+  restitution.scale_ = scale;
+  restitution.radius_m_ = 0.5 * marker_diameter_m;
+  return restitution;
+}
+
+cv::Point2d Restitution::project(cv::Vec3d point_in_p) const {
+  const cv::Vec3d p = plane_->pose.rotation * point_in_p + plane_->pose.shift;
+  return calibration_.camera.to_pixel({p[0] / p[2], p[1] / p[2]});
+}
+
+/// Centre of the outline (the area's centroid) minus the projection of the sphere's centre, in pixels.
+cv::Point2d Restitution::outline_offset(cv::Point2d plane) const {
+  const cv::Vec3d centre = plane_->pose.rotation * cv::Vec3d(plane.x, plane.y, -height_m_) + plane_->pose.shift;
+  const double distance = cv::norm(centre);
+  if (!(distance > radius_m_)) return {0.0, 0.0};
+  // The rays that touch the sphere touch it on a circle, nearer than the centre by R^2 / D and a little smaller.
+  const cv::Vec3d along = centre / distance;
+  const cv::Vec3d any = std::abs(along[0]) < 0.7 ? cv::Vec3d(1, 0, 0) : cv::Vec3d(0, 1, 0);
+  const cv::Vec3d across = cv::normalize(along.cross(any));
+  const cv::Vec3d other = along.cross(across);
+  const double share = radius_m_ / distance;
+  const cv::Vec3d middle = centre * (1.0 - share * share);
+  const double rim = radius_m_ * std::sqrt(1.0 - share * share);
+  const cv::Point2d reference = calibration_.camera.to_pixel({centre[0] / centre[2], centre[1] / centre[2]});
+  std::array<cv::Point2d, kOutlinePoints> outline;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const cv::Vec3d p = middle + rim * (kAround[k].x * across + kAround[k].y * other);
+    outline[k] = calibration_.camera.to_pixel({p[0] / p[2], p[1] / p[2]}) - reference;
+  }
+  double area = 0.0;
+  cv::Point2d moment;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const cv::Point2d a = outline[k];
+    const cv::Point2d b = outline[(k + 1) % outline.size()];
+    const double cross = a.cross(b);
+    area += cross;
+    moment += (a + b) * cross;
+  }
+  return moment / (3.0 * area);
+}
+
+std::optional<cv::Point2d> Restitution::intersect(cv::Point2d pixel) const {
+  return meet_plane(calibration_.camera, plane_->pose, pixel, -height_m_);
+}
+
+std::optional<cv::Point2d> Restitution::to_plane(cv::Point2d pixel) const {
+  if (scale_) return cv::Point2d(pixel.x / scale_->px_per_m, pixel.y / scale_->px_per_m);
+  const auto first = intersect(pixel);
+  if (!first || radius_m_ == 0.0) return first;
+  // The offset varies slowly: a second step, from the place that the first one gave, is good to a millionth of it.
+  const auto second = intersect(pixel - outline_offset(*first));
+  if (!second) return std::nullopt;
+  return intersect(pixel - outline_offset(*second));
+}
+
+cv::Point2d Restitution::to_pixel(cv::Point2d plane) const {
+  if (scale_) return plane * scale_->px_per_m;
+  const cv::Point2d centre = project({plane.x, plane.y, -height_m_});
+  return radius_m_ == 0.0 ? centre : centre + outline_offset(plane);
+}
+
+std::optional<cv::Point2d> Restitution::undistorted(cv::Point2d pixel) const {
+  if (scale_) return pixel;
+  const CameraModel& camera = calibration_.camera;
+  const auto normalised = camera.to_normalised(pixel);
+  if (!normalised) return std::nullopt;
+  return cv::Point2d(camera.fx * normalised->x + camera.cx, camera.fy * normalised->y + camera.cy);
+}
+
+std::optional<double> Restitution::marker_radius_px(cv::Point2d pixel) const {
+  if (scale_) return radius_m_ * scale_->px_per_m;
+  const auto plane = intersect(pixel);
+  if (!plane) return std::nullopt;
+  // Mean of the radii along the picture's two axes, from the scale along and across the plane.
+  const cv::Point2d centre = project({plane->x, plane->y, -height_m_});
+  const cv::Vec3d c = plane_->pose.rotation * cv::Vec3d(plane->x, plane->y, -height_m_) + plane_->pose.shift;
+  const cv::Point2d right = calibration_.camera.to_pixel({(c[0] + radius_m_) / c[2], c[1] / c[2]});
+  const cv::Point2d down = calibration_.camera.to_pixel({c[0] / c[2], (c[1] + radius_m_) / c[2]});
+  return 0.5 * (cv::norm(right - centre) + cv::norm(down - centre));
+}
+
+cv::Point2d Restitution::centre_pixel(cv::Point2d plane) const {
+  return scale_ ? plane * scale_->px_per_m : project({plane.x, plane.y, -height_m_});
+}
+
+std::optional<cv::Point2d> RestitutionMode::to_plane(cv::Point2d centre_pixel) const {
+  return meet_plane(camera, pose, centre_pixel, -height_m);
+}
+
+std::vector<RestitutionMode> Restitution::modes() const {
+  std::vector<RestitutionMode> modes;
+  if (scale_) return modes;
+  // A quarter of a standard deviation: far above the fits' rounding, and small beside what bends the response.
+  constexpr double kSds = 0.25;
+  const Eigen::MatrixXd of_camera = square_root(calibration_.covariance);
+  for (Eigen::Index k = 0; k < of_camera.cols(); ++k) {
+    const CameraModel camera = calibration_.camera.moved(kSds * of_camera.col(k));
+    modes.push_back({camera, refit_pose(camera, views_, square_m_, *plane_), height_m_, kSds, true});
+  }
+  const Eigen::MatrixXd of_pose = square_root(plane_->covariance);
+  for (Eigen::Index k = 0; k < of_pose.cols(); ++k) {
+    modes.push_back({calibration_.camera, moved(plane_->pose, kSds * of_pose.col(k)), height_m_, kSds, false});
+  }
+  return modes;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,86 @@
+/// From a pixel to metres in the plane of motion, and back.
+///
+/// With a pattern: pixel -> ray (distortion undone) -> the point where the ray meets the plane Z = -height_m of the
+/// pattern's frame P, that is the plane in which the marker's centre moves. P's pose comes from the plane views by
+/// least squares with the calibrated camera; several of them share one plane and differ by a motion in it. The outline
+/// of a sphere is not centred on the projection of its centre (its image is nearly an ellipse, shifted away from the
+/// axis); that is corrected from the marker's diameter. With one scale: X = u / px_per_m, Y = v / px_per_m.
+///
+/// How sure it is: the camera's covariance and, with the camera held, that of the plane's pose are each split into
+/// independent modes (the columns of a square root of the covariance). A mode is the camera and the pose as an error of
+/// some standard deviations would have made them, the pose following the camera by a new fit of the plane views. Places
+/// restituted with it, minus those restituted without, are the signed displacements that such an error causes.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include <optional>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+#include "core/pictures/camera/calibrate.h"
+#include "core/pictures/camera/plane_fit.h"
+
+namespace glidelab::core {
+
+/// The way from pixels to the plane with an error of `sds` standard deviations in one independent direction.
+struct RestitutionMode {
+  CameraModel camera;
+  PlanePose pose;
+  double height_m = 0.0;
+  double sds = 0.0;
+  bool of_camera = false;  ///< else of this plane's pose alone
+
+  /// Where the marker's centre is whose projection is this pixel (Restitution::centre_pixel).
+  std::optional<cv::Point2d> to_plane(cv::Point2d centre_pixel) const;
+};
+
+class Restitution {
+ public:
+  static Restitution from_pattern(const Calibration& calibration, const std::vector<BoardCorners>& planes,
+                                  double square_m, double marker_height_m, double marker_diameter_m);
+  static Restitution from_scale(const ScaleSetup& scale, double marker_diameter_m);
+
+  /// Where the marker's centre is that is seen centred on this pixel; metres in P. Nothing where no ray belongs to the
+  /// pixel or it does not meet the plane before the camera.
+  std::optional<cv::Point2d> to_plane(cv::Point2d pixel) const;
+
+  /// The pixel on which a marker at this place is seen centred; the inverse of to_plane.
+  cv::Point2d to_pixel(cv::Point2d plane) const;
+
+  /// The pixel with the lens's distortion undone (as a camera without it would show it); the pixel itself with a scale.
+  std::optional<cv::Point2d> undistorted(cv::Point2d pixel) const;
+
+  /// Radius of the marker's image there, in pixels; nothing where to_plane gives nothing.
+  std::optional<double> marker_radius_px(cv::Point2d pixel) const;
+
+  /// Onto which pixel the marker's centre is projected, which is not where its outline is centred.
+  cv::Point2d centre_pixel(cv::Point2d plane) const;
+
+  /// Relative standard deviation of px_per_m, as stated with the scale; 0 with a pattern, whose scale is in the modes.
+  double relative_scale_sd() const { return scale_ ? scale_->px_per_m_sd / scale_->px_per_m : 0.0; }
+
+  /// Those of the camera come first and are the same (and in the same order) for every plane of one calibration. None
+  /// with a scale.
+  std::vector<RestitutionMode> modes() const;
+
+  /// What the plane views gave; nothing for a scale.
+  const std::optional<PlaneFit>& plane() const { return plane_; }
+
+ private:
+  Restitution() = default;
+  std::optional<cv::Point2d> intersect(cv::Point2d pixel) const;
+  cv::Point2d project(cv::Vec3d point_in_p) const;
+  cv::Point2d outline_offset(cv::Point2d plane) const;
+
+  std::optional<ScaleSetup> scale_;
+  Calibration calibration_;
+  std::vector<BoardCorners> views_;
+  double square_m_ = 0.0;
+  std::optional<PlaneFit> plane_;
+  double height_m_ = 0.0;
+  double radius_m_ = 0.0;
+};
+
+}  // namespace glidelab::core

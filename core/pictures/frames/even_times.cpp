@@ -1,0 +1,107 @@
+#include "core/pictures/frames/even_times.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kFewest = 20;
+constexpr double kSame_s = 2e-6;     // stamps are stored to a microsecond or better
+constexpr double kWider = 1.05;      // than a tick, for exposures that jitter a little
+constexpr double kNextSlot = 1.5;    // of the median step: a longer one may hold a frame that is missing
+constexpr double kLeastTicks = 1.5;  // in a step: with fewer a tick more or less could be a frame
+constexpr int kHalvings = 60;        // of an interval: to the last bit
+
+/// The longest step of which both are whole multiples, to kSame_s.
+double common_step(double a, double b) {
+  while (b > kSame_s) {
+    const double rest = std::abs(a - b * std::round(a / b));
+    a = b;
+    b = rest;
+  }
+  return a;
+}
+
+/// The slots that the stamps' steps pass, for a step of about the mean of the single ones.
+std::vector<double> slots_of(const std::vector<double>& steps, double tick_s) {
+  const double median_s = quantile(steps, 0.5);
+  double sum = 0.0, count = 0.0;
+  for (const double step : steps) {
+    if (step > kNextSlot * median_s) continue;
+    sum += step;
+    count += 1.0;
+  }
+  const double usual_s = sum / count;
+  if (usual_s < kLeastTicks * tick_s) return {};
+  std::vector<double> slots{0.0};
+  for (const double step : steps) slots.push_back(slots.back() + std::max(1.0, std::round(step / usual_s)));
+  return slots;
+}
+
+struct Spread {
+  std::span<const double> stamps_s;
+  const std::vector<double>& slots;
+
+  /// Of stamp - T slot; convex in T.
+  double operator()(double step_s) const {
+    double low = stamps_s[0], high = low;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      const double off = stamps_s[i] - step_s * slots[i];
+      low = std::min(low, off);
+      high = std::max(high, off);
+    }
+    return high - low;
+  }
+};
+
+/// Where between a step of at most this spread and one of a larger it passes the limit.
+double edge(const Spread& spread, double limit, double inside, double outside) {
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (spread(middle) <= limit ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+}  // namespace
+
+std::optional<EvenTimes> even_times(std::span<const double> stamps_s) {
+  if (stamps_s.size() < kFewest) return std::nullopt;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps_s.size(); ++i) steps.push_back(stamps_s[i] - stamps_s[i - 1]);
+  const auto [shortest, longest] = std::minmax_element(steps.begin(), steps.end());
+  if (*longest - *shortest < kSame_s) return std::nullopt;
+  EvenTimes even;
+  even.tick_s = *shortest;
+  for (const double step : steps) even.tick_s = common_step(even.tick_s, step);
+  const std::vector<double> slots = slots_of(steps, even.tick_s);
+  if (slots.empty()) return std::nullopt;
+
+  // The least spread lies where the ends are off by no more than two ticks.
+  const Spread spread{stamps_s, slots};
+  const double mean_s = (stamps_s.back() - stamps_s.front()) / slots.back();
+  const double reach_s = 2.0 * even.tick_s / slots.back();
+  double low = mean_s - reach_s, high = mean_s + reach_s;
+  for (int i = 0; i < 2 * kHalvings; ++i) {
+    const double third = (high - low) / 3.0;
+    if (spread(low + third) < spread(high - third)) {
+      high -= third;
+    } else {
+      low += third;
+    }
+  }
+  const double best_s = 0.5 * (low + high), least = spread(best_s);
+  if (least > kWider * even.tick_s) return std::nullopt;
+  const double limit = std::max(least, even.tick_s) * (1.0 + 1e-9);
+  const double from_s = edge(spread, limit, best_s, best_s - 2.0 * reach_s);
+  const double to_s = edge(spread, limit, best_s, best_s + 2.0 * reach_s);
+  even.step_s = 0.5 * (from_s + to_s);
+  even.half_width_s = 0.5 * (to_s - from_s);
+  for (const double slot : slots) even.t_s.push_back(even.step_s * slot);
+  return even;
+}
+
+}  // namespace glidelab::core

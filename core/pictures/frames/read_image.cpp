@@ -1,0 +1,54 @@
+#include "core/pictures/frames/read_image.h"
+
+#include <stdlib.h>
+
+#include <mutex>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <system_error>
+
+#include "base/errors.h"
+
+namespace glidelab::core {
+namespace fs = std::filesystem;
+
+void silence_opencv() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // AV_LOG_QUIET; a user's own setting stays
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  });
+}
+
+cv::Mat read_picture(const fs::path& path) {
+  silence_opencv();
+  const auto fail = [&](const std::string& found) {
+    throw base::InputError(base::Issue{path.string(), 0, "", found, "a picture (PNG, JPEG, TIFF, PGM)"});
+  };
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) fail("no file");
+  if (fs::file_size(path, error) == 0) fail("an empty file");
+  cv::Mat picture;
+  try {
+    picture = cv::imread(path.string(), cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
+  } catch (const cv::Exception& exception) {
+    fail("a picture that cannot be decoded (" + std::string(exception.err) + ")");
+  }
+  if (picture.empty()) fail("no picture that can be decoded");
+  if (picture.depth() != CV_8U && picture.depth() != CV_16U) fail("a picture of neither 8 nor 16 bits");
+  return picture;
+}
+
+cv::Mat to_grey(const cv::Mat& picture) {
+  if (picture.channels() == 1) return picture;
+  cv::Mat grey;
+  cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
+cv::Mat read_grey_picture(const fs::path& path) {
+  return to_grey(read_picture(path));
+}
+
+}  // namespace glidelab::core

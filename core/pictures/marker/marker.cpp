@@ -1,0 +1,247 @@
+#include "core/pictures/marker/marker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/math/least_squares.h"
+#include "core/math/median.h"
+#include "core/pictures/marker/marker_model.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitude; a disc leaves noise only
+constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
+constexpr double kSharpEdge_px = 0.29;  // the pixel's own extent, 1/sqrt(12): nothing that is not clipped is sharper
+constexpr int kMaxIterations = 14;      // what is a marker takes 3 to 8
+constexpr int kTrials = 4;              // by then the residuals of a disc are nearly those of its fit
+constexpr double kHopelessResidual = 2.0 * kLargestResidual;
+constexpr int kMoreIterations = 16;  // a disc so far, its edge sharper than a pixel: the sensor clips it
+
+/// sin x for |x| up to pi/2, to 6e-8.
+double sine(double x) {
+  const double x2 = x * x;
+  return x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0)))));
+}
+
+/// All pixels within `radius`, tapered towards the rim so that a pixel more or less there does not move the centre.
+std::optional<MarkerPixels> cut_window(const Signal& signal, cv::Point2d centre, double radius) {
+  const int left = static_cast<int>(std::ceil(centre.x - radius));
+  const int right = static_cast<int>(std::floor(centre.x + radius));
+  const int top = static_cast<int>(std::ceil(centre.y - radius));
+  const int bottom = static_cast<int>(std::floor(centre.y + radius));
+  if (left < 0 || top < 0 || right >= signal.values.cols || bottom >= signal.values.rows) return std::nullopt;
+  signal.see({left, top, right - left + 1, bottom - top + 1});
+  MarkerPixels window;
+  window.reserve(static_cast<std::size_t>(right - left + 1) * static_cast<std::size_t>(bottom - top + 1));
+  const double taper_from = radius - std::min(2.0, 0.25 * radius);
+  for (int v = top; v <= bottom; ++v) {
+    for (int u = left; u <= right; ++u) {
+      const double du = u - centre.x, dv = v - centre.y, square = du * du + dv * dv;
+      if (square >= radius * radius) continue;
+      double weight = 1.0;
+      if (square > taper_from * taper_from) {
+        const double into_taper = (std::sqrt(square) - taper_from) / (radius - taper_from);
+        weight = 0.5 + 0.5 * sine(std::numbers::pi * (0.5 - into_taper));
+      }
+      window.add(u, v, signal.at(u, v), weight);
+    }
+  }
+  window.complete();
+  return window;
+}
+
+/// Weak knowledge that keeps small markers' size and blur apart, and the blur of a sharp picture from sliding to
+/// nothing (it has no effect to be seen there); each worth so much of the amplitude in one pixel.
+struct Prior {
+  double radius_px;
+  double blur_px;
+  double amplitude;
+};
+constexpr double kSizeStrength = 0.1;  // a unit of ln(radius)
+constexpr double kBlurStrength = 0.3;  // a unit of ln(blur)
+constexpr double kShadeStrength = 0.05;
+
+/// The sums over the pixels with what is known beforehand.
+template <int N>
+std::optional<NormalEquations<N>> evaluate(MarkerModel<N>& pixels, const Prior& prior,
+                                           const Eigen::Matrix<double, N, 1>& p) {
+  std::optional<NormalEquations<N>> equations = pixels.equations(p);
+  if (!equations) return std::nullopt;
+  const double a = p[kMuu], b = p[kMuv], c = p[kMvv];
+  const double determinant = a * c - b * b;
+  Eigen::Matrix<double, N, 1> jacobian;
+  const double sharp = kBlurStrength * prior.amplitude;
+  jacobian.setZero();
+  jacobian[kLogBlur] = sharp;
+  equations->add(jacobian, sharp * (p[kLogBlur] - std::log(prior.blur_px)), 1.0);
+  // ln(radius / expected) = -ln(determinant) / 2 - ln(expected).
+  const double along = kSizeStrength * prior.amplitude;
+  jacobian.setZero();
+  jacobian[kMuu] = -0.5 * along * c / determinant;
+  jacobian[kMvv] = -0.5 * along * a / determinant;
+  jacobian[kMuv] = along * b / determinant;
+  equations->add(jacobian, along * (-0.5 * std::log(determinant) - std::log(prior.radius_px)), 1.0);
+  if constexpr (N == kShadedParameters) {
+    jacobian.setZero();
+    jacobian[kShadeR] = kShadeStrength;
+    equations->add(jacobian, kShadeStrength * p[kShadeR], 1.0);
+  }
+  return equations;
+}
+
+/// What the pixels well inside and well outside of the guess are like.
+struct Contrast {
+  double level;      ///< of the background
+  double amplitude;  ///< of the marker above it, > 0
+};
+
+std::optional<Contrast> contrast_of(const MarkerPixels& window, const MarkerGuess& guess) {
+  std::vector<double> inside, around;
+  inside.reserve(window.size());
+  around.reserve(window.size());
+  const double well_inside_px = 0.7 * guess.radius_px;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double du = window.u()[i] - guess.centre.x, dv = window.v()[i] - guess.centre.y;
+    const double square = du * du + dv * dv;
+    if (square < well_inside_px * well_inside_px) inside.push_back(window.value()[i]);
+    if (square > guess.radius_px * guess.radius_px) around.push_back(window.value()[i]);
+  }
+  if (inside.empty() || around.empty()) return std::nullopt;
+  const double level = median_of(std::move(around));
+  const double amplitude = median_of(std::move(inside)) - level;
+  if (!(amplitude > 0.0)) return std::nullopt;
+  return Contrast{level, amplitude};
+}
+
+template <int N>
+Eigen::Matrix<double, N, 1> start_of(const MarkerGuess& guess, const Contrast& contrast) {
+  Eigen::Matrix<double, N, 1> start = Eigen::Matrix<double, N, 1>::Zero();
+  start[kU] = guess.centre.x;
+  start[kV] = guess.centre.y;
+  start[kMuu] = guess.shape ? (*guess.shape)[0] : 1.0 / guess.radius_px;
+  start[kMuv] = guess.shape ? (*guess.shape)[1] : 0.0;
+  start[kMvv] = guess.shape ? (*guess.shape)[2] : 1.0 / guess.radius_px;
+  start[kLogBlur] = std::log(guess.blur_px);
+  start[kBright] = contrast.level + contrast.amplitude;
+  start[kLevel] = contrast.level;
+  return start;
+}
+
+/// Changes of the parameters that are too small to matter.
+template <int N>
+Eigen::Matrix<double, N, 1> steps_of(const MarkerGuess& guess, double amplitude) {
+  Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Constant(3e-3 * amplitude);
+  step[kU] = step[kV] = 1e-3;
+  step[kMuu] = step[kMuv] = step[kMvv] = 3e-3 / guess.radius_px;
+  step[kLogBlur] = 2e-2;
+  return step;
+}
+
+template <int N>
+LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const Contrast& contrast) {
+  const double amplitude = contrast.amplitude;
+  const Prior prior{guess.radius_px, guess.blur_px, amplitude};
+  const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(pixels, prior, p); };
+  const auto is_hopeless = [&](const LeastSquaresFit<N>& so_far, const NormalEquations<N>& here) {
+    if (so_far.iterations < kTrials) return false;
+    const double bright = std::max(amplitude, so_far.parameters[kBright] - so_far.parameters[kLevel]);
+    return here.cost > here.weight * kHopelessResidual * kHopelessResidual * bright * bright;
+  };
+  const Eigen::Matrix<double, N, 1> step = steps_of<N>(guess, amplitude);
+  LeastSquaresFit<N> found =
+      fit_least_squares<N>(model, start_of<N>(guess, contrast), step, kMaxIterations, is_hopeless);
+  if (found.stop == FitStop::iterations && found.parameters[kLogBlur] < std::log(kSharpEdge_px) &&
+      found.rms < kLargestResidual * amplitude) {
+    found = fit_least_squares<N>(model, found.parameters, step, kMoreIterations);
+  }
+  return found;
+}
+
+/// Standard deviation of a coordinate of the centre. The bright marker's pixels are noisier than the background's, and
+/// the taper counts: covariance by the sandwich A^-1 B A^-1 with A = J^T W J, B = sum (w r)^2 J J^T, and N parameters
+/// taken from the residuals' freedom.
+template <int N>
+double centre_sd(MarkerModel<N>& pixels, const LeastSquaresFit<N>& found, double total_weight) {
+  const Eigen::Matrix<double, N, N> noise =
+      pixels.gradient_variance(found.evaluated_at, found.parameters - found.evaluated_at);
+  const Eigen::Matrix<double, 2, N> inverse = found.covariance.template topRows<2>() / (found.rms * found.rms);
+  const Eigen::Matrix2d covariance = inverse * noise * inverse.transpose();
+  const double freedom = total_weight / (total_weight - N);
+  return std::sqrt(0.5 * freedom * covariance.trace());
+}
+
+/// Second moments of what is above the fitted background.
+cv::Vec3d moments_of(const MarkerPixels& window, const MarkerFit& marker, double expected_radius_px) {
+  cv::Vec3d moments(0.0, 0.0, 0.0);
+  double above = 0.0;
+  const double reach = kMomentReach * expected_radius_px + kMomentMargin_px;  // short of what else moves with it
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double du = window.u()[i] - marker.centre.x, dv = window.v()[i] - marker.centre.y;
+    if (du * du + dv * dv > reach * reach) continue;
+    const double value = window.value()[i] - marker.background - marker.slope_u * du - marker.slope_v * dv;
+    above += value;
+    moments += value * cv::Vec3d(du * du, du * dv, dv * dv);
+  }
+  return moments * (1.0 / above);
+}
+
+template <int N>
+MarkerFit marker_of(const MarkerPixels& window, const MarkerGuess& guess, MarkerModel<N>& pixels,
+                    const LeastSquaresFit<N>& found, double total_weight) {
+  const auto& p = found.parameters;
+  MarkerFit marker;
+  marker.centre = {p[kU], p[kV]};
+  marker.sd_px = centre_sd<N>(pixels, found, total_weight);
+  const double determinant = p[kMuu] * p[kMvv] - p[kMuv] * p[kMuv];
+  marker.radius_px = 1.0 / std::sqrt(determinant);
+  marker.shape = {p[kMuu], p[kMuv], p[kMvv]};
+  const double mean = 0.5 * (p[kMuu] + p[kMvv]);
+  const double spread = std::hypot(0.5 * (p[kMuu] - p[kMvv]), p[kMuv]);
+  marker.elongation = (mean + spread) / std::max(mean - spread, 1e-9);
+  marker.amplitude = p[kBright] - p[kLevel];
+  marker.background = p[kLevel];
+  marker.slope_u = p[kSlopeU];
+  marker.slope_v = p[kSlopeV];
+  marker.moments = moments_of(window, marker, guess.radius_px);
+  marker.blur_px = std::exp(p[kLogBlur]);
+  marker.rms = found.rms;
+  marker.bic = total_weight * std::log(std::max(found.rms * found.rms * (total_weight - N) / total_weight, 1e-12)) +
+               N * std::log(total_weight);
+  return marker;
+}
+
+bool is_plausible(const MarkerFit& marker, const MarkerGuess& guess) {
+  const double moved = cv::norm(marker.centre - guess.centre);
+  return moved < std::max(guess.radius_px, 1.5) && has_expected_size(marker, guess) && marker.amplitude > 0.0 &&
+         marker.rms < kLargestResidual * marker.amplitude;
+}
+
+template <int N>
+std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& guess) {
+  if (window.size() < 2 * static_cast<std::size_t>(N)) return std::nullopt;
+  const std::optional<Contrast> contrast = contrast_of(window, guess);
+  if (!contrast) return std::nullopt;
+  MarkerModel<N> pixels(window);
+  const LeastSquaresFit<N> found = solve<N>(pixels, guess, *contrast);
+  if (found.stop != FitStop::converged) return std::nullopt;
+  double total_weight = 0.0;
+  for (const double w : window.weight()) total_weight += w;
+  if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;
+  MarkerFit marker = marker_of<N>(window, guess, pixels, found, total_weight);
+  if (!is_plausible(marker, guess)) return std::nullopt;
+  return marker;
+}
+
+}  // namespace
+
+std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& guess, Surface surface) {
+  const auto window = cut_window(signal, guess.centre, 1.25 * guess.radius_px + 2.5);
+  if (!window) return std::nullopt;
+  return surface == Surface::uniform ? fit<kUniformParameters>(*window, guess) : fit<kShadedParameters>(*window, guess);
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,82 @@
+/// The centre of one marker's image, to a hundredth of a pixel, from a least-squares fit to the pixels around it.
+///
+/// The model is an opaque shape with a blurred edge before a sloping background:
+///
+///     I(p) = (b + g . d) (1 - E) + (B + a . d / r + q (1 - rho^2)) E,   E = Phi(s / sigma),   d = p - c
+///
+/// c centre, b and g the background and its slope, B the marker's brightness, Phi the normal distribution, sigma the
+/// edge's blur (which holds the pixel's own extent), rho = |M d| with a symmetric M (1/px) whose unit level is the
+/// outline (an ellipse: a sphere off the axis, a streak of motion), s = rho (1 - rho) / |M^2 d| the distance inside it
+/// (exact for a circle, to first order near any outline). a and q describe a surface that is lit from one side; they
+/// are used where the clip shows that they are needed. A plain centroid above a threshold follows the background's
+/// slope; this does not. Pixels; the centre of the first pixel is (0, 0).
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <optional>
+
+#include "core/pictures/frames/draw_pixels.h"
+
+namespace glidelab::core {
+
+/// One channel in which the marker is brighter than what surrounds it: the grey picture, its inverse, or the likeness
+/// to the marker's colour. 8 or 16 bits.
+struct Signal {
+  cv::Mat values;
+  DrawPixels draw = {};  ///< where the pixels are made as they are looked at: before at() and values, see()
+
+  /// The rectangle, which lies within the picture, is about to be looked at.
+  void see(const cv::Rect& part) const {
+    if (draw) draw(part);
+  }
+  double at(int u, int v) const {
+    return values.depth() == CV_8U ? static_cast<double>(values.at<unsigned char>(v, u))
+                                   : static_cast<double>(values.at<unsigned short>(v, u));
+  }
+};
+
+struct MarkerFit {
+  cv::Point2d centre;
+  double sd_px = 0.0;       ///< of one coordinate, from the residuals and the fit's covariance
+  double radius_px = 0.0;   ///< of the circle with the outline's area
+  double elongation = 1.0;  ///< long over short axis
+  cv::Vec3d shape;          ///< the elements uu, uv, vv of M (1/px)
+  double amplitude = 0.0;   ///< B - b, in units of the signal
+  double background = 0.0;
+  /// Second moments uu, uv, vv (px²) about the centre of what stands above the background in a disc a little larger
+  /// than the marker: of the pixels, whatever the model makes of them.
+  cv::Vec3d moments;
+  double slope_u = 0.0, slope_v = 0.0;  ///< g, of the background, 1/px
+  double blur_px = 0.0;                 ///< sigma
+  double rms = 0.0;                     ///< of the residuals, in units of the signal
+  double bic = 0.0;                     ///< Bayesian information criterion, to compare surfaces on the same window
+};
+
+enum class Surface { uniform, shaded };
+
+/// What is known before the fit.
+struct MarkerGuess {
+  cv::Point2d centre;
+  double radius_px = 0.0;
+  double blur_px = 0.5;
+  std::optional<cv::Vec3d> shape;  ///< M of the last frame's fit: a start, not a constraint
+};
+
+inline constexpr double kLargestRatio = 2.0;  ///< of the fitted radius and the expected one, or its inverse
+
+inline bool has_expected_size(const MarkerFit& marker, const MarkerGuess& guess) {
+  const double ratio = marker.radius_px / guess.radius_px;
+  return ratio <= kLargestRatio && ratio >= 1.0 / kLargestRatio;
+}
+
+/// Fits the model in a window of 1.25 radii plus 2.5 px. Nothing where the window leaves the picture, the fit does not
+/// converge, moves by more than a radius, or ends with a shape that is not the marker's (size off by more than a factor
+/// of 2, darker than its surroundings, residuals above a third of the amplitude).
+std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& guess, Surface surface);
+
+/// Centroid of what stands out in the signal and hangs together around the guess, weighted with how far it stands out.
+/// For objects that are no disc and are known by their colour; sd_px is not estimated (0).
+std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGuess& guess);
+
+}  // namespace glidelab::core

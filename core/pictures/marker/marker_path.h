@@ -1,0 +1,75 @@
+/// The path of one thing through a clip: where it was seen, where it should be next, and what is like it.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_search.h"
+
+namespace glidelab::core {
+
+/// Expected radius of the marker's image at a pixel, in pixels.
+using RadiusAt = std::function<double(cv::Point2d)>;
+
+/// How a path's thing is measured in a frame (marker_method.h).
+enum class MarkerMethod { undecided, uniform, shaded, centroid };
+
+struct MarkerSeen {
+  std::size_t frame = 0;
+  MarkerFit fit;
+  double expected_px = 0.0;  ///< radius that the marker should have there
+
+  double size() const { return fit.radius_px / std::max(expected_px, 1e-3); }
+};
+
+/// A window around a sighting, kept until the method is chosen.
+struct MarkerSample {
+  std::size_t frame = 0;
+  Signal window;
+  cv::Point corner;
+  MarkerGuess guess;
+};
+
+struct MarkerPath {
+  std::vector<MarkerSeen> seen;
+  std::vector<MarkerSample> samples;
+  MarkerMethod method = MarkerMethod::undecided;
+  bool ended = false;
+  bool asleep = false;  ///< rests, and is looked at only when the whole picture is searched
+  double radius_px = 0.0;
+  double amplitude = 0.0;
+  double travel_px = 0.0;  ///< largest distance from the first place
+
+  cv::Point2d velocity() const;  ///< pixels a frame, over the last few sightings
+  cv::Point2d predict(std::size_t frame) const;
+  void push(const MarkerSeen& sighting);
+  double size_ratio() const;                               ///< of the radii seen and expected, median
+  bool is_like(double radius_px, double amplitude) const;  ///< the same thing, as far as size and brightness go
+  bool is_like(const MarkerFit& fit) const;                ///< and no longer than a streak of motion
+};
+
+constexpr double kLargestElongation = 4.0;  ///< a streak of motion may be long
+
+/// How far from its first place a path must get to count as moving, in pixels.
+double least_travel(double radius_px);
+
+double frames_between(std::size_t from, std::size_t to);
+
+/// The paths, with those joined of which one ends and another begins later where the first was going.
+std::vector<MarkerPath> joined_pieces(std::vector<MarkerPath> paths);
+
+/// Places of a thing, by frame.
+using Places = std::map<std::size_t, cv::Point2d>;
+
+/// Standard deviation of a coordinate of the second differences of consecutive frames' places, in pixels; nothing with
+/// fewer than four of them.
+std::optional<double> jitter_of(const Places& places);
+
+}  // namespace glidelab::core

@@ -1,0 +1,286 @@
+#include "core/pictures/marker/marker_track.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "core/pictures/marker/marker_method.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kSearchPeriod = 10;    // frames from one search of the whole picture to the next
+constexpr std::size_t kRarestPeriod = 80;    // the same while the marker is followed
+constexpr double kRarest_s = 0.4;            // ten frames of a slow camera, which finds what it is to find
+constexpr std::size_t kPastBytes = 1 << 27;  // of the frames between, which are kept
+constexpr std::size_t kSamples = 24;         // windows that decide how a path is measured
+constexpr std::size_t kAwake = 10;           // resting paths that are followed nonetheless
+constexpr std::size_t kLostAfter = 25;       // frames without a sighting
+constexpr std::size_t kRestFrames = 12;      // after which a path that has not moved may sleep
+constexpr std::size_t kMovingFrames = 10;    // in which five radii are a motion
+constexpr std::size_t kFewestSightings = 5;  // fewer in a row are noise
+constexpr double kSmallestRadiusPx = 1.2;
+
+bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
+  return std::any_of(places.begin(), places.end(),
+                     [&](cv::Point2d other) { return cv::norm(other - here) < distance; });
+}
+
+}  // namespace
+
+MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at)
+    : clip_(std::move(clip)),
+      marker_(std::move(marker)),
+      kind_(signal_kind(marker_)),
+      radius_at_(std::move(radius_at)) {}
+
+base::Issue MarkerTracker::issue(std::string found, std::string expected) const {
+  return {clip_.string(), 0, "marker", std::move(found), std::move(expected)};
+}
+
+/// Where a path's thing is in the next frame: fitted where it should be, or looked for around there.
+std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                                              const std::vector<cv::Point2d>& taken) const {
+  const cv::Point2d expected = path.predict(frame);
+  const bool is_new = path.seen.size() < 2;
+  MarkerGuess guess;
+  guess.centre = expected;
+  guess.radius_px = path.radius_px;
+  const MarkerFit& last = path.seen.back().fit;
+  if (last.blur_px > 0.0) {  // a fit, no centroid
+    guess.blur_px = last.blur_px;
+    guess.shape = last.shape;
+  }
+  if (!is_new && !is_near_any(taken, expected, 0.5 * path.radius_px)) {
+    const auto fit = measure_marker(signal, guess, path.method, kind_);
+    if (fit && path.is_like(*fit)) return Found{guess, *fit};
+  }
+  // Nothing is known of a new path's speed; a known one changes little from frame to frame, but may bounce.
+  const double lost = std::abs(frames_between(path.seen.back().frame, frame)) - 1.0;
+  const double speed = cv::norm(path.velocity());
+  const double gate = is_new ? (6.0 + lost) * path.radius_px + 10.0
+                             : (2.0 + 0.1 * lost) * path.radius_px + (1.5 + 0.1 * lost) * speed + 2.0;
+  const int half = static_cast<int>(std::ceil(gate));
+  BlobSearch search;
+  search.radius_px = path.radius_px;
+  search.bright_neighbours = 3;
+  search.least_contrast = least_contrast(kind_);
+  search.most = 6;
+  search.region = cv::Rect(static_cast<int>(std::lround(expected.x)) - half,
+                           static_cast<int>(std::lround(expected.y)) - half, 2 * half + 1, 2 * half + 1);
+  std::vector<Blob> blobs = find_blobs(signal, search);
+  std::stable_sort(blobs.begin(), blobs.end(), [&](const Blob& a, const Blob& b) {
+    return cv::norm(a.centre - expected) < cv::norm(b.centre - expected);
+  });
+  for (const Blob& blob : blobs) {
+    if (is_near_any(taken, blob.centre, 0.7 * path.radius_px)) continue;
+    guess.centre = blob.centre;
+    const auto fit = measure_marker(signal, guess, path.method, kind_);
+    if (!fit || !path.is_like(*fit)) continue;
+    if (is_near_any(taken, fit->centre, 0.7 * path.radius_px)) continue;
+    return Found{guess, *fit};
+  }
+  return std::nullopt;
+}
+
+void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const {
+  path.push({frame, found.fit, radius_at_(found.fit.centre)});
+  if (path.method != MarkerMethod::undecided) return;
+  const int reach = static_cast<int>(std::ceil(2.2 * found.guess.radius_px + 6.0));
+  const cv::Rect box =
+      cv::Rect(static_cast<int>(std::lround(found.fit.centre.x)) - reach,
+               static_cast<int>(std::lround(found.fit.centre.y)) - reach, 2 * reach + 1, 2 * reach + 1) &
+      cv::Rect(0, 0, signal.values.cols, signal.values.rows);
+  signal.see(box);
+  MarkerGuess guess = found.guess;
+  guess.centre = found.fit.centre - cv::Point2d(box.x, box.y);
+  path.samples.push_back({frame, Signal{signal.values(box).clone()}, box.tl(), guess});
+  if (path.samples.size() >= kSamples) choose_method(path, kind_, radius_at_);
+}
+
+std::vector<cv::Point2d> MarkerTracker::places_at(std::size_t frame) const {
+  std::vector<cv::Point2d> places;
+  for (const Path& path : paths_) {
+    const auto at = std::lower_bound(path.seen.begin(), path.seen.end(), frame,
+                                     [](const MarkerSeen& seen, std::size_t wanted) { return seen.frame < wanted; });
+    if (at != path.seen.end() && at->frame == frame) places.push_back(at->fit.centre);
+  }
+  return places;
+}
+
+void MarkerTracker::follow(const Signal& signal, std::size_t frame) {
+  std::vector<Path*> order;
+  for (Path& path : paths_) {
+    if (!path.ended && !path.asleep) order.push_back(&path);
+  }
+  // What moves and is not lost has the first claim, then what has been seen longest; what is lost may not take what
+  // belongs to another.
+  const auto is_lost = [&](const Path* path) { return path->seen.back().frame + 1 < frame; };
+  const auto claim = [&](const Path* path) {
+    return is_lost(path) ? 2 : path->travel_px > least_travel(path->radius_px) ? 0 : 1;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](const Path* a, const Path* b) {
+    return claim(a) != claim(b) ? claim(a) < claim(b) : a->seen.size() > b->seen.size();
+  });
+  std::vector<cv::Point2d> taken;
+  std::vector<cv::Point2d> sleeping;
+  for (const Path& path : paths_) {
+    if (path.asleep) sleeping.push_back(path.seen.back().fit.centre);
+  }
+  for (Path* path : order) {
+    std::vector<cv::Point2d> not_here = taken;
+    // A new or a lost path does not jump to something that rests; one with a known speed may pass in front of it.
+    if (path->seen.size() < 3 || is_lost(path)) not_here.insert(not_here.end(), sleeping.begin(), sleeping.end());
+    const auto found = find_again(signal, frame, *path, not_here);
+    if (!found) continue;
+    taken.push_back(found->fit.centre);
+    accept(*path, signal, frame, *found);
+  }
+}
+
+/// A path that was just begun, followed back through the frames since the last search.
+void MarkerTracker::follow_back(Path& path) const {
+  Path back = path;
+  std::size_t missed = 0;
+  for (auto past = past_.rbegin(); past != past_.rend() && missed < 3; ++past) {
+    const auto found = find_again(past->signal, past->frame, back, places_at(past->frame));
+    if (found) {
+      back.push({past->frame, found->fit, radius_at_(found->fit.centre)});
+      missed = 0;
+    } else {
+      ++missed;
+    }
+  }
+  std::reverse(back.seen.begin(), back.seen.end());
+  const std::vector<MarkerSeen> seen = back.seen;
+  path.seen.clear();
+  for (const MarkerSeen& sighting : seen) path.push(sighting);
+}
+
+/// Something of the right size that is seen moving in this frame; null where there is nothing yet.
+const MarkerTracker::Path* MarkerTracker::mover(std::size_t frame) const {
+  const Path* best = nullptr;
+  for (const Path& path : paths_) {
+    if (path.ended || path.asleep || path.seen.back().frame != frame || path.seen.size() < kMovingFrames) continue;
+    if (path.travel_px < 5.0 * path.radius_px || std::abs(std::log(path.size_ratio())) > 0.3) continue;
+    if (best == nullptr || path.amplitude > best->amplitude) best = &path;
+  }
+  return best;
+}
+
+void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
+  BlobSearch search;
+  search.radius_px = radius_px_;
+  search.least_contrast = least_contrast(kind_);
+  // Once something moves, only what is as bright could be another piece of it, or a second marker.
+  if (const Path* moving = mover(frame))
+    search.least_contrast = std::max(search.least_contrast, 0.3 * moving->amplitude);
+  search.region = cv::Rect(0, 0, signal.values.cols, signal.values.rows);
+  std::vector<cv::Point2d> known = places_at(frame);
+  std::vector<cv::Point2d> sleeping;
+  for (const Path& path : paths_) {
+    if (path.asleep) sleeping.push_back(path.seen.back().fit.centre);
+  }
+  for (const Blob& blob : find_blobs(signal, search)) {
+    MarkerGuess guess;
+    guess.centre = blob.centre;
+    guess.radius_px = std::max(radius_at_(blob.centre), kSmallestRadiusPx);
+    if (is_near_any(known, blob.centre, 0.7 * guess.radius_px) ||
+        is_near_any(sleeping, blob.centre, 0.7 * guess.radius_px)) {
+      continue;
+    }
+    const auto fit = measure_marker(signal, guess, MarkerMethod::undecided, kind_);
+    if (!fit || fit->elongation > kLargestElongation || is_near_any(known, fit->centre, 0.7 * guess.radius_px))
+      continue;
+    known.push_back(fit->centre);
+    // A path that has just lost its thing takes up what is found near where that should be.
+    const auto loser = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
+      return !path.ended && !path.asleep && path.seen.back().frame < frame && path.seen.size() >= kFewestSightings &&
+             path.is_like(*fit) &&
+             cv::norm(path.predict(frame) - fit->centre) < 4.0 * path.radius_px + 2.0 * cv::norm(path.velocity());
+    });
+    if (loser != paths_.end()) {
+      accept(*loser, signal, frame, {guess, *fit});
+      continue;
+    }
+    Path path;
+    accept(path, signal, frame, {guess, *fit});
+    follow_back(path);
+    paths_.push_back(std::move(path));
+  }
+}
+
+/// What rests is not followed in every frame: nothing of it where something of the right size moves already, else the
+/// ones most like a marker.
+void MarkerTracker::put_to_sleep(std::size_t frame) {
+  std::vector<Path*> resting;
+  const bool something_moves = mover(frame) != nullptr;
+  for (Path& path : paths_) {
+    if (path.ended || path.asleep || path.seen.size() < kRestFrames) continue;
+    if (path.travel_px < 0.5 * least_travel(path.radius_px)) {
+      resting.push_back(&path);
+    }
+  }
+  const auto rank = [&](const Path* path) {
+    return std::abs(std::log(path->size_ratio())) - 0.2 * std::log(path->amplitude);
+  };
+  std::stable_sort(resting.begin(), resting.end(), [&](const Path* a, const Path* b) { return rank(a) < rank(b); });
+  for (std::size_t i = something_moves ? 0 : kAwake; i < resting.size(); ++i) resting[i]->asleep = true;
+}
+
+void MarkerTracker::tidy(std::size_t frame) {
+  for (Path& path : paths_) {
+    const auto lost = static_cast<std::size_t>(frames_between(path.seen.back().frame, frame));
+    if (!path.asleep && lost > (path.seen.size() < kFewestSightings ? 3 : kLostAfter)) path.ended = true;
+  }
+  std::erase_if(paths_, [](const Path& path) { return path.ended && path.seen.size() < kFewestSightings; });
+}
+
+/// A piece of the marker or a second one that is found late is followed back through the frames that are kept; only
+/// what comes and goes in between is missed.
+bool MarkerTracker::is_time_to_search(const Signal& signal, const Frame& frame) const {
+  if (frame.index % kSearchPeriod != 0) return false;
+  const bool any_lost = std::any_of(paths_.begin(), paths_.end(), [&](const Path& path) {
+    return !path.ended && !path.asleep && path.seen.back().frame < frame.index && path.seen.size() >= kFewestSightings;
+  });
+  if (any_lost || mover(frame.index) == nullptr) return true;
+  const std::size_t bytes = std::max<std::size_t>(signal.values.total() * signal.values.elemSize(), 1);
+  const std::size_t period = std::clamp(kPastBytes / bytes, kSearchPeriod, kRarestPeriod);
+  const double since = frames_between(searched_, frame.index), until_next = since + kSearchPeriod;
+  const double until_next_s = (frame.t_s - searched_s_) * until_next / since;
+  return until_next > static_cast<double>(period) || until_next_s > kRarest_s + 1e-9;
+}
+
+/// What came since the last search, if that was long ago.
+void MarkerTracker::search_rest() {
+  if (past_.size() < kSearchPeriod) return;
+  const Past last = past_.back();
+  past_.pop_back();
+  search_whole(last.signal, last.frame);
+}
+
+void MarkerTracker::add(const Frame& frame) {
+  const auto signal = signal_of(frame, marker_, kind_);
+  if (!signal) throw base::InputError(issue("a clip without colours", "a clip in colour, as [marker] color asks for"));
+  if (frames_ == 0) {
+    const cv::Point2d middle(0.5 * (signal->values.cols - 1), 0.5 * (signal->values.rows - 1));
+    radius_px_ = std::max(radius_at_(middle), kSmallestRadiusPx);
+  }
+  follow(*signal, frame.index);
+  if (is_time_to_search(*signal, frame)) {
+    search_whole(*signal, frame.index);
+    searched_ = frame.index;
+    searched_s_ = frame.t_s;
+    past_.clear();
+  }
+  if (frame.index % kSearchPeriod == 0) {
+    put_to_sleep(frame.index);
+    tidy(frame.index);
+  }
+  if (frame.index != searched_) past_.push_back({frame.index, *signal});
+  frames_ = frame.index + 1;
+}
+
+}  // namespace glidelab::core

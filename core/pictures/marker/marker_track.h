@@ -1,0 +1,95 @@
+/// Which of the things in a clip is the marker, and where it is in every frame.
+///
+/// Frames stream through once. Every blob of about the marker's size begins a path; a path is followed by fitting the
+/// marker's model around where it should be (constant velocity), or by searching a window where that fails. The whole
+/// picture is searched in the first frame and every tenth one after it, and a path that begins there is followed back
+/// through the frames between; while something like the marker is seen moving and nothing else is lost, less often (up
+/// to eighty frames within 0.4 s). At the end the marker is the path that moves and has the right size and brightness,
+/// not the brightest one; what rests all the time is part of the scene. Frames in which it is not seen stay without.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/errors.h"
+#include "core/experiment/experiment.h"
+#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_path.h"
+#include "core/pictures/marker/marker_search.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+/// Nothing in the clip is like the marker.
+class NoMarker : public base::InputError {
+  using base::InputError::InputError;
+};
+
+struct TrackedMarker {
+  std::vector<MarkerSighting> sightings;  ///< frames rise
+  std::vector<MarkerFit> fits;            ///< of each sighting
+  std::vector<std::string> notes;
+};
+
+class MarkerTracker {
+ public:
+  MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at);
+
+  /// Takes the next frame. InputError where a hue is to be looked for in a grey clip.
+  void add(const Frame& frame);
+
+  /// The marker's track. NoMarker where nothing of its size moves (and not exactly one such thing rests), or where
+  /// there is nothing at start_px; InputError where two equal ones move alike and start_px does not say which.
+  TrackedMarker finish();
+
+ private:
+  using Path = MarkerPath;
+  struct Found {
+    MarkerGuess guess;
+    MarkerFit fit;
+  };
+  struct Past {
+    std::size_t frame;
+    Signal signal;
+  };
+
+  std::optional<Found> find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                  const std::vector<cv::Point2d>& taken) const;
+  void accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const;
+  void follow(const Signal& signal, std::size_t frame);
+  void search_whole(const Signal& signal, std::size_t frame);
+  void follow_back(Path& path) const;
+  const Path* mover(std::size_t frame) const;
+  void put_to_sleep(std::size_t frame);
+  void tidy(std::size_t frame);
+  void search_rest();
+  bool is_time_to_search(const Signal& signal, const Frame& frame) const;
+  std::vector<cv::Point2d> places_at(std::size_t frame) const;
+
+  TrackedMarker undisturbed(const Path& path) const;
+  bool is_place_of_another(const Path& path, const MarkerSeen& sighting) const;
+  std::size_t choose_path(std::vector<std::string>& notes) const;
+  std::size_t path_at_start() const;
+  std::size_t resting_path(std::vector<std::string>& notes) const;
+  base::Issue issue(std::string found, std::string expected) const;
+
+  std::filesystem::path clip_;
+  MarkerSetup marker_;
+  SignalKind kind_;
+  RadiusAt radius_at_;
+  double radius_px_ = 0.0;  ///< in the middle of the picture
+  std::vector<Path> paths_;
+  std::deque<Past> past_;  ///< since the last search of the whole picture
+  std::size_t searched_ = 0;
+  double searched_s_ = 0.0;
+  std::size_t frames_ = 0;
+};
+
+}  // namespace glidelab::core

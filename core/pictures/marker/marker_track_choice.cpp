@@ -1,0 +1,203 @@
+// The end of MarkerTracker: which path is the marker, and in which of its frames it is seen undisturbed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.h"
+#include "core/math/median.h"
+#include "core/pictures/marker/marker_method.h"
+#include "core/pictures/marker/marker_track.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kFewestMoving = 8;    // sightings of a path that counts as a marker (fewer in a shorter clip)
+constexpr std::size_t kFewestResting = 10;  // sightings of something that counts as part of the scene
+constexpr std::size_t kStartFrames = 5;     // in which start_px is looked at
+
+/// They are seen in the same frames, half of the shorter path's or more, and look and move alike.
+bool are_twins(const MarkerPath& one, const MarkerPath& other) {
+  std::size_t common = 0;
+  for (auto a = one.seen.begin(), b = other.seen.begin(); a != one.seen.end() && b != other.seen.end();) {
+    if (a->frame == b->frame) ++common;
+    if (a->frame <= b->frame) {
+      ++a;
+    } else {
+      ++b;
+    }
+  }
+  const auto alike = [](double x, double y, double factor) { return x < factor * y && y < factor * x; };
+  return 2 * common >= std::min(one.seen.size(), other.seen.size()) && alike(one.radius_px, other.radius_px, 1.2) &&
+         alike(one.amplitude, other.amplitude, 1.4) && alike(one.travel_px, other.travel_px, 1.6);
+}
+
+}  // namespace
+
+/// The path that is nearest to start_px in the first frames.
+std::size_t MarkerTracker::path_at_start() const {
+  std::size_t best = paths_.size();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    if (paths_[i].seen.front().frame >= kStartFrames || paths_[i].seen.size() < kFewestMoving) continue;
+    const double distance = cv::norm(paths_[i].seen.front().fit.centre - *marker_.start_px);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    best = i;
+  }
+  const double allowed = 3.0 * radius_px_ + 10.0;
+  if (best == paths_.size() || nearest > allowed) {
+    throw NoMarker(
+        issue(fmt::format("no marker near start_px = [{:.1f}, {:.1f}] in the first frames{}", marker_.start_px->x,
+                          marker_.start_px->y,
+                          best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
+              fmt::format("one of about {:.1f} px radius within {:.0f} px", radius_px_, allowed)));
+  }
+  return best;
+}
+
+/// Where nothing moves: the one thing of the right size that is there all the time.
+std::size_t MarkerTracker::resting_path(std::vector<std::string>& notes) const {
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const double ratio = paths_[i].size_ratio();
+    if (2 * paths_[i].seen.size() >= frames_ && ratio > 0.75 && ratio < 1.33) candidates.push_back(i);
+  }
+  if (candidates.size() != 1) {
+    throw NoMarker(
+        issue(fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
+                          candidates.empty() ? "" : fmt::format(", and {} such things rest", candidates.size())),
+              "a marker of the diameter stated, brighter or darker than what is around it (or of the colour stated), "
+              "or start_px"));
+  }
+  notes.emplace_back("the marker does not move in this clip");
+  return candidates.front();
+}
+
+std::size_t MarkerTracker::choose_path(std::vector<std::string>& notes) const {
+  if (marker_.start_px) return path_at_start();
+  const std::size_t fewest = std::min(kFewestMoving, std::max<std::size_t>(frames_ / 2, 2));
+  std::vector<std::size_t> movers;
+  double farthest = 0.0, brightest = 0.0, longest = 0.0;
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const Path& path = paths_[i];
+    if (path.seen.size() < fewest || path.travel_px < least_travel(path.radius_px)) continue;
+    movers.push_back(i);
+    farthest = std::max(farthest, path.travel_px);
+    brightest = std::max(brightest, path.amplitude);
+    longest = std::max(longest, static_cast<double>(path.seen.size()));
+  }
+  if (movers.empty()) return resting_path(notes);
+  // Squared deviations from what a marker is like, each over how much it may vary.
+  const auto cost = [&](std::size_t i) {
+    const Path& path = paths_[i];
+    const double size = std::log(path.size_ratio()) / 0.2;
+    const double travel = std::log(path.travel_px / farthest) / 0.5;
+    const double bright = std::log(path.amplitude / brightest) / 0.7;
+    const double length = std::log(static_cast<double>(path.seen.size()) / longest) / 0.7;
+    return size * size + travel * travel + bright * bright + length * length;
+  };
+  const std::size_t best =
+      *std::min_element(movers.begin(), movers.end(), [&](std::size_t a, std::size_t b) { return cost(a) < cost(b); });
+  const Path& marker = paths_[best];
+  for (const std::size_t i : movers) {
+    if (i == best) continue;
+    const Path& other = paths_[i];
+    if (are_twins(marker, other)) {
+      const cv::Point2d a = marker.seen.front().fit.centre, b = other.seen.front().fit.centre;
+      throw base::InputError(
+          issue(fmt::format(
+                    "two markers that look and move alike, at ({:.0f}, {:.0f}) px in frame {} and ({:.0f}, {:.0f}) px "
+                    "in frame {}",
+                    a.x, a.y, marker.seen.front().frame, b.x, b.y, other.seen.front().frame),
+                "one marker, or start_px in [marker] to say which"));
+    }
+  }
+  return best;
+}
+
+/// The place of something that rested there long before the path came by.
+bool MarkerTracker::is_place_of_another(const Path& path, const MarkerSeen& sighting) const {
+  return std::any_of(paths_.begin(), paths_.end(), [&](const Path& other) {
+    if (&other == &path || other.seen.size() < kFewestResting || other.travel_px > 0.75 * path.radius_px) return false;
+    return other.seen[kFewestResting - 1].frame < sighting.frame &&
+           cv::norm(other.seen.back().fit.centre - sighting.fit.centre) < 0.5 * path.radius_px;
+  });
+}
+
+/// Without the frames in which something like it rests at its place, or in which it is half hidden: measured wrong,
+/// smaller or with larger residuals than in the frames around.
+TrackedMarker MarkerTracker::undisturbed(const Path& path) const {
+  TrackedMarker tracked;
+  std::vector<double> sizes, residuals;
+  for (const MarkerSeen& sighting : path.seen) {
+    sizes.push_back(sighting.size());
+    residuals.push_back(sighting.fit.rms / sighting.fit.amplitude);
+  }
+  const double usual_size = median_of(sizes);
+  std::vector<double> deviations;
+  for (const double size : sizes) deviations.push_back(std::abs(size / usual_size - 1.0));
+  const double size_limit = 0.1 + 6.0 * median_of(deviations);
+  const double residual_limit = 0.03 + 4.0 * median_of(residuals);
+  std::size_t dropped = 0;
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < path.seen.size(); ++i) {
+    const MarkerFit& fit = path.seen[i].fit;
+    if (is_place_of_another(path, path.seen[i])) {
+      ++hidden;
+      continue;
+    }
+    if (std::abs(sizes[i] / usual_size - 1.0) > size_limit || residuals[i] > residual_limit) {
+      ++dropped;
+      continue;
+    }
+    tracked.sightings.push_back({path.seen[i].frame, fit.centre.x, fit.centre.y, fit.sd_px, fit.radius_px});
+    tracked.fits.push_back(fit);
+  }
+  if (hidden > 0) {
+    tracked.notes.push_back(fmt::format(
+        "in {} frames the marker cannot be told from something like it that rests there, and counts as not seen",
+        hidden));
+  }
+  if (dropped > 0) {
+    tracked.notes.push_back(
+        fmt::format("in {} frames the marker is partly hidden or disturbed (its size or the residuals differ) and "
+                    "counts as not seen",
+                    dropped));
+  }
+  return tracked;
+}
+
+TrackedMarker MarkerTracker::finish() {
+  search_rest();
+  for (Path& path : paths_) {
+    if (path.method == MarkerMethod::undecided) choose_method(path, kind_, radius_at_);
+  }
+  paths_ = joined_pieces(std::move(paths_));
+  std::erase_if(paths_, [&](const Path& path) { return path.seen.size() < 2; });
+  std::vector<std::string> notes;
+  const Path& path = paths_[choose_path(notes)];
+  TrackedMarker tracked = undisturbed(path);
+  tracked.notes.insert(tracked.notes.begin(), notes.begin(), notes.end());
+  if (path.method == MarkerMethod::centroid) {
+    Places places;
+    for (const MarkerSighting& sighting : tracked.sightings) {
+      places[sighting.frame] = {sighting.u_px, sighting.v_px};
+    }
+    // A centroid has no covariance: its noise from the second differences (variance 1 + 4 + 1).
+    const double sd = jitter_of(places).value_or(0.0) / std::sqrt(6.0);
+    for (MarkerSighting& sighting : tracked.sightings) sighting.sd_px = sd;
+    tracked.notes.emplace_back("the marker is no disc; its centroid by colour was used");
+  }
+  if (path.method == MarkerMethod::shaded)
+    tracked.notes.emplace_back("the marker is lit from one side; its shading is fitted");
+  const double ratio = path.size_ratio();
+  if (std::abs(std::log(ratio)) > 0.2) {
+    tracked.notes.push_back(fmt::format("the marker looks {:.0f} % {} than its diameter says",
+                                        100.0 * std::abs(ratio - 1.0), ratio > 1.0 ? "larger" : "smaller"));
+  }
+  return tracked;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,76 @@
+/// The pictures of a clip, looked at as they pass by on their way to the tracker: how they are exposed, how the marker
+/// stands out, what the file says.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/marker/marker.h"
+#include "core/pictures/scene/exposure_watch.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+struct ClipLook {
+  cv::Size size;
+  Exposure exposure;
+  FileFacts file;
+  /// Of the marker, by the fits that found it, medians as shares of the largest code; no contrast for a marker that is
+  /// known by its hue, and a level for a bright one only.
+  std::optional<double> contrast;
+  std::optional<double> marker_level;
+  double pixel_noise = 0.0;  ///< of pixels away from the marker, from one frame to the next; 0 where none is seen
+};
+
+/// Takes the frames of one clip, then says what was seen. Of the frames it keeps every fourth pixel, either way, of at
+/// most 24 pairs of neighbours spread over the clip.
+class ClipWatch {
+ public:
+  explicit ClipWatch(int bit_depth) : exposure_(bit_depth) {}
+  void add(const Frame& frame);
+  void end(FileFacts facts) { facts_ = std::move(facts); }
+
+  /// `sightings` and `fits` as tracks_of() gives them for this clip.
+  ClipLook look(const MarkerSetup& marker, const std::vector<MarkerSighting>& sightings,
+                const std::vector<MarkerFit>& fits) const;
+
+ private:
+  struct Pair {
+    std::size_t frame = 0;  ///< of `now`
+    cv::Mat before, now;
+  };
+  double pixel_noise(const std::vector<MarkerSighting>& sightings) const;
+
+  ExposureWatch exposure_;
+  FileFacts facts_;
+  cv::Size size_;
+  std::size_t every_ = 1;  ///< frames from one pair to the next
+  cv::Mat before_;         ///< of the last frame, where it is the first of a pair
+  std::vector<Pair> pairs_;
+};
+
+/// Looks at the clips of an experiment while others read them, some at the same time.
+class ClipWatches {
+ public:
+  explicit ClipWatches(FrameOpener open) : open_(std::move(open)) {}
+  /// Opens clips for the reader; valid as long as this is.
+  FrameOpener opener();
+  /// What was seen of a clip that was opened and read to its end; the last time where that was done more than once.
+  const ClipWatch& of(const std::filesystem::path& file) const { return *watches_.at(file); }
+
+ private:
+  FrameOpener open_;
+  std::mutex mutex_;
+  std::map<std::filesystem::path, std::shared_ptr<ClipWatch>> watches_;
+};
+
+}  // namespace glidelab::core

@@ -1,0 +1,200 @@
+#include "core/pictures/scene/scene_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/math/median.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kOfStructure = 12;  // patches, for each of the two directions
+constexpr std::size_t kSpread = 12;       // patches all over the picture, for the light
+constexpr std::size_t kReferenceFrames = 6;
+constexpr double kRestep = 0.2;  // px
+constexpr int kMargin = 12;      // px around a patch
+
+cv::Rect margined(const cv::Rect& place) {
+  return {place.x - kMargin, place.y - kMargin, place.width + 2 * kMargin, place.height + 2 * kMargin};
+}
+
+/// Blurred by a normal distribution of 1 px, so that a derivative means something.
+std::vector<float> soft_pixels_of(const cv::Mat& grey, const cv::Rect& place) {
+  cv::Mat_<float> part, soft;
+  grey({place.x - 2, place.y - 2, kPatchSide + 4, kPatchSide + 4}).convertTo(part, CV_32F);
+  cv::GaussianBlur(part, soft, {5, 5}, 1.0);
+  const cv::Mat_<float> middle = soft({2, 2, kPatchSide, kPatchSide}).clone();
+  return {middle.begin(), middle.end()};
+}
+
+struct Candidate {
+  cv::Rect place;
+  double uu = 0.0, vv = 0.0;
+};
+
+}  // namespace
+
+void SceneWatch::choose(const cv::Mat& grey) {
+  const int margin = kMargin;
+  const int free_u = grey.cols - kPatchSide - 2 * margin, free_v = grey.rows - kPatchSide - 2 * margin;
+  if (free_u < 0 || free_v < 0) return;
+  std::vector<Candidate> candidates;
+  const int step = std::max(kPatchSide, static_cast<int>(std::sqrt(static_cast<double>(grey.total()) / 400.0)));
+  for (int v = margin; v <= margin + free_v; v += step) {
+    for (int u = margin; u <= margin + free_u; u += step) {
+      Candidate candidate{cv::Rect(u, v, kPatchSide, kPatchSide), 0.0, 0.0};
+      cv::Mat soft, gu, gv;
+      grey(candidate.place).convertTo(soft, CV_32F);
+      cv::GaussianBlur(soft, soft, {5, 5}, 1.0);
+      cv::Sobel(soft, gu, CV_32F, 1, 0, 1, 0.5);
+      cv::Sobel(soft, gv, CV_32F, 0, 1, 1, 0.5);
+      candidate.uu = gu.dot(gu);
+      candidate.vv = gv.dot(gv);
+      candidates.push_back(candidate);
+    }
+  }
+  std::vector<char> taken(candidates.size(), 0);
+  const auto take_best = [&](auto&& score) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < candidates.size(); ++i) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return score(candidates[a]) > score(candidates[b]); });
+    for (std::size_t i = 0; i < std::min(kOfStructure, order.size()); ++i) taken[order[i]] = 1;
+  };
+  take_best([](const Candidate& c) { return c.uu; });
+  take_best([](const Candidate& c) { return c.vv; });
+  for (std::size_t i = 0; i < kSpread; ++i) {
+    taken[std::min(candidates.size() - 1, (2 * i + 1) * candidates.size() / (2 * kSpread))] = 1;
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (taken[i] == 0) continue;
+    patches_.emplace_back();
+    patches_.back().place = candidates[i].place;
+  }
+}
+
+SceneWatch::Pixels SceneWatch::cut(const cv::Mat& grey) const {
+  Pixels pixels;
+  for (const Patch& patch : patches_) pixels.push_back(soft_pixels_of(grey, patch.place));
+  return pixels;
+}
+
+/// Puts a patch's reference where the scene now stands in the picture.
+void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
+  cv::Mat_<float> whole = patch.around.clone();
+  if (cv::norm(shift) > 0.0) {
+    const cv::Matx23d move(1.0, 0.0, shift.x, 0.0, 1.0, shift.y);
+    cv::warpAffine(patch.around, whole, move, patch.around.size(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+  }
+  // Derivative of fourth order: exact to 2 % for what the blur leaves (periods above 5 px).
+  const cv::Matx<float, 1, 5> slope(1.0F / 12, -8.0F / 12, 0.0F, 8.0F / 12, -1.0F / 12);
+  cv::Mat_<float> gu, gv;
+  cv::filter2D(whole, gu, CV_32F, slope);
+  cv::filter2D(whole, gv, CV_32F, slope.t());
+  const cv::Rect middle(kMargin, kMargin, kPatchSide, kPatchSide);
+  const auto flat = [&](const cv::Mat_<float>& from) {
+    const cv::Mat_<float> part = from(middle).clone();
+    return std::vector<float>(part.begin(), part.end());
+  };
+  patch.reference = flat(whole);
+  patch.gu = flat(gu);
+  patch.gv = flat(gv);
+  cv::Matx33d normal = cv::Matx33d::zeros();
+  for (std::size_t i = 0; i < patch.reference.size(); ++i) {
+    const cv::Vec3d row(patch.reference[i], -patch.gu[i], -patch.gv[i]);
+    normal += row * row.t();
+  }
+  // A patch without any structure has no shift; the ridge is far below one code's worth of gradient.
+  for (int k = 0; k < 3; ++k) normal(k, k) += 1e-3;
+  patch.inverse = normal.inv();
+  const cv::Vec2d cross(normal(0, 1), normal(0, 2));
+  patch.structure =
+      cv::Matx22d(normal(1, 1), normal(1, 2), normal(2, 1), normal(2, 2)) - cross * cross.t() * (1.0 / normal(0, 0));
+  patch.gain_variance = patch.inverse(0, 0);
+}
+
+void SceneWatch::make_reference() {
+  constexpr int kWhole = kPatchSide + 2 * kMargin;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    Patch& patch = patches_[p];
+    patch.around = cv::Mat_<float>(kWhole, kWhole, 0.0F);
+    for (const cv::Mat& frame : early_) {
+      cv::Mat_<float> part;
+      frame(margined(patch.place)).convertTo(part, CV_32F);
+      patch.around += part;
+    }
+    patch.around /= static_cast<float>(early_.size());
+    cv::GaussianBlur(patch.around, patch.around, {5, 5}, 1.0);
+    shift_reference(patch, {});
+    // The usual residuals are those of the first frames themselves; what passes by then makes a patch of no use.
+    double sum = 0.0, count = 0.0;
+    for (const cv::Mat& frame : early_) {
+      const std::vector<float> pixels = soft_pixels_of(frame, patch.place);
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const double off = pixels[i] - patch.reference[i];
+        sum += off * off;
+        count += 1.0;
+      }
+    }
+    patch.usual_rms = std::sqrt(sum / count / (1.0 - 1.0 / static_cast<double>(early_.size())));
+  }
+  std::vector<double> usual;
+  for (const Patch& patch : patches_) usual.push_back(patch.usual_rms);
+  const double most = 3.0 * std::max(median_of(usual), kPatchNoise);
+  std::erase_if(patches_, [&](const Patch& patch) { return patch.usual_rms > most; });
+  ready_ = true;
+}
+
+void SceneWatch::look(const cv::Mat& grey, double t_s) {
+  SceneLook look = compare(cut(grey));
+  look.frame = looks_.size();
+  look.t_s = t_s;
+  looks_.push_back(look);
+  const cv::Point2d now(look.u_px, look.v_px);
+  // References are put where the scene stands once it has moved so far that a step to first order is not enough.
+  if (cv::norm(now - shift_) < kRestep || cv::norm(now) > kMargin - 2) return;
+  shift_ = now;
+  for (Patch& patch : patches_) shift_reference(patch, shift_);
+}
+
+void SceneWatch::add(const cv::Mat& grey, double t_s) {
+  if (looks_.empty() && early_.empty()) {
+    size_ = grey.size();
+    choose(grey);
+  }
+  steps_.add(grey);
+  if (patches_.empty()) return;
+  if (ready_) return look(grey, t_s);
+  early_.push_back(grey.clone());
+  early_t_s_.push_back(t_s);
+  if (early_.size() < kReferenceFrames) return;
+  make_reference();
+  for (std::size_t f = 0; f < early_.size(); ++f) look(early_[f], early_t_s_[f]);
+  early_.clear();
+}
+
+PixelChanges SceneWatch::changes_by_level() const {
+  PixelChanges pixels;
+  for (const Patch& patch : patches_) {
+    for (std::size_t i = 0; i < patch.changed.size(); ++i) {
+      pixels.push_back({patch.reference[i], patch.changed[i], patch.changes});
+    }
+  }
+  return pixels;
+}
+
+void SceneWatch::finish(PictureRecord& record) {
+  record.scene = std::move(looks_);
+  record.steps = steps_.finish();
+  if (!lossy_ && through_lossy_codec(record)) allow_for_codec(record.scene);
+  if (changes_ == 0) return;
+  record.noise_code = std::sqrt(0.5 * change_one_ / static_cast<double>(changes_)) / kPatchSofter;
+  for (NoiseAtLevel& one : record.noise_levels = noise_by_level(changes_by_level())) {
+    one.sd_code /= kPatchSofter;
+    one.known_to /= kPatchSofter;
+  }
+  if (change_one_ > 0.0) record.noise_memory = change_two_ / change_one_;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,94 @@
+/// Watches what rests in a clip: has it moved in the picture, has it become brighter, is a codec to be seen in it?
+///
+/// Some patches of 24 x 24 pixels are chosen in the first frame, those with most structure and some spread over the
+/// picture. In each frame a patch, blurred by 1 px, is compared with its mean R over the first frames, to first order
+/// in a shift d and a gain a,
+///
+///     I = (1 + a) R - d . grad R,
+///
+/// by least squares, R being shifted (cubic interpolation) by what the last frame's shift was. Patches through which
+/// something passes (residuals three times the usual ones, or a shift that is not the others') are not counted in that
+/// frame. The shift is that of all patches together, weighted by their gradients; gains are told apart by bands of
+/// rows, which a rolling shutter exposes at different times. Pictures of the first six frames are held until then, and
+/// of later ones only their patches.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/pictures/scene/codec_blocks.h"
+#include "core/pictures/scene/level_noise.h"
+#include "core/result/picture_record.h"
+
+namespace glidelab::core {
+
+inline constexpr int kPatchSide = 24;       ///< px
+inline constexpr double kPatchNoise = 0.1;  ///< codes: rounding, blurred
+inline constexpr double kPatchSofter =
+    0.2873;  ///< noise of a pixel after the blur: sum of one direction's squared weights
+
+class SceneWatch {
+ public:
+  /// `lossy`: the file says that it is compressed with loss. What a codec leaves is then no noise that is new in every
+  /// pixel and frame: it freezes it, so that even a plain wall has structure that rests and later jumps. Errors count
+  /// as one code at least, the same in all of a block of 8 x 8 pixels. So they do in finish() where the pictures
+  /// themselves have blocks (block_steps.h) and the file says nothing.
+  explicit SceneWatch(bool lossy = false) : lossy_(lossy) {}
+  void add(const cv::Mat& grey, double t_s);
+  /// Fills what it has seen into the record: scene, steps, noise.
+  void finish(PictureRecord& record);
+
+ private:
+  struct Patch {
+    cv::Rect place;
+    cv::Mat_<float> around;  ///< the mean of the first frames, with a margin for shifts
+    std::vector<float> reference, gu, gv;
+    cv::Matx33d inverse;         ///< of the normal matrix of (gain, shift)
+    cv::Matx22d structure;       ///< of the shift, the gain projected out
+    double gain_variance = 0.0;  ///< of the gain for a pixel's variance of 1
+    double usual_rms = 0.0;
+    std::vector<float> residual, before, before_that;  ///< of the last three frames
+    int good = 0;                                      ///< frames in a row in which it counted
+    std::vector<double> changed;                       ///< sum of squares of each pixel's changes
+    double changes = 0.0;                              ///< from one frame to the next
+  };
+  /// A patch that counts in a frame.
+  struct Moved {
+    Patch* patch;
+    cv::Vec3d by;  ///< gain, and shift (px) from where the reference stands
+    double rest;   ///< mean square of what is left over
+  };
+  using Pixels = std::vector<std::vector<float>>;  ///< of each patch
+
+  void choose(const cv::Mat& grey);
+  Pixels cut(const cv::Mat& grey) const;
+  void make_reference();
+  static void shift_reference(Patch& patch, cv::Point2d shift);
+  SceneLook compare(const Pixels& pixels);
+  std::optional<Moved> fit_patch(Patch& patch, const std::vector<float>& pixels) const;
+  static void drop_odd(std::vector<Moved>& found, double variance);
+  void tell_gains(const std::vector<Moved>& found, double variance, SceneLook& look) const;
+  void tell_shift(const std::vector<Moved>& found, double variance, SceneLook& look) const;
+  void add_changes(Patch& patch);
+  void look(const cv::Mat& grey, double t_s);
+  PixelChanges changes_by_level() const;
+  void allow_for_codec(std::vector<SceneLook>& looks) const;
+
+  cv::Size size_;
+  std::vector<Patch> patches_;
+  std::vector<cv::Mat> early_;
+  std::vector<double> early_t_s_;
+  bool lossy_ = false;
+  bool ready_ = false;
+  cv::Point2d shift_;  ///< at which the references stand
+  std::vector<SceneLook> looks_;
+  std::vector<double> variances_;  ///< of a pixel, that the looks' errors come from
+  BlockStepSums steps_;
+  double change_one_ = 0.0, change_two_ = 0.0;
+  std::size_t changes_ = 0;
+};
+
+}  // namespace glidelab::core

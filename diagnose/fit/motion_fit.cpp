@@ -1,0 +1,227 @@
+#include "diagnose/fit/motion_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/errors.h"
+#include "base/math/dense.h"
+#include "diagnose/fit/common_limits.h"
+#include "diagnose/fit/fit_step.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr int kMostIterations = 40;
+constexpr double kConverged = 1e-3;  // change of chi², small beside what evidence turns on
+// What the data hardly know (a frame rate beside K, mu and the inclination) lies along a bent valley whose walls are
+// steep: a step along it ends far up a wall, from where undamped steps lead back down; it has failed where so many do
+// not.
+constexpr int kStepsBack = 4;
+constexpr int kVainWaysBack = 2;  // then there is no valley
+using Global = ParameterLayout::Global;
+
+bool inside(const ParameterLayout& layout, const FitPoint& at) {
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    const double value = at.global[static_cast<Eigen::Index>(g)];
+    if (!std::isfinite(value)) return false;
+    if (global.kind == Global::Kind::alpha && std::abs(value) > 1.5) return false;
+    if (global.kind != Global::Kind::effect) continue;
+    if (value < global.range.low || value > global.range.high) return false;
+  }
+  return true;
+}
+
+std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayout& layout) {
+  std::vector<FitStatement> statements;
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    switch (global.kind) {
+      case Global::Kind::alpha:
+        for (const InclineStatement& s : set.groups[global.index].statements) {
+          statements.push_back({g, s.alpha_rad, s.sd_rad, s.against, true});
+        }
+        statements.push_back({g, set.groups[global.index].stated_rad, kOpenInclination_rad, "", false});
+        break;
+      case Global::Kind::mass:
+      case Global::Kind::mode:
+      case Global::Kind::scale:
+        statements.push_back({g, 0.0, 1.0, "", true});
+        break;
+      default:
+        break;
+    }
+  }
+  return statements;
+}
+
+double cost_of(const MotionFit& fit) {
+  double cost = 0.0;
+  for (const FitMotion& motion : fit.motions) cost += motion.residual.squaredNorm();
+  for (const FitStatement& s : fit.statements) {
+    cost += std::pow((s.value - fit.at.global[static_cast<Eigen::Index>(s.global)]) / s.sd, 2);
+  }
+  return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
+}
+
+void linearise_all(const TrackSet& set, MotionFit& fit, Derivatives derivatives) {
+  fit.motions.clear();
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    fit.motions.push_back(linearise(set, *fit.layout, fit.at, i, fit.late, derivatives));
+  }
+}
+
+/// The fit at another point: residuals and cost, no derivatives; an infinite cost where a parameter may not be there.
+MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
+  MotionFit next = fit;
+  next.at = std::move(at);
+  next.cost = std::numeric_limits<double>::infinity();
+  if (!inside(*fit.layout, next.at)) return next;
+  linearise_all(set, next, Derivatives::none);
+  next.cost = cost_of(next);
+  return next;
+}
+
+/// How much a step is held back. Where one has failed, the next few are held back as much as succeeded last, so that
+/// not every other step is lost.
+struct Damping {
+  double value = 1e-6;
+  double least = 1e-9;
+
+  void lower() {
+    value = std::max({1e-9, 0.1 * value, least});
+    least *= 0.3;
+  }
+  void raise() {
+    least = 3.0 * value;
+    value *= 10.0;
+  }
+};
+
+/// x0 and v0 by a parabola through the first points, of those that were not set aside where there are enough.
+Eigen::VectorXd start_of(const TrackedMotion& motion) {
+  constexpr std::size_t kStartPoints = 25, kFewestStartPoints = 6;
+  std::vector<std::size_t> points;
+  for (std::size_t p = 0; p < motion.t_s.size() && points.size() < kStartPoints; ++p) {
+    if (!motion.outlier[p]) points.push_back(p);
+  }
+  if (points.size() < kFewestStartPoints) {
+    points.resize(std::min(motion.t_s.size(), kStartPoints));
+    std::iota(points.begin(), points.end(), std::size_t{0});
+  }
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(points.size()), 3);
+  Eigen::VectorXd x(design.rows());
+  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+    const std::size_t p = points[static_cast<std::size_t>(i)];
+    const double t = motion.t_s[p] - motion.t_s.front();
+    design.row(i) << 1.0, t, t * t;
+    x[i] = motion.x_m[p];
+  }
+  const Eigen::VectorXd fit = base::least_squares(design, x);
+  return fit.head(2);
+}
+
+}  // namespace
+
+MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
+                      const Lateness& late) {
+  MotionFit fit;
+  fit.effects = effects;
+  ParameterLayout layout(set, effects);
+  layout.widen_to(start.global);
+  fit.layout = std::make_shared<const ParameterLayout>(std::move(layout));
+  fit.at = start;
+  fit.late = late;
+  fit.statements = statements_of(set, *fit.layout);
+  linearise_all(set, fit, Derivatives::forward);
+  fit.cost = cost_of(fit);
+  Damping damping;
+  int vain_ways_back = 0;
+  while (std::isfinite(fit.cost) && !fit.converged && fit.iterations < kMostIterations) {
+    ++fit.iterations;
+    MotionFit next = moved_to(set, fit, step_from(fit, damping.value));
+    if (!(next.cost <= fit.cost) && vain_ways_back < kVainWaysBack) {
+      for (int back = 0; back < kStepsBack && std::isfinite(next.cost) && !(next.cost <= fit.cost); ++back) {
+        linearise_all(set, next, Derivatives::forward);
+        next = moved_to(set, next, step_from(next, 0.0));
+      }
+      vain_ways_back += next.cost <= fit.cost ? -1 : 1;
+    }
+    if (next.cost <= fit.cost) {
+      next.converged = fit.cost - next.cost <= kConverged * (1.0 + 1e-5 * fit.cost) && damping.value <= 1e-2;
+      linearise_all(set, next, Derivatives::forward);
+      fit = std::move(next);
+      damping.lower();
+    } else {
+      damping.raise();
+      fit.converged = damping.value > 1e6;  // rounding, or the edge of what is allowed
+    }
+  }
+  linearise_all(set, fit, Derivatives::central);
+  return fit;
+}
+
+MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at) {
+  MotionFit fit;
+  fit.effects = effects;
+  fit.layout = std::make_shared<const ParameterLayout>(set, effects);
+  fit.at = at;
+  fit.statements = statements_of(set, *fit.layout);
+  linearise_all(set, fit, Derivatives::central);
+  fit.cost = cost_of(fit);
+  return fit;
+}
+
+MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
+  const ParameterLayout layout(set, {});
+  MotionFit best;
+  best.cost = std::numeric_limits<double>::infinity();
+  double mass = 0.0;
+  for (const TrackedMotion& motion : set.motions) mass += set.masses[motion.mass].mass_kg;
+  mass /= static_cast<double>(set.motions.size());
+  for (const double k_over_m : {1.0, 3.0, 0.1}) {
+    FitPoint start;
+    start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
+    start.global[0] = k_over_m * mass;
+    start.global[1] = 0.005;
+    for (std::size_t g = 0; g < set.groups.size(); ++g) {
+      start.global[static_cast<Eigen::Index>(2 + g)] = set.groups[g].stated_rad;
+    }
+    for (const TrackedMotion& motion : set.motions) start.own.push_back(start_of(motion));
+    MotionFit fit = fit_motions(set, {}, start, late);
+    if (fit.cost < 0.999 * best.cost) best = std::move(fit);
+    std::size_t points = 0;
+    for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
+    if (best.converged && best.cost < 4.0 * static_cast<double>(points)) break;  // other starts find nothing better
+  }
+  if (!std::isfinite(best.cost)) {
+    throw base::NumericalError("the usual model cannot be fitted to these positions: no start of three moves at all");
+  }
+  return best;
+}
+
+FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effect, const std::vector<double>& values,
+                     const std::vector<std::vector<double>>& own) {
+  std::vector<std::size_t> effects = fit.effects;
+  effects.push_back(effect);
+  const ParameterLayout layout(set, effects);
+  FitPoint point;
+  point.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
+  point.global.head(fit.at.global.size()) = fit.at.global;  // effects come last, the new one last of them
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    point.global[fit.at.global.size() + static_cast<Eigen::Index>(v)] = values[v];
+  }
+  for (std::size_t i = 0; i < fit.at.own.size(); ++i) {
+    Eigen::VectorXd extended(static_cast<Eigen::Index>(2 + layout.own().size()));
+    extended.head(fit.at.own[i].size()) = fit.at.own[i];
+    for (std::size_t o = 0; !own.empty() && o < own[i].size(); ++o) {
+      extended[fit.at.own[i].size() + static_cast<Eigen::Index>(o)] = own[i][o];
+    }
+    point.own.push_back(extended);
+  }
+  return point;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,30 @@
+/// Frames that are missing from a clip, later ones moved up: all later positions are ahead by one or more frames' way.
+///
+/// First those for all to see: around such a place the positions make a parabola only if all from there on are later by
+/// whole frames (a gain of 14 in log likelihood), the clearest first; or, where that ends better, those that the
+/// analysis finds (core/lost_frames.h). Then those that raise the likelihood of the whole
+/// fit by 12, one in each motion at a time or all together, K, mu and the inclination free; then all of them placed
+/// anew along the fitted path (Viterbi). These count only where they leave chi² below 2 a point: many a curve that the
+/// model lacks looks like a row of losses.
+#pragma once
+
+#include "diagnose/frames/frame_effects.h"
+
+namespace glidelab::diagnose {
+
+/// How many frames a fit has as missing, all clips together.
+std::size_t missing_in(const TrackSet& set, const MotionFit& fit);
+
+/// What was found; the fit that goes with them has their lateness.
+struct MissingFrames {
+  FrameEffect effect;
+  std::size_t count = 0;
+  MotionFit fit;
+};
+MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit);
+
+/// Those that a fit with losses in its times, one at least, hides: its own and these. The effect's gain and evidence
+/// are what the further ones add.
+MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& with_losses);
+
+}  // namespace glidelab::diagnose

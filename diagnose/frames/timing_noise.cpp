@@ -1,0 +1,165 @@
+#include "diagnose/frames/timing_noise.h"
+
+#include <boost/math/tools/minima.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/smoothing/noise.h"
+#include "diagnose/fit/common_limits.h"
+#include "diagnose/fit/score_space.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kMostScatter = 8.0;    // standard deviations
+constexpr int kRounds = 3;              // the jitter is found against the noise of all speeds first
+constexpr double kOwn = 0.5;            // motions differ by so much, in the logarithm
+constexpr double kLeastAtRest = 0.003;  // of the noise of all speeds
+constexpr double kIndependent = 0.38;   // squares of neighbouring fourth differences: 1 / (1 + 2 sum of rho²)
+
+/// Scatter of a motion's positions about their four neighbours.
+void add_neighbours(const TrackedMotion& motion, const std::vector<double>& t_s, SpeedScatter& scatter) {
+  for (std::size_t p = 2; p + 2 < t_s.size(); ++p) {
+    if (std::any_of(motion.outlier.begin() + static_cast<long>(p) - 2,
+                    motion.outlier.begin() + static_cast<long>(p) + 3, [](char out) { return out != 0; }))
+      continue;
+    const double v = (motion.x_m[p + 2] - motion.x_m[p - 2]) / (t_s[p + 2] - t_s[p - 2]);
+    const double over_sd = neighbour_residual(t_s, motion.x_m, p) / motion.sd_of(p);
+    if (std::abs(over_sd) < kMostScatter) scatter.add(motion, p, over_sd, v);
+  }
+}
+
+/// -2 log likelihood of a motion's scatter with a noise at rest and a jitter.
+double cost(const SpeedScatter& scatter, double sd_m, double at_rest_m, double jitter_s) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < scatter.squares.size(); ++p) {
+    const double variance = std::pow(at_rest_m / sd_m, 2) + jitter_s * jitter_s * scatter.fast[p];
+    sum += kIndependent * (scatter.squares[p] / variance + std::log(variance));
+  }
+  return sum;
+}
+
+/// Where a function of the logarithm is lowest.
+template <typename Function>
+double lowest(const Function& of_log, double from, double to) {
+  constexpr int kBits = 20;
+  return std::exp(boost::math::tools::brent_find_minima(of_log, std::log(from), std::log(to), kBits).first);
+}
+
+/// Each motion's noise at rest beside a jitter: its own as far as its slow positions tell, else that of all.
+void set_noise_at_rest(std::vector<TrackedMotion>& motions, const std::vector<SpeedScatter>& scatters,
+                       double jitter_s) {
+  double most = 0.0;
+  for (const TrackedMotion& motion : motions) most = std::max(most, motion.sd_m);
+  const double of_all = lowest(
+      [&](double log_sd) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < motions.size(); ++i)
+          sum += cost(scatters[i], motions[i].sd_m, std::exp(log_sd), jitter_s);
+        return sum;
+      },
+      kLeastAtRest * most, most);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const auto own = [&](double log_sd) {
+      return cost(scatters[i], motions[i].sd_m, std::exp(log_sd), jitter_s) +
+             std::pow((log_sd - std::log(of_all)) / kOwn, 2);
+    };
+    motions[i].sd_m = lowest(own, of_all / 10.0, of_all * 10.0);
+  }
+}
+
+}  // namespace
+
+void SpeedScatter::add(const TrackedMotion& motion, std::size_t point, double over_sd, double v_m_s) {
+  const double wider = motion.sd_of(point) / motion.sd_m;
+  squares.push_back(std::pow(over_sd * wider, 2));
+  fast.push_back(std::pow(v_m_s / motion.sd_m, 2));
+  top_m_s = std::max(top_m_s, std::abs(v_m_s));
+  widest = std::max(widest, wider);
+}
+
+void SpeedScatter::add(const SpeedScatter& of_a_motion) {
+  squares.insert(squares.end(), of_a_motion.squares.begin(), of_a_motion.squares.end());
+  fast.insert(fast.end(), of_a_motion.fast.begin(), of_a_motion.fast.end());
+  top_m_s = std::max(top_m_s, of_a_motion.top_m_s);
+  widest = std::max(widest, of_a_motion.widest);
+}
+
+SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, double independent) {
+  SpeedNoise found;
+  double step = 0.0, sd = 0.0;
+  for (const TrackedMotion& motion : set.motions) {
+    step = std::max(step, 1.0 / set.clips[motion.clip].frame_rate_hz);
+    sd += motion.sd_m / static_cast<double>(set.motions.size());
+  }
+  const auto n = static_cast<double>(scatter.squares.size());
+  if (scatter.squares.size() < kFewestScatter || !(scatter.top_m_s > 0.0)) return found;
+  double mean_square = 0.0;  // beside the jitter
+  const auto log_likelihood = [&](double tau) {
+    // The scale s² of both parts together is fitted: n log(mean(e²/w)) + sum log w.
+    double weighted = 0.0, logs = 0.0;
+    for (std::size_t p = 0; p < scatter.squares.size(); ++p) {
+      const double w = 1.0 + tau * tau * scatter.fast[p];
+      weighted += scatter.squares[p] / w;
+      logs += std::log(w);
+    }
+    mean_square = weighted / n;
+    return -0.5 * independent * (n * std::log(mean_square) + logs);
+  };
+  const double none = log_likelihood(0.0);
+  std::vector<double> logs;
+  // From what begins to show among n points, in units of what one standard deviation of position makes at top speed; in
+  // pictures from what cannot be the marker's blur, which makes its noise grow with the speed as well.
+  const double unit = sd / scatter.top_m_s;
+  const double least = 2.0 * std::pow(2.0 / (independent * n), 0.25) * unit;
+  const double least_s = set.pictures ? kLeastFilmedJitter_s : 0.0;
+  for (double tau = least; tau < 40.0 * scatter.widest * unit && tau < 0.5 * step; tau *= 1.3) {
+    const double gain = log_likelihood(tau) - none;
+    if (tau * std::sqrt(mean_square) < least_s) continue;
+    logs.push_back(gain);
+    if (gain <= found.gain) continue;
+    found.gain = logs.back();
+    found.jitter_s = tau * std::sqrt(mean_square);  // sd_m may hold the jitter of the mean speed already
+  }
+  if (logs.empty()) return found;
+  found.log_evidence = log_mean(logs);
+  found.sd_s = found.jitter_s / std::sqrt(std::max(1.0, 2.0 * found.gain));
+  return found;
+}
+
+bool give_fast_positions_their_noise(TrackSet& set, const Lateness& late) {
+  std::vector<std::vector<double>> times;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    times.push_back(set.motions[i].t_s);
+    for (std::size_t p = 0; p < times.back().size() && !late.empty(); ++p) times.back()[p] += late[i][p];
+  }
+  for (const TrackedMotion& motion : set.motions) {
+    if (core::rounding_step(motion.x_m) > motion.sd_m) return false;  // what rounding makes goes with the place
+  }
+  bool any = false;
+  for (int round = 0; round < kRounds; ++round) {
+    SpeedScatter all;
+    std::vector<SpeedScatter> own(set.motions.size());
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      add_neighbours(set.motions[i], times[i], own[i]);
+      all.add(own[i]);
+    }
+    const SpeedNoise found = find_speed_noise(set, all, kIndependent);
+    if (found.log_evidence < kBeyondDoubt) return any;
+    any = true;
+    set_noise_at_rest(set.motions, own, found.jitter_s);
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      TrackedMotion& motion = set.motions[i];
+      motion.wider.clear();
+      for (std::size_t p = 0; p < motion.x_m.size(); ++p) {
+        const std::size_t a = p - std::min<std::size_t>(p, 2), b = std::min(p + 2, motion.x_m.size() - 1);
+        const double v = (motion.x_m[b] - motion.x_m[a]) / (times[i][b] - times[i][a]);
+        motion.wider.push_back(std::hypot(1.0, found.jitter_s * v / motion.sd_m));
+      }
+    }
+  }
+  return any;
+}
+
+}  // namespace glidelab::diagnose

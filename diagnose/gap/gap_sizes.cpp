@@ -1,0 +1,183 @@
+#include "diagnose/gap/gap_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "diagnose/gap/clip_interval.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/gap/parameter_gap.h"
+#include "diagnose/gap/phase_gap.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kPlotted = 250;
+
+/// A single clip in quarters, and both fits to them.
+struct SplitFits {
+  TrackSet set;
+  MotionFit nominal, best;
+};
+
+SplitFits split_fits(const TrackSet& set, const MotionFit& best) {
+  SplitFits split{split_clip(set), {}, {}};
+  split.nominal = fit_nominal(split.set);
+  split.best = split.nominal;
+  if (best.effects.empty() || !best.late.empty()) return split;
+  // From the fit to the whole clip: each stretch starts where that fit is at its beginning.
+  FitPoint start{best.at.global, {}};
+  for (const TrackedMotion& part : split.set.motions) {
+    std::size_t whole = 0;
+    while (whole + 1 < set.motions.size() && set.motions[whole].t_s.back() < part.t_s.front()) ++whole;
+    Eigen::VectorXd own = best.at.own[whole];
+    const auto at = static_cast<std::size_t>(
+        std::lower_bound(set.motions[whole].t_s.begin(), set.motions[whole].t_s.end(), part.t_s.front()) -
+        set.motions[whole].t_s.begin());
+    own[0] = part.x_m.front();
+    own[1] = best.motions[whole].v_m_s[std::min(at, best.motions[whole].v_m_s.size() - 1)];
+    start.own.push_back(own);
+  }
+  split.best = fit_motions(split.set, best.effects, start);
+  return split;
+}
+
+std::vector<ClipSquares> squares_of(const HeldOutGap& gap) {
+  std::vector<ClipSquares> squares;
+  for (const ClipGap& clip : gap.clips) squares.push_back({clip.chi2, clip.freedom});
+  return squares;
+}
+
+std::vector<ClipSquares> acceleration_squares_of(const HeldOutGap& gap) {
+  std::vector<ClipSquares> squares;
+  for (const ClipGap& clip : gap.clips) squares.push_back({clip.acceleration_square, clip.acceleration_count});
+  return squares;
+}
+
+GapIntervals intervals_of(const TrackSet& set, const HeldOutGap& before, const HeldOutGap& after, bool shrinks) {
+  GapIntervals of;
+  of.why_none = why_no_interval(set.pieces ? 1 : set.clips.size());
+  if (!of.why_none.empty()) return of;
+  of.before = rms_interval(squares_of(before));
+  of.after = rms_interval(squares_of(after));
+  if (shrinks) of.shrink = shrink_interval(squares_of(before), squares_of(after));
+  of.acceleration_before = rms_interval(acceleration_squares_of(before));
+  of.acceleration_after = rms_interval(acceleration_squares_of(after));
+  return of;
+}
+
+/// Root mean square, or nothing of nothing.
+class RootMeanSquare {
+ public:
+  void add(double z) {
+    sum_ += z * z;
+    count_ += 1.0;
+  }
+  std::optional<double> value() const {
+    return count_ > 0.0 ? std::optional<double>(std::sqrt(sum_ / count_)) : std::nullopt;
+  }
+
+ private:
+  double sum_ = 0.0, count_ = 0.0;
+};
+
+double most_seen(const std::vector<PictureFinding>& pictures, const std::vector<DiagnosedEffect>& but) {
+  double most = 1.0;
+  for (const PictureFinding& finding : pictures) {
+    const bool named =
+        std::any_of(but.begin(), but.end(), [&](const DiagnosedEffect& effect) { return effect.id == finding.id; });
+    if (!named && !finding.stated) most = std::max(most, std::sqrt(2.0 * std::max(0.0, finding.log_evidence)));
+  }
+  return most;
+}
+
+}  // namespace
+
+GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
+                std::vector<std::string>& notes) {
+  GapSizes gap;
+  HeldOutGap before, after;
+  if (set.clips.size() < 2) {
+    const SplitFits split = split_fits(set, best);
+    before = held_out_gap(split.set, split.nominal);
+    after = held_out_gap(split.set, split.best);
+    gap.phase_plane = phase_gaps(split.set, split.nominal, split.best);
+    notes.push_back(
+        "There is one clip only, so that none can be held out: the gap is measured on held-out quarters of it.");
+  } else {
+    before = held_out_gap(set, nominal);
+    after = held_out_gap(set, best);
+    gap.phase_plane = phase_gaps(set, nominal, best);
+  }
+  gap.before = before.value;
+  gap.after = after.value;
+  gap.standard_error = before.standard_error;
+  if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - 1.0);
+  gap.acceleration_before = before.acceleration_m_s2;
+  gap.acceleration_after = after.acceleration_m_s2;
+  for (std::size_t c = 0; c < before.clips.size(); ++c) {
+    gap.held_out.push_back(before.clips[c].clip);
+    gap.before_by_clip.push_back(std::sqrt(before.clips[c].chi2 / before.clips[c].freedom));
+    gap.after_by_clip.push_back(c < after.clips.size() ? std::sqrt(after.clips[c].chi2 / after.clips[c].freedom)
+                                                       : gap.before_by_clip.back());
+  }
+  gap.interval95 = intervals_of(set, before, after, gap.shrink.has_value());
+  const std::vector<StatementPull> was = statement_pulls(set, nominal), is = statement_pulls(set, best);
+  for (std::size_t p = 0; p < was.size() && p < is.size(); ++p) {
+    gap.parameters.push_back({was[p].quantity, was[p].against, was[p].group, was[p].z, is[p].z});
+  }
+  for (GapOfParameter& of : parameter_gaps(set, nominal, unnamed ? nullptr : &best)) {
+    gap.parameters.push_back(std::move(of));
+  }
+  return gap;
+}
+
+std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<PictureFinding>& pictures,
+                                   const std::vector<DiagnosedEffect>& named) {
+  std::vector<GapDomain> domains = {{"positions", gap.before, gap.after}};
+  RootMeanSquare a_before, a_after, q_before, q_after;
+  bool all_after = true;  // of the parameters that have a before
+  for (const PhaseGap& of : gap.phase_plane) {
+    if (gap.phase_plane.size() > 1 && !of.mass_kg) continue;  // the same points once more
+    for (const PhaseBin& bin : of.bins) {
+      a_before.add(bin.before.value / bin.before.sd);
+      a_after.add(bin.after.value / bin.after.sd);
+    }
+  }
+  if (a_before.value()) domains.push_back({"phase_plane", *a_before.value(), a_after.value()});
+  for (const GapOfParameter& of : gap.parameters) {
+    if (!of.z_before) continue;
+    q_before.add(*of.z_before);
+    all_after = all_after && of.z_after.has_value();
+    q_after.add(of.z_after.value_or(0.0));
+  }
+  if (q_before.value()) {
+    domains.push_back({"parameters", *q_before.value(), all_after ? q_after.value() : std::nullopt});
+  }
+  if (!pictures.empty()) domains.push_back({"picture", most_seen(pictures, {}), most_seen(pictures, named)});
+  return domains;
+}
+
+std::vector<ResidualCurve> residuals_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best) {
+  std::vector<ResidualCurve> curves;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    ResidualCurve curve;
+    curve.clip = set.clips[motion.clip].name;
+    const std::size_t step = std::max<std::size_t>(1, motion.t_s.size() / kPlotted);
+    for (std::size_t p = 0; p < motion.t_s.size(); p += step) {
+      if (motion.outlier[p]) continue;
+      curve.t_s.push_back(motion.t_s[p]);
+      curve.x_m.push_back(motion.x_m[p]);
+      curve.v_m_s.push_back(nominal.motions[i].v_m_s[p]);
+      curve.before_m.push_back(nominal.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p));
+      curve.after_m.push_back(best.motions[i].plain[static_cast<Eigen::Index>(p)] * motion.sd_of(p));
+      curve.noise_m.push_back(motion.sd_of(p));
+    }
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+}  // namespace glidelab::diagnose

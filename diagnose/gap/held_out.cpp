@@ -1,0 +1,153 @@
+#include "diagnose/gap/held_out.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/smoothing/local_cubic.h"
+#include "diagnose/fit/projected_motion.h"
+#include "diagnose/tracks/thin_tracks.h"
+#include "diagnose/tracks/whitening.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kStretches = 4;  // of a single clip
+constexpr std::size_t kFewest = 8;     // points of a stretch, or to smooth
+constexpr double kLeastKnown = 1e-4;   // of a statement's variance: below, a pull is a difference of rounding
+
+/// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions.
+void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd& residual, ClipGap& clip) {
+  const TrackedMotion& data = set.motions[i];
+  const double bandwidth = set.clips[data.clip].bandwidth_s;
+  if (!(bandwidth > 0.0)) return;
+  std::vector<double> t, r;
+  const Eigen::VectorXd over_sd = coloured(data, residual);
+  for (std::size_t p = 0; p < data.t_s.size(); ++p) {
+    if (data.outlier[p]) continue;
+    t.push_back(data.t_s[p]);
+    r.push_back(over_sd[static_cast<Eigen::Index>(p)] * data.sd_of(p));
+  }
+  if (t.size() < kFewest) return;
+  const core::LocalCubic cubic(t, bandwidth);
+  for (std::size_t p = 0; p < t.size(); p += 3) {
+    if (t[p] - t.front() < 2.0 * bandwidth || t.back() - t[p] < 2.0 * bandwidth) continue;
+    const auto row = cubic.row_of_point(p);
+    if (!row) continue;
+    const double a = core::weighted_sums(*row, r).a_m_s2;
+    clip.acceleration_square += a * a;
+    clip.acceleration_count += 1.0;
+  }
+}
+
+}  // namespace
+
+HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
+  HeldOutGap gap;
+  std::vector<ProjectedMotion> motions;
+  for (const FitMotion& motion : fit.motions) motions.push_back(project(motion));
+  CommonNormal all = statements_normal(fit);
+  for (const ProjectedMotion& motion : motions) all.add(motion);
+  const Eigen::MatrixXd together = inverse_normal(all.matrix);
+  double chi2 = 0.0, freedom = 0.0, a_sum = 0.0, a_count = 0.0;
+  for (std::size_t c = 0; c < set.clips.size(); ++c) {
+    ClipGap clip{set.clips[c].name};
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (set.motions[i].clip == c) clip.freedom += motions[i].freedom;
+    }
+    if (clip.freedom <= 0.0) continue;  // nothing of it moves
+    const CommonNormal others = without_clip(set, all, motions, c);
+    const Eigen::MatrixXd covariance = inverse_normal(others.matrix);
+    const Eigen::VectorXd shift = base::product(covariance, others.right);
+    // u'(1 + G C G')^-1 u = u'u - (G'u)' (C^-1 + G'G)^-1 (G'u)
+    Eigen::VectorXd gu = Eigen::VectorXd::Zero(shift.size());
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (set.motions[i].clip != c) continue;
+      const Eigen::VectorXd u = motions[i].residual - base::product(motions[i].common, shift);
+      clip.chi2 += u.squaredNorm();
+      gu += base::transposed_product(motions[i].common, u);
+      add_accelerations(set, i, u, clip);
+    }
+    const Eigen::VectorXd taken = base::product(together, gu);
+    clip.chi2 -= gu.dot(taken);
+    chi2 += clip.chi2;
+    freedom += clip.freedom;
+    a_sum += clip.acceleration_square;
+    a_count += clip.acceleration_count;
+    gap.clips.push_back(clip);
+  }
+  if (freedom <= 0.0) return gap;
+  gap.value = std::sqrt(std::max(0.0, chi2) / freedom);
+  // Of a root mean square of n points 1/sqrt(2 n), and of the noise that it is held against sqrt(1.32 / n).
+  gap.standard_error = std::sqrt(1.82 / freedom);
+  if (a_count > 0.0) gap.acceleration_m_s2 = std::sqrt(a_sum / a_count);
+  return gap;
+}
+
+TrackSet split_clip(const TrackSet& set) {
+  TrackSet split = set;
+  split.clips.clear();
+  split.motions.clear();
+  for (const TrackedMotion& motion : set.motions) {
+    const std::size_t n = motion.t_s.size();
+    for (std::size_t k = 0; k < kStretches; ++k) {
+      const std::size_t from = n * k / kStretches, to = n * (k + 1) / kStretches;
+      TrackedMotion part = some_points(motion, from, to);
+      if (part.t_s.size() < kFewest) continue;
+      if (set.position_noise) whiten(part, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
+      part.clip = split.clips.size();
+      TrackedClip clip = set.clips[motion.clip];
+      clip.name = fmt::format("{}, {:.2f} to {:.2f} s", clip.name, part.t_s.front(), part.t_s.back());
+      split.clips.push_back(clip);
+      split.motions.push_back(std::move(part));
+    }
+  }
+  return split;
+}
+
+Eigen::MatrixXd common_covariance(const MotionFit& fit) {
+  CommonNormal all = statements_normal(fit);
+  for (const FitMotion& motion : fit.motions) all.add(project(motion));
+  return inverse_normal(all.matrix);
+}
+
+MotionFit at_linear_minimum(const TrackSet& set, MotionFit fit) {
+  CommonNormal all = statements_normal(fit);
+  for (const FitMotion& motion : fit.motions) all.add(project(motion));
+  const Eigen::VectorXd shift = base::product(inverse_normal(all.matrix), all.right);
+  fit.at.global += shift;
+  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
+    FitMotion& motion = fit.motions[i];
+    motion.residual -= base::product(motion.global, shift);
+    const auto [scale, own, gain] = own_columns(motion);
+    const Eigen::VectorXd own_shift = base::product(gain, motion.residual);
+    fit.at.own[i] += scale.cwiseProduct(own_shift);
+    motion.residual -= base::product(own, own_shift);
+    motion.plain = coloured(set.motions[i], motion.residual);
+  }
+  return fit;
+}
+
+std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit& fit) {
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  std::vector<StatementPull> pulls;
+  for (const FitStatement& s : fit.statements) {
+    if (s.against.empty()) continue;
+    const auto g = static_cast<Eigen::Index>(s.global);
+    // Residual of a datum that took part in the fit: its variance is sd² less what the fit knows.
+    const double variance = s.sd * s.sd - covariance(g, g), off = s.value - fit.at.global[g];
+    StatementPull pull{"alpha_deg", s.against, set.groups[fit.layout->globals()[s.global].index].name, {}};
+    pull.stated_rad = s.value;
+    pull.stated_sd_rad = s.sd;
+    if (variance > kLeastKnown * s.sd * s.sd) {
+      pull.z = off / std::sqrt(variance);
+      pull.else_rad = s.value - off * s.sd * s.sd / variance;
+      pull.else_sd_rad = s.sd * std::sqrt(covariance(g, g) / variance);
+    }
+    pulls.push_back(std::move(pull));
+  }
+  return pulls;
+}
+
+}  // namespace glidelab::diagnose

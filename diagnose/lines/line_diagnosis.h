@@ -1,0 +1,21 @@
+/// A table of published lines in, a diagnosis out.
+///
+///     lines ─ line_terms ─ line_solution (fit, evidence) ─ line_weighing ─ line_regions, line_isolability ─ Diagnosis
+///
+/// Predictions of each line by the others are the held-out gap, over the lines' own scatter.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/lines/line_table.h"
+#include "diagnose/result/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+/// `without`: effects that are not considered, of effect_list() or smoothing_bias; InputError for another word, and for
+/// fewer than kFewestLines.
+Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double gravity_m_s2,
+                         const std::vector<std::string>& without = {});
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,216 @@
+#include "diagnose/lines/line_solution.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/math/dense.h"
+#include "base/text/size_text.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kLeastLeft = 1e-6;                     // of lines with very many digits: log of K/m, and m/s²
+constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
+constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
+constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
+constexpr int kMostTurns = 50;
+constexpr double kLeastUnseen = 0.05;  // part of a line that its own prediction must not see
+
+std::string impossible(const LineTerm& term, double size) {
+  const auto [name, unit] = base::name_and_unit(term.key);
+  const std::string needed = fmt::format("{} would have to be {}", name, base::size_text(size, 2, unit));
+  if (!term.both_signs && !(size > 0.0)) {
+    return needed + ", and it cannot be below zero";
+  }
+  if (std::abs(size) > term.largest) {
+    return fmt::format("{}, and more than {} is absurd", needed, base::size_text(term.largest, 2, unit));
+  }
+  return {};
+}
+
+/// Mean of intercepts of one mass and set-up over both directions; nothing where one is missing.
+std::vector<double> means_over_directions(const std::vector<TableLine>& lines, double incline) {
+  std::vector<double> means;
+  for (const double mass : different(lines, &TableLine::mass_kg)) {
+    double up = 0.0, down = 0.0, ups = 0.0, downs = 0.0;
+    for (const TableLine& line : lines) {
+      if (line.mass_kg != mass || line.incline_deg != incline) continue;
+      (line.direction < 0 ? up : down) += line.a0_m_s2;
+      (line.direction < 0 ? ups : downs) += 1.0;
+    }
+    if (ups > 0.0 && downs > 0.0) means.push_back(0.5 * (up / ups + down / downs));
+  }
+  return means;
+}
+
+double squares_about_mean(const std::vector<double>& values) {
+  double mean = 0.0, sum = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return sum;
+}
+
+double root_mean_square(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+LineData line_data(const std::vector<TableLine>& lines, double g) {
+  const std::vector<double> inclines = different(lines, &TableLine::incline_deg);
+  const auto n = static_cast<Eigen::Index>(lines.size());
+  LineData data{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::MatrixXd::Ones(n, 1),
+                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(inclines.size()) + 1)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const TableLine& line = lines[static_cast<std::size_t>(i)];
+    data.log_k[i] = std::log(line.k_over_m_1_s * line.mass_kg);
+    data.a0[i] = line.a0_m_s2;
+    const auto at = std::find(inclines.begin(), inclines.end(), line.incline_deg) - inclines.begin();
+    data.base_a0(i, at) = 1.0;
+    data.base_a0(i, data.base_a0.cols() - 1) = -line.direction * g * std::cos(line.incline_deg * kDegree);
+  }
+  double of_k = 0.0, of_a = 0.0;  // squares of errors, relative ones of K/m
+  for (const TableLine& line : lines) {
+    of_k += std::pow(line.k_digit_1_s / line.k_over_m_1_s, 2) * kRoundingVariance / static_cast<double>(n);
+    of_a += std::pow(line.a0_digit_m_s2, 2) * kRoundingVariance / static_cast<double>(n);
+  }
+  data.rounding_log_k = std::max(std::sqrt(of_k), kLeastLeft);
+  data.rounding_a0 = std::max(std::sqrt(of_a), kLeastLeft);
+  return data;
+}
+
+LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& terms) {
+  const auto n = data.a0.size();
+  const auto pk = data.base_log_k.cols(), pa = data.base_a0.cols(), pt = static_cast<Eigen::Index>(terms.size());
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(2 * n, pk + pa + pt);
+  Eigen::VectorXd y(2 * n);
+  x.block(0, 0, n, pk) = data.base_log_k;
+  x.block(n, pk, n, pa) = data.base_a0;
+  for (Eigen::Index t = 0; t < pt; ++t) {
+    x.block(0, pk + pa + t, n, 1) = terms[static_cast<std::size_t>(t)].of_log_k;
+    x.block(n, pk + pa + t, n, 1) = terms[static_cast<std::size_t>(t)].of_a0;
+  }
+  y << data.log_k, data.a0;
+  LineSolution s;
+  s.sd_k = kFirstSd_k;
+  s.sd_a = kFirstSd_a;
+  Eigen::VectorXd weight(2 * n), off, fit;
+  Eigen::MatrixXd inverse;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    weight << Eigen::VectorXd::Constant(n, 1.0 / s.sd_k), Eigen::VectorXd::Constant(n, 1.0 / s.sd_a);
+    const Eigen::MatrixXd wx = weight.asDiagonal() * x;
+    Eigen::MatrixXd normal = base::transposed_product(wx, wx);
+    const Eigen::VectorXd scale = (normal.diagonal().array() + 1e-300).sqrt().inverse();
+    normal = scale.asDiagonal() * normal * scale.asDiagonal();
+    normal.diagonal().array() += 1e-10;
+    inverse = scale.asDiagonal() * base::inverse_positive(normal) * scale.asDiagonal();
+    fit = base::product(inverse, base::transposed_product(wx, Eigen::VectorXd(weight.cwiseProduct(y))));
+    off = y - base::product(x, fit);
+    const double sd_k = std::max(root_mean_square(off.head(n)), data.rounding_log_k);
+    const double sd_a = std::max(root_mean_square(off.tail(n)), data.rounding_a0);
+    const bool settled = std::abs(sd_k - s.sd_k) <= kSettled * sd_k && std::abs(sd_a - s.sd_a) <= kSettled * sd_a;
+    s.sd_k = sd_k;
+    s.sd_a = sd_a;
+    if (settled) break;
+  }
+  s.off_k = off.head(n);
+  s.off_a = off.tail(n);
+  s.size = fit.tail(pt);
+  // With the degrees of freedom that the fit takes.
+  const auto values = static_cast<double>(2 * n), parameters = static_cast<double>(pk + pa + pt);
+  s.sd = inverse.diagonal().tail(pt).cwiseSqrt() * std::sqrt(values / std::max(1.0, values - parameters));
+  for (Eigen::Index t = 0; t < pt && s.left_out.empty(); ++t) {
+    s.left_out = impossible(terms[static_cast<std::size_t>(t)], s.size[t]);
+  }
+  // Each line predicted by the others: residual over 1 - leverage.
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd row_k = x.row(i).transpose() / s.sd_k, row_a = x.row(n + i).transpose() / s.sd_a;
+    const double leverage_k = row_k.dot(base::product(inverse, row_k).col(0));
+    const double leverage_a = row_a.dot(base::product(inverse, row_a).col(0));
+    s.held_out_k.push_back(off[i] / std::max(kLeastUnseen, 1.0 - leverage_k));
+    s.held_out_a.push_back(off[n + i] / std::max(kLeastUnseen, 1.0 - leverage_a));
+  }
+  return s;
+}
+
+OwnScatter own_scatter(const std::vector<TableLine>& lines) {
+  double sum_a = 0.0, count_a = 0.0, sum_k = 0.0, count_k = 0.0;
+  for (const double incline : different(lines, &TableLine::incline_deg)) {
+    const std::vector<double> means = means_over_directions(lines, incline);
+    sum_a += 2.0 * squares_about_mean(means);  // a mean of two has half the variance
+    if (!means.empty()) count_a += static_cast<double>(means.size()) - 1.0;
+  }
+  for (const double mass : different(lines, &TableLine::mass_kg)) {
+    std::vector<double> logs;
+    for (const TableLine& line : lines) {
+      if (line.mass_kg == mass) logs.push_back(std::log(line.k_over_m_1_s));
+    }
+    sum_k += squares_about_mean(logs);
+    count_k += static_cast<double>(logs.size()) - 1.0;
+  }
+  return {count_a > 0.0 ? std::sqrt(sum_a / count_a) : 0.0, count_k > 0.0 ? std::sqrt(sum_k / count_k) : 0.0,
+          static_cast<std::size_t>(count_a + count_k)};
+}
+
+double log_bayes_factor(double left, double nominal_left, double lines, double nominal_parameters, double terms) {
+  const double freedom = lines - nominal_parameters;
+  if (!(freedom > terms)) return 0.0;
+  const double ratio = std::pow(left / nominal_left, 2);
+  // Over ln g; even steps are exact to rounding for what falls off smoothly at both ends.
+  constexpr double kFrom = -8.0, kTo = 45.0, kStep = 0.05;
+  std::vector<double> logs;
+  for (double u = kFrom; u < kTo; u += kStep) {
+    const double g = std::exp(u);
+    const double prior = 0.5 * std::log(lines / (2.0 * std::numbers::pi)) - 0.5 * u - 0.5 * lines / g;
+    logs.push_back(prior + 0.5 * (freedom - terms) * std::log1p(g) - 0.5 * freedom * std::log1p(g * ratio));
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (const double l : logs) sum += kStep * std::exp(l - most);
+  return most + std::log(sum);
+}
+
+double log_evidence_of(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
+                       const LineSolution& nominal) {
+  double of_k = 0.0, of_a = 0.0;
+  for (const LineTerm& term : terms) {
+    const double k = term.of_log_k.isZero(0.0) ? 0.0 : 1.0, a = term.of_a0.isZero(0.0) ? 0.0 : 1.0;
+    of_k += k / std::max(1.0, k + a);
+    of_a += a / std::max(1.0, k + a);
+  }
+  const auto lines = static_cast<double>(data.a0.size());
+  double sum = 0.0;
+  if (of_k > 0.0) {
+    sum += log_bayes_factor(with.sd_k, nominal.sd_k, lines, static_cast<double>(data.base_log_k.cols()), of_k);
+  }
+  if (of_a > 0.0) {
+    sum += log_bayes_factor(with.sd_a, nominal.sd_a, lines, static_cast<double>(data.base_a0.cols()), of_a);
+  }
+  return sum;
+}
+
+double log_likelihood_gain_of(const LineSolution& with, const LineSolution& nominal) {
+  return static_cast<double>(with.off_a.size()) * std::log(nominal.sd_k / with.sd_k * nominal.sd_a / with.sd_a);
+}
+
+double chi_square_of(const LineSolution& solution, const OwnScatter& scatter) {
+  return solution.off_k.squaredNorm() / std::pow(scatter.slope, 2) +
+         solution.off_a.squaredNorm() / std::pow(scatter.intercept_m_s2, 2);
+}
+
+double gap_of_line(const LineSolution& solution, const OwnScatter& scatter, std::size_t i) {
+  return std::sqrt(0.5 * (std::pow(solution.held_out_k[i] / scatter.slope, 2) +
+                          std::pow(solution.held_out_a[i] / scatter.intercept_m_s2, 2)));
+}
+
+double gap_of_lines(const LineSolution& solution, const OwnScatter& scatter) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < solution.held_out_a.size(); ++i) sum += std::pow(gap_of_line(solution, scatter, i), 2);
+  return std::sqrt(sum / static_cast<double>(solution.held_out_a.size()));
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,49 @@
+/// What may act beside equation (8) on a table of lines: effects with a name, and friction or drag without one.
+///
+/// With the line's mass m, direction s and K/m, to the intercept a0 and to ln(K/m):
+///
+///     load_independent_friction  a0 - s F/m
+///     smoothing_bias             a0 - s c (K/m)²                             c in s² m/s² = m
+///     rotational_inertia         a0 (1 - m_w/m),  ln(K/m) - m_w/m            to first order in m_w/m
+///     without a name             a0 - s f  or  ln(K/m) + d, f or d of each mass, of each set-up, of each mass in each
+///                                set-up; ln(K/m) + s d
+///
+/// A drag that rolls off, K v / (1 + (v/v_c)²), or grows as v^n with n < 1 is, about the typical speed V of the lines,
+/// a line with the intercept - s (2 K V³/v_c²)/m or - s (1 - n) K V^n/m: the same column as a friction force.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+#include "diagnose/lines/line_table.h"
+
+namespace glidelab::diagnose {
+
+/// What one unit of a term adds to ln(K/m) and to a0 (m/s²) of every line.
+struct LineTerm {
+  std::string id, key, stage, words;
+  Eigen::VectorXd of_log_k, of_a0;
+  bool both_signs = false;
+  double largest = 0.0;  ///< in the unit of the key
+};
+
+/// Terms without a name that come together.
+struct LineFamily {
+  std::string variable;  ///< mass_kg, group, direction, or "mass_kg and group"
+  std::string words;
+  double share = 0.0;  ///< of the odds of something without a name: each variable alike, and of it friction and drag
+  std::vector<LineTerm> terms;
+};
+
+/// Those of the effects that lines can show, less what is left `without`. None where all masses are the same: they are
+/// K and mu then.
+std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std::vector<std::string>& without);
+
+std::vector<LineFamily> unnamed_families(const std::vector<TableLine>& lines);
+
+/// Effects of the speed whose lines are those of load_independent_friction, less what is left `without`.
+std::vector<std::string> alike_friction_force(const std::vector<std::string>& without);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,57 @@
+/// The motion of a glider with any of the effects of effect_values.h, as the measured x(t) shows it.
+///
+///     (m + m_w) dv/dt = m g (sin(alpha) + c (x - x_mid)) - K (1 + b (x - x_mid)) v |v|^(n-1) / (1 + v²/v_c²)
+///                       - sign(v) [mu m g cos(alpha) (1 + (s-1) exp(-(v/v_s)²)) + F_0] - d mu m g cos(alpha) - C v |v|
+///                       - k (x - x_t)+ + m A sin(2 pi f t + phi) + m push [t < t_r] + a known force + an unnamed one
+///
+/// sliding; at v = 0 the glider stays while friction of up to its limit, whichever way, can hold it. Runge and Kutta's
+/// fourth order in equal parts of every frame interval, or over several frames, with a polynomial of fifth order
+/// between (steps of at most 12.6 ms; k h at most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and
+/// at t_r: a smooth function of all parameters, so that its derivatives follow by finite differences. SI units.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "diagnose/model/effect_values.h"
+
+namespace glidelab::diagnose {
+
+/// Force in N at (x, v, t); t counts from the clip's first frame.
+using UnnamedForce = std::function<double(double x_m, double v_m_s, double t_s)>;
+
+/// A force that was recorded with the positions, along x, linear between its samples; their times rise. Empty: none.
+struct KnownForce {
+  std::vector<double> t_s;  ///< from the clip's first frame
+  std::vector<double> force_n;
+};
+
+/// All that determines one motion.
+struct TrackModel {
+  double mass_kg = 0.0;
+  double gravity_m_s2 = 9.80665;
+  double k_n_s_m = 0.0;
+  double mu = 0.0;
+  double alpha_rad = 0.0;
+  double x_mid_m = 0.0;      ///< of the set-up
+  double x_mid_all_m = 0.0;  ///< of all set-ups
+  double x0_m = 0.0;         ///< at the first of the times
+  double v0_m_s = 0.0;
+  EffectValues effects;
+  const KnownForce* known = nullptr;
+  const UnnamedForce* unnamed = nullptr;
+  std::span<const double> row_px;  ///< of the marker at each of the times; empty: not filmed
+};
+
+struct Moved {
+  std::vector<double> x_m;    ///< as measured: with what camera and restitution do to it
+  std::vector<double> v_m_s;  ///< true
+};
+
+/// At the stated times (rising, from the clip's first frame). `late_s`, where not empty, is what the true time of each
+/// frame is later than stated. Not finite where the motion runs away, or would need more than 1e5 steps, each under
+/// 1.26 ms (a motion of 1 s with K/m above 3e4 1/s).
+Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
+
+}  // namespace glidelab::diagnose

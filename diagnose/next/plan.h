@@ -1,0 +1,41 @@
+/// What an experiment will be able to tell apart, before anybody has recorded it.
+///
+/// Of every effect that displaces positions in one direction (in the space of all positions, over their noise, with all
+/// that a fit may change projected out): the size that makes one standard deviation, and the cosine between any two.
+/// Nothing but the planned motions and their noise goes in; measured residuals do not.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+#include "core/result/results.h"
+#include "diagnose/result/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+struct PlannedEffect {
+  std::string id;
+  std::string words;
+  std::string key;                 ///< of its size, with the unit
+  double seen_from = 0.0;          ///< size of four standard deviations; of n and s what they are off 1
+  bool seen = false;               ///< the largest size that is considered makes as much
+  std::vector<std::string> alike;  ///< those whose cosine with it is kAlike or more
+};
+
+struct Plan {
+  std::vector<PlannedEffect> effects;
+  Isolability isolability;  ///< of those that can be seen
+  double noise_m = 0.0;     ///< mean over the motions
+  std::size_t clips = 0, points = 0;
+  std::vector<std::string> notes;
+};
+
+/// Two effects are called alike from here on: the second one then explains 90 % of what the first one gains.
+inline constexpr double kAlike = 0.95;
+
+/// From motions that were analysed: planned ones (a simulation) or recorded ones. InputError where nothing moves
+/// freely.
+Plan plan_of(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups);
+
+}  // namespace glidelab::diagnose

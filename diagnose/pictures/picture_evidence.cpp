@@ -1,0 +1,168 @@
+#include "diagnose/pictures/picture_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/text/number_text.h"
+#include "diagnose/effects/effect.h"
+#include "diagnose/fit/score_space.h"
+#include "diagnose/pictures/picture_file.h"
+#include "diagnose/pictures/picture_light.h"
+#include "diagnose/pictures/picture_noise.h"
+#include "diagnose/pictures/picture_shape.h"
+#include "diagnose/pictures/picture_sway.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+// Of the stated exposure: a tone curve lifts the half-lit ends of a smear, by so much on a large marker.
+constexpr double kToneOfShape = 0.4;
+constexpr double kLeastSmear_px = 0.2;
+
+/// Clips of one camera as it is stated.
+std::vector<std::vector<FilmedClip>> by_camera(const std::vector<FilmedClip>& clips) {
+  const auto same = [](const FilmedClip& a, const FilmedClip& b) {
+    return a.camera.exposure_s == b.camera.exposure_s && stated_line_s(a.camera) == stated_line_s(b.camera) &&
+           a.camera.frame_rate_hz == b.camera.frame_rate_hz && a.record->height_px == b.record->height_px;
+  };
+  std::vector<std::vector<FilmedClip>> cameras;
+  for (const FilmedClip& clip : clips) {
+    const auto camera =
+        std::find_if(cameras.begin(), cameras.end(), [&](const auto& of) { return same(of.front(), clip); });
+    if (camera != cameras.end()) {
+      camera->push_back(clip);
+    } else {
+      cameras.push_back({clip});
+    }
+  }
+  return cameras;
+}
+
+/// What one camera shows, unless another has shown it more clearly: false then.
+bool add_clearest(PictureFinding finding, PictureEvidence& evidence) {
+  for (PictureFinding& known : evidence.findings) {
+    if (known.id != finding.id) continue;
+    if (!(finding.log_evidence > known.log_evidence)) return false;
+    known = std::move(finding);
+    return true;
+  }
+  evidence.findings.push_back(std::move(finding));
+  return true;
+}
+
+/// `clips` of one camera.
+void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  ShapeFit fit = fit_marker_shape(clips);
+  if (!fit.known) return;
+  const core::CameraSettings& camera = clips.front().camera;
+  evidence.fastest_px_s = std::max(evidence.fastest_px_s, fit.fastest_px_s);
+  for (PictureCurve& curve : fit.curves) evidence.curves.push_back(std::move(curve));
+  PictureFinding blur = finding_of("exposure_blur");
+  const double least_s = kLeastSmear_px / fit.fastest_px_s;
+  blur.parameters = {{"exposure_s", fit.exposure_s, std::hypot(fit.exposure_sd_s, 0.1 * fit.exposure_s)}};
+  if (camera.exposure_s) {
+    const double sd =
+        std::sqrt(std::pow(fit.exposure_sd_s, 2) + std::pow(kToneOfShape * *camera.exposure_s, 2) + least_s * least_s);
+    blur.log_evidence = log_evidence_of((fit.exposure_s - *camera.exposure_s) / sd, 1.0 / camera.frame_rate_hz / sd);
+    blur.words = fmt::format("The marker is smeared as by an exposure of {} ms; {:.3g} ms is stated.",
+                             base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * sd), 1e3 * *camera.exposure_s);
+  } else {
+    blur.words =
+        fmt::format("The marker is smeared as by an exposure of {} ms; none is stated.",
+                    base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * std::hypot(fit.exposure_sd_s, least_s)));
+  }
+  add_clearest(std::move(blur), evidence);
+
+  PictureFinding shutter = finding_of("rolling_shutter");
+  const double stated = stated_line_s(camera);
+  // Of the height of the marker's image: a hundredth of a pixel is as far as its outline can be trusted.
+  const double least_line_s = 0.01 / (2.0 * fit.radius_px * fit.fastest_px_s);
+  const double sd = std::hypot(fit.line_sd_s, least_line_s, 0.05 * stated);
+  const double rows = clips.front().record->height_px;
+  shutter.parameters = {{"line_s", fit.line_s, sd}};
+  shutter.log_evidence = log_evidence_of(std::abs(fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
+  shutter.words = fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
+                              base::value_and_sd_text(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
+                              stated == 0.0 ? "(a global shutter) is stated" : "is stated");
+  if (add_clearest(std::move(shutter), evidence)) evidence.stated_line_s = stated;
+}
+
+}  // namespace
+
+PictureFinding finding_of(std::string_view id) {
+  PictureFinding finding;
+  finding.id = id;
+  return finding;
+}
+
+double stated_line_s(const core::CameraSettings& camera) {
+  if (camera.shutter == core::Shutter::global) return 0.0;
+  return camera.bottom_row_first ? -camera.line_readout_s : camera.line_readout_s;
+}
+
+double log_evidence_of(double z, double largest) {
+  std::vector<double> logs;
+  for (double s = 1.0; s < std::max(2.0, largest); s *= 1.25) logs.push_back(z * s - 0.5 * s * s);
+  return log_mean(logs);
+}
+
+std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
+                                     const std::vector<std::optional<core::CameraSettings>>& cameras) {
+  std::vector<FilmedClip> clips;
+  std::map<std::string, std::size_t> views;
+  for (std::size_t i = 0; i < results.clips.size(); ++i) {
+    const core::ClipResult& clip = results.clips[i];
+    if (!clip.pictures || !cameras[i] || clip.pictures->marker.empty()) continue;
+    FilmedClip filmed;
+    filmed.name = clip.name;
+    filmed.view = views.emplace(clip.experiment + "/" + setups[i].group, views.size()).first->second;
+    filmed.record = clip.pictures;
+    filmed.camera = *cameras[i];
+    double xx = 0.0, ux = 0.0, mean_u = 0.0, mean_x = 0.0, count = 0.0;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (const core::MarkerLook& look : clip.pictures->marker) {
+        if (look.frame >= clip.motion.size() || !clip.motion[look.frame].measured_m) continue;
+        const double x = *clip.motion[look.frame].measured_m;
+        if (pass == 0) {
+          mean_u += look.u_px;
+          mean_x += x;
+          count += 1.0;
+        } else {
+          ux += (look.u_px - mean_u) * (x - mean_x);
+          xx += (x - mean_x) * (x - mean_x);
+        }
+      }
+      if (pass == 0) {
+        mean_u /= std::max(1.0, count);
+        mean_x /= std::max(1.0, count);
+      }
+    }
+    if (xx > 0.0) filmed.px_per_m = std::abs(ux / xx);
+    clips.push_back(std::move(filmed));
+  }
+  return clips;
+}
+
+PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
+  PictureEvidence evidence;
+  if (clips.empty()) return evidence;
+  evidence.stated_line_s = stated_line_s(clips.front().camera);
+  for (const std::vector<FilmedClip>& of_one : by_camera(clips)) add_shape(of_one, evidence);
+  add_flicker(clips, evidence);
+  add_sway(clips, evidence);
+  add_gradient(clips, evidence);
+  add_codec(clips, evidence);
+  add_missing(clips, evidence);
+  add_noise(clips, evidence);
+  for (PictureFinding& finding : evidence.findings) {
+    finding.seen = finding.log_evidence > kSeenInPictures;
+    finding.stage = effect_list()[effect_index(finding.id)].stage;
+  }
+  evidence.clips = std::move(clips);
+  return evidence;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,73 @@
+/// How an experiment was filmed, as far as its folder and its calibration tell, and that as a scenario's sections.
+///
+/// The calibration gives the camera and where the pattern of the plane stands before it (p_C = R p_P + s); the marker's
+/// pixels, restituted onto the plane Z = -height of the pattern's frame P, give the line of motion p_P = through + x
+/// along. With the fitted inclination that line is the track's direction in the world, and so the camera's place in it
+/// follows. By a scale alone the camera is taken to look straight at the line of motion from f / (px_per_m) away.
+/// SI units, radians, pixels.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+#include "core/pictures/camera/camera_model.h"
+#include "core/result/results.h"
+#include "diagnose/pictures/noise_law.h"
+
+namespace glidelab::diagnose {
+
+/// Of the first folder that has clips made of pictures, and of its first such clip.
+struct Filming {
+  core::CameraSettings settings;
+  int width_px = 0, height_px = 0;
+  std::optional<core::CameraModel> lens;                      ///< as calibrated
+  Eigen::Isometry3d X_CP = Eigen::Isometry3d::Identity();     ///< with a lens: the pattern's plane
+  Eigen::Vector3d through_P = Eigen::Vector3d::Zero();        ///< with a lens: the marker at x = 0,
+  Eigen::Vector3d along_P = Eigen::Vector3d::UnitX();         ///< and by how much it moves with x
+  Eigen::Vector2d through_px = Eigen::Vector2d::Zero();       ///< by a scale: its pixel at x = 0,
+  Eigen::Vector2d along_px_m = Eigen::Vector2d(1000.0, 0.0);  ///< and by how many it moves a metre
+  int inner_columns = 0, inner_rows = 0;
+  double square_m = 0.0;
+  double marker_m = 0.0, marker_height_m = 0.0;
+  std::string codec;  ///< four letters, as the container has them
+  std::optional<bool> lossy;
+  double full_code = 255.0;
+  double noise_code = 0.0;        ///< of a resting pixel; 0: not measured
+  std::optional<NoiseLaw> noise;  ///< of its pixels over the level, where it was seen
+  bool others = false;            ///< further clips were filmed by another camera
+};
+
+/// Nothing where no clip was filmed, or too little of one was seen. The folders are those of the results, in order; the
+/// pattern's pictures are read once more, `jobs` at a time (InputError as by the analysis).
+std::optional<Filming> filming_of(const core::AnalysisResults& results, const std::vector<core::Experiment>& folders,
+                                  int jobs);
+
+/// Before the plane of motion; the world as a scenario has it, its origin where the marker is at x = reference.
+struct TwinView {
+  int downhill = 1;  ///< +1: x points to the right in the world
+  Eigen::Vector3d position_m = {0.0, 0.1, 2.4};
+  Eigen::Vector3d target_m = {0.0, 0.0, 0.0};
+  double roll_rad = 0.0;
+  std::array<double, 2> focal_px = {1200.0, 1200.0};
+  double distance_m() const { return (position_m - target_m).norm(); }
+  struct Pattern {
+    double square_m = 0.0, x_m = 0.0, y_m = 0.0, rotation_rad = 0.0;
+  };
+  std::optional<Pattern> pattern;    ///< where it is known and wholly in the picture
+  std::vector<std::string> assumed;  ///< what is not known and is as a scenario has it by itself
+};
+
+/// Without a filming: a scenario's own camera, far enough off to see `range_m` of the track.
+TwinView view_of(const std::optional<Filming>& filming, double reference_m, double range_m, double incline_rad);
+
+/// Keys of [camera] but for the frame rate and the exposure, then [track], [marker], [calibration], [sensor] as far as
+/// they are known; each ends with a newline.
+std::string camera_keys(const std::optional<Filming>& filming, const TwinView& view);
+std::string scene_sections(const std::optional<Filming>& filming, const TwinView& view);
+
+}  // namespace glidelab::diagnose

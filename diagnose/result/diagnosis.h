@@ -1,0 +1,215 @@
+/// What a diagnosis says, as plain data; report/ writes it as diagnosis.json and a page.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result/results.h"
+#include "diagnose/result/line_comparison.h"
+
+namespace glidelab::diagnose {
+
+struct DiagnosedParameter {
+  std::string key;  ///< with its unit, as in the list of effects
+  double value = 0.0;
+  double sd = 0.0;        ///< 0: not fitted
+  std::string text = {};  ///< of what is a word (a codec's name), instead of value and sd
+  std::string why = {};   ///< why the data do not tell it; its value is then no number
+};
+
+/// One of several effects that would look the same.
+struct AlikeEffect {
+  std::string id, words;
+  std::optional<double> probability;  ///< none where no explanation that was weighed holds it: it counts as another's
+};
+
+struct DiagnosedEffect {
+  std::string id;
+  std::string stage;
+  std::string words;
+  double probability = 0.0;                ///< that it acts, alone or with another
+  std::vector<std::string> equivalent_to;  ///< what these data cannot tell from it
+  std::vector<DiagnosedParameter> parameters;
+  double joint_probability = 0.0;  ///< that it or one of `equivalent_to` acts
+  /// It and those, by falling probability; empty where it stands alone.
+  std::vector<AlikeEffect> alike = {};
+};
+
+struct RankedExplanation {
+  std::string id;  ///< one effect, or two joined by " + "
+  double probability = 0.0;
+  double log_evidence_gain = 0.0;  ///< against the nominal model
+  double log_likelihood_gain = 0.0;
+  std::size_t parameters = 0;       ///< more than the nominal model has
+  std::optional<double> gap_after;  ///< of held-out clips; where it was fitted in full
+  std::string left_out = {};        ///< why it was not weighed; empty where it was
+};
+
+struct GapRegion {
+  std::string variable;  ///< x_m, v_m_s, t_s, a_m_s2, mass_kg, direction, group, u_px, v_px, clip
+  double from = 0.0, to = 0.0;
+  double excess = 0.0;  ///< size over its standard deviation, where that is largest
+  double size = 0.0;    ///< the largest
+  std::string unit;     ///< of size: N, m/s², m, N s/m
+  std::string what;     ///< force, friction, displacement, …
+  std::string clip;     ///< where it is one clip's
+  /// What the usual model lacks at most, in the size's unit, where the size is far more than that: not to be believed.
+  std::optional<double> lacking = {};
+  std::optional<double> size_sd = {};  ///< of the size; none of what is found otherwise than by a curve or in lines
+  int direction = 0;                   ///< sign of v of the lines it is of; 0 where it is of both, or of no lines
+  std::optional<double> at = {};       ///< the variable where a curve has that size
+};
+
+/// A function of one variable that would explain the gap, for the plots.
+struct GapCurve {
+  std::string variable, what, unit;
+  double log_evidence = 0.0;
+  std::vector<double> at, size, sd;
+};
+
+struct GapOfParameter {
+  std::string quantity, against, group;
+  std::optional<double> z_before = {}, z_after = {};  ///< none where it cannot be said
+  /// Of a part of the data alone, against all: the usual model's fits, in the quantity's unit.
+  std::optional<DiagnosedParameter> alone = {}, together = {};
+};
+
+/// 95 %, over clips (clip_interval.h).
+struct GapInterval {
+  double low = 0.0, high = 0.0;
+};
+
+struct GapIntervals {
+  std::optional<GapInterval> before, after, shrink, acceleration_before, acceleration_after;
+  std::string why_none;  ///< where none of them can be said
+};
+
+/// A difference with its standard deviation.
+struct GapValue {
+  double value = 0.0, sd = 0.0;
+};
+
+/// Measured less modelled acceleration over a stretch of speeds (phase_gap.h), m/s².
+struct PhaseBin {
+  double from_m_s = 0.0, to_m_s = 0.0;
+  double v_m_s = 0.0;  ///< mean over its points
+  std::size_t points = 0;
+  GapValue before, after;
+};
+
+struct PhaseGap {
+  std::optional<double> mass_kg;  ///< none: all masses together
+  std::vector<PhaseBin> bins;     ///< by rising speed
+};
+
+/// How large the gap is in one domain, over what the noise alone would make (1).
+struct GapDomain {
+  std::string domain;  ///< positions, phase_plane, parameters, picture
+  double before = 0.0;
+  std::optional<double> after = {};  ///< none where it cannot be said
+};
+
+struct GapSizes {
+  double before = 0.0, after = 0.0;
+  double standard_error = 0.0;  ///< of a gap at the floor
+  std::optional<double> shrink;
+  std::vector<std::string> held_out;
+  std::vector<double> before_by_clip, after_by_clip;
+  std::optional<double> acceleration_before, acceleration_after;  ///< m/s²; none of lines, which hold no motion
+  GapIntervals interval95;
+  std::vector<GapOfParameter> parameters;
+  std::vector<PhaseGap> phase_plane;  ///< all masses together, then each; empty of lines
+  std::vector<GapDomain> domains;
+};
+
+/// Residuals of one motion for the plots, in metres, and the noise of each position.
+struct ResidualCurve {
+  std::string clip;
+  std::vector<double> t_s, x_m, v_m_s, before_m, after_m;
+  std::vector<double> noise_m = {};
+};
+
+/// How alike what two effects change is: the cosine of the angle between them, everything fitted projected out.
+struct Isolability {
+  std::vector<std::string> ids;
+  std::vector<double> least_seen;           ///< size of each that makes one standard deviation
+  std::vector<std::vector<double>> cosine;  ///< absolute
+};
+
+/// What the pictures of filmed clips say of one effect, whether or not it moves the positions.
+struct PictureFinding {
+  std::string id, stage;
+  bool seen = false;
+  double log_evidence = 0.0;  ///< of its presence against its absence, from the pictures alone
+  bool stated = false;        ///< the file itself says so: named only for what it does to the positions
+  std::vector<DiagnosedParameter> parameters;
+  std::string words;  ///< a sentence
+};
+
+/// A measurement in the pictures for the plots: `lengthening` (px², of the marker's image over px/s), `brightness`
+/// (relative, over time), `drift across`, `drift down` (px, of the fixed scene over time), `noise` (codes², a pixel's
+/// variance over its level in codes).
+struct PictureCurve {
+  std::string what, clip;
+  std::vector<double> at, value, sd;
+  std::vector<double> expected, fitted;  ///< as stated, and as found; empty where there is none
+};
+
+/// What a camera's fit leaves of the pattern's corners.
+struct CalibrationRests {
+  std::string experiment;
+  core::CornerMap rests;
+};
+
+/// What a twin has not, because no scenario can say it.
+struct TwinLack {
+  std::string what;  ///< an effect, or words
+  std::string why;
+};
+
+/// Positions of one clip as the analysis has them, for what stands beside a twin.
+struct MeasuredMotion {
+  std::string clip;
+  double start_s = 0.0;      ///< of the twin's clip, after the data's first frame
+  double noise_m = 0.0;      ///< of one position
+  double bandwidth_s = 0.0;  ///< of the analysis' smoothing
+  std::vector<double> t_s, x_m;
+  std::vector<double> v_m_s, a_m_s2;  ///< smoothed, of the points that the lines rest on
+};
+
+/// What a reader must know before the verdict, in sentences (verdict_limits.h); also in the notes.
+struct VerdictLimits {
+  std::vector<std::string> driving;       ///< a drag or friction below zero
+  std::vector<std::string> contradicted;  ///< statements that the motion contradicts
+  std::string set_aside;                  ///< a large part of the positions takes no part; else empty
+};
+
+struct Diagnosis {
+  std::string verdict;     ///< none, effect, unknown
+  std::size_t points = 0;  ///< positions that took part
+  std::vector<DiagnosedEffect> effects;
+  double none = 0.0, unknown = 0.0;
+  std::vector<RankedExplanation> ranking;
+  std::string stage;  ///< where the gap is; empty for none
+  std::vector<GapRegion> regions;
+  std::vector<GapCurve> curves;
+  std::optional<GapSizes> gap;
+  std::string next_experiment;
+  std::string summary;  ///< a paragraph in plain words
+  VerdictLimits limits;
+  Isolability isolability;
+  std::optional<LineComparison> lines;  ///< where the data are a table of published lines
+  std::vector<ResidualCurve> residuals;
+  std::vector<PictureFinding> pictures;  ///< empty for tracks
+  std::vector<PictureCurve> picture_curves;
+  std::vector<CalibrationRests> calibrations;  ///< of each folder with a pattern
+  std::vector<std::string> notes;              ///< limits that a reader should know
+  std::string twin;                            ///< the fitted motions as a scenario file; empty for a table of lines
+  std::vector<TwinLack> twin_lacks;
+  double twin_from_m = 0.0;              ///< x of the data where the twin's x is 0
+  std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
+};
+
+}  // namespace glidelab::diagnose

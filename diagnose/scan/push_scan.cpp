@@ -1,0 +1,131 @@
+#include "diagnose/scan/push_scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/math/dense.h"
+#include "diagnose/effects/effect_ranges.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kAnyWay = 0.1;     // of late releases: pushes of any size and sign, each clip its own
+constexpr double kHoldsBack = 0.1;  // of one hand's: it drags, instead of pushing
+constexpr double kUnlike = 0.5;     // standard deviation of one hand's push, over that of the part common to all
+
+/// Which way a motion goes at a time, or first after it.
+double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
+  const auto& t = space.set().motions[motion].t_s;
+  const auto& v = space.fit().motions[motion].v_m_s;
+  std::size_t p = 0;
+  while (p + 1 < t.size() && (t[p] < t_s || v[p] == 0.0)) ++p;
+  return v[p] < 0.0 ? -1.0 : 1.0;
+}
+
+/// Sizes of pushes from independent ones: one hand's go along the motions and are about alike.
+Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& ways) {
+  Eigen::MatrixXd sizes(ways.size(), ways.size() + 1);
+  sizes << ways, kUnlike * Eigen::MatrixXd::Identity(ways.size(), ways.size());
+  return sizes;
+}
+
+double log_below(double z) {
+  return std::log(std::max(1e-300, 0.5 * std::erfc(-z / std::numbers::sqrt2)));
+}
+
+/// log of the probability that all of these normal deviates, taken as independent, are positive, or all negative; of
+/// the latter kHoldsBack, as far as it was as likely beforehand.
+double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
+  double positive = std::log1p(-kHoldsBack), negative = std::log(kHoldsBack);
+  for (Eigen::Index k = 0; k < mean.size(); ++k) {
+    const double z = mean[k] / std::max(sd[k], 1e-300);
+    positive += log_below(z);
+    negative += log_below(-z);
+  }
+  return log_mean({positive, negative}) + std::log(2.0);
+}
+
+/// log of the probability that pushes_of_one_hand() all have one sign, of two, before anything is measured: the mean
+/// over the part that is common to all.
+double log_one_sign_beforehand(Eigen::Index pushes) {
+  constexpr int kParts = 400;
+  constexpr double kWidest = 8.0;
+  double sum = 0.0;
+  for (int i = 0; i < kParts; ++i) {
+    const double common = kWidest * ((i + 0.5) / kParts * 2.0 - 1.0);
+    sum += std::exp(-0.5 * common * common + static_cast<double>(pushes) * log_below(common / kUnlike));
+  }
+  return std::log(sum * 2.0 * kWidest / kParts / std::sqrt(2.0 * std::numbers::pi));
+}
+
+}  // namespace
+
+EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
+  const TrackSet& set = space.set();
+  EffectScan scan;
+  scan.effect = effect;
+  std::vector<std::size_t> from_start;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    if (!begins_with_its_clip(set, set.motions[i])) continue;
+    from_start.push_back(i);
+  }
+  if (from_start.empty()) return scan;
+  const double beforehand = log_one_sign_beforehand(std::ssize(from_start));
+  std::vector<double> logs;
+  double best = 0.0;
+  const ParameterRange range = range_of(set, effect_list()[effect].parameters[0]);
+  for (double t_r = range.low; t_r < range.high; t_r *= 1.3) {
+    EffectValues values;
+    values.release_s = t_r;
+    std::vector<ScoreColumn> columns;
+    for (const std::size_t i : from_start) columns.push_back(space.of_own(i, &EffectValues::push_m_s2, 1e-4, values));
+    const auto n = static_cast<Eigen::Index>(columns.size());
+    Eigen::MatrixXd products(n, n);
+    Eigen::VectorXd scores(n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const auto& column = columns[static_cast<std::size_t>(a)];
+      scores[a] = space.dot(column, space.residual());
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        products(a, b) = products(b, a) = space.dot(column, columns[static_cast<std::size_t>(b)]);
+      }
+    }
+    Eigen::VectorXd ways(n);
+    for (Eigen::Index k = 0; k < n; ++k) ways[k] = way_at(space, from_start[static_cast<std::size_t>(k)], t_r);
+    const Eigen::MatrixXd sizes = pushes_of_one_hand(ways), seen = base::product(products, sizes);
+    const SpreadEvidence evidence =
+        log_spread_evidence(base::transposed_product(sizes, seen), base::transposed_product(sizes, scores));
+    const SpreadEvidence any = log_spread_evidence(products, scores);
+    if (evidence.mean.size() == 0 || any.mean.size() == 0) {
+      logs.push_back(0.0);  // says nothing
+      continue;
+    }
+    Eigen::VectorXd push = base::product(sizes, evidence.mean);
+    const Eigen::MatrixXd covariance = base::product(base::product(sizes, evidence.covariance), sizes.transpose());
+    // A hand pushes what it launches; seldom it holds back what it lets go, or this one clip and not the next.
+    const double one_sign =
+        log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
+    const double of_one_hand = std::log1p(-kAnyWay) + evidence.log_evidence + one_sign;
+    const double of_any = std::log(kAnyWay) + any.log_evidence;
+    const double more = std::max(of_one_hand, of_any);
+    logs.push_back(more + std::log(std::exp(of_one_hand - more) + std::exp(of_any - more)));
+    const bool alike = of_one_hand >= of_any;
+    if (!alike) push = any.mean;
+    const double gain = alike ? evidence.gain : any.gain;
+    if (gain <= best) continue;
+    best = gain;
+    scan.gain = evidence.free_gain;  // what a full fit is to be held against
+    scan.values = {t_r};
+    scan.own.assign(set.motions.size(), {0.0});
+    for (std::size_t k = 0; k < from_start.size(); ++k) {
+      scan.own[from_start[k]] = {push[static_cast<Eigen::Index>(k)]};
+    }
+  }
+  if (logs.empty() || scan.values.empty()) return scan;
+  scan.visible = true;
+  scan.log_evidence = log_mean(logs);
+  return scan;
+}
+
+}  // namespace glidelab::diagnose

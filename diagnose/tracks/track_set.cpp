@@ -1,0 +1,298 @@
+#include "diagnose/tracks/track_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/motion/smoothing/noise.h"
+#include "diagnose/tracks/pixel_modes.h"
+#include "diagnose/tracks/thin_tracks.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kFewestPoints = 12;
+constexpr double kOutlier = 5.0;         // standard deviations off the neighbours
+constexpr double kLongestBridge = 0.08;  // s of disputed frames within a motion that are bridged
+constexpr double kLeastNoise_m = 1e-9;
+
+enum class Kind { no, free, disputed };
+
+Kind kind_of(const core::MotionPoint& point, bool all) {
+  using core::LeftOut;
+  if (!point.measured_m) return Kind::no;
+  switch (point.left_out) {
+    case LeftOut::used:
+    case LeftOut::kernel_end:
+    case LeftOut::kernel_reversal:
+    case LeftOut::kernel_gap:
+    case LeftOut::outlier:
+    case LeftOut::short_stretch:
+      return Kind::free;
+    case LeftOut::hand:
+    case LeftOut::stop:
+      return all ? Kind::free : Kind::disputed;
+    default:
+      return Kind::no;
+  }
+}
+
+double slope(const std::vector<core::MotionPoint>& motion, std::size_t from, std::size_t to) {
+  const auto& a = motion[from];
+  const auto& b = motion[to];
+  return (*b.measured_m - *a.measured_m) / (b.t_s - a.t_s);
+}
+
+struct Run {
+  std::size_t from = 0, to = 0;  // frames, inclusive, both measured and free
+};
+
+std::vector<Run> runs_of(const core::ClipResult& clip, bool all) {
+  std::vector<Run> runs;
+  const auto& motion = clip.motion;
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    if (kind_of(motion[i], all) != Kind::free) continue;
+    bool joins = false;
+    if (!runs.empty()) {
+      const std::size_t last = runs.back().to;
+      bool rest = false;
+      for (std::size_t j = last + 1; j < i; ++j) rest = rest || kind_of(motion[j], all) == Kind::no;
+      rest = rest && std::any_of(motion.begin() + static_cast<long>(last), motion.begin() + static_cast<long>(i),
+                                 [](const core::MotionPoint& p) { return p.left_out == core::LeftOut::rest; });
+      const bool near = motion[i].t_s - motion[last].t_s <= kLongestBridge || i == last + 1;
+      const bool room = last >= runs.back().from + 2 && i + 2 < motion.size() && motion[i + 2].measured_m;
+      const bool same_way = i == last + 1 || (room && slope(motion, last - 2, last) * slope(motion, i, i + 2) > 0.0);
+      joins = near && !rest && same_way;
+    }
+    if (joins) {
+      runs.back().to = i;
+    } else {
+      runs.push_back({i, i});
+    }
+  }
+  return runs;
+}
+
+/// How many times as large the errors of camera and plane are as the calibration's own noise explains: where the
+/// pattern fits its plane view less well than that, corners err in a way that the modes do not hold. Never below 1.
+double calibration_excess(const core::AnalysisResults& results, const std::string& experiment) {
+  for (const core::CalibrationResult& calibration : results.calibrations) {
+    if (calibration.experiment != experiment || !(calibration.plane_expected_px > 0.0)) continue;
+    return std::max(1.0, calibration.plane_rms_px / calibration.plane_expected_px);
+  }
+  return 1.0;
+}
+
+TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, std::size_t camera_modes,
+                        double excess) {
+  TrackedMotion motion;
+  std::vector<std::size_t> frames;
+  const double first = clip.motion.front().t_s;
+  // Where it borders on something else, the border is known to about a bandwidth.
+  double from = clip.motion[run.from].t_s, to = clip.motion[run.to].t_s;
+  if (run.from > 0 && !(all && clip.motion[run.from - 1].left_out == core::LeftOut::no_marker))
+    from += clip.bandwidth_s;
+  if (run.to + 1 < clip.motion.size()) to -= clip.bandwidth_s;
+  for (std::size_t i = run.from; i <= run.to; ++i) {
+    const core::MotionPoint& point = clip.motion[i];
+    if (kind_of(point, all) != Kind::free || point.t_s < from || point.t_s > to) continue;
+    motion.t_s.push_back(point.t_s - first);
+    motion.x_m.push_back(*point.measured_m);
+    motion.outlier.push_back(point.left_out == core::LeftOut::outlier ? 1 : 0);
+    frames.push_back(i);
+  }
+  if (motion.t_s.empty()) return motion;
+  motion.start_s = motion.t_s.front();
+  motion.shared_m.resize(clip.shared_m.size());
+  for (std::size_t m = 0; m < clip.shared_m.size(); ++m) {
+    if (clip.shared_m[m].empty()) continue;
+    for (const std::size_t frame : frames) motion.shared_m[m].push_back(excess * clip.shared_m[m][frame]);
+    const bool any =
+        std::any_of(motion.shared_m[m].begin(), motion.shared_m[m].end(), [](double s) { return s != 0.0; });
+    if (!any) motion.shared_m[m].clear();
+  }
+  motion.scale_sd = excess * clip.scale_sd_relative;
+  for (std::size_t i = run.from; clip.forced && i <= run.to; ++i) {
+    if (!clip.motion[i].measured_m) continue;
+    motion.known.t_s.push_back(clip.motion[i].t_s - first);
+    motion.known.force_n.push_back(clip.motion[i].applied_n);
+  }
+  add_pixel_modes(clip, frames, camera_modes, motion);
+  return motion;
+}
+
+/// The plumb lines and readings of a set-up: every one once, however many clips have it.
+void add_statements(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, TrackSet& set) {
+  const auto add = [&set](std::size_t group, const InclineStatement& statement) {
+    std::vector<InclineStatement>& known = set.groups[group].statements;
+    const auto same = [&](const InclineStatement& other) {
+      return other.against == statement.against && other.sd_rad == statement.sd_rad &&
+             std::abs(other.alpha_rad - statement.alpha_rad) < core::kSameIncline_rad;
+    };
+    if (std::none_of(known.begin(), known.end(), same)) known.push_back(statement);
+  };
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& setup = setups[motion.clip];
+    for (const core::PlumbResult& plumb : results.plumbs) {
+      if (plumb.group != setup.group || plumb.experiment != results.clips[motion.clip].experiment) continue;
+      if (!plumb.plumb_deg.estimate) continue;
+      const double rad = std::numbers::pi / 180.0;
+      add(motion.group, {plumb.plumb_deg.estimate->value * rad, plumb.plumb_deg.estimate->sd * rad, "plumb"});
+    }
+  }
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& setup = setups[motion.clip];
+    if (!setup.incline_sd_rad || !(*setup.incline_sd_rad > 0.0)) continue;
+    add(motion.group, {setup.incline_rad, *setup.incline_sd_rad, "stated"});
+  }
+}
+
+/// The set-up of a clip. Clips of one group that state different inclinations share it where their uncertainties let
+/// them and one folder says so; else they are set-ups of their own.
+std::size_t group_of(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, std::size_t clip,
+                     TrackSet& set) {
+  const core::ClipSetup& setup = setups[clip];
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& other = setups[motion.clip];
+    if (other.group != setup.group) continue;
+    const bool readings = setup.incline_sd_rad && other.incline_sd_rad && !core::contradicts(setup, other) &&
+                          results.clips[clip].experiment == results.clips[motion.clip].experiment;
+    if (readings || std::abs(other.incline_rad - setup.incline_rad) < core::kSameIncline_rad) return motion.group;
+  }
+  set.groups.push_back({setup.group, setup.incline_rad, {}, 0.0});
+  return set.groups.size() - 1;
+}
+
+std::size_t mass_of(const core::ClipSetup& setup, TrackSet& set) {
+  for (std::size_t m = 0; m < set.masses.size(); ++m) {
+    if (set.masses[m].mass_kg == setup.mass_kg && set.masses[m].sd_kg == setup.mass_sd_kg) return m;
+  }
+  set.masses.push_back({setup.mass_kg, setup.mass_sd_kg});
+  return set.masses.size() - 1;
+}
+
+/// One level for all clips where theirs differ by no more than their own errors; else half way between.
+void share_noise(std::vector<TrackedMotion>& motions) {
+  double sum = 0.0, weights = 0.0, chi2 = 0.0;
+  for (const TrackedMotion& motion : motions) {
+    const auto n = static_cast<double>(motion.t_s.size());
+    sum += n * std::log(motion.sd_m);
+    weights += n;
+  }
+  const double mean = sum / weights;
+  // Variance of log sd from fourth differences of n points: 2.63 / (2 n).
+  for (const TrackedMotion& motion : motions) {
+    chi2 += std::pow(std::log(motion.sd_m) - mean, 2) * static_cast<double>(motion.t_s.size()) / 1.32;
+  }
+  const double freedom = static_cast<double>(motions.size()) - 1.0;
+  const double own = std::clamp(1.0 - freedom / std::max(chi2, 1e-9), 0.0, 1.0);  // James and Stein's share
+  for (TrackedMotion& motion : motions) motion.sd_m = std::exp(mean + own * (std::log(motion.sd_m) - mean));
+}
+
+}  // namespace
+
+double neighbour_residual(const std::vector<double>& t, const std::vector<double>& x, std::size_t i) {
+  double off = x[i], gain = 1.0;
+  for (const std::size_t a : {i - 2, i - 1, i + 1, i + 2}) {
+    double weight = 1.0;
+    for (const std::size_t b : {i - 2, i - 1, i + 1, i + 2}) {
+      if (b != a) weight *= (t[i] - t[b]) / (t[a] - t[b]);
+    }
+    off -= weight * x[a];
+    gain += weight * weight;
+  }
+  return off / std::sqrt(gain);
+}
+
+void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s) {
+  const auto measure = [&](const std::vector<std::vector<double>>& x_m) {
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      TrackedMotion& motion = motions[i];
+      std::vector<double> t_s = motion.t_s;
+      for (std::size_t p = 0; p < t_s.size() && !late_s.empty(); ++p) t_s[p] += late_s[i][p];
+      motion.sd_m = std::max(neighbour_noise(t_s, x_m.empty() ? motion.x_m : x_m[i], motion.outlier), kLeastNoise_m);
+      motion.wider.clear();
+    }
+  };
+  measure({});
+  constexpr int kRounds = 3;  // the weights are the noise without the errors between pixels
+  const bool filmed = std::any_of(motions.begin(), motions.end(), [](const TrackedMotion& motion) {
+    return motion.shared_m.size() > motion.first_pixel_mode;
+  });
+  for (int round = 0; filmed && round < kRounds; ++round) measure(without_pixel_errors(motions));
+  share_noise(motions);
+}
+
+double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>& x_m,
+                       const std::vector<char>& outlier) {
+  const double pilot = core::pilot_noise(t_s, x_m);
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
+    if (outlier[i - 2] || outlier[i - 1] || outlier[i] || outlier[i + 1] || outlier[i + 2]) continue;
+    const double off = neighbour_residual(t_s, x_m, i);
+    if (std::abs(off) > kOutlier * pilot) continue;
+    sum += off * off;
+    count += 1.0;
+  }
+  // The pilot's figure holds what rounding makes; it stands where hardly a point is left.
+  return count < 8.0 ? pilot : std::max(std::sqrt(sum / count), 0.7 * pilot);
+}
+
+TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all) {
+  TrackSet set;
+  set.gravity_m_s2 = results.gravity_m_s2;
+  std::size_t camera_modes = 0;
+  for (const core::ClipResult& clip : results.clips) {
+    camera_modes = std::max(camera_modes, clip.shared_m.size());
+  }
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    const core::ClipResult& clip = results.clips[c];
+    const double duration = clip.motion.empty() ? 0.0 : clip.motion.back().t_s - clip.motion.front().t_s;
+    set.clips.push_back({clip.name, clip.frame_rate_hz, duration, clip.frames, clip.bandwidth_s, clip.lost_frames});
+    for (core::LostFrames& gap : set.clips.back().lost) gap.after_s -= clip.motion.front().t_s;
+    set.pictures = set.pictures || !clip.sightings.empty();
+    for (const core::MotionPoint& point : clip.motion) {
+      set.disputed += point.left_out == core::LeftOut::hand || point.left_out == core::LeftOut::stop;
+      set.moving += kind_of(point, true) == Kind::free;
+      set.left_out += kind_of(point, all) == Kind::disputed;
+    }
+    bool any = false;
+    const double excess = calibration_excess(results, clip.experiment);
+    for (const Run& run : runs_of(clip, all)) {
+      TrackedMotion motion = motion_of(clip, run, all, camera_modes, excess);
+      if (motion.t_s.size() < kFewestPoints) continue;
+      motion.clip = c;
+      motion.group = group_of(results, setups, c, set);
+      motion.mass = mass_of(setups[c], set);
+      set.modes = std::max(set.modes, motion.shared_m.size());
+      set.motions.push_back(std::move(motion));
+      any = true;
+    }
+    if (!any) set.notes.push_back(fmt::format("clip {}: no motion of {} points or more", clip.name, kFewestPoints));
+  }
+  if (set.motions.empty()) return set;
+  measure_noise(set.motions);
+  thin_out(set, kFewestPoints);
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (std::size_t g = 0; g < set.groups.size(); ++g) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const TrackedMotion& motion : set.motions) {
+      if (motion.group != g) continue;
+      for (const double x : motion.x_m) {
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+    }
+    set.groups[g].x_mid_m = 0.5 * (low + high);
+    lowest = std::min(lowest, low);
+    highest = std::max(highest, high);
+  }
+  set.x_mid_m = 0.5 * (lowest + highest);
+  add_statements(results, setups, set);
+  return set;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,50 @@
+/// What neighbouring frames of a clip share of their noise, as a covariance.
+///
+/// Where the marker moves slowly, several frames see it on the same pixels, and err alike. Of two frames i, j of a
+/// motion, d their distance in the picture along it (px), n in frames, v the speed, over the white noise s:
+///
+///     cov / s² = [i = j]                       photons, read noise, rounding
+///              + a² exp(-(d/l)²/2)             pixels that differ from each other (PRNU), at the marker's edges
+///              + b² cos(2 pi d) exp(-d/L)      the place between two pixels, otherwise at places some L away
+///              + c² exp(-n/m)                  what a codec with loss, or a tracker, hands from frame to frame
+///              + (v tau/s)² [i = j]            uneven times
+///
+/// Of what was tracked elsewhere (no pixel is known) the unit of d is the metre, and a = b = 0.
+/// Motions are independent of each other in it, and so are stretches of 240 points: that clips pass over the same
+/// pixels is left out.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+#include "diagnose/tracks/track_set.h"
+
+namespace glidelab::diagnose {
+
+/// What the covariance of frames goes by.
+struct SeenFrames {
+  std::vector<double> along_px, frame, v_px_s;
+};
+
+/// Covariance over s² of all these frames; `white_px` is s, for the jitter.
+Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape, double white_px);
+
+/// What "px" is of this motion, in metres: a pixel, or, where it was not filmed, the metre itself.
+double unit_m(const TrackedMotion& motion);
+
+/// Of a motion; `rate_hz` its clip's. Empty where a filmed marker hardly moves.
+SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz);
+
+/// Sets `wider` and `whitening` for a motion whose sd_m (now s), outliers and along_px are set.
+void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz);
+
+/// Columns over each position's own noise (zero at outliers) become such of unit white noise; and back. A motion
+/// without whitening has white noise.
+Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd);
+Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white);
+
+/// Weights w' of sums over coloured noise as weights of the same sums over the white noise that it is made of.
+Eigen::MatrixXd weights_of_white(const TrackedMotion& motion, Eigen::MatrixXd weights);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,209 @@
+#include "diagnose/twin/twin.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "diagnose/twin/twin_effects.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+/// Why a scenario has no such force; empty where it has one.
+std::string_view no_force_for(std::string_view id) {
+  if (id == "track_bow" || id == "damping_gradient" || id == "tether")
+    return "no force of a scenario depends on the place";
+  if (id == "base_vibration" || id == "late_release") return "no force of a scenario depends on the time";
+  return "";
+}
+
+std::string force(const std::string& law, const std::map<std::string, double>& keys) {
+  std::string text = fmt::format("[[configuration.force]]\nlaw = \"{}\"\n", law);
+  for (const auto& [key, value] : keys) text += fmt::format("{} = {:.12g}\n", key, value);
+  return text;
+}
+
+std::string forces_of(const TrackModel& model) {
+  const EffectValues& e = model.effects;
+  const double m = model.mass_kg, normal = m * model.gravity_m_s2 * std::cos(model.alpha_rad);
+  // (m + m_w) dv/dt = F is m dv/dt = m/(m + m_w) F.
+  const double part = m / (m + e.wheels_kg);
+  const double k = part * model.k_n_s_m, mu = part * model.mu;
+  std::string text;
+  if (e.power != 0.0) {
+    text += force("power_law", {{"k_n_s_m", k}, {"n", 1.0 + e.power}});
+  } else if (e.rolloff_s2_m2 > 0.0) {
+    text += force("eddy_rolloff", {{"k_n_s_m", k}, {"v_c_m_s", 1.0 / std::sqrt(e.rolloff_s2_m2)}});
+  } else if (k >= 0.0) {
+    text += force("viscous", {{"k_n_s_m", k}});
+  }
+  if (e.c_kg_m != 0.0) text += force("quadratic", {{"c_kg_m", part * e.c_kg_m}});
+  if (e.stribeck != 0.0) {
+    text += force("stribeck", {{"mu", mu}, {"s", 1.0 + e.stribeck}, {"v_s_m_s", e.stribeck_m_s}});
+  } else if (mu >= 0.0) {
+    text += force("coulomb", {{"mu", mu}});
+  }
+  if (e.force_n != 0.0) text += force("coulomb", {{"mu", part * e.force_n / normal}});
+  if (e.asymmetry != 0.0) text += force("constant", {{"force_n", -e.asymmetry * mu * normal}});
+  if (part != 1.0) {
+    text += force("constant", {{"force_n", -(1.0 - part) * m * model.gravity_m_s2 * std::sin(model.alpha_rad)}});
+  }
+  return text;
+}
+
+/// What one configuration needs besides its motions.
+struct Place {
+  std::size_t group = 0, mass = 0;
+  bool operator<(const Place& other) const { return std::pair(group, mass) < std::pair(other.group, other.mass); }
+};
+
+std::vector<TwinLack> lacks_of_forces(const TrackSet& set, const TrackModel& model,
+                                      const std::vector<DiagnosedEffect>& effects, bool nameless) {
+  std::vector<TwinLack> lacks;
+  for (const DiagnosedEffect& effect : effects) {
+    const std::string_view why = no_force_for(effect.id);
+    if (!why.empty()) lacks.push_back({effect.id, std::string(why)});
+  }
+  if (nameless) lacks.push_back({"what is missing", "it has no name"});
+  const bool forced = std::any_of(set.motions.begin(), set.motions.end(),
+                                  [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); });
+  if (forced) lacks.push_back({"the recorded force", "no force of a scenario depends on the time"});
+  if (model.effects.power != 0.0 && model.effects.rolloff_s2_m2 > 0.0)
+    lacks.push_back({"eddy_rolloff", "a drag of one law has no other one in it"});
+  if (model.k_n_s_m < 0.0) lacks.push_back({"a drag below zero", "a scenario's drag takes energy"});
+  if (model.mu < 0.0) lacks.push_back({"a friction below zero", "a scenario's friction takes energy"});
+  return lacks;
+}
+
+std::string head(const Twin& twin, const std::vector<std::string>& assumed, const std::vector<std::string>& notes) {
+  std::string text =
+      fmt::format("{}: the motions as they were fitted. x counts from {:.6g} m of the data.\n", kTwinHead, twin.from_m);
+  for (const TwinLack& lack : twin.lacks) text += fmt::format("# Not in it: {} ({}).\n", lack.what, lack.why);
+  for (const std::string& what : assumed) text += fmt::format("# Assumed: {}.\n", what);
+  for (const std::string& note : notes) text += fmt::format("# Note: {}.\n", note);
+  return text;
+}
+
+std::string configuration(const TrackSet& set, const MotionFit& fit, const Place& place,
+                          const std::vector<std::size_t>& motions, const std::vector<std::string>& names, double from_m,
+                          double readout_s) {
+  const TrackGroup& group = set.groups[place.group];
+  const TrackModel model = model_of(set, *fit.layout, fit.at, motions.front());
+  std::string text = fmt::format(
+      "\n[[configuration]]\nname = \"g{}-m{}\"\nmass_kg = {:.9g}\nincline_deg = {:.12g}\nstated_incline_deg = "
+      "{:.9g}\n"
+      "group = \"{}\"\n",
+      place.group + 1, place.mass + 1, model.mass_kg, model.alpha_rad * kDegrees, group.stated_rad * kDegrees,
+      twin_name(group.name));
+  for (const InclineStatement& statement : group.statements) {
+    if (statement.against == "stated")
+      text += fmt::format("stated_incline_sd_deg = {:.9g}\n", statement.sd_rad * kDegrees);
+  }
+  text += forces_of(model);
+  for (const std::size_t i : motions) {
+    const TrackedMotion& motion = set.motions[i];
+    const Eigen::VectorXd& own = fit.at.own[i];
+    const double frame = 1.0 / set.clips[motion.clip].frame_rate_hz;
+    text += fmt::format(
+        "[[configuration.clip]]\nname = \"{}\"\nlaunched = \"{}\"\nx0_m = {:.12g}\nv0_m_s = {:.12g}\nduration_s = "
+        "{:.9g}\n",
+        names[motion.clip],
+        own[1] < 0.0   ? "up"
+        : own[1] > 0.0 ? "down"
+                       : "released",
+        own[0] - from_m, own[1], motion.t_s.back() - motion.t_s.front() + frame + readout_s);
+  }
+  return text;
+}
+
+std::vector<std::string> clip_names_of(const TrackSet& set) {
+  std::vector<std::string> names;
+  for (const TrackedClip& clip : set.clips) names.push_back(clip.name);
+  return twin_clip_names(names);
+}
+
+/// What of the data the twin's file has otherwise, besides its camera: a scenario has one frame rate, and a clip one
+/// motion.
+std::vector<std::string> assumed_of_clips(const TrackSet& set, const Twin& twin, double rate_hz) {
+  std::vector<std::string> assumed;
+  const bool rates = std::any_of(set.motions.begin(), set.motions.end(), [&](const TrackedMotion& motion) {
+    return set.clips[motion.clip].frame_rate_hz != rate_hz;
+  });
+  if (rates) assumed.push_back(fmt::format("{:.6g} frames a second, the first clip's, for all clips", rate_hz));
+  for (const auto& [clip, start_s] : twin.clips) {
+    const auto motions = std::count_if(set.motions.begin(), set.motions.end(),
+                                       [of = clip](const TrackedMotion& motion) { return motion.clip == of; });
+    if (motions > 1) {
+      assumed.push_back(
+          fmt::format("of clip {} its first stretch of motion alone, of {}", clip_names_of(set)[clip], motions));
+    }
+  }
+  return assumed;
+}
+
+}  // namespace
+
+std::string twin_name(const std::string& name) {
+  std::string plain;
+  for (const char c : name) plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' ? c : '-';
+  return plain.empty() ? "clip" : plain;
+}
+
+std::vector<std::string> twin_clip_names(const std::vector<std::string>& names) {
+  std::vector<std::string> twins;
+  for (const std::string& name : names) {
+    const std::string plain = twin_name(name);
+    std::string own = plain;
+    for (int k = 2; std::find(twins.begin(), twins.end(), own) != twins.end(); ++k)
+      own = fmt::format("{}-{}", plain, k);
+    twins.push_back(std::move(own));
+  }
+  return twins;
+}
+
+Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
+             const std::optional<Filming>& filming) {
+  Twin twin;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  std::map<Place, std::vector<std::size_t>> places;
+  std::set<std::size_t> clips;  // one motion of each: a scenario's clip begins with its motion
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    for (const double x : motion.x_m) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    if (!clips.insert(motion.clip).second) continue;
+    places[{motion.group, motion.mass}].push_back(i);
+    twin.clips.emplace_back(motion.clip, motion.t_s.front());
+  }
+  const double rate_hz = set.clips[set.motions.front().clip].frame_rate_hz;
+  const TrackModel first = model_of(set, *fit.layout, fit.at, places.begin()->second.front());
+  twin.from_m = 0.5 * (low + high);
+  const TwinView view = view_of(filming, twin.from_m, high - low, first.alpha_rad);
+  const TwinEffects seen = effects_of_camera(effects, filming, view, rate_hz, twin.from_m);
+  twin.lacks = lacks_of_forces(set, first, effects, nameless);
+  twin.lacks.insert(twin.lacks.end(), seen.lacks.begin(), seen.lacks.end());
+
+  std::vector<std::string> assumed = assumed_of_clips(set, twin, rate_hz);
+  assumed.insert(assumed.end(), view.assumed.begin(), view.assumed.end());
+  twin.toml = head(twin, assumed, seen.notes);
+  twin.toml += fmt::format(
+      "format = 1\nname = \"twin\"\ngravity_m_s2 = {:.9g}\n\n[camera]\nframe_rate_hz = {:.9g}\nexposure_s = {:.9g}\n",
+      set.gravity_m_s2, rate_hz, seen.exposure_s);
+  twin.toml += camera_keys(filming, view) + seen.sections + scene_sections(filming, view);
+  const std::vector<std::string> names = clip_names_of(set);
+  for (const auto& [place, motions] : places) {
+    twin.toml += configuration(set, fit, place, motions, names, twin.from_m, seen.readout_s);
+  }
+  return twin;
+}
+
+}  // namespace glidelab::diagnose

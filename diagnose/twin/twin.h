@@ -1,0 +1,43 @@
+/// The simulation that behaves like the data: the fitted motions as a scenario file.
+///
+/// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
+/// Expressed exactly: K, mu, quadratic_drag, eddy_rolloff or power_law_drag, stribeck, load_independent_friction (more
+/// mu for a lighter glider), direction_asymmetry (a constant force), rotational_inertia (all forces, gravity with them,
+/// less by the factor m/(m + m_w): m dv/dt is then the same), and what twin_effects.h says of camera and clock. A
+/// scenario has no forces that depend on the place or the time, and none that was recorded: what needs one is listed,
+/// and the twin lacks it. The camera is that of the folder as far as it is known (twin_camera.h); what is assumed
+/// stands in the file's first lines. x counts from the middle of the data.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnose/fit/motion_fit.h"
+#include "diagnose/pictures/twin_camera.h"
+#include "diagnose/result/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+/// How the scenario begins.
+inline constexpr std::string_view kTwinHead = "# Made by glidelab diagnose --twin";
+
+struct Twin {
+  std::string toml;
+  std::vector<TwinLack> lacks;
+  double from_m = 0.0;  ///< x of the data where the twin's x is 0
+  /// Clips that the twin has, as indices in TrackSet::clips, and when each begins after its first frame.
+  std::vector<std::pair<std::size_t, double>> clips;
+};
+
+/// Of a fit and the sizes of the effects that are named. `nameless`: something is missing that has no name.
+Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
+             const std::optional<Filming>& filming);
+
+/// As a clip or a group is called in the twin's file: what is no letter, digit, "-" or "_" is "-".
+std::string twin_name(const std::string& name);
+
+/// Of all clips, in order: a name that comes out as one before has a number behind it, "---" and "----2".
+std::vector<std::string> twin_clip_names(const std::vector<std::string>& names);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,286 @@
+#include "diagnose/unnamed/unnamed_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/math/median.h"
+#include "diagnose/unnamed/unnamed_shape.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;
+constexpr double kFewestSwings = 2.0;                // periods over the whole range: fewer are any smooth shape
+constexpr double kMostPulls = 25.0;                  // periods of a force, which moves the less the finer it is
+constexpr double kMostSwings = 600;                  // that are tried in full
+constexpr double kFinestSwings = 2000;               // periods over the whole range: the pixels of a wide picture
+constexpr double kShowsALittle = 3.0, kShows = 8.0;  // log likelihood
+
+struct Ranges {
+  Grid x, v, t, speed;
+};
+
+Ranges ranges_of(const ScoreSpace& space) {
+  Ranges ranges;
+  for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+    for (const double x : space.set().motions[i].x_m) ranges.x.add(x);
+    for (const double t : space.set().motions[i].t_s) ranges.t.add(t);
+    for (const double v : space.fit().motions[i].v_m_s) {
+      ranges.v.add(v);
+      ranges.speed.add(std::abs(v));
+    }
+  }
+  return ranges;
+}
+
+enum class Place { x, v, t };
+enum class Force { drive, friction, drag };
+enum class Load { none, mass, either };
+
+/// A force f(place) of any smooth shape; a friction, which turns with the motion; or a drag, which goes with the speed.
+/// The place among speeds is |v| but for what drives. In N, or in proportion to the mass; where there is more than one
+/// mass it may be either.
+void add_force(const ScoreSpace& space, const Grid& grid, Place over, const char* variable, Force kind, Load load,
+               std::vector<UnnamedFamily>& families) {
+  const TrackSet& set = space.set();
+  std::vector<ScoreColumn> in_n, by_mass;
+  for (int b = 0; b < grid.bumps; ++b) {
+    const double middle = grid.at(b), width = grid.width();
+    const UnnamedForce force = [=](double x, double v, double t) {
+      const double of_speed = kind == Force::drive ? v : std::abs(v);
+      const double size = bump(over == Place::x ? x : over == Place::t ? t : of_speed, middle, width);
+      return kind == Force::drive ? size : kind == Force::drag ? -v * size : v < 0.0 ? -size : size;
+    };
+    std::vector<Eigen::VectorXd> changes = space.changes_by(std::vector<UnnamedForce>(set.motions.size(), force), 1e-4);
+    if (load != Load::mass) in_n.push_back(space.project(changes));
+    if (load == Load::none) continue;
+    for (std::size_t i = 0; i < changes.size(); ++i) changes[i] *= set.masses[set.motions[i].mass].mass_kg;
+    by_mass.push_back(space.project(changes));
+  }
+  const char* const what = kind == Force::drive ? "force" : kind == Force::friction ? "friction" : "viscous drag";
+  if (!in_n.empty()) {
+    add_shapes(space, in_n, grid, family_of(variable, what, kind == Force::drag ? "N s/m" : "N"), families);
+  }
+  if (by_mass.empty()) return;
+  add_shapes(space, by_mass, grid, family_of(variable, kind == Force::drive ? "acceleration" : what, "m/s²"), families);
+}
+
+enum class Seen { over_x, over_t, late };
+
+/// A displacement d(place) of any smooth shape, what a camera does; or a lateness d(t), what its clock does.
+void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std::vector<UnnamedFamily>& families) {
+  const TrackSet& set = space.set();
+  std::vector<ScoreColumn> columns;
+  for (int b = 0; b < grid.bumps; ++b) {
+    std::vector<Eigen::VectorXd> changes;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      const auto& place = seen == Seen::over_x ? space.modelled(i) : set.motions[i].t_s;
+      const auto& v = space.fit().motions[i].v_m_s;
+      Eigen::VectorXd change(static_cast<Eigen::Index>(place.size()));
+      for (std::size_t p = 0; p < place.size(); ++p) {
+        change[static_cast<Eigen::Index>(p)] =
+            (seen == Seen::late ? v[p] : 1.0) * bump(place[p], grid.at(b), grid.width());
+      }
+      changes.push_back(std::move(change));
+    }
+    columns.push_back(space.project(changes));
+  }
+  add_shapes(space, columns, grid,
+             family_of(seen == Seen::over_x ? "x_m" : "t_s", seen == Seen::late ? "lateness" : "displacement",
+                       seen == Seen::late ? "s" : "m"),
+             families);
+}
+
+/// sin and cos of 2 pi f x as changes of all positions.
+std::vector<ScoreColumn> swing_columns(const ScoreSpace& space, double f_1_m) {
+  std::vector<ScoreColumn> columns;
+  for (const double phase : {0.0, 0.25}) {
+    std::vector<Eigen::VectorXd> changes;
+    for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+      const auto& at = space.modelled(i);
+      Eigen::VectorXd change(static_cast<Eigen::Index>(at.size()));
+      for (std::size_t p = 0; p < at.size(); ++p) {
+        change[static_cast<Eigen::Index>(p)] = std::sin(2.0 * std::numbers::pi * (f_1_m * at[p] + phase));
+      }
+      changes.push_back(std::move(change));
+    }
+    columns.push_back(space.project(changes));
+  }
+  return columns;
+}
+
+/// Of many periods those in the middle: all of them would be drawn with too few points to be what they are.
+void draw_swing(const Grid& x, double f_1_m, const SpreadEvidence& evidence, UnnamedFamily& family) {
+  family.at.clear();
+  family.size.clear();
+  family.sd.clear();
+  constexpr int kDrawn = 240;
+  constexpr double kDrawnPeriods = 12.0;
+  const double range = x.high - x.low, drawn = std::min(range, kDrawnPeriods / f_1_m);
+  for (int j = 0; j <= kDrawn; ++j) {
+    const double place = x.low + 0.5 * (range - drawn) + drawn * j / kDrawn,
+                 turn = 2.0 * std::numbers::pi * f_1_m * place;
+    const Eigen::Vector2d basis(std::sin(turn), std::cos(turn));
+    family.at.push_back(place);
+    family.size.push_back(basis.dot(evidence.mean));
+    family.sd.push_back(std::sqrt(std::max(0.0, basis.dot(evidence.covariance * basis))));
+  }
+}
+
+/// What swings acts everywhere, and not only where it is drawn.
+void name_everywhere(const Grid& x, UnnamedFamily& family) {
+  name_regions(family);
+  if (family.regions.empty()) return;
+  UnnamedRegion largest = *std::max_element(family.regions.begin(), family.regions.end(),
+                                            [](const auto& a, const auto& b) { return a.excess < b.excess; });
+  largest.from = x.low;
+  largest.to = x.high;
+  family.regions = {largest};
+}
+
+/// What swings of many periods gain, by the sums of r sin and r cos alone: what is fitted takes up nothing of them.
+/// Of f, then of f + step, and so on, by turning each point's sine and cosine on.
+class FineSwings {
+ public:
+  FineSwings(const ScoreSpace& space, double f_1_m, double step_1_m) {
+    const Eigen::VectorXd& rest = space.residual().rest;
+    for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+      const TrackedMotion& motion = space.set().motions[i];
+      for (std::size_t p = 0; p < motion.x_m.size(); ++p) {
+        if (motion.outlier[p] != 0) continue;
+        const double turn = 2.0 * std::numbers::pi * space.modelled(i)[p], weight = 1.0 / motion.sd_of(p);
+        waves_.push_back({weight * rest[space.offset(i) + static_cast<Eigen::Index>(p)], std::sin(turn * f_1_m),
+                          std::cos(turn * f_1_m), std::sin(turn * step_1_m), std::cos(turn * step_1_m)});
+        squares_ += 0.5 * weight * weight;
+      }
+    }
+    nothing_ = log_spread_evidence(squares_ * Eigen::Matrix2d::Identity(), Eigen::Vector2d::Zero()).log_evidence;
+  }
+
+  /// Of the present f; then goes on to the next.
+  SpreadEvidence next() {
+    Eigen::Vector2d sums = Eigen::Vector2d::Zero();
+    for (Wave& w : waves_) {
+      sums += w.residual * Eigen::Vector2d(w.sin, w.cos);
+      const double sin = w.sin * w.step_cos + w.cos * w.step_sin;
+      w.cos = w.cos * w.step_cos - w.sin * w.step_sin;
+      w.sin = sin;
+    }
+    SpreadEvidence evidence;
+    evidence.free_gain = 0.5 * sums.squaredNorm() / squares_;
+    evidence.log_evidence = nothing_;
+    if (evidence.free_gain < kShowsALittle) return evidence;
+    return log_spread_evidence(squares_ * Eigen::Matrix2d::Identity(), sums);
+  }
+
+ private:
+  struct Wave {
+    double residual, sin, cos, step_sin, step_cos;
+  };
+  std::vector<Wave> waves_;
+  double squares_ = 0.0, nothing_ = 0.0;
+};
+
+/// A displacement that swings with the place: sin and cos of 2 pi f x, one f for all motions, averaged over.
+UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = family_of("x_m", "displacement", "m");
+  std::vector<double> ways;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const auto& at = space.modelled(i);
+    for (std::size_t p = 1; p < at.size(); ++p) ways.push_back(std::abs(at[p] - at[p - 1]));
+  }
+  const double range = x.high - x.low;
+  if (ways.empty() || !(range > 0.0)) return family;
+  // Half of all frames lie closer than this: two of them a turn at least; and no more looks than kMostSwings.
+  const double step = 0.3 / range;
+  const double highest = std::min(0.5 / std::max(core::median_of(std::move(ways)), 1e-9), kMostSwings * step);
+  std::vector<double> logs;
+  const auto try_swing = [&](double f) {
+    SpreadEvidence evidence;
+    const Tried tried = try_one(space, swing_columns(space, f), family, evidence);
+    if (tried.better) draw_swing(x, f, evidence, family);
+    return tried.log_evidence;
+  };
+  double f = kFewestSwings / range;
+  for (; f < highest; f += step) logs.push_back(try_swing(f));
+  // Finer ones pass from frame to frame by more than a turn, each motion in steps of its own, and show by the place all
+  // the same: the pixels, when a marker crosses some of them from frame to frame. Of films these are in the fit.
+  if (!set.pictures) {
+    FineSwings fine(space, f, step);
+    double most = kShows, best_f = 0.0;
+    std::size_t best = 0;
+    for (; f < kFinestSwings / range; f += step) {
+      const SpreadEvidence evidence = fine.next();
+      logs.push_back(evidence.log_evidence);
+      if (evidence.free_gain <= most) continue;
+      most = evidence.free_gain;
+      best_f = f;
+      best = logs.size() - 1;
+    }
+    if (best_f > 0.0) logs[best] = try_swing(best_f);
+  }
+  if (!logs.empty()) family.log_evidence = log_mean(logs);
+  name_everywhere(x, family);
+  return family;
+}
+
+/// An acceleration that swings with the place, as magnets in a row or the teeth of a rack make it.
+UnnamedFamily pull_family(const ScoreSpace& space, const Grid& x) {
+  const TrackSet& set = space.set();
+  UnnamedFamily family = family_of("x_m", "acceleration", "m/s²");
+  const double range = x.high - x.low;
+  if (!(range > 0.0)) return family;
+  std::vector<double> logs;
+  for (double periods = kFewestSwings; periods <= kMostPulls; periods += 0.5) {
+    std::vector<ScoreColumn> columns;
+    for (const double phase : {0.0, 0.25}) {
+      std::vector<UnnamedForce> forces;
+      for (const TrackedMotion& motion : set.motions) {
+        const double mass_kg = set.masses[motion.mass].mass_kg;
+        forces.push_back([=](double at, double, double) {
+          return mass_kg * std::sin(2.0 * std::numbers::pi * (periods / range * at + phase));
+        });
+      }
+      columns.push_back(space.of_force(forces, 1e-4));
+    }
+    SpreadEvidence evidence;
+    const Tried tried = try_one(space, columns, family, evidence);
+    if (tried.better) draw_swing(x, periods / range, evidence, family);
+    logs.push_back(tried.log_evidence);
+  }
+  family.log_evidence = log_mean(logs);
+  name_everywhere(x, family);
+  return family;
+}
+
+}  // namespace
+
+void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families) {
+  const Ranges ranges = ranges_of(space);
+  const bool more_masses = space.set().masses.size() > 1;
+  for (const int bumps : {kSmooth, kCoarse, kFine}) {
+    Grid v = ranges.v, x = ranges.x, t = ranges.t, speed = ranges.speed;
+    v.bumps = x.bumps = t.bumps = speed.bumps = bumps;
+    add_force(space, v, Place::v, "v_m_s", Force::drive, Load::none, families);
+    add_force(space, speed, Place::v, "v_m_s", Force::friction, more_masses ? Load::either : Load::none, families);
+    add_force(space, x, Place::x, "x_m", Force::drive, more_masses ? Load::either : Load::mass, families);
+    add_force(space, x, Place::x, "x_m", Force::friction, Load::mass, families);
+    add_displacement(space, x, Seen::over_x, families);
+    add_displacement(space, t, Seen::over_t, families);
+    add_displacement(space, t, Seen::late, families);
+    if (bumps == kFine) continue;
+    add_force(space, t, Place::t, "t_s", Force::drive, more_masses ? Load::either : Load::mass, families);
+    add_force(space, t, Place::t, "t_s", Force::friction, Load::mass, families);
+    add_force(space, x, Place::x, "x_m", Force::drag, Load::none, families);
+    add_force(space, t, Place::t, "t_s", Force::drag, Load::none, families);
+  }
+  families.push_back(swing_family(space, ranges.x));
+  families.push_back(pull_family(space, ranges.x));
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,12 @@
+/// Families of unnamed.h over the place, the speed and the time.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/unnamed/unnamed.h"
+
+namespace glidelab::diagnose {
+
+void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families);
+
+}  // namespace glidelab::diagnose

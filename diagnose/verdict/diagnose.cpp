@@ -1,0 +1,301 @@
+#include "diagnose/verdict/diagnose.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "core/analysis/analyze.h"
+#include "diagnose/frames/edge_losses.h"
+#include "diagnose/frames/frame_effects.h"
+#include "diagnose/frames/missing_frames.h"
+#include "diagnose/frames/timing_noise.h"
+#include "diagnose/lines/line_diagnosis.h"
+#include "diagnose/noise/position_noise.h"
+#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/twin_camera.h"
+#include "diagnose/tracks/driven_motions.h"
+#include "diagnose/tracks/track_set.h"
+#include "diagnose/tracks/whitening.h"
+#include "diagnose/twin/twin.h"
+#include "diagnose/verdict/verdict.h"
+#include "diagnose/weigh/hypotheses.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kFewestPositions = 40;  // all clips together: fewer carry no verdict beside four parameters
+constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
+constexpr double kContradiction = 5.0;        // standard deviations between two statements
+constexpr double kAtStart_s = 0.2;            // a motion that begins later is not the launch
+constexpr std::size_t kFirstPoints = 8;       // that show which way it begins,
+constexpr double kOtherWay = 10.0;            // by so many standard deviations of a position
+constexpr double kMisfit = 1.5;               // chi² a point from which on the motion counts as not explained
+
+std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
+  std::vector<std::size_t> effects;
+  for (const std::string& id : ids) {
+    std::string known;
+    bool found = false;
+    for (std::size_t e = 0; e < effect_list().size(); ++e) {
+      known += (known.empty() ? "" : ", ") + std::string(effect_list()[e].id);
+      if (effect_list()[e].id != id) continue;
+      effects.push_back(e);
+      found = true;
+    }
+    if (!found) throw base::InputError(base::Issue{"", 0, "without", fmt::format("\"{}\"", id), "one of " + known});
+  }
+  return effects;
+}
+
+/// InputError, an issue for each clip, where all of them together hold too little motion.
+void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
+  std::vector<std::size_t> of_clip(set.clips.size(), 0);
+  std::size_t points = 0;
+  for (const TrackedMotion& motion : set.motions) {
+    of_clip[motion.clip] += motion.t_s.size();
+    points += motion.t_s.size();
+  }
+  if (points >= kFewestPositions) return;
+  std::vector<base::Issue> issues;
+  for (std::size_t c = 0; c < of_clip.size(); ++c) {
+    issues.push_back(
+        {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
+         fmt::format("clip \"{}\"", set.clips[c].name),
+         of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
+         fmt::format("at least {} in all clips together: fewer carry no verdict", kFewestPositions)});
+  }
+  throw base::InputError(std::move(issues));
+}
+
+void add_once(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+/// What a reader should know of the data before he believes the verdict: one note for what many set-ups have alike.
+void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
+  std::vector<std::string> free, mixed;
+  for (const TrackGroup& group : set.groups) {
+    if (group.statements.empty()) add_once(fmt::format("\"{}\"", group.name), free);
+    for (std::size_t a = 0; a < group.statements.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const InclineStatement &one = group.statements[a], &two = group.statements[b];
+        const double z = (one.alpha_rad - two.alpha_rad) / std::hypot(one.sd_rad, two.sd_rad);
+        if (std::abs(z) < kContradiction) continue;
+        set.notes.push_back(fmt::format(
+            "Set-up \"{}\": {} and {} inclination contradict each other by {:.1f} standard deviations; one of them is "
+            "wrong, and what rests on them is unsure.",
+            group.name, one.against, two.against, std::abs(z)));
+      }
+    }
+  }
+  for (std::size_t a = 0; a < set.groups.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (set.groups[a].name == set.groups[b].name) add_once(fmt::format("\"{}\"", set.groups[a].name), mixed);
+    }
+  }
+  if (!free.empty()) {
+    set.notes.push_back(fmt::format(
+        "{} {} {} neither a plumb line nor an inclination with its uncertainty (incline_sd_deg): what shows in the "
+        "inclination only (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
+        free.size() > 1 ? "Set-ups" : "Set-up", fmt::join(free, ", "), free.size() > 1 ? "have" : "has"));
+  }
+  if (!mixed.empty()) {
+    set.notes.push_back(
+        fmt::format("Clips of set-up {} state different inclinations; they are taken for set-ups of "
+                    "their own.",
+                    fmt::join(mixed, ", ")));
+  }
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& setup = setups[motion.clip];
+    const bool stated_way = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
+    if (!stated_way || motion.t_s.front() > kAtStart_s) continue;
+    const std::size_t some = std::min<std::size_t>(kFirstPoints, motion.x_m.size() - 1);
+    const double way = motion.x_m[some] - motion.x_m.front();
+    const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;
+    if (way * stated < -kOtherWay * motion.sd_m) {
+      set.notes.push_back(fmt::format("Clip {} is stated as launched {}, and begins the other way.", setup.name,
+                                      stated < 0.0 ? "up" : "down"));
+    }
+  }
+}
+
+/// Of tracks, whose pictures nobody sees here.
+void note_lasting_noise(TrackSet& set) {
+  const NoiseShape& shape = set.position_noise->shape;
+  if (set.pictures || !(shape.lasting > 0.0)) return;
+  const double lasting = shape.lasting * shape.lasting;
+  set.notes.push_back(fmt::format(
+      "Errors of positions that follow each other are alike (correlation {:.2f} from one frame to the next, {:.2f} to "
+      "the fourth), as a tracker's are that goes by its own last picture, or positions that were smoothed: they count "
+      "for fewer than they are.",
+      lasting / (1.0 + lasting) * std::exp(-1.0 / shape.lasting_frames),
+      lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)));
+}
+
+/// One position beyond a gap may as well be an outlier, where no frame is missing elsewhere; two of one end are not.
+void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
+  const auto same_end = [&](const EdgePosition& a, const EdgePosition& b) {
+    const std::size_t middle = set.motions[a.motion].t_s.size() / 2;
+    return a.motion == b.motion && (a.point < middle) == (b.point < middle);
+  };
+  const std::vector<EdgePosition> all = beyond;
+  std::erase_if(beyond, [&](const EdgePosition& position) {
+    return std::count_if(all.begin(), all.end(), [&](const EdgePosition& of) { return same_end(position, of); }) < 2;
+  });
+}
+
+/// The noise of every position, by what single frames tell of it. Frames that are missing are taken out first: a jump
+/// is no noise and no outlier.
+void settle_noise(TrackSet& set) {
+  MissingFrames missing = find_missing_frames(set, fit_nominal(set));
+  std::vector<EdgePosition> beyond = positions_beyond_gaps(set, missing.fit);
+  if (missing.count == 0) leave_single(set, beyond);
+  for (const EdgePosition& position : beyond) set.motions[position.motion].outlier[position.point] = 0;
+  if (!beyond.empty()) missing = find_missing_frames(set, fit_nominal(set));
+  if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
+  const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
+  if (missing.count > 0 && set.pictures) refit();
+  if (find_position_noise(set, missing.fit)) {
+    refit();
+    set_tails_aside(set, missing.fit);
+    note_lasting_noise(set);
+    for (TrackedMotion& motion : set.motions) {
+      whiten(motion, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
+    }
+    return;
+  }
+  if (give_fast_positions_their_noise(set, missing.fit.late)) {
+    refit();
+  }
+  set_tails_aside(set, missing.fit);
+}
+
+/// A codec that makes pictures out of those before leaves what has moved by less than some hundredths of a pixel where
+/// it was, and so makes a friction of the slowest motion.
+constexpr double kHeldPx = 0.05;  // from one frame to the next
+
+/// Whether the files say, or the pictures show, that they have been through a codec with loss.
+void note_loss(const PictureEvidence& pictures, TrackSet& set) {
+  set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
+    return finding.id == "compression" && (finding.stated || finding.seen);
+  });
+  set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
+                    return clip.record->codec == "MJPG";  // each picture by itself
+                  });
+  set.held_m_s = 0.0;
+  if (!set.handed_on) return;
+  for (const FilmedClip& clip : pictures.clips) {
+    if (clip.px_per_m > 0.0) {
+      set.held_m_s = std::max(set.held_m_s, kHeldPx * clip.camera.frame_rate_hz / clip.px_per_m);
+    }
+  }
+}
+
+/// How far the best explanation that names something (or nothing) is from the noise: chi² a point.
+double misfit(const TrackSet& set, const Comparison& comparison) {
+  const Hypothesis& best = comparison.all.front();
+  const int fit = best.fit >= 0 ? best.fit : 0;
+  double points = 0.0;
+  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+  return comparison.fits[static_cast<std::size_t>(fit)].cost / points;
+}
+
+/// What the analysis made of the same clips.
+void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion>& measured) {
+  std::vector<std::string> names;
+  for (const core::ClipResult& clip : results.clips) names.push_back(clip.name);
+  names = twin_clip_names(names);
+  for (MeasuredMotion& one : measured) {
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      if (names[c] != one.clip) continue;
+      for (const core::MotionPoint& point : results.clips[c].motion) {
+        if (!point.smoothed || point.left_out != core::LeftOut::used) continue;
+        one.v_m_s.push_back(point.v_m_s);
+        one.a_m_s2.push_back(point.a_m_s2);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
+                           const DiagnoseOptions& options, const base::Progress& progress,
+                           const std::vector<std::optional<core::CameraSettings>>& cameras,
+                           const std::vector<core::Experiment>& folders) {
+  const std::vector<std::size_t> without = indices(options.without);
+  TrackSet set = track_set(results, setups, true);
+  check(setups, set);
+  note_limits(setups, set);
+  cut_driven_motions(set, kFewestPoints);
+  progress("weighing explanations", 0.1);
+  PictureEvidence pictures;
+  if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
+  if (options.twin) pictures.filming = filming_of(results, folders, options.jobs);
+  note_loss(pictures, set);
+  settle_noise(set);
+  const auto weighed = [&](double from, double to) {
+    return [&progress, from, to](double part) { progress("weighing explanations", from + part * (to - from)); };
+  };
+  Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.1, 0.5));
+  if (set.disputed > 0 && (comparison.all.front().unnamed || misfit(set, comparison) > kMisfit)) {
+    // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
+    TrackSet trimmed = track_set(results, setups, false);
+    std::size_t points = 0;
+    for (const TrackedMotion& motion : trimmed.motions) points += motion.t_s.size();
+    if (points >= kFewestPositions) {
+      set = std::move(trimmed);
+      note_limits(setups, set);
+      cut_driven_motions(set, kFewestPoints);
+      set.notes.push_back(
+          fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
+                      set.disputed));
+      progress("weighing explanations", 0.5);
+      note_loss(pictures, set);
+      settle_noise(set);
+      comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.5, 0.9));
+    }
+  }
+  progress("measuring the gap", 0.9);
+  Diagnosis diagnosis = verdict_of(set, comparison, std::move(pictures));
+  add_speeds(results, diagnosis.measured);
+  for (const core::CalibrationResult& of : results.calibrations) {
+    diagnosis.calibrations.push_back({of.experiment, of.rests});
+  }
+  return diagnosis;
+}
+
+Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
+                   const base::Progress& progress) {
+  std::vector<core::ClipSetup> setups;
+  std::vector<std::optional<core::CameraSettings>> cameras;
+  std::vector<core::Experiment> experiments;
+  for (const std::filesystem::path& folder : folders) {
+    const core::Experiment experiment = read_recording(folder, options.outside);
+    if (experiment.lines) {
+      if (folders.size() > 1) {
+        throw base::InputError(base::Issue{experiment.file.string(), 0, "lines",
+                                           "a table of lines beside other folders", "a table of lines by itself"});
+      }
+      return diagnose_lines(read_lines(*experiment.lines), experiment.gravity_m_s2, options.without);
+    }
+    setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
+    cameras.resize(setups.size(), experiment.camera);
+    experiments.push_back(experiment);
+  }
+  indices(options.without);  // what is misspelt shows before the clips are read
+  const core::AnalysisResults results =
+      core::analyze(folders,
+                    {.bandwidth_s = {},
+                     .jobs = options.jobs,
+                     .lost_frames = core::LostFrameTimes::kept,
+                     .pictures = true,
+                     .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .outside = options.outside}},
+                    progress);
+  return diagnose_results(results, setups, options, progress, cameras, experiments);
+}
+
+}  // namespace glidelab::diagnose

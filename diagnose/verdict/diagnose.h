@@ -1,0 +1,42 @@
+/// Experiment folders in, a diagnosis out.
+///
+///     folders ─ core's analysis ─ track_set ─ hypotheses (motion_fit, effect_scan, unnamed) ─ held_out ─ Diagnosis
+///
+/// The noise comes from neighbouring positions alone. Where the analysis took part of the motion for a hand or a stop,
+/// all of it is tried first (a push that lasts, a cable that tightens look like that); where nothing of the list
+/// explains it, the part in dispute is left out, and a note says so.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "base/progress.h"
+#include "core/experiment/experiment.h"
+#include "core/experiment/folder_files.h"
+#include "core/result/results.h"
+#include "diagnose/result/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+struct DiagnoseOptions {
+  std::vector<std::string> without;  ///< effects that are not considered
+  int jobs = 1;
+  bool twin = false;  ///< a twin is wanted, with the camera as the folders tell of it; else it has a scenario's own
+  core::OutsideFiles outside = core::OutsideFiles::refused;  ///< whether a folder may name files outside
+};
+
+/// InputError for what is wrong with a folder, for data that carry no verdict (too few positions, nothing that moves
+/// freely), and for an unknown effect in `without`.
+Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
+                   const base::Progress& progress = base::no_progress);
+
+/// The same from an analysis that was made already; `setups` are all folders' clips in order, `cameras` what is stated
+/// of each clip's camera (needed where the analysis kept the pictures), `folders` what else they state (for a twin's
+/// camera; without them it is a scenario's own).
+Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
+                           const DiagnoseOptions& options, const base::Progress& progress = base::no_progress,
+                           const std::vector<std::optional<core::CameraSettings>>& cameras = {},
+                           const std::vector<core::Experiment>& folders = {});
+
+}  // namespace glidelab::diagnose

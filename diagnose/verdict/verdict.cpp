@@ -1,0 +1,307 @@
+#include "diagnose/verdict/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "diagnose/frames/missing_frames.h"
+#include "diagnose/gap/gap_sizes.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/next/next_experiment.h"
+#include "diagnose/result/alike_effects.h"
+#include "diagnose/result/verdict_words.h"
+#include "diagnose/twin/twin.h"
+#include "diagnose/verdict/derived_parameters.h"
+#include "diagnose/verdict/verdict_limits.h"
+#include "diagnose/verdict/verdict_regions.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
+constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
+constexpr double kNoChance = 5e-4;     // a page says "< 0.001"
+
+std::string joined(const std::vector<std::size_t>& effects) {
+  std::string text;
+  for (const std::size_t e : effects) text += (text.empty() ? "" : " + ") + std::string(effect_list()[e].id);
+  return text;
+}
+
+bool same_but(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b, std::size_t from, std::size_t to) {
+  std::vector<std::size_t> expected = a, other = b;
+  std::replace(expected.begin(), expected.end(), from, to);
+  std::sort(expected.begin(), expected.end());
+  std::sort(other.begin(), other.end());
+  return expected == other;
+}
+
+std::vector<std::string> equivalents(const Comparison& comparison, const Hypothesis& best, std::size_t effect) {
+  std::vector<std::string> ids;
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
+    for (const Hypothesis& other : comparison.all) {
+      if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
+      const bool as_likely = other.log_evidence > best.log_evidence - kSameEvidence;
+      if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain)
+        ids.emplace_back(effect_list()[e].id);
+      break;
+    }
+  }
+  return ids;
+}
+
+std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Comparison& comparison,
+                                              const PictureEvidence& pictures, const Hypothesis& hypothesis,
+                                              std::size_t effect) {
+  std::vector<DiagnosedParameter> parameters;
+  for (const PictureFinding& finding : pictures.findings) {
+    if (finding.id == effect_list()[effect].id && (finding.seen || effect_list()[effect].search == Search::pictures)) {
+      parameters = finding.parameters;
+    }
+  }
+  for (const FrameEffect& frame : comparison.frames) {
+    if (frame.effect != effect) continue;
+    if (!parameters.empty()) continue;
+    parameters.push_back({effect_list()[effect].id == "timestamp_jitter" ? "sd_s" : "fraction", frame.value, frame.sd});
+  }
+  if (hypothesis.fit < 0) return parameters;
+  const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+  if (parameters.empty() && effect == effect_index("dropped_frames")) {
+    double points = 0.0;
+    for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+    const auto count = static_cast<double>(missing_in(set, fit));
+    if (count > 0.0) parameters.push_back({"fraction", count / points, std::sqrt(count) / points});
+  }
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter == nullptr || globals[g].effect != effect || globals[g].parameter->key.empty()) continue;
+    const auto known = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const auto& p) { return p.key == globals[g].parameter->key; });
+    const auto at = static_cast<Eigen::Index>(g);
+    ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
+    if (globals[g].parameter->member == &EffectValues::line_s) {
+      value.value += pictures.stated_line_s;  // tracks show what it is more than stated
+    }
+    const DiagnosedParameter tracked{std::string(globals[g].parameter->key), value.value,
+                                     std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_member)};
+    if (known == parameters.end()) {
+      parameters.push_back(tracked);
+    } else if (tracked.sd < known->sd) {  // seen in the pictures as well, but less well
+      *known = tracked;
+    }
+  }
+  const std::vector<DiagnosedParameter> derived = derived_parameters(set, fit, effect, pictures, parameters);
+  parameters.insert(parameters.end(), derived.begin(), derived.end());
+  return parameters;
+}
+
+/// Parameters that a hypothesis adds to the nominal model: those that a fit of it has, and those of what no fit shows.
+std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, const Hypothesis& hypothesis) {
+  const ParameterLayout with(set, hypothesis.effects), nominal(set, {});
+  std::size_t count = with.globals().size() - nominal.globals().size() + with.own().size() * set.motions.size();
+  for (const std::size_t e : hypothesis.effects) {
+    const EffectInfo& info = effect_list()[e];
+    if (info.search == Search::frames) {
+      ++count;
+      if (hypothesis.fit >= 0) count += missing_in(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]);
+    }
+    if (info.search == Search::pictures) ++count;
+    if (info.search == Search::noise) count += info.id == "heavy_tailed_noise" ? 2 : 1;
+  }
+  return count;
+}
+
+void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& diagnosis) {
+  std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
+    RankedExplanation ranked{joined(hypothesis.effects),
+                             hypothesis.probability,
+                             hypothesis.log_evidence,
+                             hypothesis.gain,
+                             parameters_added(set, comparison, hypothesis),
+                             {}};
+    if (hypothesis.fit >= 0 && set.clips.size() > 1) {
+      const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
+      if (is_new) gap->second = held_out_gap(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]).value;
+      ranked.gap_after = gap->second;
+    }
+    diagnosis.ranking.push_back(std::move(ranked));
+  }
+  // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
+  const auto rest = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                                 [](const auto& ranked) { return ranked.probability < kNoChance; });
+  std::stable_sort(rest, diagnosis.ranking.end(),
+                   [](const auto& a, const auto& b) { return a.log_evidence_gain > b.log_evidence_gain; });
+}
+
+std::string stage_of(const std::vector<UnnamedFamily>& families) {
+  const auto best = std::max_element(families.begin(), families.end(),
+                                     [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+  if (best == families.end()) return "";
+  return best->what == "displacement" || best->what == "scale" ? "optics"
+         : best->what == "lateness"                            ? "timing"
+                                                               : "dynamics";
+}
+
+Isolability isolability_of(const TrackSet& set, const MotionFit& nominal, const Comparison& comparison) {
+  const ScoreSpace space(set, nominal);
+  Isolability result;
+  std::vector<const EffectScan*> seen;
+  for (const EffectScan& scan : comparison.scans) {
+    if (scan.visible && scan.direction.rest.size() > 0) seen.push_back(&scan);
+  }
+  for (const EffectScan* a : seen) {
+    result.ids.emplace_back(effect_list()[a->effect].id);
+    result.least_seen.push_back(a->least_seen);
+    std::vector<double> row;
+    const double aa = space.dot(a->direction, a->direction);
+    for (const EffectScan* b : seen) {
+      const double bb = space.dot(b->direction, b->direction);
+      row.push_back(std::min(1.0, std::abs(space.dot(a->direction, b->direction)) / std::sqrt(aa * bb)));
+    }
+    result.cosine.push_back(std::move(row));
+  }
+  return result;
+}
+
+std::vector<NamedExplanation> named_explanations(const Comparison& comparison) {
+  std::vector<NamedExplanation> named;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed) continue;
+    NamedExplanation& one = named.emplace_back(NamedExplanation{{}, hypothesis.probability});
+    for (const std::size_t e : hypothesis.effects) one.ids.emplace_back(effect_list()[e].id);
+  }
+  return named;
+}
+
+/// Of the clips that the twin repeats, from their first motion's start on.
+std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
+  std::vector<std::string> names;
+  for (const TrackedClip& clip : set.clips) names.push_back(clip.name);
+  names = twin_clip_names(names);
+  std::vector<MeasuredMotion> measured;
+  for (const auto& [clip, start_s] : twin.clips) {
+    const auto motion = std::find_if(set.motions.begin(), set.motions.end(),
+                                     [&, at = clip](const TrackedMotion& one) { return one.clip == at; });
+    MeasuredMotion& one = measured.emplace_back();
+    one.clip = names[clip];
+    one.start_s = start_s;
+    one.noise_m = motion->sd_m;
+    one.bandwidth_s = set.clips[clip].bandwidth_s;
+    for (std::size_t p = 0; p < motion->t_s.size(); ++p) {
+      if (motion->outlier[p]) continue;
+      one.t_s.push_back(motion->t_s[p]);
+      one.x_m.push_back(motion->x_m[p]);
+    }
+  }
+  return measured;
+}
+
+}  // namespace
+
+const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
+  std::map<std::multiset<std::size_t>, double> sums;
+  const auto causes = [&](const Hypothesis& hypothesis) {
+    std::multiset<std::size_t> same;
+    for (const std::size_t e : hypothesis.effects) same.insert(first_alike(e, set.pictures));
+    return same;
+  };
+  const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (names(hypothesis)) sums[causes(hypothesis)] += hypothesis.probability;
+  }
+  const Hypothesis* best = nullptr;  // of the likeliest cause the likeliest name: they come by falling probability
+  double most = -1.0;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (!names(hypothesis) || sums[causes(hypothesis)] <= most) continue;
+    most = sums[causes(hypothesis)];
+    best = &hypothesis;
+  }
+  return best;
+}
+
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures) {
+  Diagnosis diagnosis;
+  diagnosis.notes = set.notes;
+  diagnosis.none = comparison.none;
+  diagnosis.unknown = comparison.unknown;
+  diagnosis.verdict = verdict_by(comparison.none, comparison.unknown);
+  const Hypothesis* best = best_named(set, comparison);
+  const MotionFit& nominal = comparison.fits.front();
+  diagnosis.limits = limits_of(set, nominal);
+  const bool driven = diagnosis.verdict == "none" && !diagnosis.limits.driving.empty();
+  if (driven) {  // what drives the glider has no name
+    diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
+    diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
+  }
+  const MotionFit* fit = &nominal;
+  if (diagnosis.verdict == "effect" && best != nullptr) {
+    if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
+    for (const std::size_t e : best->effects) {
+      const EffectInfo& info = effect_list()[e];
+      diagnosis.effects.push_back({std::string(info.id), std::string(info.stage), std::string(info.words),
+                                   comparison.effect_probability[e], equivalents(comparison, *best, e),
+                                   parameters_of(set, comparison, pictures, *best, e)});
+    }
+    std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
+                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    join_alike(
+        named_explanations(comparison),
+        [](const std::string& id) { return std::string(effect_list()[effect_index(id)].words); }, diagnosis);
+    diagnosis.stage = diagnosis.effects.front().stage;
+  }
+  for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
+  add_ranking(set, comparison, diagnosis);
+  const bool beside_named = diagnosis.verdict == "unknown" && !comparison.all.front().effects.empty();
+  const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
+  const bool wrong_way = driven && diagnosis.verdict == "unknown";  // no function of anything is known to be missing
+  if (wrong_way) {
+    diagnosis.stage = "dynamics";
+  } else if (diagnosis.verdict != "none") {
+    if (diagnosis.verdict == "unknown") {
+      diagnosis.stage = add_error_runs(set, comparison.frames, families, diagnosis) ? "tracking" : stage_of(families);
+    }
+    add_regions(set, nominal, families, diagnosis);
+  }
+  add_picture_regions(pictures, diagnosis);
+  const MotionFit* gap_fit = fit;
+  MotionFit with;
+  if (diagnosis.verdict == "unknown" && !wrong_way && set.clips.size() > 1) {
+    // The likeliest function without a name stands in for what is missing.
+    const UnnamedFamily* family = likeliest_shared(families);
+    const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;
+    if (family != nullptr) {
+      with = with_unnamed(set, beside, *family);
+      gap_fit = &with;
+    }
+  }
+  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.verdict == "unknown", diagnosis.notes);
+  if (fit != &nominal) diagnosis.limits = limits_of(set, *fit);
+  for (const auto* limits : {&diagnosis.limits.driving, &diagnosis.limits.contradicted}) {
+    diagnosis.notes.insert(diagnosis.notes.end(), limits->begin(), limits->end());
+  }
+  if (!diagnosis.limits.set_aside.empty()) diagnosis.notes.push_back(diagnosis.limits.set_aside);
+  diagnosis.residuals = residuals_of(set, nominal, *gap_fit);
+  diagnosis.isolability = isolability_of(set, nominal, comparison);
+  Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == "unknown", pictures.filming);
+  diagnosis.measured = measured_of(set, twin);
+  diagnosis.twin = std::move(twin.toml);
+  diagnosis.twin_lacks = std::move(twin.lacks);
+  diagnosis.twin_from_m = twin.from_m;
+  diagnosis.next_experiment = next_experiment(set, comparison, diagnosis);
+  diagnosis.pictures = std::move(pictures.findings);
+  diagnosis.picture_curves = std::move(pictures.curves);
+  diagnosis.gap->domains = gap_domains(*diagnosis.gap, diagnosis.pictures, diagnosis.effects);
+  diagnosis.summary = summary_of(diagnosis);
+  return diagnosis;
+}
+
+}  // namespace glidelab::diagnose

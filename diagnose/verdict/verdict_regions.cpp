@@ -1,0 +1,185 @@
+#include "diagnose/verdict/verdict_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kNotable = 3.0;  // log evidence of an unnamed family that is worth a region
+constexpr std::size_t kMostRegions = 6;
+constexpr std::size_t kMostCurves = 4;
+constexpr double kBelieved = 2.0;  // times what accelerations lack: drag and friction take up some of it
+
+/// Place, speed and acceleration of what a fit leaves of a motion, each at its largest; the latter two by the parabola
+/// through nine neighbours at even times, none of them set aside.
+struct LargestRest {
+  double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;
+};
+
+LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>& rest_m) {
+  constexpr std::size_t kBeside = 4;
+  constexpr double kMean = 20.0 / 3.0, kSquares = 60.0, kFourths = 308.0;  // sums of k², and of (k² - mean)², k to 4
+  constexpr double kUneven = 0.2;
+  LargestRest largest;
+  for (std::size_t p = 0; p < rest_m.size(); ++p) {
+    if (motion.outlier[p] == 0) largest.x_m = std::max(largest.x_m, std::abs(rest_m[p]));
+  }
+  for (std::size_t p = kBeside; p + kBeside < motion.t_s.size(); ++p) {
+    const double before = motion.t_s[p] - motion.t_s[p - kBeside], behind = motion.t_s[p + kBeside] - motion.t_s[p];
+    if (std::abs(behind - before) > kUneven * before) continue;
+    const double step = (before + behind) / (2.0 * kBeside);
+    double first = 0.0, second = 0.0;
+    bool aside = false;
+    for (std::size_t j = 0; j <= 2 * kBeside; ++j) {
+      const double k = static_cast<double>(j) - static_cast<double>(kBeside);
+      first += k * rest_m[p - kBeside + j];
+      second += (k * k - kMean) * rest_m[p - kBeside + j];
+      aside = aside || motion.outlier[p - kBeside + j] != 0;
+    }
+    if (aside) continue;
+    largest.v_m_s = std::max(largest.v_m_s, std::abs(first / (kSquares * step)));
+    largest.a_m_s2 = std::max(largest.a_m_s2, std::abs(2.0 * second / (kFourths * step * step)));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Lacking most_lacking(const TrackSet& set, const MotionFit& nominal) {
+  Lacking most;
+  double slowest_m_s = std::numeric_limits<double>::infinity(), shortest_m = slowest_m_s;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    const TrackModel model = model_of(set, *nominal.layout, nominal.at, i);
+    const Moved moved =
+        move(model, motion.t_s, nominal.late.empty() ? std::span<const double>() : std::span(nominal.late[i]));
+    std::vector<double> rest_m = shared_errors(set, *nominal.layout, nominal.at, i, moved.x_m);
+    double fastest = 0.0;
+    for (std::size_t p = 0; p < rest_m.size(); ++p) {
+      rest_m[p] = motion.x_m[p] - moved.x_m[p] - rest_m[p];
+      fastest = std::max(fastest, std::abs(moved.v_m_s[p]));
+    }
+    const LargestRest rest = largest_rest(motion, rest_m);
+    const auto [low, high] = std::minmax_element(moved.x_m.begin(), moved.x_m.end());
+    if (low != high) shortest_m = std::min(shortest_m, *high - *low);
+    slowest_m_s = std::min(slowest_m_s, fastest);
+    most.position_m = std::max(most.position_m, rest.x_m);
+    most.force_n = std::max(most.force_n, model.mass_kg * rest.a_m_s2 + std::abs(model.k_n_s_m) * rest.v_m_s);
+  }
+  most.drag_n_s_m = most.force_n / slowest_m_s;
+  most.scale = most.position_m / shortest_m;
+  most.time_s = most.position_m / slowest_m_s;
+  for (const TrackedMass& mass : set.masses) {
+    most.acceleration_m_s2 = std::max(most.acceleration_m_s2, most.force_n / mass.mass_kg);
+  }
+  return most;
+}
+
+double Lacking::in(const std::string& unit) const {
+  return unit == "N"       ? force_n
+         : unit == "m/s²"  ? acceleration_m_s2
+         : unit == "N s/m" ? drag_n_s_m
+         : unit == "m"     ? position_m
+         : unit == "s"     ? time_s
+                           : scale;
+}
+
+void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
+                 Diagnosis& diagnosis) {
+  const Lacking most = most_lacking(set, nominal);
+  std::vector<const UnnamedFamily*> sorted;
+  for (const UnnamedFamily& family : families) sorted.push_back(&family);
+  std::sort(sorted.begin(), sorted.end(),
+            [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
+  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
+  std::set<std::pair<std::string, std::string>> shown;                               // variables and what acts there
+  for (const UnnamedFamily* family : sorted) {
+    // What a verdict rests on has its place named, however many looks there were.
+    const bool rests = diagnosis.verdict == "unknown" && diagnosis.regions.empty() && family == sorted.front();
+    if (family->log_evidence < (rests ? 0.0 : notable)) break;
+    const auto what = std::pair(family->variable, family->what);
+    if (shown.contains(what)) continue;  // the same at another width
+    if (family->names.empty() && !family->at.empty() && diagnosis.curves.size() < kMostCurves) {
+      diagnosis.curves.push_back(
+          {family->variable, family->what, family->unit, family->log_evidence, family->at, family->size, family->sd});
+      shown.insert(what);
+    }
+    if (!family->regions.empty()) shown.insert(what);
+    std::vector<UnnamedRegion> regions = family->regions;
+    std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.excess > b.excess; });
+    for (std::size_t r = 0; r < regions.size() && r < 2 && diagnosis.regions.size() < kMostRegions; ++r) {
+      GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
+                       regions[r].size,  family->unit,    family->what,  ""};
+      const double lacking = most.in(region.unit);
+      if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
+      if (family->names.empty()) {
+        region.size_sd = regions[r].sd;
+        region.at = regions[r].at;
+      }
+      if (family->variable == "clip") {  // a clip as a whole
+        const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
+        const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
+                                       [&](const GapRegion& other) { return other.clip == clip.name; });
+        if (named) continue;  // by what explains it better
+        region.variable = "t_s";
+        region.clip = clip.name;
+        region.from = 0.0;
+        region.to = clip.duration_s;
+      }
+      diagnosis.regions.push_back(region);
+    }
+  }
+}
+
+bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
+                    const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis) {
+  double most = kNotable;
+  for (const UnnamedFamily& family : families) most = std::max(most, family.log_evidence);
+  bool any = false;
+  for (const FrameEffect& frame : frames) {
+    if (!frame.run || frame.in_runs < kNotable || frame.log_evidence + frame.in_runs < most) continue;
+    const std::string clip = frame.run->clip ? set.clips[*frame.run->clip].name : "";
+    diagnosis.regions.push_back(
+        {"t_s", frame.run->from_s, frame.run->to_s, frame.run->excess, frame.run->size_m, "m", "displacement", clip});
+    any = true;
+  }
+  return any;
+}
+
+void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
+  static const std::map<std::string, std::pair<const char*, const char*>> kWhere = {
+      {"exposure_blur", {"v_m_s", "marker's width"}},  {"rolling_shutter", {"v_px", "marker's shear"}},
+      {"light_flicker", {"t_s", "brightness"}},        {"light_gradient", {"u_px", "brightness"}},
+      {"camera_motion", {"t_s", "the scene's place"}}, {"compression", {"u_px", "steps between blocks"}}};
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    for (const PictureFinding& finding : pictures.findings) {
+      const auto where = kWhere.find(finding.id);
+      if (finding.id != effect.id || !finding.seen || where == kWhere.end() || finding.parameters.empty()) continue;
+      GapRegion region;
+      region.variable = where->second.first;
+      region.what = where->second.second;
+      const core::PictureRecord& record = *pictures.clips.front().record;
+      region.to = region.variable == "u_px"   ? record.width_px
+                  : region.variable == "v_px" ? record.height_px
+                  : record.scene.empty()      ? 0.0
+                                              : record.scene.back().t_s;
+      if (region.variable == "v_m_s" && pictures.clips.front().px_per_m > 0.0) {
+        region.to = pictures.fastest_px_s / pictures.clips.front().px_per_m;
+      }
+      const DiagnosedParameter& size = finding.parameters.front();
+      region.size = size.value;
+      region.unit = size.key;
+      region.excess = std::sqrt(2.0 * finding.log_evidence);
+      diagnosis.regions.push_back(region);
+    }
+  }
+}
+
+}  // namespace glidelab::diagnose

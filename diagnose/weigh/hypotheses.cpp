@@ -1,0 +1,195 @@
+#include "diagnose/weigh/hypotheses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "diagnose/weigh/hypothesis_fits.h"
+#include "diagnose/weigh/hypothesis_pairs.h"
+#include "diagnose/weigh/joined_evidence.h"
+#include "diagnose/weigh/losses_beside.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
+constexpr std::size_t kFitted = 9;    // effects of the short list that are fitted in full
+constexpr double kLeads = 3.0;        // log evidence from which something else is weighed beside an effect
+constexpr double kNoLossSeen = -3.0;  // log evidence of lost frames where none is found
+constexpr double kTrifle = 6.0;       // log evidence
+constexpr double kTriflePart = 0.01;  // of that of the effects
+
+bool moves(std::size_t effect) {
+  const Search search = effect_list()[effect].search;
+  return search != Search::frames && search != Search::noise && search != Search::pictures;
+}
+
+void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) {
+  std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
+  for (const Hypothesis& pair : leaders_of(comparison, 2, 2)) around.push_back(pair);
+  std::sort(around.begin(), around.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  bool first = true;
+  double likeliest = 0.0;
+  for (const Hypothesis& named : around) {
+    if (named.log_evidence < kLeads) continue;
+    work.look();
+    const ScoreSpace space(set, comparison.fits[static_cast<std::size_t>(named.fit)]);
+    std::vector<UnnamedFamily> families = unnamed_families(space);
+    Hypothesis both = named;
+    both.unnamed = true;
+    both.unnamed_log_evidence = log_unnamed_evidence(families);
+    both.log_evidence += both.unnamed_log_evidence;
+    for (const UnnamedFamily& family : families) both.gain = std::max(both.gain, named.gain + family.gain);
+    comparison.all.push_back(both);
+    if (comparison.unnamed_left.empty() || both.log_evidence > likeliest) {
+      likeliest = both.log_evidence;
+      comparison.unnamed_left = std::move(families);
+      comparison.beside_fit = named.fit;
+    }
+    if (first) comparison.left_fit = named.fit;
+    first = false;
+  }
+}
+
+/// Single-frame effects join the hypotheses: alone, and with the best others.
+void add_frame_effects(Comparison& comparison) {
+  const std::vector<Hypothesis> so_far = comparison.all;
+  for (const FrameEffect& frame : comparison.frames) {
+    for (const Hypothesis& other : so_far) {
+      if (other.effects.size() > 1 || (other.effects.size() == 1 && other.log_evidence < kLeads)) continue;
+      if (std::find(other.effects.begin(), other.effects.end(), frame.effect) != other.effects.end()) continue;
+      Hypothesis with = other;
+      with.effects.push_back(frame.effect);
+      with.gain += frame.gain;
+      with.log_evidence += frame.log_evidence;
+      comparison.all.push_back(with);
+      if (with.unnamed || frame.in_runs <= 0.0) continue;
+      // Errors that last over frames, or come with a clip's start, are in no list.
+      with.effects = other.effects;
+      with.unnamed = true;
+      with.unnamed_log_evidence = frame.log_evidence + frame.in_runs;
+      with.log_evidence += frame.in_runs;
+      comparison.all.push_back(with);
+    }
+  }
+}
+
+/// Something unnamed that shows weakly beside effects of a hundred times its log evidence leaves them their name, in
+/// filmed experiments: a lens, a sensor and a tracker leave some micrometres that no list holds, and the better an
+/// effect shows, the better they show beside it. Their probability is that of the effects then. (A rest that shows well
+/// is none of this: an effect takes up most of many a thing that is not in the list.)
+void give_trifles_to_their_effects(Comparison& comparison) {
+  for (Hypothesis& with : comparison.all) {
+    if (!with.unnamed || with.effects.empty()) continue;
+    const double of_effects = with.log_evidence - with.unnamed_log_evidence;
+    if (with.unnamed_log_evidence >= std::min(kTrifle, kTriflePart * of_effects)) continue;
+    const auto named = std::find_if(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& other) {
+      return !other.unnamed && other.effects == with.effects;
+    });
+    if (named == comparison.all.end()) continue;
+    named->probability += std::exchange(with.probability, 0.0);
+  }
+}
+
+void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
+  const auto& list = effect_list();
+  double seen = 0.0;
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    const bool tracked = list[e].search != Search::pictures && (!moves(e) || comparison.scans[e].visible);
+    const bool shown = tracked || comparison.in_pictures.contains(e);
+    const bool candidate = !without.contains(e) && shown;
+    seen += candidate ? 1.0 : 0.0;
+  }
+  const double one = std::log(kPriorOne / std::max(1.0, seen));
+  const double two = std::log(kPriorTwo / std::max(1.0, 0.5 * seen * (seen - 1.0)));
+  std::vector<double> logs;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    const std::size_t many = hypothesis.effects.size();
+    double prior = many == 0   ? std::log(kPriorNone)
+                   : many == 1 ? one
+                               : two + static_cast<double>(many - 2) * (two - one);
+    if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
+    logs.push_back(prior + hypothesis.log_evidence);
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (double& l : logs) sum += l = std::exp(l - most);
+  comparison.effect_probability.assign(list.size(), 0.0);
+  for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
+  if (set.pictures) give_trifles_to_their_effects(comparison);
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed) {
+      comparison.unknown += hypothesis.probability;
+    } else if (hypothesis.effects.empty()) {
+      comparison.none += hypothesis.probability;
+    } else {
+      for (const std::size_t e : hypothesis.effects) comparison.effect_probability[e] += hypothesis.probability;
+    }
+  }
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
+}  // namespace
+
+Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs,
+                              const PictureEvidence* pictures, const std::function<void(double)>& done) {
+  const Work work{jobs, done};
+  const std::set<std::size_t> left_out(without.begin(), without.end());
+  Comparison comparison;
+  comparison.fits.push_back(fit_nominal(set));
+  comparison.all.push_back({{}, false, 0.0, 0.0, 0.0, 0});
+  const MotionFit nominal = comparison.fits.front();
+  const ScoreSpace space(set, nominal);
+  work.look();
+  comparison.scans = scan_effects(space, left_out, jobs);
+  work.at(0.1).look();
+  comparison.unnamed = unnamed_families(space);
+  Hypothesis unnamed;
+  unnamed.unnamed = true;
+  unnamed.unnamed_log_evidence = log_unnamed_evidence(comparison.unnamed);
+  unnamed.log_evidence = unnamed.unnamed_log_evidence;
+  for (const UnnamedFamily& family : comparison.unnamed) unnamed.gain = std::max(unnamed.gain, family.gain);
+  comparison.all.push_back(unnamed);
+
+  const Hypothesis nothing = comparison.all.front();
+  fit_best(set, nominal, best_of(comparison.scans, kFitted), nothing, work.at(0.2), comparison);
+  for (const EffectScan& scan : comparison.scans) {
+    const bool fitted = std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& h) {
+      return h.effects == std::vector<std::size_t>{scan.effect};
+    });
+    if (scan.visible && !fitted)
+      comparison.all.push_back({{scan.effect}, false, scan.gain, scan.log_evidence, 0.0, -1});
+  }
+  if (const auto dropped = effect_index("dropped_frames"); !left_out.contains(dropped)) {
+    work.at(0.4).look();
+    comparison.missing = find_missing_frames(set, nominal);
+    if (comparison.missing.count > 0) {
+      Found found;
+      found.fit = comparison.missing.fit;
+      found.hypothesis.effects = {dropped};
+      found.hypothesis.gain = comparison.missing.effect.gain;
+      found.hypothesis.log_evidence = comparison.missing.effect.log_evidence;
+      add(comparison, std::move(found));
+    } else {
+      comparison.all.push_back({{dropped}, false, 0.0, kNoLossSeen, 0.0, -1});
+    }
+  }
+  add_pairs(set, space, left_out, work.at(0.5), comparison);
+  add_losses_beside(set, nominal, left_out, work.at(0.75), comparison);
+  add_unnamed(set, work.at(0.8), comparison);
+  const MotionFit& best = comparison.fits[static_cast<std::size_t>(comparison.left_fit)];
+  for (const FrameEffect& frame : {scan_jitter(set, best), scan_tails(set, best)}) {
+    if (!left_out.contains(frame.effect)) comparison.frames.push_back(frame);
+  }
+  add_frame_effects(comparison);
+  if (pictures != nullptr) join_pictures(set, *pictures, left_out, comparison);
+  weigh(set, left_out, comparison);
+  return comparison;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,85 @@
+#include "diagnose/weigh/hypothesis_fits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kWorthFitting = 1.0;  // log likelihood gained
+
+}  // namespace
+
+Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside) {
+  const FitPoint start = with_effect(set, base, scan.effect, scan.values, scan.own);
+  std::vector<std::size_t> effects = base.effects;
+  effects.push_back(scan.effect);
+  Found found;
+  found.fit = fit_motions(set, effects, start, base.late);
+  const double gain = 0.5 * (base.cost - found.fit.cost);
+  found.hypothesis.effects = beside.effects;  // missing frames are in the fit's times, not among its effects
+  found.hypothesis.effects.push_back(scan.effect);
+  found.hypothesis.gain = beside.gain + gain;
+  found.hypothesis.log_evidence =
+      beside.log_evidence + scan.log_evidence + (std::isfinite(gain) ? gain - scan.gain : -scan.gain);
+  return found;
+}
+
+void add(Comparison& comparison, Found found) {
+  std::set<std::size_t> members(found.hypothesis.effects.begin(), found.hypothesis.effects.end());
+  for (Hypothesis& other : comparison.all) {
+    if (other.unnamed || std::set<std::size_t>(other.effects.begin(), other.effects.end()) != members) continue;
+    if (other.log_evidence >= found.hypothesis.log_evidence) return;
+    found.hypothesis.fit = static_cast<int>(comparison.fits.size());
+    comparison.fits.push_back(std::move(found.fit));
+    other = found.hypothesis;
+    return;
+  }
+  found.hypothesis.fit = static_cast<int>(comparison.fits.size());
+  comparison.fits.push_back(std::move(found.fit));
+  comparison.all.push_back(found.hypothesis);
+}
+
+std::vector<const EffectScan*> best_of(const std::vector<EffectScan>& scans, std::size_t most) {
+  std::vector<const EffectScan*> best;
+  for (const EffectScan& scan : scans) {
+    if (scan.visible && scan.gain > kWorthFitting && !scan.values.empty()) best.push_back(&scan);
+  }
+  std::sort(best.begin(), best.end(), [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
+  if (best.size() > most) best.resize(most);
+  return best;
+}
+
+std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t size, std::size_t most) {
+  std::vector<Hypothesis> leaders;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.effects.size() == size && hypothesis.fit >= 0 && !hypothesis.unnamed) leaders.push_back(hypothesis);
+  }
+  std::sort(leaders.begin(), leaders.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  if (leaders.size() > most) leaders.resize(most);
+  return leaders;
+}
+
+void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best,
+              const Hypothesis& beside, const Work& work, Comparison& comparison) {
+  std::vector<Found> found(best.size());
+  base::for_each_parallel(best.size(), work.jobs, [&](std::size_t i) {
+    work.look();
+    found[i] = fit_more(set, base, *best[i], beside);
+  });
+  for (Found& one : found) add(comparison, std::move(one));
+}
+
+const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects) {
+  for (const Hypothesis& one : comparison.all) {
+    if (one.unnamed || one.fit < 0 || one.effects.size() != effects.size()) continue;
+    if (std::set<std::size_t>(one.effects.begin(), one.effects.end()) == effects) return &one;
+  }
+  return nullptr;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,160 @@
+#include "diagnose/weigh/hypothesis_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "diagnose/scan/pair_scan.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kLeaders = 3;  // that are tried with a second one
+constexpr std::size_t kSeconds = 4;
+constexpr std::size_t kTogether = 4;  // pairs that show together and that no leader found
+constexpr int kExchanges = 3;         // rounds in which the best pair's two lead in turn
+
+/// A leader with each of the effects that show best beside it.
+void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, const Work& work,
+                 Comparison& comparison) {
+  const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
+  const ScoreSpace space(set, base);
+  std::set<std::size_t> others = without;
+  others.insert(leader.effects.begin(), leader.effects.end());
+  work.look();
+  const std::vector<EffectScan> scans = scan_effects(space, others, work.jobs);
+  std::vector<const EffectScan*> best = best_of(scans, kSeconds);
+  std::erase_if(best, [](const EffectScan* scan) { return scan->log_evidence < -1.0; });
+  fit_best(set, base, best, leader, work, comparison);
+}
+
+/// One effect's own full fit, made where there was none.
+Found alone(const TrackSet& set, std::size_t effect, Comparison& comparison) {
+  if (const Hypothesis* known = find(comparison, {effect}); known != nullptr) {
+    return {*known, comparison.fits[static_cast<std::size_t>(known->fit)]};
+  }
+  Found found = fit_more(set, comparison.fits.front(), comparison.scans[effect], {});
+  add(comparison, found);
+  return found;
+}
+
+/// The full fit of a second effect that was scanned around some point of the first one's, and its evidence beside that
+/// one's own fit.
+Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan& scan, const Found& leader) {
+  const FitPoint start = with_effect(set, around, scan.effect, scan.values, scan.own);
+  Found found;
+  found.fit = fit_motions(set, {around.effects.front(), scan.effect}, start, leader.fit.late);
+  const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
+  found.hypothesis.effects = found.fit.effects;
+  found.hypothesis.gain = leader.hypothesis.gain + gain;
+  found.hypothesis.log_evidence =
+      leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + (std::isfinite(gain) ? gain : 0.0);
+  return found;
+}
+
+/// Two effects fitted at once, from where they are in the neighbourhood of the nominal fit.
+void add_together(const TrackSet& set, const PairScan& pair, Comparison& comparison) {
+  const auto shows = [&](std::size_t effect) { return comparison.scans[effect].log_evidence; };
+  const bool in_order = shows(pair.first) >= shows(pair.second);
+  const Found leader = alone(set, in_order ? pair.first : pair.second, comparison);
+  EffectScan beside = scan_effect(ScoreSpace(set, leader.fit), in_order ? pair.second : pair.first);
+  if (!beside.visible) return;
+  beside.values = in_order ? pair.second_values : pair.first_values;
+  MotionFit first = comparison.fits.front();
+  first.at =
+      with_effect(set, first, leader.hypothesis.effects.front(), in_order ? pair.first_values : pair.second_values, {});
+  first.effects = leader.hypothesis.effects;
+  add(comparison, fit_beside(set, first, beside, leader));
+}
+
+/// Where one of two is left as the two were fitted and the other is taken out: what is then missing shows as it is, and
+/// not as the first one's own fit has made up for it.
+MotionFit without_one(const TrackSet& set, const MotionFit& both, std::size_t kept) {
+  const ParameterLayout layout(set, {kept});
+  FitPoint at{Eigen::VectorXd(static_cast<Eigen::Index>(layout.globals().size())), {}};
+  Eigen::Index to = 0;
+  for (std::size_t g = 0; g < both.layout->globals().size(); ++g) {
+    const ParameterLayout::Global& global = both.layout->globals()[g];
+    if (global.kind == ParameterLayout::Global::Kind::effect && global.effect != kept) continue;
+    at.global[to++] = both.at.global[static_cast<Eigen::Index>(g)];
+  }
+  const bool first = both.effects.front() == kept;
+  const auto own = static_cast<Eigen::Index>(layout.own().size());
+  for (const Eigen::VectorXd& motion : both.at.own) {
+    Eigen::VectorXd of_one(2 + own);
+    of_one << motion.head(2), (first ? motion.segment(2, own) : motion.tail(own));
+    at.own.push_back(of_one);
+  }
+  return linearise_at(set, {kept}, at);
+}
+
+/// The same pair, its evidence that of its first one beside its second. What an effect costs by itself, where it has to
+/// make up for the other, is not what it costs beside it.
+Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison) {
+  const Found leader = alone(set, both.effects.back(), comparison);
+  const MotionFit around = without_one(set, both, both.effects.back());
+  const EffectScan scan = scan_effect(ScoreSpace(set, around), both.effects.front());
+  Found found;
+  found.fit = both;
+  const double gain = 0.5 * (leader.fit.cost - both.cost);
+  found.hypothesis.effects = {both.effects.back(), both.effects.front()};
+  found.hypothesis.gain = leader.hypothesis.gain + gain;
+  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + gain;
+  return found;
+}
+
+/// In place of one of the best pair's two, whatever shows best beside the other; the same with what is best then.
+void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>& without, const Work& work,
+              Comparison& comparison) {
+  for (int round = 0; round < kExchanges; ++round) {
+    const std::vector<Hypothesis> pairs = leaders_of(comparison, 2, 1);
+    if (pairs.empty() || pairs.front().log_evidence <= best_one) return;
+    const Hypothesis best = pairs.front();
+    const MotionFit both = comparison.fits[static_cast<std::size_t>(best.fit)];
+    if (both.effects.size() < 2) return;  // missing frames are in the fit's times
+    for (const std::size_t kept : both.effects) {
+      const Found leader = alone(set, kept, comparison);
+      const MotionFit base = without_one(set, both, kept);
+      std::set<std::size_t> others = without;
+      others.insert(both.effects.begin(), both.effects.end());
+      work.look();
+      const std::vector<EffectScan> scans = scan_effects(ScoreSpace(set, base), others, work.jobs);
+      std::vector<const EffectScan*> seconds = best_of(scans, kSeconds);
+      std::vector<Found> found(seconds.size());
+      base::for_each_parallel(seconds.size(), work.jobs, [&](std::size_t i) {
+        work.look();
+        found[i] = fit_beside(set, base, *seconds[i], leader);
+      });
+      for (const Found& one : found) {
+        add(comparison, one);
+        if (one.hypothesis.gain > best.gain) add(comparison, turned(set, one.fit, comparison));
+      }
+    }
+    if (leaders_of(comparison, 2, 1).front().effects == best.effects) return;
+  }
+}
+
+}  // namespace
+
+void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
+               Comparison& comparison) {
+  double best_one = 0.0;
+  for (const Hypothesis& leader : leaders_of(comparison, 1, kLeaders)) {
+    if (leader.log_evidence < 0.0) continue;
+    best_one = std::max(best_one, leader.log_evidence);
+    add_seconds(set, leader, without, work, comparison);
+  }
+  std::size_t more = 0;
+  for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
+    if (more == kTogether || pair.log_evidence <= best_one) break;
+    if (find(comparison, {pair.first, pair.second}) != nullptr) continue;
+    ++more;
+    work.look();
+    add_together(set, pair, comparison);
+  }
+  exchange(set, best_one, without, work.at(0.6), comparison);
+}
+
+}  // namespace glidelab::diagnose

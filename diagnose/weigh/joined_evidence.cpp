@@ -1,0 +1,185 @@
+#include "diagnose/weigh/joined_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/fit/score_space.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/pictures/picture_sway.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kWorthJoining =
+    -3.0;  // log evidence: what the pictures speak against any more is not weighed beside others
+constexpr std::size_t kMostTogether = 4;
+constexpr double kDoubt = 6.0;  // log evidence
+
+bool holds(const Hypothesis& hypothesis, std::size_t effect) {
+  return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
+}
+
+bool same_effects(const Hypothesis& a, const Hypothesis& b) {
+  return a.unnamed == b.unnamed &&
+         std::set(a.effects.begin(), a.effects.end()) == std::set(b.effects.begin(), b.effects.end());
+}
+
+/// What the pictures say of a camera that sways as this fit has it.
+double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::size_t effect, double otherwise) {
+  double amplitude_m = 0.0, f_hz = 0.0;
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter == nullptr || globals[g].effect != effect) continue;
+    const double value = fit.at.global[static_cast<Eigen::Index>(g)];
+    if (globals[g].parameter->member == &EffectValues::camera_m) amplitude_m = value;
+    if (globals[g].parameter->member == &EffectValues::camera_hz) f_hz = value;
+  }
+  return f_hz > 0.0 ? camera_sway_support(pictures.clips, amplitude_m, f_hz) : otherwise;
+}
+
+/// What the marker's shear says of the line time that this fit has.
+double line_support(const PictureEvidence& pictures, const PictureFinding& finding, const MotionFit& fit,
+                    std::size_t effect) {
+  const std::size_t g = fit.layout->first_of(effect);
+  const auto at = static_cast<Eigen::Index>(g);
+  const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(at, at)));
+  const DiagnosedParameter& sheared = finding.parameters.front();
+  return agreement({sheared.value - pictures.stated_line_s, sheared.sd}, {fit.at.global[at], sd});
+}
+
+/// Log likelihood of one motion's residuals: variance s²((1 - share) white + share exp(-lag/frames)).
+double correlated_likelihood(const Eigen::VectorXd& r, const std::vector<char>& outlier, double s2, double share,
+                             double frames) {
+  const double keep = std::exp(-1.0 / frames), driven = s2 * share * (1.0 - keep * keep), white = s2 * (1.0 - share);
+  double mean = 0.0, variance = s2 * share, sum = 0.0;
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    if (outlier[static_cast<std::size_t>(i)] == 0) {
+      const double total = variance + white, off = r[i] - mean;
+      sum -= 0.5 * (off * off / total + std::log(total));
+      mean += variance / total * off;
+      variance *= white / total;
+    }
+    mean *= keep;
+    variance = keep * keep * variance + driven;
+  }
+  return sum;
+}
+
+}  // namespace
+
+double agreement(const Measured& in_pictures, const Measured& in_tracks) {
+  const double own = in_pictures.sd * in_pictures.sd, both = own + in_tracks.sd * in_tracks.sd;
+  const double off = in_pictures.value - in_tracks.value;
+  return 0.5 * (in_pictures.value * in_pictures.value / own - off * off / both - std::log(both / own));
+}
+
+CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
+  CorrelatedNoise found;
+  const auto of_all = [&](double s2, double share, double frames) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < set.motions.size(); ++i) {
+      sum += correlated_likelihood(fit.motions[i].residual, set.motions[i].outlier, s2, share, frames);
+    }
+    return sum;
+  };
+  const double white = of_all(1.0, 0.0, 1.0);
+  std::vector<double> logs;
+  for (const double s : {1.0, 1.2, 1.45, 1.75, 2.1}) {
+    for (const double share : {0.15, 0.3, 0.5, 0.7}) {
+      for (const double frames : {1.0, 2.0, 4.0, 8.0}) {
+        logs.push_back(of_all(s * s, share, frames) - white);
+        if (logs.back() <= found.gain) continue;
+        // 1 + 2 sum of exp(-lag/frames) of the part that lasts.
+        const double keep = std::exp(-1.0 / frames);
+        found = {logs.back(), 0.0, share, frames, s * s * (1.0 - share + share * (1.0 + keep) / (1.0 - keep))};
+      }
+    }
+  }
+  found.log_evidence = log_mean(logs);
+  return found;
+}
+
+namespace {
+
+/// In a file with loss, noise that lasts over frames imitates whatever is slow: the log evidence of every explanation
+/// by a motion counts as much less as that noise has more variance where it is slow, beyond the best explanation of
+/// all.
+void temper(const TrackSet& set, Comparison& comparison) {
+  const CorrelatedNoise left = scan_correlation(set, comparison.fits[static_cast<std::size_t>(comparison.left_fit)]);
+  if (left.log_evidence < kSeenInPictures) return;
+  for (Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.log_evidence > 0.0) hypothesis.log_evidence /= std::max(1.0, left.inflation);
+  }
+}
+
+}  // namespace
+
+void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
+                   Comparison& comparison) {
+  const std::size_t codec = effect_index("compression"), sway = effect_index("camera_motion"),
+                    jitter = effect_index("timestamp_jitter"), rows = effect_index("rolling_shutter"),
+                    tails = effect_index("heavy_tailed_noise");
+  std::vector<const PictureFinding*> findings;
+  for (const PictureFinding& finding : pictures.findings) {
+    if (!without.contains(effect_index(finding.id))) findings.push_back(&finding);
+  }
+  std::sort(findings.begin(), findings.end(),
+            [](const auto* a, const auto* b) { return a->log_evidence > b->log_evidence; });
+  if (std::any_of(findings.begin(), findings.end(), [](const auto* finding) { return finding->stated; })) {
+    temper(set, comparison);
+  }
+  for (const PictureFinding* finding : findings) {
+    const std::size_t effect = effect_index(finding->id);
+    comparison.in_pictures.insert(effect);
+    const double of_pictures = finding->stated ? 0.0 : finding->log_evidence;
+    const std::vector<Hypothesis> so_far = comparison.all;
+    for (Hypothesis& hypothesis : comparison.all) {
+      if (!holds(hypothesis, effect)) continue;
+      double support = of_pictures;
+      if (hypothesis.fit >= 0) {
+        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+        if (effect == sway) support = sway_support(pictures, fit, sway, finding->log_evidence);
+        if (effect == rows) support = line_support(pictures, *finding, fit, rows);
+      }
+      hypothesis.log_evidence += support;
+    }
+    for (const Hypothesis& other : so_far) {
+      if (holds(other, effect) || other.effects.size() >= kMostTogether) continue;
+      Hypothesis with = other;
+      with.effects.push_back(effect);
+      const bool known = std::any_of(comparison.all.begin(), comparison.all.end(),
+                                     [&](const Hypothesis& h) { return same_effects(h, with); });
+      if (known) continue;
+      double of_tracks = 0.0, scatter = 0.0, outliers = 0.0;
+      if (!holds(other, jitter) && !holds(other, tails)) {
+        for (const FrameEffect& frame : comparison.frames) {
+          scatter = std::max(scatter, frame.log_evidence);
+          if (frame.effect == tails) outliers = std::max(outliers, frame.log_evidence);
+        }
+      }
+      if (effect == codec && finding->stated && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
+        // Of filmed noise that was measured by itself, no model goes in: what a fit leaves of a motion is no codec's.
+        if (set.position_noise) {
+          of_tracks = std::max(0.0, set.position_noise->lasting_log_evidence);
+          with.gain += set.position_noise->lasting_gain;
+        } else {
+          const CorrelatedNoise noise = scan_correlation(set, comparison.fits[static_cast<std::size_t>(other.fit)]);
+          of_tracks = std::max(0.0, noise.log_evidence);
+          with.gain += noise.gain;
+        }
+        // Its errors grow with what changes in the picture, and single ones are large where its blocks are seen.
+        if (of_tracks > kSeenInPictures) {
+          of_tracks += std::max(std::min(kDoubt, scatter), finding->seen ? outliers : 0.0);
+        }
+      }
+      // A smeared marker is found less well the faster it moves: what the scatter shows of that is its own.
+      if (finding->id == "exposure_blur" && finding->seen) of_tracks = scatter;
+      if (of_pictures + of_tracks < kWorthJoining) continue;
+      with.log_evidence += of_pictures + of_tracks;
+      with.gain += std::max(0.0, of_pictures);
+      comparison.all.push_back(std::move(with));
+    }
+  }
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,37 @@
+/// Tracks and pictures weighed together: a log likelihood of its own for each effect that pictures can speak for or
+/// against.
+///
+/// What the pictures show of an effect is independent of the positions' noise, so that logs add up. An effect that they
+/// show joins every explanation of the tracks, named or not, without competing with it: light may flicker beside any
+/// force. A camera that sways in the tracks must be seen to sway, by about as much, in what rests in the scene; a line
+/// time that tracks show must be the one that shears the marker.
+#pragma once
+
+#include <set>
+
+#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/weigh/hypotheses.h"
+
+namespace glidelab::diagnose {
+
+/// `without` are effects that are not considered.
+void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
+                   Comparison& comparison);
+
+/// Log likelihood of a size that pictures measured (0: absent) under the one that tracks found, both with their
+/// standard deviations, over that under its absence: log N(p; t, sp² + st²) - log N(p; 0, sp²).
+struct Measured {
+  double value = 0.0, sd = 0.0;
+};
+double agreement(const Measured& in_pictures, const Measured& in_tracks);
+
+/// Log evidence that positions' noise is correlated over up to 8 frames, as a codec makes it, against white noise: an
+/// exponential correlation beside a white part, both of free size, by a Kalman filter over the fit's residuals.
+struct CorrelatedNoise {
+  double gain = 0.0, log_evidence = 0.0;
+  double share = 0.0, frames = 0.0;  ///< of the variance; how long it lasts
+  double inflation = 1.0;            ///< variance of what is slow among such noise, over that of white noise
+};
+CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit);
+
+}  // namespace glidelab::diagnose

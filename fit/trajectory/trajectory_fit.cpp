@@ -1,0 +1,252 @@
+#include "fit/trajectory/trajectory_fit.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/errors.h"
+#include "base/math/dense.h"
+#include "core/math/median.h"
+#include "core/math/quantile.h"
+#include "fit/trajectory/trajectory_uncertainty.h"
+#include "sim/sensitivity/track_sensitivity.h"
+
+namespace glidelab::fit {
+namespace {
+
+using base::product;
+using base::transposed_product;
+
+constexpr int kMostIterations = 60;
+constexpr double kConverged = 1e-10;  // relative change of the cost
+constexpr int kRobustPasses = 8;
+constexpr double kHuber = 1.5;    // scaled deviations beyond which a position counts less
+constexpr double kOutlier = 4.0;  // and beyond which it is left out: 6 of 1e5 by chance
+
+Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const Eigen::Vector2d& start) {
+  const core::FreeBlock& block = *fit.block;
+  std::vector<double> times;
+  for (const double t : block.t_s) times.push_back(t - block.t_s.front());
+  const std::vector<sim::SensitiveState> states =
+      sim::track_motion_sensitive(common[0], common[1], common[2], start[0], start[1], times);
+  const auto n = static_cast<Eigen::Index>(times.size());
+  Linearised result{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixXd(n, 2)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const sim::SensitiveState& state = states[static_cast<std::size_t>(i)];
+    result.residual[i] = block.x_m[static_cast<std::size_t>(i)] - state.x_m;
+    result.common.row(i) = state.by_parameter.row(0).head(3);
+    result.start.row(i) = state.by_parameter.row(0).tail(2);
+  }
+  return result;
+}
+
+struct Point {
+  Eigen::Vector3d common;
+  std::vector<Eigen::Vector2d> starts;
+};
+
+/// A point, what is linear there (weighted), and its cost.
+struct Evaluated {
+  Point at;
+  std::vector<Linearised> linearised;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+class Problem {
+ public:
+  /// `weights` of every position of every block; empty: 1.
+  Problem(const std::vector<FitBlock>& blocks, std::vector<Eigen::VectorXd> weights, int free)
+      : blocks_(blocks), free_(free) {
+    for (const Eigen::VectorXd& of_block : weights) roots_.push_back(of_block.cwiseSqrt());
+  }
+
+  /// An infinite cost where the motion cannot be moved.
+  Evaluated evaluate(Point point) const {
+    Evaluated there{std::move(point), {}};
+    double cost = 0.0;
+    try {
+      for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        there.linearised.push_back(linearise(blocks_[b], there.at.common, there.at.starts[b]));
+        if (!roots_.empty()) there.linearised.back().scale_rows(roots_[b]);
+        cost += there.linearised.back().residual.squaredNorm() / variance_of(blocks_[b]);
+      }
+    } catch (const base::NumericalError&) {
+      return there;
+    }
+    if (std::isfinite(cost)) there.cost = cost;
+    return there;
+  }
+
+  /// The step of Levenberg and Marquardt, each block's start eliminated.
+  Point step(const Evaluated& from, double damping) const {
+    const std::vector<Linearised>& linearised = from.linearised;
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free_, free_);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(free_);
+    Eigen::VectorXd diagonal = right;
+    std::vector<Eigen::Matrix2d> own;
+    std::vector<Eigen::MatrixXd> cross;
+    std::vector<Eigen::Vector2d> own_right;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const double weight = 1.0 / variance_of(blocks_[b]);
+      const auto common = linearised[b].common.leftCols(free_);
+      const Eigen::MatrixXd& start = linearised[b].start;
+      Eigen::Matrix2d c = weight * transposed_product(start, start);
+      c.diagonal() *= 1.0 + damping;
+      const Eigen::MatrixXd x = weight * transposed_product(common, start);
+      const Eigen::Vector2d r = weight * transposed_product(start, linearised[b].residual);
+      const Eigen::MatrixXd a = weight * transposed_product(common, common);
+      diagonal += a.diagonal();
+      const Eigen::Matrix2d inverse = c.inverse();
+      const Eigen::MatrixXd taken = product(x, inverse);
+      normal += a - product(taken, x.transpose());
+      right += weight * transposed_product(common, linearised[b].residual) - product(taken, r);
+      own.push_back(inverse);
+      cross.push_back(x);
+      own_right.push_back(r);
+    }
+    normal.diagonal() += damping * diagonal;
+    const Eigen::VectorXd change = base::solve_positive(normal, right);
+    Point next = from.at;
+    next.common.head(free_) += change;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      next.starts[b] += own[b] * (own_right[b] - Eigen::Vector2d(transposed_product(cross[b], change)));
+    }
+    return next;
+  }
+
+ private:
+  const std::vector<FitBlock>& blocks_;
+  int free_;
+  std::vector<Eigen::VectorXd> roots_;
+};
+
+/// x0 and v0 of a parabola through the first points, or of a line through fewer.
+Eigen::Vector2d start_of(const core::FreeBlock& block) {
+  const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(block.t_s.size(), 15));
+  Eigen::MatrixXd design(n, 3);
+  Eigen::VectorXd x(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double t = block.t_s[static_cast<std::size_t>(i)] - block.t_s.front();
+    design.row(i) << 1.0, t, t * t;
+    x[i] = block.x_m[static_cast<std::size_t>(i)];
+  }
+  const Eigen::Vector3d fit = base::least_squares(design, x);
+  // A block that moves one way starts that way, whatever the noise says.
+  const double least = 1e-6;
+  const double v = block.directions.front() * std::max(least, block.directions.front() * fit[1]);
+  return {fit[0], v};
+}
+
+struct Found : Evaluated {
+  bool converged = false;
+  int iterations = 0;
+};
+
+Found minimise(const Problem& problem, Point at) {
+  Found found{problem.evaluate(std::move(at))};
+  double damping = 1e-4;
+  while (std::isfinite(found.cost) && found.iterations < kMostIterations && !found.converged) {
+    ++found.iterations;
+    Evaluated next = problem.evaluate(problem.step(found, damping));
+    if (next.cost <= found.cost) {
+      found.converged = found.cost - next.cost <= kConverged * found.cost;
+      static_cast<Evaluated&>(found) = std::move(next);
+      damping = std::max(1e-12, 0.1 * damping);
+    } else {
+      damping *= 10.0;
+      // No step goes down any more: rounding is all that is left.
+      found.converged = damping > 1e8;
+    }
+  }
+  return found;
+}
+
+/// The only direction that occurs, or 0.
+int only_direction(const std::vector<FitBlock>& blocks) {
+  int only = 0;
+  for (const FitBlock& block : blocks) {
+    for (const int direction : block.block->directions) {
+      if (only != 0 && direction != only) return 0;
+      only = direction;
+    }
+  }
+  return only;
+}
+
+/// The best of several starts: the cost is not convex where the motion turns.
+Found minimise_from_several(const Problem& problem, const Point& first) {
+  Found best;
+  for (const double share : {1.0, 0.3, 2.0}) {
+    Point at = first;
+    at.common[0] *= share;
+    Found found = minimise(problem, at);
+    if (found.converged && (!best.converged || found.cost < best.cost)) best = std::move(found);
+  }
+  return best;
+}
+
+struct RobustFit {
+  Found found;
+  std::vector<FitBlock> blocks;  // with the noise of what is not left out
+  std::size_t left_out = 0;
+};
+
+/// Huber's weights until they settle, then without what is off by more than kOutlier scaled deviations.
+RobustFit fit_robustly(const std::vector<FitBlock>& blocks, int free, Found found) {
+  RobustFit fit{std::move(found), blocks, 0};
+  for (int pass = 0; pass < kRobustPasses; ++pass) {
+    const bool last = pass + 2 >= kRobustPasses;  // two passes with what is left
+    std::vector<Eigen::VectorXd> weights;
+    fit.left_out = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Eigen::VectorXd off = linearise(blocks[b], fit.found.at.common, fit.found.at.starts[b]).residual.cwiseAbs();
+      const double middle = core::median_of({off.begin(), off.end()});
+      const double scale = std::max(core::kSdOverMedian * middle, std::sqrt(kLeastVariance));
+      const double shrink = std::min(1.0, scale * scale / variance_of(blocks[b]));
+      fit.blocks[b] = blocks[b];
+      for (double& gamma : fit.blocks[b].autocovariance_m2) gamma *= shrink;
+      weights.emplace_back(off.size());
+      for (Eigen::Index i = 0; i < off.size(); ++i) {
+        const double deviations = off[i] / scale;
+        weights.back()[i] = last ? (deviations > kOutlier ? 0.0 : 1.0) : std::min(1.0, kHuber / deviations);
+        fit.left_out += weights.back()[i] == 0.0;
+      }
+    }
+    const Problem problem(fit.blocks, std::move(weights), free);
+    fit.found = minimise(problem, fit.found.at);
+    if (!fit.found.converged) break;
+  }
+  return fit;
+}
+
+}  // namespace
+
+std::optional<TrajectoryFit> fit_trajectories(const std::vector<FitBlock>& blocks, const Eigen::Vector3d& start,
+                                              const TrajectoryOptions& options) {
+  if (blocks.empty()) return {};
+  const int direction = only_direction(blocks);
+  const int free = direction == 0 ? 3 : 2;
+  Point first{start, {}};
+  if (direction != 0) first.common = {start[0], start[1] - direction * start[2], 0.0};
+  for (const FitBlock& block : blocks) first.starts.push_back(start_of(*block.block));
+  RobustFit best{minimise_from_several(Problem(blocks, {}, free), first), blocks, 0};
+  if (!best.found.converged) return {};
+  if (options.robust) best = fit_robustly(blocks, free, std::move(best.found));
+  if (!best.found.converged) return {};
+  const TrajectoryUncertainty uncertainty(best.blocks, best.found.linearised, free);
+  if (!uncertainty.determined()) return {};
+  TrajectoryFit fit;
+  fit.parameters = best.found.at.common.head(free);
+  fit.direction = direction;
+  fit.starts = best.found.at.starts;
+  fit.iterations = best.found.iterations;
+  fit.left_out = best.left_out;
+  uncertainty.fill(fit);
+  fit.points -= fit.left_out;
+  return fit;
+}
+
+}  // namespace glidelab::fit

@@ -1,0 +1,143 @@
+#include "fit/trajectory/trajectory_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text/number_text.h"
+#include "core/math/quantile.h"
+#include "core/result/estimate.h"
+#include "core/result/stated_values.h"
+
+namespace glidelab::fit {
+namespace {
+
+constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
+
+core::Quantity quantity_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient) {
+  const double random = gradient.dot(fit.covariance * gradient);
+  double variance = random;
+  for (const Eigen::VectorXd& shift : fit.shared) variance += std::pow(gradient.dot(shift), 2);
+  return core::determined(core::estimate(value, std::sqrt(variance), fit.degrees), std::sqrt(random));
+}
+
+core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k, double a0,
+                              const Eigen::VectorXd& by_a0) {
+  if (fit.direction < 0) return core::undetermined("no motion with v > 0");
+  const core::Estimate intercept = *quantity_of(fit, a0, by_a0).estimate;
+  if (k.value - core::kNormal95 * k.sd <= 0.0) {
+    return core::undetermined("K/m is not above zero by more than its uncertainty");
+  }
+  if (a0 - core::kNormal95 * intercept.sd <= 0.0) {
+    return core::undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
+  }
+  Eigen::VectorXd gradient = by_a0 / k.value;
+  gradient[0] = -a0 / (k.value * k.value);
+  return quantity_of(fit, a0 / k.value, gradient);
+}
+
+void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResult& result) {
+  const double k = fit.parameters[0];
+  Eigen::VectorXd by_k = Eigen::VectorXd::Zero(fit.parameters.size());
+  by_k[0] = 1.0;
+  result.k_over_m_1_s = quantity_of(fit, k, by_k);
+  const core::Estimate& k_estimate = *result.k_over_m_1_s.estimate;
+  if (fit.direction != 0) {
+    Eigen::VectorXd by_a0 = Eigen::Vector2d(0.0, 1.0);
+    const core::Estimate a0 = *quantity_of(fit, fit.parameters[1], by_a0).estimate;
+    const std::string why = fmt::format(
+        "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not the two "
+        "apart",
+        fit.direction > 0 ? ">" : "<", fit.direction > 0 ? "-" : "+", a0.value, a0.sd);
+    result.alpha_deg = result.mu = core::undetermined(why);
+    result.v_lim_m_s = limit_velocity(fit, k_estimate, a0.value, by_a0);
+    return;
+  }
+  const double drive = fit.parameters[1], friction = fit.parameters[2];
+  result.v_lim_m_s = limit_velocity(fit, k_estimate, drive - friction, Eigen::Vector3d(0.0, 1.0, -1.0));
+  if (!(std::abs(drive) < gravity_m_s2)) {
+    result.alpha_deg = result.mu = core::undetermined("the drive is more than gravity: no inclination has it");
+    return;
+  }
+  const double cosine = std::sqrt(1.0 - std::pow(drive / gravity_m_s2, 2));
+  const double alpha_by_drive = 1.0 / (gravity_m_s2 * cosine);
+  result.alpha_deg = quantity_of(fit, std::asin(drive / gravity_m_s2) * kDegreesPerRad,
+                                 Eigen::Vector3d(0.0, alpha_by_drive * kDegreesPerRad, 0.0));
+  // mu = f / (g cos(alpha)); d mu / d alpha = mu tan(alpha)
+  const double mu = friction / (gravity_m_s2 * cosine);
+  const double mu_by_drive = mu * drive / gravity_m_s2 / cosine * alpha_by_drive;
+  result.mu = quantity_of(fit, mu, Eigen::Vector3d(0.0, mu_by_drive, 1.0 / (gravity_m_s2 * cosine)));
+}
+
+/// k, d, f from the lines; where there are none, a glider without friction.
+Eigen::Vector3d start_of(const core::ConfigurationResult& result) {
+  double k = 0.0;
+  for (const core::LineFit& line : result.lines) {
+    k += line.k_over_m_1_s.value / static_cast<double>(result.lines.size());
+  }
+  if (result.lines.size() == 2) {
+    const double minus = result.lines[0].a0_m_s2.value, plus = result.lines[1].a0_m_s2.value;
+    return {k, 0.5 * (minus + plus), 0.5 * (minus - plus)};
+  }
+  return {k, result.lines.empty() ? 0.0 : result.lines.front().a0_m_s2.value, 0.0};
+}
+
+void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::ConfigurationResult& result) {
+  if (options.robust) {
+    result.notes.push_back(fmt::format("robust: {} of {} positions are off the motion and left out", fit.left_out,
+                                       fit.points + fit.left_out));
+  }
+  if (std::isfinite(fit.degrees)) {
+    result.notes.push_back(
+        fmt::format("the positions scatter {} times as far about the fitted motion as their noise, or one part of "
+                    "the motion disagrees with others by more than it explains: the intervals are widened ({:.0f} "
+                    "degrees of freedom)",
+                    base::number_text(fit.scatter, 3), fit.degrees));
+  }
+}
+
+void leave_out(const std::string& why, core::ConfigurationResult& result) {
+  result.k_over_m_1_s = result.mu = result.alpha_deg = result.v_lim_m_s = core::undetermined(why);
+}
+
+}  // namespace
+
+core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options) {
+  results.estimator = "trajectory";
+  for (core::ConfigurationResult& configuration : results.configurations) {
+    configuration.notes.clear();  // of the lines
+    std::vector<FitBlock> blocks;
+    bool forced = false;
+    for (const core::ClipResult& clip : results.clips) {
+      if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {
+        continue;
+      }
+      forced = forced || clip.forced;
+      for (const core::FreeBlock& block : clip.blocks) {
+        blocks.push_back({&block, clip.noise_autocovariance_m2, clip.scale_sd_relative});
+      }
+    }
+    if (forced) {
+      leave_out("a known force acts: the fit of the whole motion does not take it; use the phase diagram",
+                configuration);
+      continue;
+    }
+    if (blocks.empty()) {
+      leave_out("no free motion", configuration);
+      continue;
+    }
+    const auto fit = fit_trajectories(blocks, start_of(configuration), options);
+    if (!fit) {
+      leave_out("the fit of the whole motion does not converge, or the motion does not determine it", configuration);
+      continue;
+    }
+    fill(*fit, results.gravity_m_s2, configuration);
+    note_fit(*fit, options, configuration);
+  }
+  core::note_statements(results.configurations, results.gravity_m_s2);
+  return results;
+}
+
+}  // namespace glidelab::fit

@@ -1,0 +1,142 @@
+#include "render/camera/lens.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidelab::render {
+namespace {
+
+/// The factor of the radius, and its derivative by s = r².
+struct Radial {
+  double factor;
+  double slope;
+};
+
+Radial radial_of(const Lens& lens, double s) {
+  const double factor = 1.0 + s * (lens.k1 + s * (lens.k2 + s * lens.k3));
+  const double slope = lens.k1 + s * (2.0 * lens.k2 + s * 3.0 * lens.k3);
+  if (lens.model == LensModel::brown_conrady) return {factor, slope};
+  if (lens.model == LensModel::rational) {
+    const double below = 1.0 + s * (lens.k4 + s * (lens.k5 + s * lens.k6));
+    const double below_slope = lens.k4 + s * (2.0 * lens.k5 + s * 3.0 * lens.k6);
+    return {factor / below, (slope * below - factor * below_slope) / (below * below)};
+  }
+  // Near the axis theta_d / r = 1 + (k1 - 1/3) s + (1/5 - k1 + k2) s² + …; the next term is 1e-18 at the limit.
+  constexpr double kNearAxis = 1e-6;
+  if (s < kNearAxis) {
+    const double first = lens.k1 - 1.0 / 3.0;
+    const double second = 0.2 - lens.k1 + lens.k2;
+    return {1.0 + s * (first + s * second), first + 2.0 * s * second};
+  }
+  const double r = std::sqrt(s);
+  const double theta = std::atan(r);
+  const double q = theta * theta;
+  const double bent = theta * (1.0 + q * (lens.k1 + q * (lens.k2 + q * (lens.k3 + q * lens.k4))));
+  const double rise = 1.0 + q * (3.0 * lens.k1 + q * (5.0 * lens.k2 + q * (7.0 * lens.k3 + q * 9.0 * lens.k4)));
+  return {bent / r, (rise / (1.0 + s) - bent / r) / (2.0 * s)};
+}
+
+std::optional<Eigen::Vector2d> newton_inverse(const Lens& lens, const Eigen::Vector2d& distorted, Eigen::Vector2d start,
+                                              double largest_radius) {
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector2d miss = distort(lens, start) - distorted;
+    const Eigen::Matrix2d jacobian = distortion_jacobian(lens, start);
+    if (!(jacobian.determinant() > 0.0)) return std::nullopt;
+    const Eigen::Vector2d step = jacobian.inverse() * miss;
+    start -= step;
+    if (!start.allFinite()) return std::nullopt;
+    if (step.norm() <= 1e-15 * (1.0 + start.norm())) {
+      if (start.norm() >= largest_radius || !(distortion_jacobian(lens, start).determinant() > 0.0)) {
+        return std::nullopt;
+      }
+      if ((distort(lens, start) - distorted).norm() > 1e-14 * (1.0 + distorted.norm())) return std::nullopt;
+      return start;
+    }
+  }
+  return std::nullopt;
+}
+
+/// theta of theta_d by bisection and Newton's method between 0 and where the mapping folds or ends.
+std::optional<Eigen::Vector2d> fisheye_inverse(const Lens& lens, const Eigen::Vector2d& distorted,
+                                               double largest_radius) {
+  const double wanted = distorted.norm();
+  if (wanted == 0.0) return distorted;
+  const auto bent = [&](double theta) {
+    const double q = theta * theta;
+    return theta * (1.0 + q * (lens.k1 + q * (lens.k2 + q * (lens.k3 + q * lens.k4))));
+  };
+  double low = 0.0;
+  double high = std::isinf(largest_radius) ? 0.5 * std::numbers::pi : std::atan(largest_radius);
+  if (!(bent(high) > wanted)) return std::nullopt;
+  double theta = std::min(wanted, 0.999 * high);
+  for (int i = 0; i < 100; ++i) {
+    const double miss = bent(theta) - wanted;
+    (miss > 0.0 ? high : low) = theta;
+    const double q = theta * theta;
+    const double rise = 1.0 + q * (3.0 * lens.k1 + q * (5.0 * lens.k2 + q * (7.0 * lens.k3 + q * 9.0 * lens.k4)));
+    double next = theta - miss / rise;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - theta) <= 1e-16 * (1.0 + theta)) break;
+    theta = next;
+  }
+  const double radius = std::tan(theta);
+  if (!(radius < largest_radius)) return std::nullopt;
+  return Eigen::Vector2d(distorted * (radius / wanted));
+}
+
+}  // namespace
+
+const char* name_of(LensModel model) {
+  switch (model) {
+    case LensModel::rational:
+      return "rational";
+    case LensModel::fisheye:
+      return "fisheye";
+    default:
+      return "brown-conrady";
+  }
+}
+
+Eigen::Vector2d distort(const Lens& lens, const Eigen::Vector2d& undistorted) {
+  const double x = undistorted.x();
+  const double y = undistorted.y();
+  const double s = x * x + y * y;
+  const double radial = radial_of(lens, s).factor;
+  return {x * radial + 2.0 * lens.p1 * x * y + lens.p2 * (s + 2.0 * x * x),
+          y * radial + lens.p1 * (s + 2.0 * y * y) + 2.0 * lens.p2 * x * y};
+}
+
+Eigen::Matrix2d distortion_jacobian(const Lens& lens, const Eigen::Vector2d& undistorted) {
+  const double x = undistorted.x();
+  const double y = undistorted.y();
+  const double s = x * x + y * y;
+  const auto [radial, slope] = radial_of(lens, s);
+  Eigen::Matrix2d jacobian;
+  jacobian(0, 0) = radial + 2.0 * x * x * slope + 2.0 * lens.p1 * y + 6.0 * lens.p2 * x;
+  jacobian(0, 1) = 2.0 * x * y * slope + 2.0 * lens.p1 * x + 2.0 * lens.p2 * y;
+  jacobian(1, 0) = jacobian(0, 1);
+  jacobian(1, 1) = radial + 2.0 * y * y * slope + 6.0 * lens.p1 * y + 2.0 * lens.p2 * x;
+  return jacobian;
+}
+
+std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted) {
+  return undistort(lens, distorted, fold_radius(lens));
+}
+
+std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted, double largest_radius) {
+  if (lens.model == LensModel::fisheye) return fisheye_inverse(lens, distorted, largest_radius);
+  if (const auto direct = newton_inverse(lens, distorted, distorted, largest_radius)) return direct;
+  // Far from the axis Newton may start too far off: walk out from the centre in steps.
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  constexpr int kSteps = 64;
+  for (int i = 1; i <= kSteps; ++i) {
+    const auto next = newton_inverse(lens, distorted * (static_cast<double>(i) / kSteps), at, largest_radius);
+    if (!next) return std::nullopt;
+    at = *next;
+  }
+  return at;
+}
+
+}  // namespace glidelab::render

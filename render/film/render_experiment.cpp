@@ -1,0 +1,271 @@
+#include "render/film/render_experiment.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "base/errors.h"
+#include "base/files/append_file.h"
+#include "base/files/staged_output.h"
+#include "base/parallel.h"
+#include "base/text/csv.h"
+#include "render/film/clip_set.h"
+#include "render/film/experiment_and_truth_files.h"
+#include "render/film/ideal_frames.h"
+#include "render/film/marker_truth.h"
+#include "render/paint/static_painter.h"
+#include "render/sensor/readout.h"
+#include "render/video/video_writer.h"
+
+namespace glidelab::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A still picture that has to be taken.
+struct Still {
+  std::string name;  ///< within the experiment folder
+  StaticScene scene;
+};
+
+// Noise streams: clips count from 0, stills from here.
+constexpr std::uint32_t kFirstStill = 0x40000000u;
+// How long a still takes beside a frame, for the progress.
+constexpr double kStillWork = 30.0;
+
+/// What stands behind the pattern and the plumb line.
+StaticScene stills_background(const Scenario& scenario) {
+  return empty_track(scenario, scenario.motion.configurations.front().body.incline_rad);
+}
+
+std::vector<Still> stills_of(const Scenario& scenario, std::uint64_t seed) {
+  const StaticScene track = stills_background(scenario);
+  std::vector<Still> stills;
+  for (const Chessboard& board : calibration_boards(scenario, seed)) {
+    stills.push_back({view_name(stills.size()), track});
+    stills.back().scene.board = board;
+  }
+  const std::size_t planes = scenario.pattern.plane_x_m.size();
+  for (std::size_t i = 0; i < planes; ++i) {
+    stills.push_back({plane_name(i, planes), track});
+    stills.back().scene.board = plane_board(scenario, i);
+  }
+  if (scenario.plumb) {
+    stills.push_back({"plumb.png", track});
+    stills.back().scene.plumb = plumb_line(*scenario.plumb, scenario.camera);
+  }
+  return stills;
+}
+
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) base::throw_system_error(path.string(), "cannot be made", error.value());
+}
+
+FloatPicture scaled(FloatPicture picture, double factor) {
+  for (float& value : picture.values) value = static_cast<float>(static_cast<double>(value) * factor);
+  return picture;
+}
+
+/// Stills are kept with 8 bits, as a viewer program saves them.
+Sensor with_8_bits(const Sensor& sensor) {
+  Sensor shallow = sensor;
+  shallow.bit_depth = 8;
+  if (sensor.converter_bits || sensor.tone.kind != ToneCurve::Kind::linear || sensor.colour == Colour::bayer) {
+    shallow.converter_bits = sensor.converter_bits.value_or(sensor.bit_depth);
+    return shallow;
+  }
+  const double share = 255.0 / sensor.largest_code();
+  shallow.gain_dn_per_e *= share;
+  shallow.offset_dn *= share;
+  return shallow;
+}
+
+/// A table that grows on disk, however long the clip.
+class TruthTable {
+ public:
+  TruthTable(fs::path file, std::string_view header) : file_(std::move(file)), header_(header), rows_(header) {}
+  base::CsvWriter& row() { return rows_; }
+  void end_row() {
+    rows_.end_row();
+    constexpr std::size_t kMost = 1 << 16;
+    if (rows_.str().size() > kMost) flush();
+  }
+  void flush() {
+    const std::string_view header = std::string_view(header_);
+    std::string_view text = rows_.str();
+    if (written_) text.remove_prefix(header.size() + 1);
+    base::append_file(file_, text);
+    written_ = true;
+    rows_ = base::CsvWriter(header);
+  }
+
+ private:
+  fs::path file_;
+  std::string header_;
+  base::CsvWriter rows_;
+  bool written_ = false;
+};
+
+/// What the truth says of one clip, frame by frame of the file.
+class ClipTruth {
+ public:
+  ClipTruth(const fs::path& folder, const std::string& clip)
+      : trajectory_(folder / fmt::format("trajectory-{}.csv", clip), "t_s,x_m,v_m_s,a_m_s2,mode"),
+        marker_(folder / fmt::format("marker-{}.csv", clip), "frame,t_s,u_px,v_px,centroid_u_px,centroid_v_px"),
+        times_(folder / fmt::format("frames-{}.csv", clip), "frame,slot,t_s,stamp_s,duplicate") {}
+
+  /// A frame of the file that shows what was exposed in its own slot, or once more what was before.
+  void add(const ClipStream::Next& frame, const std::optional<MarkerInPicture>& in_picture) {
+    const sim::State& state = frame.shown->middle;
+    trajectory_.row().number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
+    trajectory_.row().text(sim::name_of(state.mode));
+    trajectory_.end_row();
+    const auto number = static_cast<double>(frames_++);
+    if (in_picture) {
+      marker_.row().number(number).number(in_picture->t_s);
+      marker_.row().number(in_picture->center_px.x()).number(in_picture->center_px.y());
+      marker_.row().number(in_picture->centroid_px.x()).number(in_picture->centroid_px.y());
+      marker_.end_row();
+    }
+    times_.row().number(number).number(static_cast<double>(frame.slot)).number(state.t_s).number(frame.stamp_s);
+    times_.row().number(frame.repeated ? 1.0 : 0.0);
+    times_.end_row();
+  }
+
+  void finish() {
+    for (TruthTable* const table : {&trajectory_, &marker_, &times_}) table->flush();
+  }
+
+ private:
+  TruthTable trajectory_, marker_, times_;
+  std::size_t frames_ = 0;
+};
+
+template <typename Code>
+void write_frame(VideoWriter& writer, std::span<const Code> codes, const std::optional<double>& stamp_s) {
+  if constexpr (sizeof(Code) == 1) {
+    if (stamp_s) {
+      writer.write(codes, *stamp_s);
+      return;
+    }
+  }
+  writer.write(codes);
+}
+
+template <typename Code>
+void write_frames(const Scenario& scenario, const sim::Body& body, ClipStream& stream, VideoWriter& writer,
+                  ClipTruth& truth, const std::function<void()>& frame_done) {
+  const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
+  std::vector<Code> codes(static_cast<std::size_t>(all.width) * all.height);
+  std::optional<MarkerInPicture> marker;
+  while (const std::optional<ClipStream::Next> next = stream.next()) {
+    if (!next->repeated) {
+      stream.read(*next->shown, all, std::span<Code>(codes));
+      marker = marker_in_picture(scenario, body, *next->shown);
+    }
+    write_frame(writer, std::span<const Code>(codes),
+                scenario.recording.clock.variable ? std::optional(next->stamp_s) : std::nullopt);
+    truth.add(*next, marker);
+    frame_done();
+  }
+}
+
+fs::path clip_file(const Scenario& scenario, const fs::path& experiment_dir, const std::string& name) {
+  return experiment_dir / "clips" / file_name_of(scenario.codec, scenario.compression, name);
+}
+
+/// One clip's file and its truth.
+void render_clip(const std::shared_ptr<const ClipSet>& set, std::size_t clip, std::uint64_t seed,
+                 const fs::path& experiment_dir, const fs::path& truth_dir, const std::function<void()>& frame_done) {
+  const Scenario& scenario = set->scenario();
+  const std::string& name = set->motion(clip).name;
+  const VideoFormat format{scenario.codec,
+                           scenario.camera.width_px,
+                           scenario.camera.height_px,
+                           scenario.recording.frame_rate_hz,
+                           1,
+                           scenario.compression,
+                           scenario.recording.clock.variable};
+  const auto writer = open_video(clip_file(scenario, experiment_dir, name), format);
+  ClipStream stream(set, clip, seed);
+  const sim::Body& body = set->configuration(clip).body;
+  ClipTruth truth(truth_dir, name);
+  if (scenario.sensor.bit_depth > 8) {
+    write_frames<std::uint16_t>(scenario, body, stream, *writer, truth, frame_done);
+  } else {
+    write_frames<std::uint8_t>(scenario, body, stream, *writer, truth, frame_done);
+  }
+  writer->finish();
+  truth.finish();
+}
+
+/// Views of the pattern and the plumb line, as the camera was before the clips.
+void render_stills(const Scenario& scenario, const RenderOptions& options, const fs::path& experiment_dir,
+                   const std::function<void()>& still_done) {
+  const RayTable rays = make_ray_table(scenario.camera, scenario.vignetting);
+  const double white_e = electrons_of_white(scenario);
+  const std::vector<Still> stills = stills_of(scenario, options.seed);
+  const FloatPicture empty = StaticPainter(scenario.camera, rays, scenario.focus).paint(stills_background(scenario));
+  still_done();
+  const Readout readout(with_8_bits(scenario.sensor), scenario.recording.exposure_s, options.seed,
+                        scenario.camera.width_px, scenario.camera.height_px);
+  base::in_parallel(options.jobs, stills.size(), [&](const auto& next) {
+    StaticPainter painter(scenario.camera, rays, scenario.focus);
+    const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
+    std::vector<std::uint8_t> codes(static_cast<std::size_t>(all.width) * all.height);
+    for (std::size_t i = next(); i < stills.size(); i = next()) {
+      const FloatPicture expected_e = scaled(painter.paint_before(empty, stills[i].scene), white_e);
+      readout.read(expected_e, kFirstStill + static_cast<std::uint32_t>(i), 0, all, std::span<std::uint8_t>(codes));
+      write_png(experiment_dir / stills[i].name, cv::Mat(all.height, all.width, CV_8U, codes.data()));
+      still_done();
+    }
+  });
+}
+
+}  // namespace
+
+RenderSummary render_experiment(const Scenario& scenario, const fs::path& experiment_dir, const fs::path& truth_dir,
+                                const RenderOptions& options, const base::Progress& progress) {
+  make_folder(experiment_dir / "clips");
+  make_folder(experiment_dir / "calibration");
+  make_folder(truth_dir);
+
+  const ClipCount count = count_clips(scenario, options.seed);
+  const std::size_t pictures = (options.stills ? 1 + stills_of(scenario, options.seed).size() : 0) +
+                               (options.clips ? count_set_ups(scenario) : 0);
+  const double all_work =
+      kStillWork * static_cast<double>(pictures) + (options.clips ? static_cast<double>(count.frames) : 0.0);
+  std::atomic<double> done{0.0};
+  const auto advance = [&](double work) {
+    double before = done.load();
+    while (!done.compare_exchange_weak(before, before + work)) {
+    }
+    progress("rendering", std::min(1.0, (before + work) / all_work));
+  };
+  const auto picture_done = [&] { advance(kStillWork); };
+
+  if (options.stills) render_stills(scenario, options, experiment_dir, picture_done);
+  if (options.clips) {
+    const auto set = std::make_shared<const ClipSet>(scenario, options.jobs, picture_done);
+    base::for_each_parallel(set->size(), options.jobs, [&](std::size_t clip) {
+      render_clip(set, clip, options.seed, experiment_dir, truth_dir, [&] { advance(1.0); });
+    });
+  } else {
+    for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+      for (const sim::MotionSetup& motion : configuration.motions) {
+        base::write_file(clip_file(scenario, experiment_dir, motion.name), "");
+      }
+    }
+  }
+
+  if (options.ideal) write_ideal_frames(scenario, truth_dir, options.jobs);
+  base::write_file(experiment_dir / "experiment.toml", experiment_toml(scenario));
+  base::write_file(truth_dir / "truth.json", truth_json(scenario, options.seed));
+  return {count.clips, count.frames};
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,32 @@
+/// A scenario rendered to an experiment folder, and its truth to the folder beside it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "base/progress.h"
+#include "render/scenario/scenario.h"
+
+namespace glidelab::render {
+
+struct RenderOptions {
+  std::uint64_t seed = 1;
+  int jobs = 1;        ///< clips rendered at the same time; every pixel is the same for any number
+  bool ideal = false;  ///< write ideal frames to the truth folder besides (ideal_frames.h)
+  bool clips = true;   ///< false: empty files in their place, for who draws them in memory, and no trajectories
+  bool stills = true;  ///< false: those that lie there from another time stay
+};
+
+struct RenderSummary {
+  std::size_t clips = 0;
+  std::size_t frames = 0;
+};
+
+/// Writes `experiment_dir` (experiment.toml, clips/, calibration/, plumb.png) and `truth_dir` (truth.json,
+/// `trajectory-<clip>.csv`, `marker-<clip>.csv`), two folders that exist and are empty (but for stills, where these
+/// are not asked for). EnvironmentError where a file cannot be written.
+RenderSummary render_experiment(const Scenario& scenario, const std::filesystem::path& experiment_dir,
+                                const std::filesystem::path& truth_dir, const RenderOptions& options,
+                                const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::render

@@ -1,0 +1,238 @@
+#include "render/paint/static_painter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "render/paint/scene_extent.h"
+#include "render/paint/static_rays.h"
+#include "render/paint/static_shader.h"
+
+namespace glidelab::render {
+namespace {
+
+Eigen::Vector4f center_of(const StaticBox& box) {
+  Eigen::Vector4d value;
+  value << box.center_W, std::cos(box.turn_rad);
+  return value.cast<float>();
+}
+Eigen::Vector4f half_of(const StaticBox& box) {
+  Eigen::Vector4d value;
+  value << box.half_m, std::sin(box.turn_rad);
+  return value.cast<float>();
+}
+
+}  // namespace
+
+StaticPainter::StaticPainter(const Camera& camera, const RayTable& rays, const std::optional<Focus>& focus)
+    : camera_(camera), focus_(focus), canvas_(camera.width_px, camera.height_px, 2), gain_(rays.gain) {
+  const int rays_unit = canvas_.add_texture(rays.width, rays.height, 4, rays.x_y_dxdu_dxdv);
+  const int slopes_unit = canvas_.add_texture(rays.width, rays.height, 2, rays.dydu_dydv);
+  canvas_.add_program(static_shader(focus_.has_value()));
+  if (focus_) {
+    canvas_.set("lens", canvas_.add_texture(kFocusRays, 2, 4, lens_rays(*focus_, camera_)));
+    canvas_.set("focus_distance", static_cast<float>(focus_->focus_distance_m));
+  }
+  canvas_.set("rays", rays_unit);
+  canvas_.set("slopes", slopes_unit);
+  wanted_unit_ = canvas_.add_texture(1, 1, 1, std::vector<float>{0.0f});
+  canvas_.set("wanted", wanted_unit_);
+  canvas_.set_array("offset", std::span<const Eigen::Vector2f>(pixel_places()));
+  canvas_.set("rotation", Eigen::Matrix3f(camera.X_WC.linear().cast<float>()));
+  canvas_.set("eye", Eigen::Vector3f(camera.X_WC.translation().cast<float>()));
+  canvas_.set("to_light", Eigen::Vector3f(kToLight.cast<float>()));
+  canvas_.set("ambient", static_cast<float>(kAmbient));
+}
+
+int StaticPainter::blur_reach_px(const StaticScene& scene) const {
+  const Eigen::Isometry3d X_CW = camera_.X_WC.inverse();
+  double nearest = std::numeric_limits<double>::infinity();
+  double farthest = 0.0;
+  const auto add = [&](const Eigen::Vector3d& p_W) {
+    constexpr double kBefore = 0.2;  // m; what is nearer is hardly in the picture
+    const double depth = std::max((X_CW * p_W).z(), kBefore);
+    nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+  };
+  for (const double side : {-0.5, 0.5}) {
+    for (const double up : {-0.5, 0.5}) {
+      const Eigen::Vector3d ray(side * camera_.width_px / camera_.focal_px.x(),
+                                up * camera_.height_px / camera_.focal_px.y(), 1.0);
+      const Eigen::Vector3d along = camera_.X_WC.linear() * ray;
+      if (along.z() < 0.0) {
+        add(camera_.X_WC.translation() + (scene.wall_z_m - camera_.X_WC.translation().z()) / along.z() * along);
+      }
+    }
+  }
+  // Of boxes the middle of what is before the camera: a table may reach under it.
+  for (const StaticBox& box : scene.boxes) add(box.center_W + Eigen::Vector3d(0.0, 0.0, box.half_m.z()));
+  if (scene.board) {
+    for (const Eigen::Vector3d& corner : outline_of(*scene.board)) add(corner);
+  }
+  if (scene.plumb) add({scene.plumb->x_m, scene.plumb->top_y_m, scene.plumb->z_m});
+  const double disc = std::max(disc_radius_px(*focus_, camera_, nearest), disc_radius_px(*focus_, camera_, farthest));
+  return static_cast<int>(std::ceil(std::min(disc + 3.0 * core_sigma_px(*focus_, camera_), 500.0)));
+}
+
+void StaticPainter::show(const StaticScene& scene) {
+  if (scene.boxes.size() > kMostBoxes) throw std::logic_error("too many boxes for the shader");
+  canvas_.use(0);
+  canvas_.set(
+      "light",
+      Eigen::Vector3f(
+          Eigen::Vector3d(scene.light_middle_m.x(), scene.light_middle_m.y(), scene.light_falloff).cast<float>()));
+  canvas_.set("gradient", Eigen::Vector2f(scene.light_gradient_per_m.cast<float>()));
+  canvas_.set("wall", Eigen::Vector2f(Eigen::Vector2d(scene.wall_z_m, scene.wall_albedo).cast<float>()));
+  canvas_.set("has_board", scene.board ? 1 : 0);
+  if (scene.board) {
+    const Chessboard& board = *scene.board;
+    // A ray d (camera frame) meets the board's plane at t d = R (X, Y) + o: t^-1 (X, Y, 1) = [r1 r2 o]^-1 d.
+    const Eigen::Isometry3d X_CP = camera_.X_WC.inverse() * board.X_WP;
+    Eigen::Matrix3d plane;
+    plane << X_CP.linear().col(0) * board.square_m, X_CP.linear().col(1) * board.square_m, X_CP.translation();
+    Eigen::Matrix3d to_board = plane.inverse();
+    to_board /= to_board.row(2).norm();
+    canvas_.set("to_board", Eigen::Matrix3f(to_board.cast<float>()));
+    canvas_.set("board_normal", Eigen::Vector3f(Eigen::Vector3d(board.X_WP.linear().col(2)).cast<float>()));
+    canvas_.set("board_origin", Eigen::Vector3f(Eigen::Vector3d(board.X_WP.translation()).cast<float>()));
+    if (focus_) {
+      canvas_.set("board_x", Eigen::Vector3f((board.X_WP.linear().col(0) / board.square_m).cast<float>()));
+      canvas_.set("board_y", Eigen::Vector3f((board.X_WP.linear().col(1) / board.square_m).cast<float>()));
+    }
+    canvas_.set("board_size",
+                Eigen::Vector3f(static_cast<float>(board.inner_columns), static_cast<float>(board.inner_rows),
+                                static_cast<float>(board.border_squares)));
+    canvas_.set("board_albedo", Eigen::Vector2f(Eigen::Vector2d(board.white_albedo, board.black_albedo).cast<float>()));
+  }
+  if (scene.plumb) {
+    const PlumbLine& plumb = *scene.plumb;
+    canvas_.set("thread",
+                Eigen::Vector4f(Eigen::Vector4d(plumb.x_m, plumb.z_m, plumb.top_y_m, plumb.bottom_y_m).cast<float>()));
+    canvas_.set("bob",
+                Eigen::Vector3f(
+                    Eigen::Vector3d(0.5 * plumb.diameter_m, 0.5 * plumb.bob_diameter_m, plumb.albedo).cast<float>()));
+  } else {
+    canvas_.set("bob", Eigen::Vector3f(Eigen::Vector3f::Zero()));
+  }
+  std::vector<Eigen::Vector4f> caster_centers, caster_halves;
+  Eigen::AlignedBox3d casters;
+  for (const StaticBox& box : scene.boxes) {
+    if (!box.casts_shadow) continue;
+    caster_centers.push_back(center_of(box));
+    caster_halves.push_back(half_of(box));
+    const double c = std::abs(std::cos(box.turn_rad)), s = std::abs(std::sin(box.turn_rad));
+    const Eigen::Vector3d half = box.half_m;
+    // And a millimetre for single precision.
+    const Eigen::Vector3d reach =
+        Eigen::Vector3d(c * half.x() + s * half.y(), s * half.x() + c * half.y(), half.z()).array() + 1e-3;
+    casters.extend(box.center_W - reach).extend(box.center_W + reach);
+  }
+  if (!casters.isEmpty()) {
+    canvas_.set("casters_low", Eigen::Vector3f(casters.min().cast<float>()));
+    canvas_.set("casters_high", Eigen::Vector3f(casters.max().cast<float>()));
+  }
+  canvas_.set("casters", static_cast<int>(caster_centers.size()));
+  canvas_.set_array("caster_center", std::span<const Eigen::Vector4f>(caster_centers));
+  canvas_.set_array("caster_half", std::span<const Eigen::Vector4f>(caster_halves));
+}
+
+void StaticPainter::draw_tiles(const StaticScene& scene, const PixelRect& within,
+                               const std::function<bool(const PixelRect&)>& is_wanted) {
+  std::vector<PixelRect> rects;
+  for (const StaticBox& box : scene.boxes) rects.push_back(pixels_of(camera_, box));
+  constexpr int kTile = 64;
+  for (int y = within.y; y < within.y + within.height; y += kTile) {
+    for (int x = within.x; x < within.x + within.width; x += kTile) {
+      const PixelRect tile = intersection({x, y, kTile, kTile}, within);
+      if (!is_wanted(tile)) continue;
+      std::vector<Eigen::Vector4f> centers, halves;
+      std::vector<Eigen::Vector2f> looks;
+      for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
+        if (intersection(tile, rects[i]).empty()) continue;
+        const StaticBox& box = scene.boxes[i];
+        centers.push_back(center_of(box));
+        halves.push_back(half_of(box));
+        looks.emplace_back(static_cast<float>(box.albedo), static_cast<float>(box.surface));
+      }
+      canvas_.set("boxes", static_cast<int>(centers.size()));
+      canvas_.set_array("box_center", std::span<const Eigen::Vector4f>(centers));
+      canvas_.set_array("box_half", std::span<const Eigen::Vector4f>(halves));
+      canvas_.set_array("box_look", std::span<const Eigen::Vector2f>(looks));
+      canvas_.draw(tile);
+    }
+  }
+}
+
+FloatPicture StaticPainter::cast_rays(const StaticScene& scene, const PixelRect& within, int reach_px) {
+  std::vector<float> values(static_cast<std::size_t>(within.width) * within.height * 2);
+  canvas_.set("first_pass", 1);
+  draw_tiles(scene, within, [](const PixelRect&) { return true; });
+  canvas_.read(within, values);
+  FloatPicture picture(within.width, within.height);
+  FloatPicture spread(within.width, within.height);
+  for (std::size_t i = 0; i < picture.values.size(); ++i) {
+    picture.values[i] = values[2 * i];
+    spread.values[i] = values[2 * i + 1];
+  }
+  FloatPicture wanted = wanted_rays(picture, spread);
+  if (focus_) {
+    // All that a blurred edge may reach.
+    cv::Mat rays(within.height, within.width, CV_32F, wanted.values.data());
+    cv::dilate(rays, rays, cv::Mat::ones(2 * reach_px + 1, 2 * reach_px + 1, CV_8U));
+    for (float& count : wanted.values) count = count > 0.0f ? static_cast<float>(kFocusRays) : 0.0f;
+  }
+  FloatPicture of_all(camera_.width_px, camera_.height_px);
+  for (int y = 0; y < within.height; ++y) {
+    std::ranges::copy(wanted.row(y, 0, within.width), of_all.row(within.y + y, within.x, within.width).begin());
+  }
+  canvas_.update_texture(wanted_unit_, of_all.width, of_all.height, 1, of_all.values);
+  canvas_.set("first_pass", 0);
+  draw_tiles(scene, within, [&](const PixelRect& tile) {
+    for (int y = tile.y; y < tile.y + tile.height; ++y) {
+      if (std::ranges::max(of_all.row(y, tile.x, tile.width)) > 0.0f) return true;
+    }
+    return false;
+  });
+  canvas_.read(within, values);
+  for (std::size_t i = 0; i < picture.values.size(); ++i) {
+    if (wanted.values[i] > 0.5f) picture.values[i] = values[2 * i];
+  }
+  for (int y = 0; y < (gain_.empty() ? 0 : within.height); ++y) {
+    const std::span<float> row = picture.row(y, 0, within.width);
+    const float* gain = gain_.data() + static_cast<std::size_t>(within.y + y) * camera_.width_px + within.x;
+    for (std::size_t x = 0; x < row.size(); ++x) row[x] *= gain[x];
+  }
+  return picture;
+}
+
+FloatPicture StaticPainter::paint(const StaticScene& scene) {
+  show(scene);
+  return cast_rays(scene, {0, 0, camera_.width_px, camera_.height_px}, focus_ ? blur_reach_px(scene) : 0);
+}
+
+FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const StaticScene& scene) {
+  show(scene);
+  const int reach_px = focus_ ? blur_reach_px(scene) : 0;
+  const PixelRect changed = pixels_before(camera_, scene, reach_px);
+  if (changed.empty()) return empty;
+  // How many rays a pixel gets depends on those around it.
+  const int around = reach_px + 2;
+  const PixelRect drawn =
+      intersection({0, 0, camera_.width_px, camera_.height_px},
+                   {changed.x - around, changed.y - around, changed.width + 2 * around, changed.height + 2 * around});
+  const FloatPicture part = cast_rays(scene, drawn, reach_px);
+  FloatPicture picture = empty;
+  for (int y = changed.y; y < changed.y + changed.height; ++y) {
+    std::ranges::copy(part.row(y - drawn.y, changed.x - drawn.x, changed.width),
+                      picture.row(y, changed.x, changed.width).begin());
+  }
+  return picture;
+}
+
+}  // namespace glidelab::render

@@ -1,0 +1,200 @@
+#include "render/scenario/read_sensor.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "render/scenario/read_optics.h"
+#include "render/scenario/scene.h"
+
+namespace glidelab::render {
+namespace {
+
+using base::TomlTable;
+
+void read_converter(const TomlTable& table, Sensor& sensor) {
+  sensor.bit_depth = static_cast<int>(table.integer_or("bit_depth", sensor.bit_depth, 8, 16));
+  if (!table.has("converter_bits")) return;
+  sensor.converter_bits = static_cast<int>(table.integer("converter_bits", 8, 16));
+  if (*sensor.converter_bits < sensor.bit_depth) {
+    table.reject("converter_bits", fmt::format("{}", *sensor.converter_bits),
+                 fmt::format("at least the {} bits of the codes that come out", sensor.bit_depth));
+  }
+}
+
+void read_charge(const TomlTable& table, Sensor& sensor) {
+  const double codes = sensor.largest_converter_code();
+  sensor.full_well_e = table.number_or("full_well_e", sensor.full_well_e, {10.0, 1e7, false, false});
+  sensor.read_noise_e = table.number_or("read_noise_e", sensor.read_noise_e, base::between(0.0, 1e5));
+  sensor.offset_dn = table.number_or("offset_dn", std::round(codes / 128.0), base::between(0.0, 0.5 * codes));
+  sensor.gain_dn_per_e =
+      table.number_or("gain_dn_per_e", (codes - sensor.offset_dn) / sensor.full_well_e, {0.0, 1e5, true, false});
+}
+
+void read_pixels(const TomlTable& table, PixelSpread& pixels) {
+  pixels.dark_signal_e_s = table.number_or("dark_signal_e_s", 0.0, base::between(0.0, 1e7));
+  pixels.prnu = table.number_or("prnu", 0.0, base::between(0.0, 0.5));
+  pixels.dsnu_e = table.number_or("dsnu_e", 0.0, base::between(0.0, 1e5));
+  pixels.hot_fraction = table.number_or("hot_fraction", 0.0, base::between(0.0, 1.0));
+  pixels.hot_signal_e_s = table.number_or("hot_signal_e_s", 0.0, base::between(0.0, 1e9));
+  pixels.dead_fraction = table.number_or("dead_fraction", 0.0, base::between(0.0, 1.0));
+  if (pixels.hot_fraction > 0.0 && !(pixels.hot_signal_e_s > 0.0) && !table.has("hot_signal_e_s")) {
+    table.reject("hot_signal_e_s", "nothing",
+                 "what a hot pixel has beyond the dark signal, where hot_fraction is given");
+  }
+}
+
+bool rises(const std::vector<double>& values) {
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (!(values[i] > values[i - 1])) return false;
+  }
+  return values.size() > 1 && values.front() == 0.0 && values.back() == 1.0;
+}
+
+void read_tone(const TomlTable& table, ToneCurve& tone) {
+  const std::string word = table.word("tone", {"linear", "gamma", "bt709", "table"}, "linear");
+  if (word == "gamma") {
+    tone.kind = ToneCurve::Kind::gamma;
+    tone.gamma = table.number("gamma", base::between(0.2, 5.0));
+  } else if (word == "bt709") {
+    tone.kind = ToneCurve::Kind::bt709;
+  } else if (word == "table") {
+    const std::vector<double> from = table.numbers("tone_from", 0), to = table.numbers("tone_to", 0);
+    if (rises(from) && rises(to) && from.size() == to.size()) {
+      tone = {ToneCurve::Kind::table, tone.gamma, from, to};
+      return;
+    }
+    // Refused, and linear: what is read next computes with the curve, and must not look into a table that is not there.
+    table.reject("tone_to", fmt::format("{} numbers, beside {} in tone_from", to.size(), from.size()),
+                 "as many in both, rising from 0 to 1");
+  }
+}
+
+void read_colour(const TomlTable& table, Sensor& sensor) {
+  if (table.word("colour", {"mono", "bayer"}, "mono") == "mono") return;
+  sensor.colour = Colour::bayer;
+  if (const auto response = table.maybe_numbers("colour_response", 3, {0.01, 1.0, false, false})) {
+    sensor.colour_response = {(*response)[0], (*response)[1], (*response)[2]};
+  }
+}
+
+void read_white(const TomlTable& table, const Scenario& scenario, Exposure& exposure) {
+  exposure.quantum_efficiency = table.number_or("quantum_efficiency", 1.0, {0.0, 1.0, true, false});
+  exposure.white_photons_s = table.maybe_number("white_photons_s", base::above(0.0));
+  const bool linear = scenario.sensor.tone.kind == ToneCurve::Kind::linear;
+  const base::Range levels{0.01, linear ? 10.0 : 1.0, false, false};
+  if (!exposure.white_photons_s) {
+    exposure.white_level = table.number_or("white_level", exposure.white_level, levels);
+    if (!(electrons_of_white(scenario) > 0.0)) {
+      table.reject("white_level", fmt::format("{}", exposure.white_level), "a white above the offset");
+    }
+  } else if (table.has("white_level")) {
+    table.reject("white_level", "a level beside white_photons_s", "one of the two");
+    table.number("white_level");
+  }
+}
+
+void read_h264(const TomlTable& table, Scenario& scenario) {
+  Compression& compression = scenario.compression;
+  compression.gop = static_cast<int>(table.integer_or("gop", compression.gop, 1, 10'000));
+  compression.bitrate_kbit_s = table.number_or("bitrate_kbit_s", 0.0, base::between(10.0, 1e6));
+  if (table.has("bitrate_kbit_s") && table.has("crf")) {
+    table.reject("crf", "a constant rate factor beside a bit rate", "one of the two");
+  }
+  compression.crf = table.number_or("crf", compression.crf, base::between(0.0, 51.0));
+  const Camera& camera = scenario.camera;
+  if (camera.width_px % 2 != 0 || camera.height_px % 2 != 0) {
+    table.reject("name", fmt::format("text \"h264\" for {} x {} pixels", camera.width_px, camera.height_px),
+                 "even numbers of pixels");
+  }
+}
+
+void read_container(const TomlTable& table, Scenario& scenario) {
+  if (!table.has("container")) return;
+  const std::string name = table.word("container", {"mkv", "avi", "mp4"});
+  const Container container = name == "mkv" ? Container::mkv : name == "avi" ? Container::avi : Container::mp4;
+  scenario.compression.container = container;
+  if (!fits(scenario.codec, container)) {
+    table.reject("container", fmt::format("text \"{}\" for {}", name, name_of(scenario.codec)),
+                 "mkv for ffv1, avi for raw, avi, mkv or mp4 for mjpeg, mp4 or mkv for h264");
+  }
+}
+
+/// Exposures must not overlap, and a file must be able to hold the stamps.
+void check_clock(const TomlTable& table, const Scenario& scenario) {
+  const Recording& recording = scenario.recording;
+  const ClockSetup& clock = recording.clock;
+  const double rate_hz = recording.frame_rate_hz * (1.0 + 1e-6 * clock.rate_error_ppm);
+  const double free_s = longest_exposure_s(rate_hz) - recording.exposure_s - 2.0 * kLargestJitter * clock.jitter_s;
+  const bool refused = recording.exposure_s > longest_exposure_s(recording.frame_rate_hz);  // of [camera] already
+  if (free_s < 0.0 && !refused) {
+    table.reject(clock.jitter_s > 0.0 ? "jitter_s" : "rate_error_ppm",
+                 fmt::format("exposures of {} s every {} s that overlap", recording.exposure_s, 1.0 / rate_hz),
+                 "exposures that do not, with a jitter of up to 5.9 standard deviations each");
+  }
+  const Container container = scenario.compression.container.value_or(usual_container(scenario.codec));
+  if (clock.variable && (container == Container::avi || container == Container::folder)) {
+    table.reject("variable", fmt::format("a variable rate for {}", name_of(scenario.codec)),
+                 "a codec in mkv or mp4, which hold time stamps");
+  }
+}
+
+void read_tick(const TomlTable& table, ClockSetup& clock, double frame_rate_hz) {
+  if (!table.has("stamp_tick_s")) return;
+  clock.stamp_tick_s = table.number("stamp_tick_s", {0.0, 0.5 / frame_rate_hz, true, false});
+  if (!clock.variable) table.reject("stamp_tick_s", "a tick", "variable = true beside it: only then there are stamps");
+}
+
+}  // namespace
+
+void read_sensor(const TomlTable& root, Scenario& scenario) {
+  Sensor& sensor = scenario.sensor;
+  const std::optional<TomlTable> table = root.maybe_table("sensor");
+  if (!table) return;
+  read_converter(*table, sensor);
+  read_charge(*table, sensor);
+  read_pixels(*table, sensor.pixels);
+  read_tone(*table, sensor.tone);
+  read_colour(*table, sensor);
+  read_white(*table, scenario, scenario.exposure);
+}
+
+void read_codec(const TomlTable& root, Scenario& scenario) {
+  const bool deep = scenario.sensor.bit_depth > 8;
+  scenario.codec = deep ? Codec::png : Codec::ffv1;
+  const std::optional<TomlTable> table = root.maybe_table("codec");
+  if (!table) return;
+  const std::string name = table->word("name", {"ffv1", "raw", "png", "mjpeg", "h264"});
+  for (const Codec codec : {Codec::ffv1, Codec::raw, Codec::png, Codec::mjpeg, Codec::h264}) {
+    if (name == name_of(codec)) scenario.codec = codec;
+  }
+  if (deep && scenario.codec != Codec::png) {
+    table->reject("name", fmt::format("text \"{}\"", name),
+                  fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));
+  }
+  Compression& compression = scenario.compression;
+  if (scenario.codec == Codec::mjpeg) {
+    compression.quality = static_cast<int>(table->integer_or("quality", compression.quality, 1, 100));
+  }
+  if (scenario.codec == Codec::h264) read_h264(*table, scenario);
+  read_container(*table, scenario);
+}
+
+void read_clock(const TomlTable& root, Scenario& scenario) {
+  const std::optional<TomlTable> table = root.maybe_table("clock");
+  if (!table) return;
+  ClockSetup& clock = scenario.recording.clock;
+  clock.rate_error_ppm = table->number_or("rate_error_ppm", 0.0, base::between(-1e5, 1e5));
+  clock.jitter_s = table->number_or("jitter_s", 0.0, base::between(0.0, 1.0));
+  clock.dropped_fraction = table->number_or("dropped_fraction", 0.0, base::between(0.0, 0.9));
+  clock.duplicated_fraction = table->number_or("duplicated_fraction", 0.0, base::between(0.0, 0.9));
+  if (clock.dropped_fraction + clock.duplicated_fraction > 0.9) {
+    table->reject("duplicated_fraction", fmt::format("{}", clock.duplicated_fraction),
+                  "a tenth of the frames or more that are neither dropped nor duplicated");
+  }
+  clock.variable = table->boolean_or("variable", false);
+  read_tick(*table, clock, scenario.recording.frame_rate_hz);
+  check_clock(*table, scenario);
+}
+
+}  // namespace glidelab::render

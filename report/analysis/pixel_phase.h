@@ -1,0 +1,41 @@
+/// Pixel locking: does the error of a centre follow where in its pixel the centre lies?
+///
+/// For every marker centre, along the picture's axis in which it moves most: its phase (distance from the pixel's
+/// middle, -0.5 to 0.5 px) and its error in pixels, that is the measured position minus the smoothed one (or, in a
+/// rehearsal, minus the true one) times the pixels a metre of its clip. A finder that is drawn to pixels shows a wave;
+/// its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/result/results.h"
+#include "report/html/plot.h"
+#include "validate/truth/comparison.h"
+
+namespace glidelab::report {
+
+/// One centre.
+struct PixelPhase {
+  double phase_px = 0.0;  ///< from the middle of its pixel, -0.5 to 0.5
+  double error_px = 0.0;
+};
+
+/// Of the points that the fits use; empty for tracks.
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results);
+/// Of every centre, from the truth.
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results,
+                                     const validate::RestitutionComparison& restitution);
+
+struct PixelLocking {
+  double amplitude_px = 0.0;  ///< of the first harmonic
+  double sd_px = 0.0;         ///< of A and of B, the errors taken as independent
+};
+
+/// Nothing for fewer than 20 points, and where they leave a quarter of the pixel empty.
+std::optional<PixelLocking> pixel_locking(const std::vector<PixelPhase>& points);
+
+/// The points, their means over twentieths of a pixel, and the harmonic. Nothing where pixel_locking() gives nothing.
+std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool from_truth);
+
+}  // namespace glidelab::report

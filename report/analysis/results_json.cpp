@@ -1,0 +1,158 @@
+#include "report/analysis/results_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/text/json_numbers.h"
+#include "report/text/output_names.h"
+
+namespace glidelab::report {
+namespace {
+
+Json line_json(const core::LineFit& line) {
+  Json object;
+  object["direction"] = line.direction;
+  object["points"] = line.points;
+  put(object, "k_over_m_1_s", line.k_over_m_1_s);
+  put(object, "a0_m_s2", line.a0_m_s2);
+  put(object, "covariance_k_over_m_a0", line.covariance);
+  put(object, "r2", line.r2);
+  object["v_range_m_s"] = {line.from_v_m_s, line.to_v_m_s};
+  return object;
+}
+
+Json lines_json(const std::vector<core::LineFit>& lines) {
+  Json list = Json::array();
+  for (const core::LineFit& line : lines) list.push_back(line_json(line));
+  return list;
+}
+
+Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
+  Json object;
+  object["name"] = clip.name;
+  object["experiment"] = clip.experiment;
+  object["frames"] = clip.frames;
+  object["detected"] = clip.detected;
+  put(object, "frame_rate_hz", clip.frame_rate_hz);
+  put(object, "bandwidth_s", clip.bandwidth_s);
+  object["bandwidth_method"] = clip.bandwidth_method;
+  put(object, "position_noise_m", clip.position_noise_m);
+  if (clip.rounding_m) put(object, "rounding_m", *clip.rounding_m);
+  if (!clip.lost_frames.empty()) {
+    object["lost_frames"] = Json::array();
+    for (const core::LostFrames& gap : clip.lost_frames) {
+      object["lost_frames"].push_back({{"after_s", gap.after_s}, {"count", gap.count}});
+    }
+  }
+  object["segments"] = lines_json(clip.segments);
+  put(object, "v_lim_m_s", clip.v_lim_m_s);
+  object["stretches"] = Json::array();
+  for (const core::Stretch& stretch : clip.stretches) {
+    object["stretches"].push_back({{"from_s", stretch.from_s},
+                                   {"to_s", stretch.to_s},
+                                   {"direction", stretch.direction},
+                                   {"points", stretch.points}});
+  }
+  object["left_out"] = Json::array();
+  for (const core::LeftOutInterval& interval : clip.left_out) {
+    object["left_out"].push_back({{"from_s", interval.from_s},
+                                  {"to_s", interval.to_s},
+                                  {"frames", interval.frames},
+                                  {"reason", core::describe(interval.reason)}});
+  }
+  object["notes"] = clip.notes;
+  object["phase_file"] = phase_file;
+  return object;
+}
+
+Json configuration_json(const core::ConfigurationResult& configuration) {
+  Json object;
+  object["mass_kg"] = configuration.mass_kg;
+  object["incline_deg"] = configuration.incline_deg;
+  object["group"] = configuration.group;
+  object["clips"] = configuration.clips;
+  put(object, "k_over_m_1_s", configuration.k_over_m_1_s);
+  put(object, "mu", configuration.mu);
+  put(object, "alpha_deg", configuration.alpha_deg);
+  put(object, "v_lim_m_s", configuration.v_lim_m_s);
+  object["lines"] = lines_json(configuration.lines);
+  object["notes"] = configuration.notes;
+  return object;
+}
+
+Json calibration_json(const core::CalibrationResult& calibration) {
+  Json object;
+  object["experiment"] = calibration.experiment;
+  put(object, "rms_px", calibration.rms_px);
+  object["camera_matrix"] = calibration.camera_matrix;
+  object["lens"] = lens_of(calibration);
+  object["distortion"] = calibration.distortion;
+  object["sd"] = calibration.sd;
+  object["model"] = calibration.model;
+  put(object, "restitution_rms_m", calibration.restitution_rms_m);
+  put(object, "plane_rms_px", calibration.plane_rms_px);
+  put(object, "plane_expected_px", calibration.plane_expected_px);
+  object["views_used"] = calibration.views_used;
+  object["notes"] = calibration.notes;
+  return object;
+}
+
+/// One set-up: its angle. Several: each under its name, as the form asks for.
+Json inclination_json(const core::AnalysisResults& results) {
+  std::vector<std::string> groups;
+  for (const core::ConfigurationResult& configuration : results.configurations) {
+    if (std::find(groups.begin(), groups.end(), configuration.group) == groups.end()) {
+      groups.push_back(configuration.group);
+    }
+  }
+  Json object;
+  Json by_group = Json::object();
+  for (const core::PlumbResult& plumb : results.plumbs) {
+    std::string name = plumb.group;
+    for (int n = 2; by_group.contains(name); ++n) name = fmt::format("{} ({})", plumb.group, n);
+    put(by_group[name], "plumb_deg", plumb.plumb_deg);
+  }
+  if (results.plumbs.empty()) {
+    put(object, "plumb_deg", std::nullopt, "there is no view of a plumb line");
+  } else if (results.plumbs.size() == 1 && groups.size() <= 1) {
+    put(object, "plumb_deg", results.plumbs.front().plumb_deg);
+  } else {
+    put(object, "plumb_deg", std::nullopt, "there are several groups; see \"groups\"");
+  }
+  if (!by_group.empty()) object["groups"] = std::move(by_group);
+  return object;
+}
+
+}  // namespace
+
+std::string lens_of(const core::CalibrationResult& calibration) {
+  return calibration.distortion.size() == 4 ? "fisheye" : "brown-conrady";
+}
+
+std::string results_json(const core::AnalysisResults& results) {
+  Json document;
+  document["format"] = 1;
+  document["estimator"] = results.estimator;
+  const std::vector<std::string> phase_files = phase_file_names(results);
+  document["clips"] = Json::array();
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    document["clips"].push_back(clip_json(results.clips[c], phase_files[c]));
+  }
+  document["configurations"] = Json::array();
+  for (const core::ConfigurationResult& configuration : results.configurations) {
+    document["configurations"].push_back(configuration_json(configuration));
+  }
+  document["calibration"] = nullptr;
+  if (!results.calibrations.empty()) document["calibration"] = calibration_json(results.calibrations.front());
+  if (results.calibrations.size() > 1) {
+    document["calibrations"] = Json::array();
+    for (const core::CalibrationResult& calibration : results.calibrations) {
+      document["calibrations"].push_back(calibration_json(calibration));
+    }
+  }
+  document["inclination"] = inclination_json(results);
+  return json_text(document);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,285 @@
+#include "report/blind/blind_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/text/number_text.h"
+#include "report/analysis/text_table.h"
+#include "report/blind/blind_targets.h"
+#include "report/html/gnuplot.h"
+#include "report/html/html.h"
+#include "report/html/plot_style.h"
+#include "report/text/json_numbers.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::BlindShare;
+
+std::string percent_only(const BlindShare& share) {
+  return share.of == 0 ? "–" : fmt::format("{:.0f} %", 100.0 * share.share());
+}
+
+/// Of the kinds of case, as the methods' table and plot have them.
+std::array<BlindShare, 6> kinds_of(const validate::BlindMethod& method) {
+  return {method.none,
+          share_of(method.single, "weak"),
+          share_of(method.single, "moderate"),
+          share_of(method.single, "strong"),
+          method.pair,
+          method.outside};
+}
+
+std::vector<std::string> percents_of(const validate::BlindMethod& method) {
+  std::vector<std::string> cells;
+  for (const BlindShare& share : kinds_of(method)) cells.push_back(percent_only(share));
+  return cells;
+}
+
+std::string wanted_calibration_text() {
+  return fmt::format("below {}", kWantedCalibration);
+}
+
+std::string said_text(const validate::ConfusionRow& row) {
+  std::vector<std::pair<std::string, std::size_t>> said(row.said.begin(), row.said.end());
+  std::stable_sort(said.begin(), said.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text;
+  for (const auto& [word, times] : said) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", word, times);
+  return text;
+}
+
+Json share_json(const BlindShare& share) {
+  return {{"of", share.of}, {"yes", share.yes}};
+}
+
+Json shares_json(const std::map<std::string, BlindShare>& shares) {
+  Json object = Json::object();
+  for (const auto& [key, share] : shares) object[key] = share_json(share);
+  return object;
+}
+
+Json outcome_json(const validate::BlindOutcome& outcome) {
+  Json one{{"case", outcome.index}, {"kind", validate::word(outcome.kind)}, {"clips", outcome.clips}};
+  one["truth"] = Json::array();
+  for (const auto& cause : outcome.causes) {
+    Json object{{"id", cause.id}};
+    put(object, "log_likelihood_gain", cause.gain);
+    object["parameters"] = cause.parameters;
+    one["truth"].push_back(std::move(object));
+  }
+  one["verdict"] = outcome.verdict.verdict;
+  if (!outcome.verdict.why.empty()) one["why"] = outcome.verdict.why;
+  one["named"] = Json::array();
+  for (const auto& effect : outcome.verdict.effects) {
+    one["named"].push_back(
+        {{"id", effect.id}, {"probability", effect.probability}, {"equivalent_to", effect.equivalent_to}});
+  }
+  put(one, "none", outcome.verdict.none);
+  put(one, "unknown", outcome.verdict.unknown);
+  if (outcome.left_out) {
+    one["left_out"] = {{"verdict", outcome.left_out->verdict}, {"named", Json::array()}};
+    for (const auto& effect : outcome.left_out->effects) {
+      one["left_out"]["named"].push_back({{"id", effect.id}, {"probability", effect.probability}});
+    }
+  }
+  return one;
+}
+
+Plot reliability_plot(const validate::BlindScore& score) {
+  PlotData data{"bins", {}, {"probability stated", "share right", "95 % from", "95 % to"}};
+  for (const validate::ReliabilityBin& bin : score.reliability) {
+    if (bin.right.of == 0) continue;
+    const validate::ProportionInterval interval = bin.right.interval95();
+    data.rows.push_back({bin.stated, bin.right.share(), interval.low, interval.high});
+  }
+  const std::string script = std::string(kFrame) +
+                             "unset offsets\nset xrange [0:1.03]\nset yrange [0:1.03]\n"
+                             "set xlabel 'probability that was stated'\nset ylabel 'share that was right'\n" +
+                             fmt::format(
+                                 "plot x with lines lw 1.5 lc rgb '{}' title 'as stated', $bins using 1:2:3:4 with "
+                                 "yerrorbars pt 7 ps 0.9 lw 1.5 lc rgb '{}' title 'cases'\n",
+                                 kGrey, kColors[0]);
+  const std::vector<PlotData> all = {data};
+  return {Drawing{script, all},
+          fmt::format("Stated probability of the verdict and how often it was right, with 95 % intervals; expected "
+                      "calibration error {}",
+                      base::number_text(score.calibration_error, 2)),
+          "Reliability diagram"};
+}
+
+Plot methods_plot(const validate::BlindScore& score) {
+  std::vector<PlotData> data;
+  std::string script =
+      std::string(kFrame) +
+      "unset offsets\nset style fill solid 0.85 noborder\nset boxwidth 0.19\nset yrange [0:105]\n"
+      "set xrange [0.4:6.6]\nset ylabel 'right  (%)'\nset key outside top center horizontal maxcols 2 samplen 1\n"
+      "set xtics font ',12' ('none' 1, 'weak' 2, 'moderate' 3, 'strong' 4, 'two' 5, 'outside' 6)\nplot ";
+  const double middle = 0.5 * (static_cast<double>(score.methods.size()) - 1.0);
+  for (std::size_t m = 0; m < score.methods.size(); ++m) {
+    const auto& method = score.methods[m];
+    PlotData rows{fmt::format("m{}", m), {}, {"kind of case (place)", fmt::format("right by {} (%)", method.name)}};
+    const std::array<BlindShare, 6> shares = kinds_of(method);
+    for (std::size_t s = 0; s < shares.size(); ++s) {
+      rows.rows.push_back(
+          {static_cast<double>(s) + 1.0 + 0.2 * (static_cast<double>(m) - middle), 100.0 * shares[s].share()});
+    }
+    script += fmt::format("{}$m{} using 1:2 with boxes lc rgb '{}' title {}", m == 0 ? "" : ", ", m, color(m),
+                          gnuplot_quoted(method.name));
+    data.push_back(std::move(rows));
+  }
+  return {Drawing{script, data, {480, 400}}, "How often each way of deciding is right, by kind of case",
+          fmt::format("Share of right answers of {} methods", score.methods.size())};
+}
+
+std::string methods_table(const validate::BlindScore& score) {
+  HtmlTable table({"", "nothing there", "one, weak", "moderate", "strong", "two effects", "outside"});
+  for (const validate::BlindMethod& method : score.methods) {
+    std::vector<std::string> row = percents_of(method);
+    row.insert(row.begin(), escape(method.name));
+    table.row(row);
+  }
+  return table.str();
+}
+
+std::string cases_table(const BlindRun& run) {
+  HtmlTable table({"case", "truth", "gain", "verdict", "probability", "not to be told from"}, 6);
+  for (const validate::BlindOutcome& outcome : run.outcomes) {
+    std::string truth = outcome.causes.empty() ? "none" : "", gain, said = escape(outcome.verdict.verdict), p, same;
+    for (const auto& cause : outcome.causes) {
+      truth += (truth.empty() ? "" : " + ") + escape(cause.id);
+      gain += (gain.empty() ? "" : ", ") + base::number_text(cause.gain, 2);
+    }
+    if (said == "none") p = base::digits_text(outcome.verdict.none, 2);
+    if (said == "unknown") p = base::digits_text(outcome.verdict.unknown, 2);
+    if (!outcome.verdict.effects.empty()) said.clear();
+    for (const auto& effect : outcome.verdict.effects) {
+      said += (said.empty() ? "" : " + ") + escape(effect.id);
+      p += (p.empty() ? "" : ", ") + base::digits_text(effect.probability, 2);
+      for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + escape(id);
+    }
+    table.row({fmt::format("{}", outcome.index), truth, gain, said, p, same});
+  }
+  return table.str();
+}
+
+}  // namespace
+
+std::string blind_json(const BlindRun& run) {
+  const validate::BlindScore& score = run.score;
+  Json document;
+  document["format"] = 1;
+  document["seed"] = run.seed;
+  if (run.pictures) document["pictures"] = true;
+  document["cases"] = run.outcomes.size();
+  document["failed"] = score.failed;
+  document["targets"] = Json::array();
+  for (const BlindTarget& target : blind_targets(score)) {
+    Json one = share_json(target.share);
+    one["what"] = target.what;
+    one[target.at_most ? "at_most" : "at_least"] = target.wanted;
+    if (target.share.of > 0) one["met"] = is_met(target);
+    document["targets"].push_back(std::move(one));
+  }
+  put(document, "expected_calibration_error", score.calibration_error);
+  document["methods"] = Json::array();
+  for (const auto& method : score.methods) {
+    document["methods"].push_back({{"name", method.name},
+                                   {"none", share_json(method.none)},
+                                   {"single", shares_json(method.single)},
+                                   {"pair", share_json(method.pair)},
+                                   {"outside", share_json(method.outside)}});
+  }
+  document["exact_name_first"] = shares_json(score.exact);
+  document["in_named_set"] = shares_json(score.in_set);
+  document["outside_unknown"] = shares_json(score.recognised);
+  document["outside_variable_named"] = share_json(score.where);
+  document["outside_variable_first"] = share_json(score.where_first);
+  document["left_out"] = shares_json(score.left_out);
+  document["left_out_variable_first"] = share_json(score.left_out_where);
+  document["reliability"] = Json::array();
+  for (const auto& bin : score.reliability) {
+    Json one = share_json(bin.right);
+    one["from"] = bin.from;
+    one["to"] = bin.to;
+    put(one, "stated", bin.stated);
+    document["reliability"].push_back(std::move(one));
+  }
+  document["confusion"] = Json::object();
+  for (const auto& row : score.confusion) document["confusion"][row.truth] = row.said;
+  document["outcomes"] = Json::array();
+  for (const auto& outcome : run.outcomes) document["outcomes"].push_back(outcome_json(outcome));
+  return json_text(document);
+}
+
+std::string blind_text(const BlindRun& run) {
+  const validate::BlindScore& score = run.score;
+  std::vector<std::vector<std::string>> rows = {
+      {"of " + std::to_string(run.outcomes.size()) + " blind cases", "found", "wanted"}};
+  for (const BlindTarget& target : blind_targets(score))
+    rows.push_back({target.what, blind_percent(target.share), wanted_text(target)});
+  rows.push_back(
+      {"expected calibration error", base::number_text(score.calibration_error, 2), wanted_calibration_text()});
+  for (const auto& [word, share] : score.left_out)
+    rows.push_back({"true effect left out of the list: " + word, blind_percent(share), ""});
+  std::string text = text_table(rows, 1) + "\n";
+  rows = {{"right", "none", "weak", "moderate", "strong", "two", "outside"}};
+  for (const auto& method : score.methods) {
+    rows.push_back(percents_of(method));
+    rows.back().insert(rows.back().begin(), method.name);
+  }
+  text += text_table(rows, 1) + "\n";
+  rows = {{"truth", "first name"}};
+  for (const auto& row : score.confusion) rows.push_back({row.truth, said_text(row)});
+  text += text_table(rows, 2);
+  if (score.failed > 0) text += fmt::format("\n{} cases could not be diagnosed; they count as wrong.\n", score.failed);
+  return text;
+}
+
+Page blind_page(const BlindRun& run) {
+  const validate::BlindScore& score = run.score;
+  Html body = fmt::format(
+      "<h1>Blind cases</h1>\n<p class=\"soft\">{} experiments{}, seed {}, made by a generator that shares no "
+      "model with the diagnosis; each was diagnosed by another process that was given the experiment folder "
+      "only.</p>\n",
+      run.outcomes.size(), run.pictures ? ", rendered as clips" : " of tracks", run.seed);
+  body += blind_meaning(score);
+  HtmlTable targets({"what", "found", "wanted"});
+  for (const BlindTarget& target : blind_targets(score)) {
+    const std::string how = target.share.of == 0 ? "" : is_met(target) ? ": met" : ": missed";
+    targets.row({escape(target.what), blind_percent(target.share), wanted_text(target) + how});
+  }
+  targets.row({"expected calibration error", base::number_text(score.calibration_error, 2),
+               wanted_calibration_text() + (score.calibration_error < kWantedCalibration ? ": met" : ": missed")});
+  body += "<h2>Found and wanted</h2>\n" + targets.str();
+  if (score.failed > 0) {
+    body += fmt::format("<p class=\"note\">{} cases could not be diagnosed; they count as wrong.</p>\n", score.failed);
+  }
+  body += figures({methods_plot(score), reliability_plot(score)});
+  body += "<h2>Beside simpler ways of deciding</h2>\n" + methods_table(score);
+  if (!score.left_out.empty()) {
+    HtmlTable left({"verdict with the true effect taken from the list", "cases"});
+    for (const auto& [word, share] : score.left_out) left.row({escape(word), blind_percent(share)});
+    left.row(
+        {"of the unknown: the first region lies over a variable of the effect", blind_percent(score.left_out_where)});
+    body += "<h2>Leave one effect out</h2>\n" + left.str();
+  }
+  HtmlTable confusion({"truth", "named first (times)"}, 2);
+  for (const auto& row : score.confusion) confusion.row({escape(row.truth), escape(said_text(row))});
+  body += "<h2>Confusions</h2>\n" + confusion.str();
+  body +=
+      "<p class=\"soft\">A case's gain is the log likelihood that the true model wins over the nominal one fitted to "
+      "the same positions: weak below 15, moderate up to 50, strong above. ";
+  body += run.pictures
+              ? "What moves no position has half the square of its size over what pictures may show where nothing is "
+                "wrong. A wrong scale and a wrong frame rate are one thing. Where the file says itself that it is "
+                "compressed with loss, compression is no secret: a verdict that names it is neither better nor worse "
+                "for it.</p>\n"
+              : "A wrong scale and a wrong frame rate are one thing on tracks, and so are a camera and a table that "
+                "shake: each counts as the other.</p>\n";
+  body += "<h2>All cases</h2>\n" + cases_table(run);
+  return page("Blind cases", body);
+}
+
+}  // namespace glidelab::report

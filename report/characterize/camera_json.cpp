@@ -1,0 +1,82 @@
+#include "report/characterize/camera_json.h"
+
+#include <fmt/format.h>
+
+#include "report/analysis/text_table.h"
+#include "report/characterize/camera_rows.h"
+#include "report/text/json_numbers.h"
+
+namespace glidelab::report {
+namespace {
+
+void put_measured(Json& object, const std::string& key, const core::Measured& measured) {
+  if (!measured.value) {
+    object[key] = nullptr;
+    object["why"][key] = measured.why;
+    if (measured.limit) put(object["limit"], key, *measured.limit);
+    return;
+  }
+  Json inner;
+  inner["value"] = *measured.value;
+  put(inner, "sd", measured.sd);
+  if (!measured.how.empty()) inner["how"] = measured.how;
+  object[key] = std::move(inner);
+}
+
+Json curve_json(const core::CameraMeasurement& camera) {
+  Json curve = Json::array();
+  for (const core::TransferPoint& point : camera.curve) {
+    Json object;
+    object["set"] = point.set;
+    put(object, "exposure_s", point.exposure_s, "not given");
+    put(object, "mean_dn", point.mean_dn);
+    put(object, "variance_dn2", point.variance_dn2);
+    put(object, "sd_dn2", point.sd_dn2);
+    put(object, "at_largest_code", point.at_largest);
+    object["used"] = point.used;
+    curve.push_back(std::move(object));
+  }
+  return curve;
+}
+
+}  // namespace
+
+std::string camera_json(const core::CameraMeasurement& camera) {
+  Json document;
+  document["format"] = 1;
+  document["name"] = camera.folder.name;
+  document["bit_depth"] = camera.folder.bit_depth;
+  document["width_px"] = camera.picture.width;
+  document["height_px"] = camera.picture.height;
+  document["frames"] = camera.frames;
+  document["mosaic"] = camera.mosaic;
+  Json sensor;
+  for (const CameraRow& row : camera_rows(camera)) put_measured(sensor, row.key, *row.measured);
+  document["sensor"] = std::move(sensor);
+  document["pixels"] = {{"hot", camera.hot_pixels}, {"dead", camera.dead_pixels}, {"outlying", camera.outlying_pixels}};
+  put(document, "saturation_dn", camera.saturation_dn);
+  put(document, "line_intercept_dn2", camera.intercept_dn2, "there is no line: " + camera.gain_dn_per_e.why);
+  document["photon_transfer"] = curve_json(camera);
+  document["notes"] = camera.notes;
+  return json_text(document);
+}
+
+std::string camera_text(const core::CameraMeasurement& camera) {
+  std::vector<std::vector<std::string>> rows = {{"", "value", "sd", "unit"}};
+  std::string below;
+  for (const CameraRow& row : camera_rows(camera)) {
+    rows.push_back({row.name, row.value, row.sd, row.unit});
+    if (!row.measured->value) below += fmt::format("{}: {}\n", row.name, row.measured->why);
+    if (!row.measured->how.empty()) below += fmt::format("{}: {}\n", row.name, row.measured->how);
+  }
+  std::string text = fmt::format("{}, {} bits, {} x {} pixels, {} frames\n\n", camera.folder.name,
+                                 camera.folder.bit_depth, camera.picture.width, camera.picture.height, camera.frames);
+  text += text_table(rows, 1);
+  text += fmt::format("\nPixels that stand out: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
+                      camera.outlying_pixels);
+  if (!below.empty()) text += "\n" + below;
+  for (const std::string& note : camera.notes) text += "note: " + note + "\n";
+  return text;
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,138 @@
+#include "report/characterize/camera_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/text/number_text.h"
+#include "report/characterize/camera_rows.h"
+#include "report/html/html.h"
+#include "report/html/plot_axis.h"
+#include "report/html/plot_style.h"
+
+namespace glidelab::report {
+namespace {
+
+/// Rows of (mean, variance, 2 sd) of the levels in the fit, or of the others.
+PlotData points_of(const core::CameraMeasurement& camera, const char* name, bool used) {
+  PlotData data{name, {}, {"mean above dark (DN)", "variance (DN²)", "two standard deviations (DN²)"}};
+  for (const core::TransferPoint& point : camera.curve) {
+    if (point.used == used) data.rows.push_back({point.mean_dn, point.variance_dn2, 2.0 * point.sd_dn2});
+  }
+  return never_empty(std::move(data));
+}
+
+/// The line that was fitted, from dark to saturation.
+PlotData line_of(const core::CameraMeasurement& camera) {
+  PlotData data{"line", {}, {"mean above dark (DN)", "variance (DN²)"}};
+  if (camera.gain_dn_per_e.value && camera.intercept_dn2) {
+    for (const double mean_dn : {0.0, camera.saturation_dn}) {
+      data.rows.push_back({mean_dn, *camera.intercept_dn2 + *camera.gain_dn_per_e.value * mean_dn});
+    }
+  }
+  return never_empty(std::move(data));
+}
+
+double brightest_dn(const core::CameraMeasurement& camera) {
+  double most_dn = camera.saturation_dn;
+  for (const core::TransferPoint& point : camera.curve) most_dn = std::max(most_dn, point.mean_dn);
+  return most_dn;
+}
+
+Plot transfer_plot(const core::CameraMeasurement& camera) {
+  std::string script(kFrame);
+  script += fmt::format(
+      "set xlabel 'mean above dark (DN)'\nset ylabel 'variance (DN²)'\nset xrange [0:*]\nset yrange [0:*]\nset xtics "
+      "{4:.6g}\nset arrow from {0:.6g}, graph "
+      "0 to {0:.6g}, graph 1 nohead dt 2 lc rgb '{1}'\nplot $line using 1:2 with lines lw 2 lc rgb '{2}' title 'line', "
+      "$used using 1:2:3 with yerrorbars pt 7 ps 0.7 lc rgb '{3}' title 'in the fit', $others using 1:2 with points pt "
+      "6 ps 0.8 lc rgb '{1}' title 'others'\n",
+      0.7 * camera.saturation_dn, kGrey, color(1), color(0), tick_step(brightest_dn(camera), 6));
+  const std::vector<PlotData> data = {line_of(camera), points_of(camera, "used", true),
+                                      points_of(camera, "others", false)};
+  return {Drawing{script, data},
+          "Photon transfer: variance of the pixels from frame to frame, rounding subtracted, over the mean. The slope "
+          "is the gain. Bars: 2 sd; dashed: 70 % of saturation",
+          "Variance over mean of every level, with the fitted line"};
+}
+
+/// Where levels were made by exposures: what the mean does over them.
+std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
+  PlotData data{"levels", {}, {"exposure (ms)", "mean above dark (DN)"}};
+  for (const core::TransferPoint& point : camera.curve) {
+    if (point.exposure_s) data.rows.push_back({*point.exposure_s * 1e3, point.picture_dn});
+  }
+  const auto same = [&](const std::vector<double>& row) { return row[0] == data.rows.front()[0]; };
+  if (data.rows.size() < 3 || std::all_of(data.rows.begin(), data.rows.end(), same)) return {};
+  std::string script(kFrame);
+  script += fmt::format(
+      "set xlabel 'exposure (ms)'\nset ylabel 'mean above dark (DN)'\nset xrange [0:*]\nset yrange [0:*]\nunset "
+      "key\nplot $levels using 1:2 with linespoints pt 7 ps 0.7 lc rgb '{}'\n",
+      color(0));
+  return {{Drawing{script, std::vector<PlotData>{data}},
+           "Linearity: the mean of every level over its exposure, a straight line up to saturation",
+           "Mean of every level over its exposure"}};
+}
+
+std::string numbers_table(const core::CameraMeasurement& camera) {
+  HtmlTable table({"", "value", "sd", "unit"});
+  std::string remarks;
+  for (const CameraRow& row : camera_rows(camera)) {
+    table.row({escape(row.name), escape(row.value), escape(row.sd), escape(row.unit)});
+    const std::string& remark = row.measured->value ? row.measured->how : row.measured->why;
+    if (!remark.empty()) remarks += fmt::format("<li>{}: {}</li>", escape(row.name), escape(remark));
+  }
+  return table.str() + (remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");
+}
+
+/// How finely a pixel tells light, in the numbers that are known.
+std::string camera_meaning(const core::CameraMeasurement& camera) {
+  std::string text;
+  if (camera.gain_dn_per_e.value && camera.read_noise_e.value) {
+    text = fmt::format("In the dark a pixel wavers by {} electrons ({} codes)",
+                       base::number_text(*camera.read_noise_e.value, 3),
+                       base::number_text(*camera.read_noise_e.value * *camera.gain_dn_per_e.value, 3));
+    if (camera.full_well_e.value) {
+      const double full = *camera.full_well_e.value;
+      text += fmt::format("; it is full at {} electrons, where it wavers by {} %", base::number_text(full, 3),
+                          base::number_text(100.0 / std::sqrt(full), 2));
+    }
+    text += ". ";
+  } else {
+    text = "What these frames do not tell is “–” below, with the reason. ";
+  }
+  return meaning_section(
+      "<p>" + text +
+      "<code>camera.toml</code> beside this page has the numbers as a scenario's <code>[sensor]</code>, to rehearse an "
+      "experiment with this camera.</p>\n");
+}
+
+}  // namespace
+
+Page camera_report(const core::CameraMeasurement& camera) {
+  Html body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} × {} pixels, {} bits, by photon "
+      "transfer (EMVA 1288).</p>\n",
+      escape(camera.folder.name), camera.frames, camera.picture.width, camera.picture.height, camera.folder.bit_depth);
+  body += camera_meaning(camera);
+  body += "<h2>Numbers</h2>\n" + numbers_table(camera);
+  body += camera.outlying_pixels == 0
+              ? std::string("<p>No pixel stands out of the pattern as hot or dead.</p>\n")
+              : fmt::format(
+                    "<p>Pixels that stand out of the pattern: {} hot, {} dead, {} in all; they are not in the "
+                    "numbers.</p>\n",
+                    camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
+  if (!camera.notes.empty()) {
+    body += "<div class=\"note\"><ul>";
+    for (const std::string& note : camera.notes) body += fmt::format("<li>{}</li>", escape(note));
+    body += "</ul></div>\n";
+  }
+  std::vector<Plot> plots = {transfer_plot(camera)};
+  for (Plot& plot : linearity_plot(camera)) plots.push_back(std::move(plot));
+  body += "<h2>Where they come from</h2>\n" + figures(plots);
+  return page(camera.folder.name, body);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,273 @@
+#include "report/check/check_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/text/number_text.h"
+#include "report/analysis/text_table.h"
+#include "report/html/html.h"
+#include "report/html/plot_style.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string percent(double share) {
+  return base::number_text(100.0 * share, 3) + " %";
+}
+
+std::string verdict_of(const core::RecordingCheck& check) {
+  const auto count = [&](core::Severity severity) {
+    return std::count_if(check.findings.begin(), check.findings.end(),
+                         [&](const core::Finding& finding) { return finding.severity == severity; });
+  };
+  const auto worst = count(core::Severity::unusable), changes = count(core::Severity::change);
+  if (worst > 0) {
+    return fmt::format("Not usable as it is: {} thing{} to mend first", worst, worst == 1 ? "" : "s");
+  }
+  return changes == 0 ? "Usable as it is"
+                      : fmt::format("Usable; {} thing{} would make it better", changes, changes == 1 ? "" : "s");
+}
+
+bool wants_change(const core::RecordingCheck& check) {
+  return std::any_of(check.findings.begin(), check.findings.end(),
+                     [](const core::Finding& finding) { return finding.severity != core::Severity::note; });
+}
+
+std::string word_of(core::Severity severity) {
+  switch (severity) {
+    case core::Severity::note:
+      return "note";
+    case core::Severity::change:
+      return "better";
+    case core::Severity::unusable:
+      return "must change";
+  }
+  return "";
+}
+
+std::string findings_section(const core::RecordingCheck& check) {
+  std::string text = "<h2>What was found, and what to do</h2>\n";
+  if (check.findings.empty()) return text + "<p>Nothing that wants a change.</p>\n";
+  HtmlTable table({"", "about", "found", "advice"}, 4);
+  for (const core::Finding& finding : check.findings) {
+    const char* mark = finding.severity == core::Severity::unusable ? "bad" : "soft";
+    table.row({fmt::format("<span class=\"{}\">{}</span>", mark, word_of(finding.severity)), escape(finding.about),
+               escape(finding.found), escape(finding.advice)});
+  }
+  return text + table.str();
+}
+
+/// How much of the clips can be used, and how well a position is known where it is known at its worst.
+std::string extent_words(const core::RecordingCheck& check) {
+  std::size_t frames = 0, seen = 0;
+  std::optional<double> noise;
+  for (const core::ClipCheck& clip : check.clips) {
+    frames += clip.frames;
+    seen += clip.seen;
+    if (clip.position_noise_m) noise = std::max(noise.value_or(0.0), *clip.position_noise_m);
+  }
+  if (frames == 0) return {};
+  std::string text = fmt::format("The marker is found in {} of {} frames of {} clip{}", seen, frames,
+                                 check.clips.size(), check.clips.size() == 1 ? "" : "s");
+  if (noise)
+    text +=
+        fmt::format("; one position is off by {} mm or less (standard deviation)", base::number_text(1e3 * *noise, 2));
+  return text + ".";
+}
+
+std::string check_meaning(const core::RecordingCheck& check) {
+  std::string text;
+  if (!check.usable) {
+    text =
+        "An analysis of this recording would fail, or give numbers that mislead: mend what “must change” below "
+        "first.";
+  } else if (wants_change(check)) {
+    text = "What is “better” below would make its numbers surer, should it be recorded again.";
+  } else {
+    text = "Nothing needs to be recorded again.";
+  }
+  const std::string extent = extent_words(check);
+  return meaning_section(fmt::format("<p><b class=\"{}\">{}.</b> {}{}{}</p>\n",
+                                     !check.usable         ? "bad"
+                                     : wants_change(check) ? "soft"
+                                                           : "good",
+                                     verdict_of(check), text, extent.empty() ? "" : " ", extent));
+}
+
+PlotData places(const std::string& name, const std::vector<core::PixelPlace>& from) {
+  PlotData data{name, {}, {"u (px)", "v (px)"}};
+  for (const core::PixelPlace& place : from) data.rows.push_back({place.u_px, place.v_px});
+  return data;
+}
+
+/// Where in the picture the pattern was seen, and where the marker runs.
+Plot coverage_plot(const core::RecordingCheck& check) {
+  const core::PatternCheck& pattern = *check.pattern;
+  std::vector<core::PixelPlace> corners, plane, path;
+  for (const core::PatternView& view : pattern.views) {
+    std::vector<core::PixelPlace>& to = view.plane ? plane : corners;
+    to.insert(to.end(), view.corners.begin(), view.corners.end());
+  }
+  for (const core::ClipCheck& clip : check.clips) path.insert(path.end(), clip.path.begin(), clip.path.end());
+  std::string script =
+      std::string(kFrame) + fmt::format(
+                                "set xlabel 'u (px)'\nset ylabel 'v (px)'\nset xrange [0:{}]\nset yrange [{}:0]\n"
+                                "set size ratio -1\nset offsets 0, 0, 0, 0\nplot ",
+                                pattern.width_px, pattern.height_px);
+  std::vector<PlotData> data;
+  const auto add = [&](const std::string& name, const std::vector<core::PixelPlace>& from, const std::string& how) {
+    if (from.empty()) return;
+    script += fmt::format("{}${} using 1:2 {}", data.empty() ? "" : ", ", name, how);
+    data.push_back(places(name, from));
+  };
+  add("corners", corners, fmt::format("with points pt 7 ps 0.3 lc rgb '{}' title 'views'", color(4)));
+  add("plane", plane, fmt::format("with points pt 7 ps 0.5 lc rgb '{}' title 'plane view'", color(0)));
+  add("path", path, fmt::format("with points pt 7 ps 0.4 lc rgb '{}' title 'marker'", color(1)));
+  return {Drawing{script, data, {520, 420}},
+          "The picture: where the pattern was seen, and where the marker runs. The lens is known where corners are.",
+          "Corners of the pattern and path of the marker in the picture"};
+}
+
+Html pattern_section(const core::RecordingCheck& check) {
+  if (!check.pattern) return {};
+  const core::PatternCheck& pattern = *check.pattern;
+  Html text = "<h2>Pattern and camera</h2>\n";
+  text += fmt::format("<p>Found in {} of {} pictures. ", pattern.views.size(),
+                      pattern.views.size() + pattern.without.size());
+  if (pattern.calibration) {
+    text += fmt::format(
+        "The camera's model fits the corners to {} px (rms), those of the plane view to {} px. The views cover {} of "
+        "the "
+        "picture.",
+        base::number_text(pattern.calibration->rms_px, 2), base::number_text(pattern.calibration->plane_rms_px, 2),
+        percent(pattern.covered));
+  }
+  text += "</p>\n";
+  if (!pattern.views.empty()) text += figures({coverage_plot(check)});
+  HtmlTable table({"picture", "pattern", "off by (px, rms)", "tilt (°)"}, 2);
+  for (const core::PatternView& view : pattern.views) {
+    table.row({escape(view.file), view.plane ? "found; plane of motion" : "found",
+               pattern.calibration ? base::digits_text(view.rms_px, 2) : "–",
+               pattern.calibration ? fmt::format("{:.0f}", view.tilt_deg) : "–"});
+  }
+  for (const std::string& file : pattern.without) {
+    table.row({escape(file), "<span class=\"bad\">not found</span>", "–", "–"});
+  }
+  return text + table.str();
+}
+
+/// Rows of the clips' table: the name, and what is written of it.
+struct ClipRow {
+  const char* title;
+  std::string (*text)(const core::ClipCheck&);
+};
+
+const std::vector<ClipRow> kClipRows = {
+    {"frames", [](const core::ClipCheck& clip) { return fmt::format("{}", clip.frames); }},
+    {"seen in", [](const core::ClipCheck& clip) { return fmt::format("{}", clip.seen); }},
+    {"frames/s", [](const core::ClipCheck& clip) { return base::number_text(clip.frame_rate_hz, 5); }},
+    {"in the file",
+     [](const core::ClipCheck& clip) {
+       return clip.container_rate_hz ? base::number_text(*clip.container_rate_hz, 5) : std::string("–");
+     }},
+    {"lost, twice",
+     [](const core::ClipCheck& clip) {
+       return clip.pictures ? fmt::format("{}, {}", clip.jumps, std::max(clip.repeated, clip.stalls))
+                            : std::string("–");
+     }},
+    {"speed (m/s)", [](const core::ClipCheck& clip) { return base::digits_text(clip.top_speed_m_s, 3); }},
+    {"blur (px)",
+     [](const core::ClipCheck& clip) {
+       if (!clip.pictures) return std::string("–");
+       return clip.blur_px ? base::digits_text(*clip.blur_px, 2) : "&lt; " + base::number_text(clip.longest_blur_px, 2);
+     }},
+    {"marker (px)",
+     [](const core::ClipCheck& clip) {
+       return clip.pictures ? base::digits_text(clip.marker_px, 3) : std::string("–");
+     }},
+    {"contrast",
+     [](const core::ClipCheck& clip) { return clip.contrast ? percent(*clip.contrast) : std::string("–"); }},
+    {"over noise",
+     [](const core::ClipCheck& clip) {
+       return clip.contrast && clip.pixel_noise > 0.0 ? base::number_text(*clip.contrast / clip.pixel_noise, 3)
+                                                      : std::string("–");
+     }},
+    {"white, black",
+     [](const core::ClipCheck& clip) {
+       return clip.pictures ? percent(clip.saturated) + ", " + percent(clip.dark) : std::string("–");
+     }},
+    {"noise (mm)",
+     [](const core::ClipCheck& clip) {
+       return clip.position_noise_m ? base::digits_text(1e3 * *clip.position_noise_m, 2) : std::string("–");
+     }},
+};
+
+std::string clips_section(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
+  std::vector<std::string> header = {"clip"};
+  for (const ClipRow& row : kClipRows) header.emplace_back(row.title);
+  HtmlTable table(header);
+  for (const core::ClipCheck& clip : check.clips) {
+    std::vector<std::string> cells = {escape(clip.name)};
+    for (const ClipRow& row : kClipRows) cells.push_back(clip.failure.empty() ? row.text(clip) : "–");
+    table.row(cells);
+  }
+  std::string text =
+      "<h2>Clips</h2>\n" + table.str() +
+      "<p class=\"soft\">Seen in: frames in which the marker was found. In the file: the rate that the file states. "
+      "Lost, "
+      "twice: frames that are missing or repeated, as far as the marker's motion and the pictures show. Speed: the "
+      "highest, "
+      "and the blur that the exposure makes of it. Marker: its diameter; contrast: how far it stands out of its "
+      "surroundings, as a share of the camera's range, and over the noise of a pixel. White, black: pixels at the ends "
+      "of "
+      "the range. Noise: of a position.</p>\n";
+  std::string shown;
+  for (std::size_t i = 0; i < previews.size(); ++i) {
+    for (const core::PreviewFrame& frame : previews[i].frames) {
+      shown += fmt::format(
+          "<figure><img alt=\"frame {0} of clip {1}\" src=\"{2}\"><figcaption>{1}, frame {0}: the marker as it was "
+          "found, "
+          "and its path</figcaption></figure>\n",
+          frame.frame, escape(check.clips[i].name), data_uri("image/jpeg", frame.jpeg));
+    }
+  }
+  if (!shown.empty()) text += fmt::format("<div class=\"figures\">\n{}</div>\n", shown);
+  return text;
+}
+
+}  // namespace
+
+Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">A look at the recording before any analysis.</p>\n",
+                          escape(check.name));
+  body += check_meaning(check);
+  body += findings_section(check) + pattern_section(check) + clips_section(check, previews);
+  return page("Check of " + check.name, body);
+}
+
+std::string check_text(const core::RecordingCheck& check) {
+  std::string text = verdict_of(check) + ".\n";
+  for (const core::Finding& finding : check.findings) {
+    text += fmt::format("{}: {}: {}{}{}.\n", word_of(finding.severity), finding.about, finding.found,
+                        finding.advice.empty() ? "" : "; ", finding.advice);
+  }
+  std::vector<std::vector<std::string>> rows = {{"clip", "seen", "speed m/s", "blur px", "marker px", "noise mm"}};
+  for (const core::ClipCheck& clip : check.clips) {
+    if (!clip.failure.empty()) {
+      rows.push_back({clip.name, "-", "-", "-", "-", "-"});
+      continue;
+    }
+    rows.push_back({clip.name, fmt::format("{} of {}", clip.seen, clip.frames),
+                    base::number_text(clip.top_speed_m_s, 3),
+                    !clip.pictures ? "-"
+                    : clip.blur_px ? base::number_text(*clip.blur_px, 2)
+                                   : "< " + base::number_text(clip.longest_blur_px, 2),
+                    clip.pictures ? base::number_text(clip.marker_px, 3) : "-",
+                    clip.position_noise_m ? base::number_text(1e3 * *clip.position_noise_m, 2) : "-"});
+  }
+  return text + "\n" + text_table(rows, 1);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,273 @@
+#include "report/coverage/coverage_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "base/text/number_text.h"
+#include "report/analysis/text_table.h"
+#include "report/coverage/coverage_plots.h"
+#include "report/html/html.h"
+#include "report/text/json_numbers.h"
+#include "report/text/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr double kAstray = 2.0;  // scatter over stated sd; chance alone moves the ratio of 200 values by a tenth
+
+/// "95 %", "99.5 %".
+std::string level_text(double level) {
+  return base::number_text(100.0 * level, 4) + " %";
+}
+
+std::vector<std::string> cells_of(const validate::CoverageRow& row) {
+  if (row.determined == 0)
+    return {heading_of(row.quantity), base::value_text(row.truth, 0.0), "–", "–", "–", "–", "–", "–", "0"};
+  return {heading_of(row.quantity),
+          base::value_text(row.truth, row.sd),
+          base::error_text(row.bias, row.sd),
+          base::sd_text(row.sd),
+          base::sd_text(row.stated_sd),
+          row.cramer_rao_sd ? base::sd_text(*row.cramer_rao_sd) : "–",
+          row.efficiency ? base::digits_text(*row.efficiency, 2) : "–",
+          fmt::format("{:.1f} % ({:.1f} – {:.1f})", 100.0 * row.coverage, 100.0 * row.low95, 100.0 * row.high95),
+          fmt::format("{}", row.determined)};
+}
+
+/// What is marked fails the test (too_narrow, too_wide).
+std::string level_table(const validate::Coverage& coverage) {
+  std::vector<std::string> header = {"quantity"};
+  for (const double level : coverage.levels) header.push_back(level_text(level));
+  HtmlTable table(header);
+  std::vector<validate::CoverageFailure> failures = validate::too_narrow(coverage);
+  for (validate::CoverageFailure& one : validate::too_wide(coverage)) failures.push_back(std::move(one));
+  std::string before;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    const std::string of = fmt::format("{}: {}", escape(row.configuration), escape(estimator_name(row.estimator)));
+    if (of != before) table.heading(of);
+    before = of;
+    std::vector<std::string> cells = {escape(symbol_of(row.quantity))};
+    for (std::size_t i = 0; i < coverage.levels.size(); ++i) {
+      if (i >= row.levels.size()) {
+        cells.emplace_back("–");
+        continue;
+      }
+      const validate::LevelCount& at = row.levels[i];
+      const bool fails = std::any_of(failures.begin(), failures.end(), [&](const validate::CoverageFailure& one) {
+        return one.at.level == at.level && one.row.configuration == row.configuration &&
+               one.row.estimator == row.estimator && one.row.quantity == row.quantity;
+      });
+      cells.push_back(fmt::format("{0}{1:.1f} % (p {2}){3}", fails ? "<b class=\"bad\">" : "", 100.0 * at.coverage,
+                                  at.p_value < 1e-4 ? "< 0.0001" : base::digits_text(at.p_value, 2),
+                                  fails ? "</b>" : ""));
+    }
+    table.row(cells);
+  }
+  return "<h2 id=\"levels\">Every level</h2>\n" + table.str() +
+         "<p class=\"soft\">Part of the intervals of each level that hold the truth, and the probability of a count as "
+         "far from it by chance (exact binomial test, two-sided). Marked: below 1 % over the number of all intervals "
+         "and levels but the naive ones (Bonferroni). An interval of another level than 95 % is the stated one with "
+         "its arms in proportion to the quantiles of Student's t.</p>\n";
+}
+
+/// "20 µm", or "12 to 20 µm".
+std::string noise_text(const validate::Coverage& coverage) {
+  if (coverage.noise_sd_m.empty()) return "no";
+  const auto [least, most] = std::minmax_element(coverage.noise_sd_m.begin(), coverage.noise_sd_m.end());
+  const std::string from = base::digits_text(*least * 1e6, 3), to = base::digits_text(*most * 1e6, 3);
+  return from == to ? base::number_text(*least * 1e6, 3) + " µm" : fmt::format("{} to {} µm", from, to);
+}
+
+/// "µ of m1 by the generalised lines (41.0 % of 50 %, 88.0 % of 95 %)": the levels of a row stand together.
+std::string list_of(const std::vector<validate::CoverageFailure>& failures) {
+  std::string text;
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    const validate::CoverageRow& row = failures[i].row;
+    const bool again = i > 0 && failures[i - 1].row.configuration == row.configuration &&
+                       failures[i - 1].row.estimator == row.estimator && failures[i - 1].row.quantity == row.quantity;
+    if (again) {
+      text.pop_back();
+    } else {
+      text += fmt::format("{}{} of {} by the {} (", i == 0 ? "" : ", ", escape(symbol_of(row.quantity)),
+                          escape(row.configuration), escape(estimator_name(row.estimator)));
+    }
+    text += fmt::format("{}{:.1f} % where they say {})", again ? ", " : "", 100.0 * failures[i].at.coverage,
+                        level_text(failures[i].at.level));
+  }
+  return text;
+}
+
+/// Rows of which single values lie so far off that all of them scatter much farther than stated. An interval may hold
+/// the truth in 95 % of the replicates and still say nothing of the few that are lost.
+std::vector<validate::CoverageRow> scattered(const validate::Coverage& coverage) {
+  std::vector<validate::CoverageRow> rows;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    if (row.determined > 0 && row.estimator != validate::kNaiveLines && row.sd > kAstray * row.stated_sd)
+      rows.push_back(row);
+  }
+  return rows;
+}
+
+/// "µ (3.0 times), α (3.1 times) of m1 by the generalised lines; …"
+std::string astray_list(const std::vector<validate::CoverageRow>& rows) {
+  std::string text;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const validate::CoverageRow& row = rows[i];
+    const auto as_next = [&](std::size_t k) {
+      return rows[k].configuration == row.configuration && rows[k].estimator == row.estimator;
+    };
+    text += fmt::format("{}{} ({:.1f} times)",
+                        i == 0           ? ""
+                        : as_next(i - 1) ? ", "
+                                         : "; ",
+                        escape(symbol_of(row.quantity)), row.sd / row.stated_sd);
+    if (i + 1 == rows.size() || !as_next(i + 1)) {
+      text += fmt::format(" of {} by the {}", escape(row.configuration), escape(estimator_name(row.estimator)));
+    }
+  }
+  return text;
+}
+
+std::string coverage_meaning(const validate::Coverage& coverage) {
+  const auto narrow = validate::too_narrow(coverage), wide = validate::too_wide(coverage);
+  const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
+    return row.determined > 0 && row.estimator != validate::kNaiveLines;
+  });
+  if (!any) {
+    return meaning_section(
+        "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m and µ "
+        "are true of viscous and Coulomb friction only; under another law the inclination α has a true value, and "
+        "the limit velocity where the forces balance, and these motions do not determine them.</p>\n");
+  }
+  std::string text;
+  if (narrow.empty()) {
+    text +=
+        "<p>The intervals of every estimator but the naive one hold the truth as often as they say, as far as this "
+        "many "
+        "replicates can tell.</p>\n";
+  } else {
+    text += fmt::format("<p>These intervals hold the truth less often than they say: {}.</p>\n", list_of(narrow));
+  }
+  if (!wide.empty()) {
+    text += fmt::format("<p>These are wider than they need be: {}.</p>\n", list_of(wide));
+  }
+  const std::vector<validate::CoverageRow> astray = scattered(coverage);
+  if (!astray.empty()) {
+    text += fmt::format(
+        "<p>The values scatter more than {} times as far as stated for {}. A few replicates lie far off, too few to "
+        "show in how many of 95 % intervals hold the truth: record such a motion more than once.</p>\n",
+        base::number_text(kAstray, 2), astray_list(astray));
+  }
+  text +=
+      "<p>The naive lines treat smoothed points as if they were independent. They are shown so that one sees what "
+      "that does to an interval.</p>\n";
+  return meaning_section(text);
+}
+
+}  // namespace
+
+std::string coverage_json(const validate::Coverage& coverage) {
+  Json document;
+  document["format"] = 1;
+  document["replicates"] = coverage.replicates;
+  const auto [least, most] = std::minmax_element(coverage.noise_sd_m.begin(), coverage.noise_sd_m.end());
+  if (coverage.noise_sd_m.empty() || *least != *most) {
+    put(document, "noise_sd_m", std::nullopt, "the clips differ: noise_sd_of_clips_m");
+  } else {
+    put(document, "noise_sd_m", *least);
+  }
+  document["noise_sd_of_clips_m"] = coverage.noise_sd_m;
+  document["noise_from"] = coverage.camera_noise ? "camera" : "given";
+  document["levels"] = coverage.levels;
+  document["quantities"] = Json::array();
+  for (const validate::CoverageRow& row : coverage.rows) {
+    Json object{{"configuration", row.configuration}, {"estimator", row.estimator}, {"quantity", row.quantity}};
+    put(object, "truth", row.truth);
+    object["determined"] = row.determined;
+    object["covered"] = row.covered;
+    if (row.determined > 0) {
+      put(object, "bias", row.bias);
+      put(object, "sd", row.sd);
+      put(object, "stated_sd", row.stated_sd);
+      put(object, "coverage", row.coverage);
+      object["coverage_interval95"] = {row.low95, row.high95};
+      put(object, "p_value", row.p_value);
+      object["levels"] = Json::array();
+      for (const validate::LevelCount& at : row.levels) {
+        object["levels"].push_back({{"level", at.level},
+                                    {"covered", at.covered},
+                                    {"coverage", at.coverage},
+                                    {"coverage_interval95", {at.low95, at.high95}},
+                                    {"p_value", at.p_value}});
+      }
+    }
+    put(object, "cramer_rao_sd", row.cramer_rao_sd, "the motion does not determine it, or the law is not equation (8)");
+    put(object, "efficiency", row.efficiency, "no bound, or no value");
+    document["quantities"].push_back(std::move(object));
+  }
+  return json_text(document);
+}
+
+std::string coverage_text(const validate::Coverage& coverage) {
+  std::vector<std::vector<std::string>> rows = {{"configuration", "estimator", "quantity", "truth", "bias", "sd",
+                                                 "stated sd", "least sd", "efficiency", "coverage (95 % interval)",
+                                                 "values"}};
+  std::string configuration, estimator;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    const bool first = row.configuration != configuration, other = first || row.estimator != estimator;
+    configuration = row.configuration;
+    estimator = row.estimator;
+    std::vector<std::string> cells = {first ? row.configuration : "", other ? row.estimator : ""};
+    for (std::string& cell : cells_of(row)) cells.push_back(std::move(cell));
+    rows.push_back(std::move(cells));
+  }
+  std::vector<std::vector<std::string>> levels = {{"configuration", "estimator", "quantity"}};
+  for (const double level : coverage.levels) levels.front().push_back(fmt::format("of {}", level_text(level)));
+  for (std::size_t i = 0; i < coverage.rows.size(); ++i) {
+    const validate::CoverageRow& row = coverage.rows[i];
+    levels.push_back({rows[i + 1][0], rows[i + 1][1], symbol_of(row.quantity)});
+    for (std::size_t k = 0; k < coverage.levels.size(); ++k) {
+      levels.back().push_back(k < row.levels.size() ? fmt::format("{:.1f} %", 100.0 * row.levels[k].coverage) : "–");
+    }
+  }
+  return text_table(rows, 3) + (coverage.levels.empty() ? std::string() : fmt::format("\n{}", text_table(levels, 3)));
+}
+
+Page coverage_page(const std::string& title, const validate::Coverage& coverage) {
+  Html body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} of independent "
+      "noise in every position{}, a clock that is off by 20 ppm (one standard deviation) and no lost frames, analysed "
+      "by each estimator.</p>\n",
+      escape(title), coverage.replicates, noise_text(coverage),
+      coverage.camera_noise ? " (the least that the camera, the light and the marker allow)" : "");
+  body += coverage_meaning(coverage);
+  const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(),
+                               [](const validate::CoverageRow& row) { return row.determined > 0; });
+  if (any) {
+    std::vector<Plot> plots = {coverage_plot(coverage)};
+    if (!coverage.levels.empty()) plots.push_back(reliability_plot(coverage));
+    body += figures(plots);
+  }
+  if (!coverage.levels.empty()) body += level_table(coverage);
+  HtmlTable table({"quantity", "truth", "bias", "sd", "stated sd", "least sd", "efficiency", "coverage", "values"});
+  std::string configuration, estimator;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    if (row.configuration != configuration || row.estimator != estimator)
+      table.heading(fmt::format("{}: {}", escape(row.configuration), escape(estimator_name(row.estimator))));
+    configuration = row.configuration;
+    estimator = row.estimator;
+    std::vector<std::string> cells = cells_of(row);
+    cells[0] = escape(cells[0]);
+    table.row(cells);
+  }
+  body += "<h2 id=\"table\">Every quantity</h2>\n" + table.str();
+  body +=
+      "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
+      "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the part "
+      "of the intervals of 95 % that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
+  return page(title, body);
+}
+
+}  // namespace glidelab::report

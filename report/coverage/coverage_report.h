@@ -1,0 +1,20 @@
+/// coverage.json, its table for a terminal, and its page.
+#pragma once
+
+#include <string>
+
+#include "report/html/html.h"
+#include "validate/study/coverage/interval_coverage.h"
+
+namespace glidelab::report {
+
+/// One JSON object, with a newline at its end. No number in it is NaN.
+std::string coverage_json(const validate::Coverage& coverage);
+
+/// Every quantity, and below it how often the intervals of every level hold the truth.
+std::string coverage_text(const validate::Coverage& coverage);
+
+/// The same as a page, with what it means first. EnvironmentError where gnuplot fails.
+Page coverage_page(const std::string& title, const validate::Coverage& coverage);
+
+}  // namespace glidelab::report

@@ -1,0 +1,340 @@
+#include "report/diagnosis/diagnosis_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "report/analysis/camera_plots.h"
+#include "report/diagnosis/diagnosis_lead.h"
+#include "report/html/gnuplot.h"
+#include "report/html/plot_axis.h"
+#include "report/html/plot_style.h"
+#include "report/text/effect_names.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr std::size_t kBars = 8, kFewestBars = 3;  // explanations in the chart
+constexpr double kNoBar = 5e-4;                    // a probability that is no bar to be seen
+constexpr std::size_t kLongName = 66;  // characters that a plot of bars has room for in its usual size of text
+constexpr std::size_t kCurves = 3;     // of those that fill the gap, the likeliest
+constexpr std::size_t kPoints = 800;   // of a clip
+constexpr std::size_t kInFull = 8;     // clips of which every residual is drawn; of k times as many one in k
+constexpr int kMarks = 6;              // steps of an axis whose labels have room beside each other
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+/// Room around the points but at the left: time begins at 0, and room there would make an axis that begins before it.
+constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
+
+Plot probabilities(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::pair<double, std::string>> bars = {{diagnosis.none, "none"}, {diagnosis.unknown, "unknown"}};
+  for (const auto& ranked : diagnosis.ranking) bars.emplace_back(ranked.probability, ranked.id);
+  std::stable_sort(bars.begin(), bars.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (bars.size() > kBars) bars.resize(kBars);
+  while (bars.size() > kFewestBars && bars.back().first < kNoBar) bars.pop_back();
+  PlotData data{"bars", {}, {"row", "probability"}};
+  std::string script(kFrame);
+  script += "unset key\nunset ytics\nset border 1\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    // The name stands above its bar: beside it, three effects in one name would leave the bars no room.
+    const std::string name = effect_name(bars[i].second) + ": " + probability_text(bars[i].first);
+    script += fmt::format("set label {} at 0, {} left{}\n", gnuplot_quoted(name), 0.26 - static_cast<double>(i),
+                          name.size() > kLongName ? " font ',11'" : "");
+    data.rows.push_back({-static_cast<double>(i), bars[i].first});
+  }
+  script += fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(bars.size()) + 0.5);
+  script += fmt::format(
+      "set style fill solid 0.85 noborder\nplot $bars using (0.5*$2):($1-0.15):(0.5*$2):(0.15) with boxxyerror lc rgb "
+      "'{}'\n",
+      kColors[0]);
+  return {Drawing{script, std::vector{data}, {620, 90 + 38 * static_cast<int>(bars.size())}},
+          "How probable each explanation is, given these data: what is named, and nothing else",
+          "Bar chart of the probabilities of the explanations"};
+}
+
+/// `of_lines`: what was held out are published lines, whose own scatter stands for the noise. `one`: of one model
+/// alone.
+Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
+  constexpr double kWide = 8.0, kLeft = 0.5;  // times the noise: from where on the axis is logarithmic, where it begins
+  PlotData data{"gaps", {}, {"row", "gap before / noise", "gap after / noise"}};
+  double most = 2.0, least = kLeft;
+  for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
+    data.rows.push_back({-static_cast<double>(c), gap.before_by_clip[c], gap.after_by_clip[c]});
+    most = std::max({most, gap.before_by_clip[c], gap.after_by_clip[c]});
+    for (const double size : {gap.before_by_clip[c], gap.after_by_clip[c]}) {
+      if (size > 0.0) least = std::min(least, 0.8 * size);
+    }
+  }
+  std::string script(kFrame);
+  script += fmt::format(
+      "set offsets 0,0,0,0\nset xlabel '{}'\n",
+      of_lines ? "off the prediction by the other lines / own scatter" : "residuals of the held-out clip / noise");
+  script += chart_labels(gap.held_out) +
+            fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
+  script += most > kWide ? fmt::format("set logscale x\nset xrange [{}:{}]\n", least, 1.5 * most)
+                         : fmt::format("set xrange [0:{}]\n", 1.1 * most);
+  script += fmt::format(
+      "set arrow from 1, graph 0 to 1, graph 1 nohead lw 1.5 lc rgb '{}'\n"
+      "plot $gaps using 2:1 with points pt 6 ps 1.1 lw 2 lc rgb '{}' title '{}'",
+      kGrey, kColors[1], one ? kUsualModel : "before");
+  if (!one) script += fmt::format(", $gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'", kColors[0]);
+  script += "\n";
+  return {Drawing{script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}},
+          of_lines ? "How far each line is off the prediction by the others: 1 (grey line) is the lines' own scatter"
+                   : "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
+          one ? "Dots for each clip's gap" : "Dots for each clip's gap before and after"};
+}
+
+/// `alternatives` is how many curves are shown, each of which fills the gap by itself.
+Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
+  PlotData data{"curve",
+                {},
+                {axis_of(curve.variable), fmt::format("{} ({})", curve.what, curve.unit),
+                 fmt::format("standard deviation ({})", curve.unit)}};
+  for (std::size_t i = 0; i < curve.at.size(); ++i) data.rows.push_back({curve.at[i], curve.size[i], curve.sd[i]});
+  std::string script(kFrame);
+  script += fmt::format("set xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), curve.what, curve.unit);
+  if (const auto [low, high] = std::minmax_element(curve.at.begin(), curve.at.end()); low != high && *low < *high) {
+    script += even_tics("x", *low, *high, kMarks);
+  }
+  script += fmt::format(
+      "plot $curve using 1:($2-2*$3):($2+2*$3) with filledcurves fillcolor rgb '{}' fillstyle transparent solid 0.25 "
+      "title 'two standard deviations', $curve using 1:2 with lines lw 2 lc rgb '{}' title 'likeliest', 0 with lines "
+      "lw 1 lc rgb '{}' notitle\n",
+      kColors[0], kColors[0], kGrey);
+  return {Drawing{script, std::vector{data}},
+          fmt::format("{} {} over {} that would fill the gap, with two standard deviations{}",
+                      alternatives > 1 ? "One smooth" : "The smooth", curve.what, axis_of(curve.variable),
+                      alternatives > 1
+                          ? fmt::format(": any one of these {} curves by itself, not all of them", alternatives)
+                          : std::string()),
+          fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
+}
+
+Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& variable) {
+  const std::vector<diagnose::ResidualCurve>& curves = diagnosis.residuals;
+  const std::string axis = axis_of(variable);
+  PlotData before{"before", {}, {axis, "measured - model before (mm)"}};
+  PlotData after{"after", {}, {axis, "measured - model after (mm)"}};
+  const bool one = one_model(diagnosis);
+  double from = std::numeric_limits<double>::infinity(), to = -from;
+  const std::size_t share = std::max<std::size_t>(1, curves.size() / kInFull);
+  for (const diagnose::ResidualCurve& curve : curves) {
+    const std::vector<double>& at = along(curve, variable);
+    for (std::size_t p = 0; p < at.size(); p += share) {
+      before.rows.push_back({at[p], 1000.0 * curve.before_m[p]});
+      after.rows.push_back({at[p], 1000.0 * curve.after_m[p]});
+      from = std::min(from, at[p]);
+      to = std::max(to, at[p]);
+    }
+  }
+  // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
+  std::string script(kFrame);
+  if (variable == "t_s") script += kFromStart;
+  if (to > from) script += even_tics("x", from, to, kMarks);
+  script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis);
+  script += fmt::format(
+      "plot $before using 1:2 with points pt 7 ps 0.35 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
+      "'{0}' title '{1}'",
+      kColors[1], one ? kUsualModel : "before");
+  if (!one) {
+    script += fmt::format(
+        ", $after using 1:2 with points pt 7 ps 0.15 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
+        "'{0}' title 'after'",
+        kColors[0]);
+  }
+  script += "\n";
+  return {Drawing{script, std::vector{never_empty(before), never_empty(after)}},
+          fmt::format("What the fit leaves of all clips, over {}{}",
+                      variable == "x_m"     ? "the place"
+                      : variable == "v_m_s" ? "the speed"
+                                            : "the time",
+                      diagnosis.verdict == "unknown" ? "; after: with the likeliest curve without a name" : ""),
+          one ? "Residuals" : "Residuals before and after"};
+}
+
+Plot lengthening_plot(const diagnose::PictureCurve& curve) {
+  PlotData data{"seen",
+                {},
+                {"speed in the picture (px/s)", "lengthening (px²)", "standard deviation (px²)",
+                 "as by the exposure found (px²)", "as by the one stated (px²)"}};
+  for (std::size_t p = 0; p < curve.at.size(); ++p) {
+    data.rows.push_back(
+        {curve.at[p], curve.value[p], curve.sd[p], curve.fitted[p], curve.expected.empty() ? kNan : curve.expected[p]});
+  }
+  std::string script(kFrame);
+  script +=
+      "set key top left\nset xlabel 'speed of the marker in the picture  (px/s)'\nset ylabel 'lengthening of its image "
+      " (px²)'\n";
+  script += fmt::format(
+      "plot $seen using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{}' title 'seen', $seen using 1:4 with "
+      "lines lw 2 lc rgb '{}' title 'as by the exposure found'",
+      kColors[0], kColors[0]);
+  if (!curve.expected.empty()) {
+    script += fmt::format(", $seen using 1:5 with lines lw 2 dt 2 lc rgb '{}' title 'as by the one stated'", kGrey);
+  }
+  return {Drawing{script + "\n", std::vector{data}},
+          "How much longer than high the marker's image gets the faster it moves: a long exposure smears it",
+          "Lengthening of the marker's image over its speed"};
+}
+
+/// One quantity of the pictures over time: a block of rows for each clip that has it.
+struct OverTime {
+  PlotData data;
+  std::vector<std::string> clips;
+};
+
+OverTime over_time(const std::vector<diagnose::PictureCurve>& curves, const std::string& what, PlotData data,
+                   double scale) {
+  OverTime of{std::move(data), {}};
+  for (const diagnose::PictureCurve& curve : curves) {
+    if (curve.what != what || curve.at.empty()) continue;
+    if (!of.data.rows.empty()) of.data.rows.emplace_back();  // the next clip begins a block of its own
+    const std::size_t step = std::max<std::size_t>(1, curve.at.size() / kPoints);
+    for (std::size_t p = 0; p < curve.at.size(); p += step) {
+      of.data.rows.push_back({curve.at[p], scale * curve.value[p]});
+    }
+    of.clips.push_back(curve.clip);
+  }
+  return of;
+}
+
+/// A line for each clip in its colour, with its name in the legend; of more clips than there are colours all in grey.
+std::string lines_of(const OverTime& of, int dashes, bool names) {
+  const bool told_apart = of.clips.size() <= kColors.size();
+  std::string text;
+  for (std::size_t i = 0; i < of.clips.size(); ++i) {
+    const std::string title = told_apart ? of.clips[i] : fmt::format("{} clips", of.clips.size());
+    text += fmt::format(
+        "{0}${1} using 1:2 every :::{2}::{2} with lines lw 1 dt {3} lc rgb '{4}' {5}", i > 0 ? ", " : "", of.data.name,
+        i, dashes, told_apart ? color(i) : std::string(kGrey),
+        names && (told_apart || i == 0) ? "title " + gnuplot_quoted(shortened(title)) + " noenhanced" : "notitle");
+  }
+  return text;
+}
+
+/// Names beside each other in the legend, as many as its width holds.
+std::string key_of(const OverTime& of) {
+  constexpr std::size_t kLongClip = 10;
+  const bool narrow =
+      std::all_of(of.clips.begin(), of.clips.end(), [](const std::string& name) { return name.size() <= kLongClip; });
+  return fmt::format("set key maxcols {}\n", narrow ? 3 : 1);
+}
+
+}  // namespace
+
+std::string axis_of(const std::string& variable) {
+  if (variable == "x_m") return "place x (m)";
+  if (variable == "v_m_s") return "speed v (m/s)";
+  if (variable == "t_s") return "time t (s)";
+  if (variable == "mass_kg") return "mass (kg)";
+  return variable;
+}
+
+const std::vector<double>& along(const diagnose::ResidualCurve& curve, std::string_view variable) {
+  if (variable == "x_m") return curve.x_m;
+  if (variable == "v_m_s") return curve.v_m_s;
+  if (variable == "t_s") return curve.t_s;
+  throw std::logic_error(fmt::format("no residuals over {}", variable));
+}
+
+std::string chart_labels(const std::vector<std::string>& names) {
+  std::string tics = "set ytics (";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_quoted(shortened(names[i])), -static_cast<double>(i));
+  }
+  return tics + ") scale 0 noenhanced\n";
+}
+
+std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis) {
+  std::vector<Plot> plots = {probabilities(diagnosis)};
+  if (diagnosis.gap && !diagnosis.gap->held_out.empty()) {
+    plots.push_back(clip_gaps(*diagnosis.gap, diagnosis.lines.has_value(), one_model(diagnosis)));
+  }
+  return plots;
+}
+
+std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
+  std::vector<Plot> plots;
+  const std::size_t shown = std::min(kCurves, diagnosis.curves.size());
+  for (std::size_t c = 0; c < shown; ++c) plots.push_back(curve_plot(diagnosis.curves[c], shown));
+  for (const char* variable : {"v_m_s", "x_m", "t_s"}) {
+    if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis, variable));
+  }
+  return plots;
+}
+
+std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
+  std::vector<Plot> plots;
+  for (const diagnose::CalibrationRests& of : diagnosis.calibrations) {
+    for (Plot& plot : calibration_plots(of.rests, diagnosis.calibrations.size() > 1 ? of.experiment : "")) {
+      plots.push_back(std::move(plot));
+    }
+  }
+  const std::vector<diagnose::PictureCurve>& curves = diagnosis.picture_curves;
+  for (const diagnose::PictureCurve& curve : curves) {
+    if (curve.what == "lengthening") plots.push_back(lengthening_plot(curve));
+    if (curve.what == "noise") plots.push_back(noise_plot(curve));
+  }
+  const OverTime light = over_time(curves, "brightness", {"light", {}, {"t (s)", "brightness, change (%)"}}, 100.0);
+  if (!light.data.rows.empty()) {
+    const std::string script = std::string(kFrame) + kFromStart + key_of(light) +
+                               "set xlabel 'time t (s)'\nset ylabel 'brightness, change  (%)'\nplot " +
+                               lines_of(light, 1, true) + "\n";
+    plots.push_back(
+        {Drawing{script, std::vector{light.data}},
+         "How bright what rests in the scene is, against each clip's first frames; light that flickers makes "
+         "a regular wave",
+         "Brightness of the scene over time"});
+  }
+  const OverTime across = over_time(curves, "drift across", {"across", {}, {"t (s)", "to the right (px)"}}, 1.0);
+  const OverTime down = over_time(curves, "drift down", {"down", {}, {"t (s)", "downwards (px)"}}, 1.0);
+  if (across.data.rows.empty() || down.data.rows.empty()) return plots;
+  const std::string script =
+      std::string(kFrame) + kFromStart + key_of(across) +
+      "set xlabel 'time t (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot " + lines_of(across, 1, true) + ", " +
+      lines_of(down, 3, false) +
+      ", keyentry with lines lw 1.5 lc rgb '#000000' title 'to the right', keyentry with lines lw 1.5 dt 3 lc rgb "
+      "'#000000' title 'downwards'\n";
+  plots.push_back({Drawing{script, std::vector{across.data, down.data}},
+                   "Where what rests in the scene stands in the picture: a camera at rest keeps it at 0, up to noise",
+                   "Drift of the scene in the picture over time"});
+  return plots;
+}
+
+std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
+  if (isolability.ids.size() < 2) return {};
+  const std::size_t n = isolability.ids.size();
+  PlotData data{"cells", {}, {"effect (column)", "effect (row)", "likeness (cosine)"}};
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = 0; b < n; ++b) {
+      data.rows.push_back({static_cast<double>(b), -static_cast<double>(a), isolability.cosine[a][b]});
+    }
+    data.rows.emplace_back();
+  }
+  std::string script(kFrame);
+  // Names stand once, at the rows, with the numbers of the columns: sixteen of them upright were too small to read.
+  std::string rows, columns;
+  for (std::size_t i = 0; i < n; ++i) {
+    const char* const comma = i > 0 ? ", " : "";
+    rows += fmt::format("{}{} {}", comma, gnuplot_quoted(fmt::format("{}  {}", effect_name(isolability.ids[i]), i + 1)),
+                        -static_cast<double>(i));
+    columns += fmt::format("{}'{}' {}", comma, i + 1, i);
+  }
+  script += fmt::format(
+      "unset key\nunset grid\nset offsets 0,0,0,0\nset ytics ({}) scale 0 noenhanced\nset xtics ({}) scale 0\nset "
+      "xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
+      "'#9ecae1', "
+      "0.95 '#3182bd', 1 '#08306b')\nset lmargin at screen 0.43\nset rmargin at screen 0.87\n"
+      "plot $cells using 1:2:3 with image pixels\n",
+      rows, columns, static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
+  return {
+      {Drawing{script, std::vector{data}, {600, 60 + 24 * std::max(6, static_cast<int>(n))}},
+       "How alike what two effects do to these clips is (a row's and a numbered column's), after everything else is "
+       "fitted: at 1 they cannot be told apart, at 0 they can",
+       "Matrix of likeness between effects"}};
+}
+
+}  // namespace glidelab::report

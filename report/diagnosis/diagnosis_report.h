@@ -1,0 +1,18 @@
+/// report.html of `diagnose`: one page that needs nothing but itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/result/diagnosis.h"
+#include "report/html/html.h"
+#include "validate/film/twin_motions.h"
+
+namespace glidelab::report {
+
+/// `title` names what was diagnosed; `twin`, where one was asked for, is shown beside the data. EnvironmentError where
+/// gnuplot fails.
+Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
+                      const std::vector<validate::TwinMotion>& twin = {});
+
+}  // namespace glidelab::report

@@ -1,0 +1,35 @@
+/// The gap of a diagnosis as pictures: how large in each domain, where in which clip, and in the phase plane.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diagnose/result/diagnosis.h"
+#include "report/html/plot.h"
+
+namespace glidelab::report {
+
+/// Bars of each domain's gap over its noise, before and after; 1 is the noise. Nothing where there is no domain.
+std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis);
+
+/// Measured less modelled acceleration over the speed with its 95 % band, before and after; of several masses each as
+/// well. Nothing where no motion was compared.
+std::vector<Plot> phase_gap_plots(const diagnose::Diagnosis& diagnosis);
+
+/// Residuals by clip (rows) over time, or place or speed where the gap lies over that: colour is the sum of a cell's
+/// standardised residuals over sqrt(their number), before and after. Nothing of lines.
+std::vector<Plot> residual_maps(const diagnose::Diagnosis& diagnosis);
+
+/// Rows of a map: one a clip, in the order of the curves; NaN where a cell holds no position.
+struct ResidualMap {
+  std::vector<std::string> clips;
+  double low = 0.0, high = 0.0;                    ///< of the variable
+  std::vector<std::vector<double>> before, after;  ///< [clip][cell]
+};
+/// `variable` is t_s, x_m or v_m_s (std::logic_error for another); cells as many as asked for (at least 1), of equal
+/// width. Each curve has as many noise_m as residuals.
+ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, const std::string& variable,
+                         std::size_t cells);
+
+}  // namespace glidelab::report

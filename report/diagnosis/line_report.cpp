@@ -1,0 +1,197 @@
+#include "report/diagnosis/line_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/text/number_text.h"
+#include "report/diagnosis/diagnosis_lead.h"
+#include "report/diagnosis/diagnosis_plots.h"
+#include "report/diagnosis/line_plots.h"
+#include "report/text/effect_names.h"
+#include "report/text/gap_text.h"
+#include "report/text/handy_units.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr std::size_t kUnnamedRows = 3;
+
+std::string tiles(const diagnose::Diagnosis& diagnosis) {
+  const diagnose::LineComparison& lines = *diagnosis.lines;
+  std::string text = "<div class=\"tiles\">";
+  if (diagnosis.verdict != "effect") {
+    text += tile(diagnosis.verdict, "verdict");
+  } else if (!lines.either_of.empty()) {
+    text += tile(probability_text(lines.either_probability),
+                 fmt::format("either of: {}", fmt::join(effect_names(lines.either_of), ", ")));
+  } else {
+    for (const auto& effect : diagnosis.effects)
+      text += tile(probability_text(effect.probability), effect_name(effect.id));
+  }
+  return text + common_tiles(diagnosis, "gap of lines predicted by the others (1: their own scatter)") + "</div>\n";
+}
+
+std::string name_of(const diagnose::LineCandidate& candidate) {
+  return candidate.words.empty() ? candidate.id : fmt::format("{}: {}", candidate.id, candidate.words);
+}
+
+std::string sizes_text(const diagnose::LineCandidate& candidate) {
+  std::string text;
+  for (const diagnose::LineSize& size : candidate.sizes) {
+    text += (text.empty() ? "" : ", ") + parameter_text(size.key, size.value, size.sd);
+  }
+  return text.empty() ? "–" : text;
+}
+
+std::string region_table(const diagnose::Diagnosis& diagnosis) {
+  HtmlTable table({"lines", "direction", "what", "off the usual model", "off / sd"}, 3);
+  for (const diagnose::GapRegion& region : diagnosis.regions) {
+    const std::string which = region.variable == "group" ? fmt::format("all at {:.3g}°", region.from)
+                                                         : fmt::format("all of {:.0f} g", 1e3 * region.from);
+    table.row(
+        {escape(which),
+         region.direction == 0  ? "both"
+         : region.direction > 0 ? "v &gt; 0"
+                                : "v &lt; 0",
+         escape(region.what),
+         escape(fmt::format("{} {}", base::value_and_sd_text(region.size, region.size_sd.value_or(0.0)), region.unit)),
+         base::number_text(region.excess, 2)});
+  }
+  return table.empty() ? "" : table.str();
+}
+
+std::string gap_table(const diagnose::GapSizes& gap) {
+  HtmlTable table({"line", "before", "after"});
+  for (std::size_t i = 0; i < gap.held_out.size(); ++i) {
+    table.row({escape(gap.held_out[i]), base::digits_text(gap.before_by_clip[i], 3),
+               base::digits_text(gap.after_by_clip[i], 3)});
+  }
+  table.row({"all", base::digits_text(gap.before, 3), base::digits_text(gap.after, 3)});
+  std::string text = table.str();
+  text += fmt::format(
+      "<p class=\"soft\">Each line predicted by the others: root mean square of what its intercept and its slope are "
+      "off, "
+      "over the lines' own scatter. At the floor it would be 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
+      base::number_text(gap.standard_error, 2), interval_text(gap.interval95.before),
+      interval_text(gap.interval95.after),
+      gap.shrink ? fmt::format(" It shrinks by {} of what is above the floor.", shrink_text(gap)) : std::string());
+  return text;
+}
+
+/// Of "unknown: in words" the words stand once, behind the name.
+std::string explanation_html(const std::string& text) {
+  const std::size_t colon = std::min(text.find(": "), text.size());
+  return effect_html(text.substr(0, colon)) + escape(text.substr(colon));
+}
+
+std::string candidate_table(const diagnose::LineComparison& lines) {
+  const auto rows = line_rows(lines);
+  HtmlTable table(rows.front(), 2);
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    std::vector<std::string> cells;
+    for (const std::string& cell : rows[r])
+      cells.push_back(cells.empty() ? explanation_html(cell) : symbols_html(cell));
+    table.row(cells);
+  }
+  std::string text = table.str();
+  for (const diagnose::LineCandidate& candidate : lines.candidates) {
+    if (candidate.left_out.empty() || !candidate.words.empty()) continue;
+    text += fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", effect_html(candidate.id),
+                        escape(candidate.left_out));
+  }
+  return text;
+}
+
+constexpr const char* kMethod =
+    "<h2>Method</h2>\n<p>The usual model says of every line that its slope is K/m with one K, and its intercept "
+    "g sin α − sign(v) µ g cos α with one µ and one α for each set-up. Each effect that lines can show is added to it, "
+    "alone and in pairs; friction and drag of each mass, of each set-up, of each mass in each set-up and of each "
+    "direction compete with them, also beside them, as “unknown”. A table states no errors: they are fitted with each "
+    "explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and the gap are "
+    "over the lines' own scatter, into which no friction goes: of the mean intercept over both directions, and of the "
+    "slopes within each mass.</p>\n";
+
+}  // namespace
+
+std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& lines) {
+  std::vector<std::vector<std::string>> rows = {
+      {"explanation", "size", "probability", "chi²", "gap", "ln likelihood", "ln evidence"}};
+  std::size_t unnamed = 0;
+  for (const diagnose::LineCandidate& candidate : lines.candidates) {
+    if (!candidate.left_out.empty()) continue;
+    if (!candidate.words.empty() && ++unnamed > kUnnamedRows) continue;
+    rows.push_back({name_of(candidate), sizes_text(candidate), probability_text(candidate.probability),
+                    candidate.chi2 ? base::digits_text(*candidate.chi2, 3) : "–",
+                    candidate.gap ? fmt::format("{:.2f}", *candidate.gap) : "–",
+                    candidate.id == "none" ? "0" : base::gain_text(candidate.log_likelihood_gain),
+                    candidate.id == "none" ? "0" : base::gain_text(candidate.log_evidence_gain)});
+  }
+  return rows;
+}
+
+Json lines_json(const diagnose::LineComparison& lines) {
+  Json object;
+  object["count"] = lines.lines;
+  const std::optional<double> intercept =
+      lines.intercept_sd_m_s2 > 0.0 ? std::optional(lines.intercept_sd_m_s2) : std::nullopt;
+  const std::optional<double> slope = lines.slope_sd > 0.0 ? std::optional(lines.slope_sd) : std::nullopt;
+  put(object, "intercept_sd_m_s2", intercept, "no set-up has two masses both ways");
+  put(object, "slope_sd_relative", slope, "no mass has two lines");
+  object["scatter_degrees_of_freedom"] = lines.scatter_freedom;
+  object["either_of"] = lines.either_of;
+  put(object, "either_probability", lines.either_probability);
+  object["candidates"] = Json::array();
+  for (const diagnose::LineCandidate& candidate : lines.candidates) {
+    Json one;
+    one["id"] = candidate.id;
+    if (!candidate.words.empty()) one["words"] = candidate.words;
+    put(one, "probability", candidate.probability);
+    if (!candidate.left_out.empty()) {
+      one["not_weighed"] = candidate.left_out;
+      object["candidates"].push_back(std::move(one));
+      continue;
+    }
+    one["parameters"] = Json::object();
+    for (const diagnose::LineSize& size : candidate.sizes) {
+      Json value;
+      put(value, "value", size.value);
+      put(value, "sd", size.sd);
+      one["parameters"][size.key] = std::move(value);
+    }
+    const char* why = "the lines' own scatter is not known";
+    put(one, "chi2_before", lines.chi2_before, why);
+    put(one, "chi2_after", candidate.chi2, why);
+    put(one, "gap_after", candidate.gap, why);
+    put(one, "log_likelihood_gain", candidate.log_likelihood_gain);
+    put(one, "log_evidence_gain", candidate.log_evidence_gain);
+    object["candidates"].push_back(std::move(one));
+  }
+  return object;
+}
+
+Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis) {
+  const diagnose::LineComparison& lines = *diagnosis.lines;
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n",
+                          escape(title), lines.lines);
+  body += tiles(diagnosis);
+  body += diagnosis_meaning(diagnosis);
+  body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));
+  const std::vector<Plot> left = line_plots(lines);
+  if (!left.empty() || !diagnosis.regions.empty()) {
+    body += "<h2>Where the gap lies</h2>\n" + figures(left) + region_table(diagnosis);
+  }
+  std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
+  if (!alike.empty()) {
+    alike[0].caption =
+        "How alike what two effects do to these lines is (a row's and a numbered column's), with the usual model "
+        "fitted: at 1 they cannot be told apart, at 0 "
+        "they can";
+    body += "<h2>What these lines can tell apart</h2>\n" + figures(alike);
+  }
+  if (diagnosis.gap) body += "<h2>The gap, line by line</h2>\n" + gap_table(*diagnosis.gap);
+  return page(title, body + kMethod);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,122 @@
+#include "report/diagnosis/plan_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text/number_text.h"
+#include "report/analysis/text_table.h"
+#include "report/diagnosis/diagnosis_plots.h"
+#include "report/html/html.h"
+#include "report/text/effect_names.h"
+#include "report/text/handy_units.h"
+#include "report/text/json_numbers.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string alike_text(const std::vector<std::string>& names) {
+  return names.empty() ? "–" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string seen_text(const diagnose::PlannedEffect& effect) {
+  if (!effect.seen) return "not seen";
+  const auto [name, unit] = name_and_unit(effect.key);
+  const std::string size = size_text(effect.seen_from, 2, unit);
+  if (effect.key == "v_c_m_s") return fmt::format("{} up to {}", name, size);  // the larger, the less there is
+  if (effect.key == "n" || effect.key == "s") return fmt::format("{} off 1 by {}", name, size);
+  return fmt::format("{} = {}", name, size);
+}
+
+std::string lead(const diagnose::Plan& plan) {
+  std::size_t seen = 0, alone = 0;
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    seen += effect.seen ? 1 : 0;
+    alone += effect.seen && effect.alike.empty() ? 1 : 0;
+  }
+  return fmt::format(
+      "{} clips, {} positions with {} µm of noise as found in them. Of {} effects that push or displace in one way, {} "
+      "can be seen in these "
+      "motions at all, and {} of those can be told from every other one.",
+      plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
+}
+
+/// What follows from what can be seen; plain text.
+std::string consequence(const diagnose::Plan& plan) {
+  if (plan.effects.empty()) return {};
+  const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
+  if (!any) return "Recorded like this, a diagnosis could not find any of them: its “none” would say nothing.";
+  return "Recorded like this, a diagnosis can find an effect from the size “seen from” on. If it then finds none, "
+         "smaller ones may still act, and those that are not seen may be of any size.";
+}
+
+/// What to do about effects that look alike; empty where none do.
+std::string advice(const diagnose::Plan& plan) {
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    if (!effect.alike.empty()) {
+      return "What these motions cannot tell apart, others may: another mass, launches both ways and from rest, higher "
+             "speeds, another inclination. Change the motions and plan again.";
+    }
+  }
+  return {};
+}
+
+constexpr const char* kMethod =
+    "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
+    "adjust "
+    "(K, µ, inclinations, starts) has been adjusted. Two are alike where the angle between what they then do is below "
+    "18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven times and outliers have no single "
+    "direction "
+    "and are not in the table.";
+
+}  // namespace
+
+std::string plan_json(const diagnose::Plan& plan) {
+  Json document;
+  document["format"] = 1;
+  document["clips"] = plan.clips;
+  document["points"] = plan.points;
+  put(document, "noise_m", plan.noise_m);
+  document["effects"] = Json::array();
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    Json one{{"id", effect.id}, {"parameter", effect.key}, {"seen", effect.seen}};
+    if (effect.seen) put(one, "seen_from", effect.seen_from);
+    one["alike"] = effect.alike;
+    document["effects"].push_back(std::move(one));
+  }
+  document["isolability"] = {{"effects", plan.isolability.ids}, {"cosine", plan.isolability.cosine}};
+  document["notes"] = plan.notes;
+  return json_text(document);
+}
+
+std::string plan_text(const diagnose::Plan& plan) {
+  std::vector<std::vector<std::string>> rows = {{"effect", "seen from", "not to be told from"}};
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    rows.push_back({effect.id, seen_text(effect), alike_text(effect.alike)});
+  }
+  std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
+  if (!advice(plan).empty()) text += fmt::format("\n{}\n", advice(plan));
+  for (const std::string& note : plan.notes) text += "\n" + note + "\n";
+  return text;
+}
+
+Page plan_page(const std::string& title, const diagnose::Plan& plan) {
+  Html body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"soft\">What this experiment will be able to tell apart.</p>\n"
+      "{}",
+      escape(title), meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), consequence(plan))));
+  if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
+  for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  body += "<h2>What can be seen</h2>\n";
+  HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    const std::string meaning = effect_meaning(effect.id);
+    table.row({effect_html(effect.id), escape(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning)),
+               symbols_html(seen_text(effect)), escape(alike_text(effect_names(effect.alike)))});
+  }
+  body +=
+      table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);
+  return page(title, body);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,91 @@
+/// The pieces of a page that needs nothing but itself: style, tables, pictures as data URIs.
+///
+/// Plots are drawn when the page is made, all in one run of gnuplot; beside the page their files are laid in a folder
+/// "plots". Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/html/plot.h"
+
+namespace glidelab::report {
+
+/// The text with &, <, >, quotes and apostrophes as entities; fit for content and for attributes in quotes.
+std::string escape(std::string_view text);
+
+/// escape(), and a quantity's name as it is written by hand: "v_lim" is v with the subscript lim, and so with all
+/// single letters; names of several letters and what is joined to more stay.
+std::string symbols_html(std::string_view text);
+
+/// RFC 4648, with padding.
+std::string base64(std::string_view bytes);
+
+/// "data:image/svg+xml;base64,…"
+std::string data_uri(std::string_view media_type, std::string_view bytes);
+
+/// A table whose cells are HTML (escape texts first). Columns from `first_number` on are aligned as numbers. Cells of
+/// up to 13 characters stay on one line; where the first column has longer names it is wide enough for them.
+class HtmlTable {
+ public:
+  explicit HtmlTable(std::vector<std::string> header, std::size_t first_number = 1);
+  /// As many cells as the header has.
+  void row(const std::vector<std::string>& cells);
+  /// One cell over all columns, which names the rows that follow.
+  void heading(const std::string& cell);
+  bool empty() const { return rows_.empty(); }
+  /// The HTML, in a box that scrolls where the table is wider than the page.
+  std::string str() const;
+
+ private:
+  std::size_t first_number_;
+  std::size_t longest_name_ = 0;  ///< of the first column, in characters that are seen
+  std::vector<std::string> header_;
+  std::string rows_;
+};
+
+/// A part of a page: HTML, and between its texts the plots that are yet to be drawn.
+class Html {
+ public:
+  Html() : texts_(1) {}
+  Html(std::string text) : texts_{std::move(text)} {}  // NOLINT(google-explicit-constructor): most parts are text
+  Html(const char* text) : texts_{text} {}             // NOLINT(google-explicit-constructor)
+  Html& operator+=(const Html& next);
+  friend Html operator+(Html first, const Html& next) { return first += next; }
+  /// The plot's SVG as a data URI goes here.
+  void plot(Plot plot);
+
+  /// One more than plots: texts()[i] stands before plots()[i].
+  const std::vector<std::string>& texts() const { return texts_; }
+  const std::vector<Plot>& plots() const { return plots_; }
+
+ private:
+  std::vector<std::string> texts_;
+  std::vector<Plot> plots_;
+};
+
+/// A number (or a word) large, and what it is below it; both are text.
+std::string tile(const std::string& number, const std::string& words);
+
+/// The part at the top of a page that says in plain words what its numbers say; HTML below a heading.
+std::string meaning_section(const std::string& html);
+
+/// Plots side by side where there is room, each on white paper with its caption.
+Html figures(const std::vector<Plot>& plots);
+
+/// A whole HTML document and the files of its plots, by their path beside it ("plots/NAME.svg", .pdf, .gp, .csv).
+struct Page {
+  std::string html;
+  std::map<std::string, std::string> files;
+};
+
+/// The title is text. EnvironmentError where gnuplot fails.
+Page page(std::string_view title, const Html& body);
+
+/// Writes the document under the name and the files of its plots into the folder.
+void write_page(const std::filesystem::path& folder, const std::string& name, const Page& page);
+
+}  // namespace glidelab::report

@@ -1,0 +1,190 @@
+#include "report/print/print_sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/errors.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr double kMargin = 0.010;      // m; white around everything, more than printers leave
+constexpr double kFoot = 0.025;        // m; below the board or the markers: the ruler, two lines of text, the margin
+constexpr double kTextSize = 0.0032;   // m; 9 point
+constexpr double kRuler = 0.100;       // m
+constexpr double kLine = 0.0003;       // m
+constexpr double kGap = 0.004;         // m; between markers
+constexpr double kLabel = 0.018;       // m; left of a row of markers
+constexpr double kRounding = 1e-9;     // m; sums of lengths that fit exactly may exceed by this
+constexpr double kMillimetre = 0.001;  // m
+constexpr double kFinest = 0.001;      // m; a square or disc of 12 dots of a printer with 300 dots an inch
+
+const std::array<Paper, 3> kPapers = {
+    Paper{"a4", 0.297, 0.210}, {"a3", 0.420, 0.297}, {"letter", 11.0 * 0.0254, 8.5 * 0.0254}};
+
+[[noreturn]] void fail(std::string key, std::string found, std::string expected) {
+  throw base::InputError(base::Issue{"", 0, std::move(key), std::move(found), std::move(expected)});
+}
+
+std::string millimetres(double length_m) {
+  return fmt::format("{:.6g} mm", length_m / kMillimetre);
+}
+
+/// The line to measure, and two lines of text beside it.
+void draw_foot(SheetCanvas& canvas, const Paper& paper, const std::string& first, const std::string& second) {
+  const double y = paper.height_m - kMargin;
+  for (int tick = 0; tick <= 10; ++tick) {
+    const double x = kMargin + 0.1 * kRuler * tick;
+    canvas.line(x, y - (tick % 10 == 0 ? 0.006 : tick == 5 ? 0.004 : 0.003), x, y, kLine);
+  }
+  canvas.line(kMargin, y, kMargin + kRuler, y, kLine);
+  canvas.text(kMargin + 0.012, y - 0.0055, kTextSize,
+              fmt::format("This line is {} long: print at 100 %", millimetres(kRuler)));
+  canvas.text(kMargin + kRuler + 0.008, y - 0.005, kTextSize, first);
+  canvas.text(kMargin + kRuler + 0.008, y, kTextSize, second);
+}
+
+double room_for_square(const Paper& paper, int columns, int rows) {
+  return std::min((paper.width_m - 2.0 * kMargin) / (columns + 1), (paper.height_m - kMargin - kFoot) / (rows + 1));
+}
+
+void draw(SheetCanvas& canvas, const BoardSheet& sheet) {
+  const double width = (sheet.columns + 1) * sheet.square_m;
+  const double height = (sheet.rows + 1) * sheet.square_m;
+  const double left = 0.5 * (sheet.paper.width_m - width);
+  const double top = kMargin + 0.5 * (sheet.paper.height_m - kMargin - kFoot - height);
+  for (int j = 0; j <= sheet.rows; ++j) {
+    for (int i = j % 2; i <= sheet.columns; i += 2) {  // black, from the corner (0, 0) on
+      canvas.rectangle(left + i * sheet.square_m, top + j * sheet.square_m, sheet.square_m, sheet.square_m);
+    }
+  }
+  draw_foot(canvas, sheet.paper,
+            fmt::format("inner_corners = [{}, {}]   square_m = {:.6g}", sheet.columns, sheet.rows, sheet.square_m),
+            measure_text(sheet));
+}
+
+/// Side of the square that a marker of this diameter stands on.
+double tile(double diameter_m) {
+  return 2.0 * diameter_m;
+}
+
+double height_of_rows(const std::vector<double>& diameters_m) {
+  double height = 0.0;
+  for (const double diameter : diameters_m) height += tile(diameter) + kGap;
+  return height - kGap;
+}
+
+void draw(SheetCanvas& canvas, const MarkerSheet& sheet) {
+  double top = kMargin;
+  for (const double diameter : sheet.diameters_m) {
+    const double side = tile(diameter);
+    const double room = sheet.paper.width_m - 2.0 * kMargin - kLabel;
+    const int count = static_cast<int>(std::floor((room + kGap + kRounding) / (side + kGap)));
+    canvas.text(kMargin, top + 0.5 * (side + kTextSize), kTextSize, millimetres(diameter));
+    for (int k = 0; k < count; ++k) {
+      const double left = kMargin + kLabel + k * (side + kGap);
+      const bool white_on_black = k % 2 == 0;
+      if (white_on_black) {
+        canvas.rectangle(left, top, side, side);
+      } else {  // a frame to cut along
+        canvas.rectangle(left, top, side, side, 0.6);
+        canvas.rectangle(left + kLine, top + kLine, side - 2.0 * kLine, side - 2.0 * kLine, 1.0);
+      }
+      canvas.disc(left + 0.5 * side, top + 0.5 * side, 0.5 * diameter, white_on_black ? 1.0 : 0.0);
+    }
+    top += side + kGap;
+  }
+  draw_foot(canvas, sheet.paper,
+            "diameter_m is that of the disc. Choose what contrasts with all that is near its path;",
+            "for a black disc say color = \"#101010\" in [marker].");
+}
+
+template <class Sheet>
+std::string page_of(const Sheet& sheet, SheetFormat format) {
+  validate(sheet);
+  SheetCanvas canvas = SheetCanvas::page(sheet.paper.width_m, sheet.paper.height_m, format);
+  draw(canvas, sheet);
+  return canvas.finish_page();
+}
+
+template <class Sheet>
+SheetPicture picture_of(const Sheet& sheet, double pixels_per_m) {
+  validate(sheet);
+  SheetCanvas canvas = SheetCanvas::picture(sheet.paper.width_m, sheet.paper.height_m, pixels_per_m);
+  draw(canvas, sheet);
+  return canvas.finish_picture();
+}
+
+}  // namespace
+
+std::span<const Paper> papers() {
+  return kPapers;
+}
+
+const Paper& paper_of(const std::string& name) {
+  const auto found =
+      std::find_if(kPapers.begin(), kPapers.end(), [&](const Paper& paper) { return paper.name == name; });
+  if (found == kPapers.end()) fail("--paper", name, "a4, a3 or letter");
+  return *found;
+}
+
+double largest_square_m(const Paper& paper, int columns, int rows) {
+  return std::floor((room_for_square(paper, columns, rows) + kRounding) / kMillimetre) * kMillimetre;
+}
+
+void validate(const BoardSheet& sheet) {
+  if (sheet.columns <= sheet.rows || sheet.columns % 2 == 0 || sheet.rows % 2 == 1 || sheet.rows < 2) {
+    fail("--corners", fmt::format("{}x{}", sheet.columns, sheet.rows),
+         "the longer row odd, the shorter one even, as 9x6: else the board's two ends look alike, and a picture does "
+         "not tell which way it lies");
+  }
+  const double largest = room_for_square(sheet.paper, sheet.columns, sheet.rows);
+  if (!(sheet.square_m >= kFinest - kRounding) || sheet.square_m > largest + kRounding) {
+    fail("--square-mm", fmt::format("{:.6g}", sheet.square_m / kMillimetre),
+         fmt::format(
+             "at least {:g}, which a printer draws sharply, and at most {:.4g}, so that {} x {} squares and their "
+             "margin fit on {}",
+             kFinest / kMillimetre, largest / kMillimetre, sheet.columns + 1, sheet.rows + 1, sheet.paper.name));
+  }
+}
+
+void validate(const MarkerSheet& sheet) {
+  const double room_down = sheet.paper.height_m - kMargin - kFoot;
+  const double room_across = sheet.paper.width_m - 2.0 * kMargin - kLabel;
+  if (sheet.diameters_m.empty()) fail("--marker-mm", "nothing", "one or more diameters");
+  for (const double diameter : sheet.diameters_m) {
+    // One of each kind beside each other.
+    if (diameter >= kFinest - kRounding && 2.0 * tile(diameter) + kGap <= room_across + kRounding) continue;
+    fail("--marker-mm", fmt::format("{:.6g}", diameter / kMillimetre),
+         fmt::format("at least {:g}, which a printer draws sharply, and at most {:.4g} on {}", kFinest / kMillimetre,
+                     0.25 * (room_across - kGap) / kMillimetre, sheet.paper.name));
+  }
+  if (height_of_rows(sheet.diameters_m) > room_down + kRounding) {
+    fail("--marker-mm", fmt::format("rows of {} in all", millimetres(height_of_rows(sheet.diameters_m))),
+         fmt::format("at most {}, twice the diameters with gaps of {}, on {}", millimetres(room_down),
+                     millimetres(kGap), sheet.paper.name));
+  }
+}
+
+std::string measure_text(const BoardSheet& sheet) {
+  return fmt::format("X runs to the right. Measure {} squares ({}) and correct square_m.", sheet.columns,
+                     millimetres(sheet.columns * sheet.square_m));
+}
+
+std::string board_page(const BoardSheet& sheet, SheetFormat format) {
+  return page_of(sheet, format);
+}
+SheetPicture board_picture(const BoardSheet& sheet, double pixels_per_m) {
+  return picture_of(sheet, pixels_per_m);
+}
+std::string marker_page(const MarkerSheet& sheet, SheetFormat format) {
+  return page_of(sheet, format);
+}
+SheetPicture marker_picture(const MarkerSheet& sheet, double pixels_per_m) {
+  return picture_of(sheet, pixels_per_m);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,24 @@
+/// The plot of a requirement: what each candidate reaches over what it costs.
+#pragma once
+
+#include <string>
+
+#include "report/html/plot.h"
+#include "validate/study/requirement/requirement.h"
+
+namespace glidelab::report {
+
+/// By runs, or by the bound with room to spare.
+bool reached(const validate::Candidate& candidate);
+
+/// "rms error of α (10⁻³ °)"; `factor` stands before the unit.
+std::string target_name(const validate::Target& target, const std::string& factor = {});
+
+/// The first target's error with one standard deviation over price or pixels a second, each point with its number in
+/// the tables; points that lie close together share one label ("3-5, 8").
+Plot requirement_plot(const validate::Requirement& requirement);
+
+/// "1-3, 7" of numbers that rise.
+std::string ranges_text(const std::vector<int>& numbers);
+
+}  // namespace glidelab::report

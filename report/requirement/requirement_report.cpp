@@ -1,0 +1,333 @@
+#include "report/requirement/requirement_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/text/number_text.h"
+#include "report/analysis/text_table.h"
+#include "report/html/html.h"
+#include "report/requirement/requirement_plot.h"
+#include "report/text/json_numbers.h"
+#include "report/text/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::Candidate;
+using validate::Requirement;
+using validate::Target;
+using validate::Verdict;
+
+constexpr double kSomeGain = 1.05;  // times smaller with one limitation less: below it nothing is worth a name
+
+/// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
+struct Scale {
+  double size = 1.0;
+  std::string factor;  ///< "10⁻⁶"; empty for 1
+};
+
+Scale scale_of(const Target& target) {
+  constexpr std::array<const char*, 4> kFactors = {"", "10⁻³", "10⁻⁶", "10⁻⁹"};
+  std::size_t thousands = 0;
+  double size = 1.0;
+  while (target.value < size && thousands + 1 < kFactors.size()) {
+    size /= 1000.0;
+    ++thousands;
+  }
+  return {size, kFactors[thousands]};
+}
+
+/// " (10⁻³ 1/s)", for the column beside.
+std::string same_unit(const Target& target) {
+  const std::string name = target_name(target, scale_of(target).factor);
+  const std::size_t unit = name.find(" (");
+  return unit == std::string::npos ? "" : name.substr(unit);
+}
+
+std::string bound_text(const std::optional<double>& bound, double scale) {
+  return bound && std::isfinite(*bound) ? base::digits_text(*bound / scale, 2) : "–";
+}
+
+/// "rms error of µ at most 0.0005, 95 % error of α (°) at most 0.01".
+std::string targets_text(const Requirement& requirement) {
+  std::string text;
+  for (const Target& target : requirement.targets) {
+    text += fmt::format("{}{} at most {}", text.empty() ? "" : ", ", target_name(target),
+                        base::number_text(target.value, 4));
+  }
+  return text;
+}
+
+std::string order_text(const Requirement& requirement) {
+  return requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)";
+}
+
+/// "3 of 200"; nothing where none was run.
+std::string beyond_text(const validate::TargetResult& result) {
+  return result.runs == 0 ? "–" : fmt::format("{} of {}", result.beyond, result.runs);
+}
+
+/// What no track knows is said where tracks or the bound judged, and what rendering is for where it could change
+/// something: pictures only add to what the bound forbids.
+std::string next_step(const Requirement& requirement) {
+  if (requirement.confirm == validate::Confirm::clips) return {};
+  const bool ran = std::ranges::any_of(requirement.candidates, [](const Candidate& candidate) {
+    return std::ranges::any_of(candidate.results, [](const auto& result) { return result.runs > 0; });
+  });
+  const bool forbidden = std::ranges::all_of(requirement.candidates, [](const Candidate& candidate) {
+    return candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::refused;
+  });
+  return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not in it.{}",
+                     ran ? "Tracks judged, no pictures" : "Nothing was run, the bound alone judged",
+                     forbidden ? "" : " With --confirm clips those that are near the target are rendered as well.");
+}
+
+std::string found_text(const validate::TargetResult& result, double scale) {
+  if (!result.found || !std::isfinite(*result.found)) return result.found ? "no answer" : "–";
+  return base::value_and_sd_text(*result.found / scale, result.found_sd / scale);
+}
+
+std::string cost_text(const Requirement& requirement, const Candidate& candidate) {
+  if (!candidate.price_class.empty()) return candidate.price_class;
+  return requirement.by_price ? "–" : fmt::format("{} Mpx/s", base::number_text(candidate.pixels_s * 1e-6, 3));
+}
+
+std::string limit_text(const Candidate& candidate) {
+  std::string text;
+  for (const validate::Limit& limit : candidate.limits) {
+    if (limit.gain < kSomeGain) break;
+    text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limit.name, limit.gain, limit.gain < 10.0 ? 1 : 0);
+  }
+  return text;
+}
+
+/// Bound, error by runs and runs beyond, of each target.
+std::vector<std::string> result_cells(const Requirement& requirement, const Candidate& candidate) {
+  std::vector<std::string> cells;
+  for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+    const double scale = scale_of(requirement.targets[t]).size;
+    cells.push_back(bound_text(candidate.results[t].bound, scale));
+    cells.push_back(found_text(candidate.results[t], scale));
+    cells.push_back(beyond_text(candidate.results[t]));
+  }
+  return cells;
+}
+
+/// "2.1", of the position noise; a dash where the camera cannot see the marker.
+std::string noise_cell(const Candidate& candidate) {
+  return std::isfinite(candidate.noise_m) ? base::number_text(candidate.noise_m * 1e6, 3) : "–";
+}
+
+/// Name and number in the tables: "6. webcam".
+std::string numbered(const Requirement& requirement, std::size_t i) {
+  return fmt::format("<b>{}. {}</b>", i + 1, escape(requirement.candidates[i].name));
+}
+
+/// "rms error of µ is (5.66 ± 0.30) · 10⁻⁶".
+std::string found_words(const Target& target, const validate::TargetResult& result) {
+  const Scale scale = scale_of(target);
+  const std::string name = target_name(target), unit = unit_of(target.quantity);
+  const std::string number = found_text(result, scale.size);
+  return fmt::format("{} is {}{}", name.substr(0, name.find(" (")),
+                     scale.factor.empty() ? number : fmt::format("({}) · {}", number, scale.factor),
+                     unit.empty() ? "" : " " + unit);
+}
+
+/// What the answer is, in some sentences.
+std::string meaning(const Requirement& requirement) {
+  std::vector<std::size_t> reaching, undecided, possible, missed;
+  for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
+    const Candidate& candidate = requirement.candidates[i];
+    if (reached(candidate)) {
+      reaching.push_back(i);
+    } else if (candidate.verdict == Verdict::undecided) {
+      undecided.push_back(i);
+    } else if (candidate.verdict == Verdict::unconfirmed) {
+      possible.push_back(i);
+    } else {
+      missed.push_back(i);
+    }
+  }
+  std::string text = fmt::format("<p>{} of {} reach the target.", reaching.size(), requirement.candidates.size());
+  if (!reaching.empty()) {
+    const Candidate& first = requirement.candidates[reaching.front()];
+    text += fmt::format(" {} is {} that does", numbered(requirement, reaching.front()),
+                        requirement.by_price ? "the cheapest" : "the one with the fewest pixels a second");
+    if (!first.price_class.empty()) text += fmt::format(" ({})", escape(first.price_class));
+    if (!first.results.empty() && first.results.front().found && std::isfinite(*first.results.front().found)) {
+      const validate::TargetResult& result = first.results.front();
+      text += fmt::format(": its {}, {} times within the target", found_words(requirement.targets.front(), result),
+                          base::number_text(requirement.targets.front().value / *result.found, 2));
+    }
+    text += ".";
+  }
+  if (!undecided.empty()) {
+    text += fmt::format(" For {} more the error spans the target within its standard deviation: more runs decide.",
+                        undecided.size());
+  }
+  if (!possible.empty()) {
+    text += fmt::format(" Of {} the bound allows it, and nothing was run.", possible.size());
+  }
+  if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
+    const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
+    text +=
+        limit.gain < kSomeGain
+            ? fmt::format(" What keeps {} from it is no single limitation.", numbered(requirement, missed.front()))
+            : fmt::format(" What keeps {} from it most: {}, without which it would err {} times less.",
+                          numbered(requirement, missed.front()), escape(limit.name), base::number_text(limit.gain, 2));
+  }
+  return meaning_section(text + "</p>\n");
+}
+
+/// Those that reach the targets, and the others with what limits them.
+struct CandidateTables {
+  HtmlTable good, others;
+};
+
+CandidateTables candidate_tables(const Requirement& requirement) {
+  std::vector<std::string> header = {"no.", "camera", "cost", "verdict", "frames/s", "position noise (µm)"};
+  for (const Target& target : requirement.targets) {
+    header.push_back("bound: " + escape(target_name(target, scale_of(target).factor)));
+    header.push_back("by runs" + escape(same_unit(target)));
+    header.push_back("runs beyond the target");
+  }
+  std::vector<std::string> with_limits = header;
+  with_limits.insert(with_limits.begin() + 4, "what limits it");
+  CandidateTables tables{HtmlTable(header, 4), HtmlTable(with_limits, 5)};
+  for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
+    const Candidate& candidate = requirement.candidates[i];
+    std::vector<std::string> row = {std::to_string(i + 1),
+                                    escape(candidate.name),
+                                    escape(cost_text(requirement, candidate)),
+                                    escape(describe(candidate)),
+                                    base::number_text(candidate.frame_rate_hz, 4),
+                                    noise_cell(candidate)};
+    for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
+    if (reached(candidate)) {
+      tables.good.row(row);
+    } else {
+      row.insert(row.begin() + 4, escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
+      tables.others.row(row);
+    }
+  }
+  return tables;
+}
+
+/// What the tables' numbers are, below them.
+std::string how_judged(const Requirement& requirement) {
+  std::string text = fmt::format(
+      "<p class=\"soft\">The bound is that of Cramér and Rao for the motion seen at this rate with this noise of a "
+      "position, which is itself the bound of the marker's centre for the camera's light and noise. {} \"What limits "
+      "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) is with one "
+      "limitation "
+      "thought away. A lens, a codec, a rolling shutter and the calibration are in rendered runs only (--confirm "
+      "clips).</p>\n",
+      requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
+      : requirement.confirm == validate::Confirm::clips
+          ? fmt::format("Where it allows the target, runs judge, by the better estimator: {} rendered ones where a "
+                        "verdict says so, else {} tracks with that noise.",
+                        requirement.runs, requirement.track_runs)
+          : fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
+                        requirement.track_runs));
+  text += fmt::format(
+      "<p class=\"soft\">An rms error has the bias in it; a 95 % error is what 95 % of the runs stay within. ± is one "
+      "standard deviation, found by drawing the runs anew {} times (bias: that of the errors over the root of their "
+      "number); where it spans the target, nothing is decided. \"Runs beyond the target\" err by more than its value: "
+      "few and far ones are frames lost without a trace, not noise.</p>\n",
+      validate::kResamples);
+  return text;
+}
+
+}  // namespace
+
+Page requirement_report(const Requirement& requirement) {
+  Html body = fmt::format("<h1>{}</h1>\n<p>What reaches {} on the worst configuration; {} first.</p>\n",
+                          escape(requirement.name), escape(targets_text(requirement)), order_text(requirement));
+  body += meaning(requirement);
+  const std::string next = next_step(requirement);
+  if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
+  const CandidateTables tables = candidate_tables(requirement);
+  body +=
+      tables.good.empty() ? "<p class=\"note bad\">None reaches it.</p>\n" : "<h2>These do</h2>\n" + tables.good.str();
+  body += figures({requirement_plot(requirement)});
+  if (!tables.others.empty()) body += "<h2>The others</h2>\n" + tables.others.str();
+  body += how_judged(requirement);
+  return page(requirement.name, body);
+}
+
+std::string requirement_text(const Requirement& requirement) {
+  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "frames/s", "noise (µm)"}};
+  for (const Target& target : requirement.targets) {
+    rows.front().push_back("bound: " + target_name(target, scale_of(target).factor));
+    rows.front().push_back("by runs" + same_unit(target));
+    rows.front().push_back("runs beyond");
+  }
+  std::string below;
+  for (const Candidate& candidate : requirement.candidates) {
+    rows.push_back({candidate.name, cost_text(requirement, candidate), describe(candidate),
+                    base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
+    for (std::string& cell : result_cells(requirement, candidate)) rows.back().push_back(std::move(cell));
+    if (reached(candidate)) continue;
+    const std::string limits = candidate.why.empty() ? limit_text(candidate) : candidate.why;
+    if (!limits.empty()) below += fmt::format("{}: {}\n", candidate.name, limits);
+  }
+  std::string text = fmt::format("What reaches {} on the worst configuration; {} first.\n\n", targets_text(requirement),
+                                 order_text(requirement)) +
+                     text_table(rows, 3);
+  if (!below.empty()) text += "\nWhat limits the others (how many times smaller the bound is without it)\n" + below;
+  const std::string next = next_step(requirement);
+  if (!next.empty()) text += "\n" + next + "\n";
+  return text;
+}
+
+std::string requirement_json(const Requirement& requirement) {
+  Json document;
+  document["format"] = 1;
+  document["name"] = requirement.name;
+  document["order"] = requirement.by_price ? "price" : "pixels_s";
+  for (const Target& target : requirement.targets) {
+    document["targets"].push_back(target.name());
+    document["measures"].push_back(target.measure == Target::Measure::sd ? "root mean square error, a bias included"
+                                   : target.measure == Target::Measure::error95
+                                       ? "what 95 % of the runs' errors stay within"
+                                       : "size of the mean error");
+  }
+  document["candidates"] = Json::array();
+  for (const Candidate& candidate : requirement.candidates) {
+    Json object;
+    object["name"] = candidate.name;
+    object["reached"] = reached(candidate);
+    object["verdict"] = describe(candidate);
+    if (!candidate.why.empty()) object["why_refused"] = candidate.why;
+    if (!candidate.price_class.empty()) object["price_class"] = candidate.price_class;
+    put(object, "price_eur", candidate.price, "no price");
+    put(object, "pixels_s", candidate.pixels_s);
+    put(object, "frame_rate_hz", candidate.frame_rate_hz);
+    put(object, "noise_m", candidate.noise_m);
+    for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+      const validate::TargetResult& result = candidate.results[t];
+      Json of;
+      of["target"] = requirement.targets[t].name();
+      put(of, "bound", result.bound, "the motion does not determine it");
+      put(of, "found", result.found, "not run");
+      if (result.found) {
+        put(of, "found_sd", result.found_sd);
+        of["runs"] = result.runs;
+        of["runs_beyond_target"] = result.beyond;
+      }
+      if (!result.estimator.empty()) of["estimator"] = result.estimator;
+      object["targets"].push_back(std::move(of));
+    }
+    for (const validate::Limit& limit : candidate.limits) {
+      object["limits"].push_back({{"without", limit.name}, {"bound_smaller_by", limit.gain}});
+    }
+    document["candidates"].push_back(std::move(object));
+  }
+  return json_text(document);
+}
+
+}  // namespace glidelab::report

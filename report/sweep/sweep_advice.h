@@ -1,0 +1,19 @@
+/// What a sweep over bandwidth rules comes to, in a paragraph: which rule has the least error of which quantity, by
+/// what factor the default loses, and where another rule does better.
+#pragma once
+
+#include <string>
+
+#include "validate/study/sweep/sweep_summary.h"
+
+namespace glidelab::report {
+
+/// A rule counts only where it answers in this part of the most often answered runs.
+inline constexpr double kAnswers = 0.98;
+/// "Better" is by more than this factor in rms error, and than two standard errors of it.
+inline constexpr double kBetter = 1.1;
+
+/// HTML; empty where the sweep has no lines by more than one rule.
+std::string sweep_advice(const validate::SweepSummary& summary);
+
+}  // namespace glidelab::report

@@ -1,0 +1,273 @@
+#include "report/sweep/sweep_meaning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "base/text/number_text.h"
+#include "report/html/html.h"
+#include "report/sweep/sweep_advice.h"
+#include "report/text/quantity_names.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::ErrorStatistics;
+using validate::GroupStatistics;
+using validate::Series;
+using validate::SweepSummary;
+
+bool knows_truth(const std::string& estimator) {
+  return estimator.ends_with(validate::kBestPossible);
+}
+
+/// "h=0.04 s" of the lines with that bandwidth; empty for all others.
+std::string given_bandwidth(const std::string& estimator) {
+  constexpr std::string_view kLines = "phase-diagram h=";
+  return estimator.starts_with(kLines) ? estimator.substr(kLines.size() - 2) : std::string();
+}
+
+/// Of one group each: the least rms error among those that answer and are asked for.
+const Series* best_of(const std::vector<Series>& all, std::string_view quantity,
+                      const std::function<bool(const std::string& estimator)>& asked) {
+  std::uint64_t most = 0;
+  for (const Series& series : all) {
+    if (series.quantity == quantity) most = std::max(most, series.groups.front().statistics.answered);
+  }
+  const Series* best = nullptr;
+  for (const Series& series : all) {
+    const ErrorStatistics& of = series.groups.front().statistics;
+    if (series.quantity != quantity || !asked(series.estimator) || of.answered == 0) continue;
+    if (static_cast<double>(of.answered) < kAnswers * static_cast<double>(most)) continue;
+    if (best == nullptr || of.rms < best->groups.front().statistics.rms) best = &series;
+  }
+  return best;
+}
+
+const Series* series_of(const std::vector<Series>& all, const Series& like) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Series& series) {
+    return series.quantity == like.quantity && series.estimator == like.estimator;
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// "0.0021 1/s".
+std::string error_of(double value, std::string_view quantity) {
+  return base::number_text(value, 2) + unit_suffix(unit_of(quantity));
+}
+
+/// "trajectory in K/m (0.001 1/s), µ (0.0001)", of each quantity the best that is asked for; `name` makes the name of
+/// it.
+std::string winners_of(const SweepSummary& summary, const std::function<bool(const std::string& estimator)>& asked,
+                       const std::function<std::string(const std::string& estimator)>& name) {
+  std::string text, previous;
+  for (const QuantityName& quantity : kQuantities) {
+    const Series* const best = best_of(summary.overall, quantity.key, asked);
+    if (best == nullptr) continue;
+    const std::string who = best->estimator == previous ? "" : escape(name(best->estimator)) + " in ";
+    text += fmt::format("{}{}{} ({})",
+                        text.empty()  ? ""
+                        : who.empty() ? ", "
+                                      : "; ",
+                        who, quantity.symbol, error_of(best->groups.front().statistics.rms, quantity.key));
+    previous = best->estimator;
+  }
+  return text;
+}
+
+/// Which of several given bandwidths errs least; nothing where there are not two of them.
+std::string bandwidths_of(const SweepSummary& summary) {
+  std::set<std::string> given;
+  std::uint64_t answered = 0;
+  for (const Series& series : summary.overall) {
+    if (given_bandwidth(series.estimator).empty()) continue;
+    given.insert(series.estimator);
+    answered = std::max(answered, series.groups.front().statistics.answered);
+  }
+  if (given.size() < 2 || answered == 0) return {};
+  const std::string winners = winners_of(
+      summary, [](const std::string& estimator) { return !given_bandwidth(estimator).empty(); }, given_bandwidth);
+  // Two standard errors of the ratio of two rms errors, of normal errors.
+  return fmt::format(
+      "<p>Of the {} given bandwidths of the lines the least rms error is that of {}. Two whose errors differ by less "
+      "than {:.0f} % may be alike.</p>\n",
+      given.size(), winners, 200.0 / std::sqrt(static_cast<double>(answered)));
+}
+
+std::string at_text(const validate::AxisSummary& axis, const GroupStatistics& group) {
+  if (axis.words) return escape(group.label);
+  return fmt::format("{}{}{}", base::number_text(group.position, 4), axis.unit.empty() ? "" : " ", escape(axis.unit));
+}
+
+/// ", over 4 of 6 combinations of all else": where not all have an answer.
+std::string part_of(const validate::Likeness& of, std::string_view what) {
+  if (of.whole || of.alike == of.combinations) return {};
+  return fmt::format(", over those {} of {} {}", of.alike, of.combinations, what);
+}
+
+/// "0.001 1/s at 500 Hz and 0.004 1/s at 31.25 Hz, 4 times as much"; empty where one value has answers or none errs.
+std::string span_of(const validate::AxisSummary& axis, const Series& series) {
+  const GroupStatistics *least = nullptr, *most = nullptr;
+  const auto rms = [&](const GroupStatistics& of) { return validate::comparable(series, of)->rms; };
+  for (const GroupStatistics& group : series.groups) {
+    const ErrorStatistics* const of = validate::comparable(series, group);
+    if (of == nullptr || of->answered == 0) continue;
+    if (least == nullptr || of->rms < rms(*least)) least = &group;
+    if (most == nullptr || of->rms > rms(*most)) most = &group;
+  }
+  if (least == most || !(rms(*least) > 0.0)) return {};
+  return fmt::format("{} at {} and {} at {}, {} times as much{}", error_of(rms(*least), series.quantity),
+                     at_text(axis, *least), error_of(rms(*most), series.quantity), at_text(axis, *most),
+                     base::number_text(rms(*most) / rms(*least), 2),
+                     part_of(series.likeness, "combinations of all else that have an answer at each value"));
+}
+
+bool answered_at_two(const Series& series) {
+  return std::count_if(series.groups.begin(), series.groups.end(),
+                       [](const GroupStatistics& group) { return group.statistics.answered > 0; }) > 1;
+}
+
+/// "turning: 0.0001; straight: 0.0002": where each run has both, or over those that have.
+std::string configurations_of(const SweepSummary& summary, const Series& best) {
+  std::string text, part;
+  for (const validate::ConfigurationSummary& of : summary.configurations) {
+    const Series* const series = series_of(of.overall, best);
+    if (series == nullptr) continue;
+    const ErrorStatistics* const errors = validate::comparable(*series, series->groups.front());
+    if (errors == nullptr || errors->answered == 0) continue;
+    part = part_of(series->likeness, "runs in which each configuration has an answer");
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", escape(of.name), error_of(errors->rms, best.quantity));
+  }
+  return text + part;
+}
+
+std::string item(const std::string& text) {
+  return "<li>" + text + "</li>\n";
+}
+
+/// Of one quantity over the keys and the configurations: a list.
+std::string changes_of(const SweepSummary& summary, const Series& best) {
+  std::string list, unlike;
+  bool drawn = false;
+  for (const validate::AxisSummary& axis : summary.axes) {
+    const Series* const series = series_of(axis.series, best);
+    if (series == nullptr) continue;
+    const std::string span = span_of(axis, *series);
+    if (!span.empty()) list += item(fmt::format("along {}: {}", escape(axis.name), span));
+    const validate::Likeness& of = series->likeness;
+    if (of.whole || of.alike > 0 || !answered_at_two(*series)) continue;
+    unlike += (unlike.empty() ? "" : ", ") + escape(axis.name);
+    drawn = of.combinations == 0;
+  }
+  const std::string configurations = configurations_of(summary, best);
+  if (!configurations.empty()) list += item(configurations);
+  if (!unlike.empty()) {
+    list += item(fmt::format("along {} it is not compared: some runs have no answer, and {}", unlike,
+                             drawn ? "with drawn values those that have are not alike at two values of a key"
+                                   : "no combination of all else has one at each value"));
+  }
+  if (list.empty()) return {};
+  return fmt::format("<p>The rms error of {} by {} is:</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
+                     escape(best.estimator), list);
+}
+
+/// What is wrong with a series, as a number: "80" of "80 %".
+struct Listed {
+  const Series* series = nullptr;
+  double number = 0.0;
+};
+
+/// "K/m, µ by trajectory (80 to 88 %)": of each estimator its quantities, of many estimators the first.
+std::string list_of(std::vector<Listed> all, int digits, const char* unit) {
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Listed& x, const Listed& y) { return x.series->estimator < y.series->estimator; });
+  std::string text;
+  constexpr std::size_t kMost = 4;  // estimators that a paragraph can name
+  std::size_t estimators = 0;
+  for (std::size_t i = 0; i < all.size();) {
+    std::string quantities;
+    double least = all[i].number, most = least;
+    const std::string& estimator = all[i].series->estimator;
+    for (; i < all.size() && all[i].series->estimator == estimator; ++i) {
+      quantities += (quantities.empty() ? "" : ", ") + escape(symbol_of(all[i].series->quantity));
+      least = std::min(least, all[i].number);
+      most = std::max(most, all[i].number);
+    }
+    if (++estimators > kMost) continue;
+    const std::string from = base::number_text(least, digits), to = base::number_text(most, digits);
+    text += fmt::format("{}{} by {} ({}{})", text.empty() ? "" : "; ", quantities, escape(estimator),
+                        from == to ? from : fmt::format("{} to {}", from, to), unit);
+  }
+  if (estimators > kMost) text += fmt::format("; and {} more in the table", estimators - kMost);
+  return text;
+}
+
+/// Two lists in a sentence each: of too little and of too much.
+std::string two_lists(const std::string& what, const std::string& little, const std::string& much,
+                      const char* little_is, const char* much_is) {
+  std::string text;
+  if (!little.empty()) text += fmt::format(" {} {}: {}.", what, little_is, little);
+  if (!much.empty()) text += fmt::format("{} {}: {}.", little.empty() ? " " + what : " And", much_is, much);
+  return text;
+}
+
+/// Intervals that hold the truth in another part of the runs than 95 %.
+std::string intervals(const SweepSummary& summary) {
+  std::vector<Listed> narrow, wide;
+  for (const Series& series : summary.overall) {
+    const ErrorStatistics& of = series.groups.front().statistics;
+    if (of.answered == 0 || !(of.sd > 0.0)) continue;
+    const double se = std::sqrt(0.95 * 0.05 / static_cast<double>(of.answered));
+    if (std::abs(of.coverage - 0.95) > 3.0 * se) {
+      (of.coverage < 0.95 ? narrow : wide).push_back({&series, 100.0 * of.coverage});
+    }
+  }
+  if (narrow.empty() && wide.empty()) {
+    return " All stated 95 % intervals hold the truth as often as they say, within three standard errors.";
+  }
+  return two_lists("Intervals of 95 % that hold the truth", list_of(narrow, 2, " %"), list_of(wide, 2, " %"),
+                   "less often", "more often");
+}
+
+/// Stated standard deviations that are far from the errors: a few values that lie far off do not show in coverage.
+std::string stated_sds(const SweepSummary& summary) {
+  std::vector<Listed> small, large;
+  for (const Series& series : summary.overall) {
+    const ErrorStatistics& of = series.groups.front().statistics;
+    if (of.answered == 0 || !(of.sd > 0.0) || !(of.rms > 0.0)) continue;
+    // Two standard errors of the ratio, of normal errors.
+    const double clearly = kAstray * (1.0 + 2.0 / std::sqrt(2.0 * static_cast<double>(of.answered)));
+    if (of.rms > clearly * of.sd) small.push_back({&series, of.rms / of.sd});
+    if (of.sd > clearly * of.rms) large.push_back({&series, of.sd / of.rms});
+  }
+  return two_lists(fmt::format("Stated standard deviations that are more than {} times", base::number_text(kAstray, 1)),
+                   list_of(small, 2, " times"), list_of(large, 2, " times"), "smaller than the rms error",
+                   "larger than the rms error");
+}
+
+}  // namespace
+
+std::string sweep_meaning(const SweepSummary& summary) {
+  const auto honest = [](const std::string& estimator) { return !knows_truth(estimator); };
+  const Series* first = nullptr;
+  for (const QuantityName& quantity : kQuantities) {
+    if (first == nullptr) first = best_of(summary.overall, quantity.key, honest);
+  }
+  if (first == nullptr) return {};
+  std::string text;
+  if (summary.runs < summary.planned) {
+    text += fmt::format("{} of {} runs are done; what follows is of these. ", summary.runs, summary.planned);
+  }
+  if (summary.failed > 0) text += fmt::format("{} runs failed and are not in it. ", summary.failed);
+  text += "The least rms error over all runs is that of " +
+          winners_of(summary, honest, [](const std::string& estimator) { return estimator; }) + ".";
+  return meaning_section("<p>" + text + "</p>\n" + bandwidths_of(summary) + changes_of(summary, *first) + "<p>" +
+                         (intervals(summary) + stated_sds(summary)).substr(1) + "</p>\n");
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,16 @@
+/// A force law from its table in a scenario.
+#pragma once
+
+#include <memory>
+
+#include "base/toml/strict_toml.h"
+#include "sim/force/force_law.h"
+
+namespace glidelab::sim {
+
+/// Reads `law` and the keys of that law (docs/scenario.md, Motions) from one [[configuration.force]]. `mass_kg` turns
+/// k_over_m_1_s into K. What is wrong is recorded in the file; the term then holds NaN and must not be used before
+/// finish().
+std::shared_ptr<const ForceTerm> read_force(const base::TomlTable& table, double mass_kg);
+
+}  // namespace glidelab::sim

@@ -1,0 +1,47 @@
+/// The motions of a scenario: which gliders, under which forces, launched how. What the camera sees of them is
+/// render's.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/toml/strict_toml.h"
+#include "sim/force/force_law.h"
+
+namespace glidelab::sim {
+
+enum class Launched { up, down, released };
+
+/// One recorded motion: starts at t = 0 with (x0, v0), x positive downhill from the track's reference point.
+struct MotionSetup {
+  std::string name;
+  Launched launched = Launched::released;
+  double x0_m = 0.0;
+  double v0_m_s = 0.0;
+  double duration_s = 0.0;
+};
+
+/// One glider on one inclination, with the motions recorded of it.
+struct ConfigurationSetup {
+  std::string name;
+  Body body;                        ///< the truth: mass, true inclination, gravity, forces
+  double stated_incline_rad = 0.0;  ///< what the experimenter writes down
+  double stated_incline_sd_rad = 0.0;
+  std::string group;  ///< clips that share one set-up of the track
+  std::vector<MotionSetup> motions;
+};
+
+struct MotionScenario {
+  std::string name;
+  double gravity_m_s2 = 9.80665;
+  std::vector<ConfigurationSetup> configurations;
+};
+
+/// Reads `format`, `name`, `gravity_m_s2` and [[configuration]] with its [[configuration.force]] and
+/// [[configuration.clip]] (docs/scenario.md). What is wrong is recorded in the file and thrown by its finish(); the
+/// caller reads its own tables and calls that.
+MotionScenario read_motions(const base::TomlTable& root);
+
+}  // namespace glidelab::sim

@@ -1,0 +1,67 @@
+/// Equation (8) as a hybrid system: slide up, slide down, stick.
+///
+///     m dv/dt = m g sin(alpha) + sum of forces(v, sign v)     while sliding;     v = 0     while sticking.
+///
+/// v = 0 is a root of the sliding modes. At a root the glider sticks where |m g sin(alpha) + smooth forces at rest|
+/// does not exceed what static friction holds, else it slides on with the sign of the net force; the solver is
+/// reinitialised there. sign(v) is never smoothed. The forces depend on v only, so a glider that has come to rest
+/// stays, and one that has reversed never does so again. Method: CVODES, BDF with Newton and the analytic slope
+/// (sim/slide.h), tolerances in SolverOptions.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "sim/force/force_law.h"
+
+namespace glidelab::sim {
+
+enum class Mode { slide_up = -1, stick = 0, slide_down = 1 };
+
+/// "slide_up", "stick", "slide_down".
+std::string_view name_of(Mode mode);
+
+/// What a body at v = 0 does: it sticks where |load at rest| <= what static friction holds (equality within rounding),
+/// else it slides with the sign of the load.
+Mode mode_at_rest(const Body& body);
+
+struct State {
+  double t_s = 0.0;
+  double x_m = 0.0;
+  double v_m_s = 0.0;
+  double a_m_s2 = 0.0;
+  Mode mode = Mode::stick;
+};
+
+/// A change of mode.
+struct ModeChange {
+  double t_s = 0.0;
+  double x_m = 0.0;
+  Mode from = Mode::stick;
+  Mode to = Mode::stick;
+};
+
+struct Trajectory {
+  std::vector<State> states;  ///< one for each requested time
+  std::vector<ModeChange> changes;
+  double dissipated_j = 0.0;  ///< work done against all forces but gravity, up to the last requested time
+  long solver_steps = 0;
+};
+
+struct SolverOptions {
+  double relative_tolerance = 1e-13;
+  double absolute_tolerance = 1e-14;  ///< of x in m and v in m/s
+};
+
+/// With the standard tolerances, and speeds and ways as on a track: positions within 1e-9 m over 10 s, and the time of
+/// a reversal within 1e-9 s where the glider comes to v = 0 with 1 mm/s² or more (an error dv makes one of dv / a).
+///
+/// Moves the body from (x0, v0) at t = 0 and returns its state at each of `times_s` (rising, not negative). At a
+/// requested time that is the instant of a reversal, the mode is the one after it. InputError where a number is not
+/// finite or the times do not rise; NumericalError with time, step and tolerance where CVODES fails; what a term throws
+/// passes through.
+Trajectory simulate(const Body& body, double x0_m, double v0_m_s, std::span<const double> times_s,
+                    const SolverOptions& options = {});
+
+}  // namespace glidelab::sim

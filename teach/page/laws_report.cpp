@@ -1,0 +1,157 @@
+#include "teach/page/laws_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/text/number_text.h"
+#include "report/html/gnuplot.h"
+#include "report/html/html.h"
+#include "report/html/plot_style.h"
+#include "teach/page/laws_motion.h"
+
+namespace glidelab::teach {
+namespace {
+
+using report::color;
+using report::Drawing;
+using report::escape;
+using report::figures;
+using report::gnuplot_quoted;
+using report::Html;
+using report::kFrame;
+using report::kGrey;
+using report::meaning_section;
+using report::Plot;
+using report::PlotData;
+using report::shortened;
+using report::symbols_html;
+
+PlotData columns(const std::string& name, const std::vector<double>& x, const std::vector<double>& y) {
+  PlotData data{name, {}};
+  for (std::size_t i = 0; i < x.size(); ++i) data.rows.push_back({x[i], y[i]});
+  return data;
+}
+
+Plot position_plot(const LawStudy& study) {
+  std::vector<PlotData> data;
+  std::string script = std::string(kFrame) +
+                       "set key top right font ',11' maxrows 4\nset xlabel 't (s)'\nset ylabel 'x (m)'\n"
+                       "set offsets 0, graph 0.02, graph 0.06, graph 0.06\nset xrange [0:*]\nplot ";
+  for (std::size_t i = 0; i < study.motions.size(); ++i) {
+    data.push_back(columns(fmt::format("motion{}", i), study.motions[i].t_s, study.motions[i].x_m));
+    script +=
+        fmt::format("{}${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", i == 0 ? "" : ", ", data.back().name,
+                    i % 2 == 0 ? 1 : 2, color(i), gnuplot_quoted(shortened(study.motions[i].clip)));
+  }
+  return {Drawing{script, data}, "Position over time", "x(t) of " + study.name};
+}
+
+Plot phase_plot(const LawStudy& study) {
+  std::vector<PlotData> data;
+  std::string script = std::string(kFrame) +
+                       "set key top right font ',11' maxrows 4\nset xlabel 'v (m/s)'\nset ylabel 'a (m/s²)'\n"
+                       "set xzeroaxis lt 1 lc rgb '#777777'\nset yzeroaxis lt 1 lc rgb '#777777'\nplot ";
+  bool first = true, stable_named = false, unstable_named = false;
+  const auto add = [&](PlotData block, const std::string& how) {
+    if (block.rows.empty()) return;
+    script += fmt::format("{}${} using 1:2 {}", first ? "" : ", ", block.name, how);
+    first = false;
+    data.push_back(std::move(block));
+  };
+  for (std::size_t c = 0; c < study.curves.size(); ++c) {
+    const LawCurve& curve = study.curves[c];
+    add(columns(fmt::format("up{}", c), curve.up_v_m_s, curve.up_a_m_s2),
+        fmt::format("with lines lw 1 lc rgb '{}' notitle", kGrey));
+    add(columns(fmt::format("down{}", c), curve.down_v_m_s, curve.down_a_m_s2),
+        fmt::format("with lines lw 1 lc rgb '{}' notitle", kGrey));
+    for (const std::size_t m : curve.motions) {
+      const LawMotion& motion = study.motions[m];
+      PlotData path{fmt::format("path{}", m), {}};
+      for (std::size_t i = 0; i < motion.v_m_s.size(); ++i) {
+        // A jump at v = 0 is no line.
+        if (i > 0 && motion.v_m_s[i] * motion.v_m_s[i - 1] <= 0.0 && motion.v_m_s[i - 1] != 0.0)
+          path.rows.push_back({});
+        path.rows.push_back({motion.v_m_s[i], motion.a_m_s2[i]});
+      }
+      add(std::move(path), fmt::format("with lines lw 2.4 dt {} lc rgb '{}' title {}", m % 2 == 0 ? 1 : 2, color(m),
+                                       gnuplot_quoted(shortened(motion.clip))));
+    }
+    for (const bool stable : {true, false}) {
+      PlotData points{fmt::format("{}{}", stable ? "stable" : "unstable", c), {}};
+      for (const Equilibrium& at : curve.equilibria) {
+        if (at.stable == stable) points.rows.push_back({at.v_m_s, 0.0});
+      }
+      bool& named = stable ? stable_named : unstable_named;
+      const std::string title = named ? "notitle" : stable ? "title 'equilibrium'" : "title 'unstable equilibrium'";
+      named = named || !points.rows.empty();
+      add(std::move(points), fmt::format("with points pt {} ps 1.1 lw 1.6 lc rgb '#000000' {}", stable ? 7 : 6, title));
+    }
+  }
+  return {Drawing{script, data}, "Acceleration over velocity; dots are where motions tend to, circles where they part",
+          "a(v) of " + study.name};
+}
+
+std::string equilibrium_text(const LawStudy& study) {
+  std::string text;
+  for (const LawCurve& curve : study.curves) {
+    std::string ends;
+    for (const Equilibrium& at : curve.equilibria) {
+      const std::string v = base::number_text(at.v_m_s, 4) + " m/s";
+      const std::string end = at.v_m_s != 0.0 ? (at.stable ? "tends to v<sub>lim</sub> = " : "unstable at ") + v
+                              : !at.stable    ? "may rest, but does not come back to it"
+                              : at.stops      ? "comes to rest"
+                                              : "tends to rest";
+      ends += (ends.empty() ? "" : ", ") + end;
+    }
+    text += fmt::format("{}{} ({:.3g}°): {}", text.empty() ? "" : "; ", escape(curve.configuration), curve.incline_deg,
+                        ends.empty() ? "tends to no speed" : ends);
+  }
+  return text;
+}
+
+}  // namespace
+
+report::Page laws_report(const std::vector<LawStudy>& studies, const std::vector<LawFilm>& films,
+                         const base::Progress& progress) {
+  if (films.size() != studies.size()) throw std::logic_error("not a film for each law");
+  Html body =
+      "<h1>Laws of friction in a(v)</h1>\n<p>How a glider moves under each law: launched up or down, let go from rest, "
+      "or started above its limit. Every point is the program's own solution of the equation of motion; the films are "
+      "drawn by its renderer.</p>\n";
+  std::string meaning =
+      "<p>x(t) shows where a glider goes, a(v) which law moves it: "
+      "there every motion of one glider on one slope runs on the same curve, wherever it starts. A straight line "
+      "is linear viscous friction, a curved one another drag, a jump at v = 0 Coulomb friction. Where the curve falls "
+      "through a = 0 the glider tends to that speed, from both sides (dot); where it rises through it, the glider "
+      "leaves "
+      "that speed (circle). A viscous or quadratic drag alone never quite stops a glider; friction that does not "
+      "vanish "
+      "at v = 0 does.";
+  if (std::ranges::any_of(studies, [](const LawStudy& study) { return study.x_apart_m.has_value(); })) {
+    meaning += " A pair with almost the same x(t) shows why one should look at a(v).";
+  }
+  body += meaning_section(meaning + "</p>\n") + "<nav><ul>";
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    body += fmt::format("<li><a href=\"#law{}\">{}</a></li>", i, escape(studies[i].name));
+  }
+  body += "</ul></nav>\n";
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    progress("drawing", static_cast<double>(i) / static_cast<double>(studies.size()));
+    const LawStudy& study = studies[i];
+    body += fmt::format("<h2 id=\"law{}\">{}</h2>\n<p>{}</p>\n", i, escape(study.name), symbols_html(study.text));
+    body += fmt::format("<p class=\"soft\">{}</p>\n", equilibrium_text(study));
+    if (study.x_apart_m && study.a_apart_m_s2) {
+      body += fmt::format(
+          "<p class=\"note\">The two x(t) are never more than {} mm apart; the two a(v) differ by up to {} "
+          "m/s².</p>\n",
+          base::number_text(*study.x_apart_m * 1e3, 2), base::number_text(*study.a_apart_m_s2, 2));
+    }
+    body += figures({position_plot(study), phase_plot(study)}) + film_figure(study, films[i]);
+  }
+  return report::page("Laws of friction", body + std::string(kFilmScript));
+}
+
+}  // namespace glidelab::teach

@@ -1,0 +1,242 @@
+/// `glidelab analyze` on a folder of tracks: files, JSON, exit statuses, nothing half-written.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "base/files/staged_output.h"
+#include "base/text/csv.h"
+#include "test_paths.h"
+#include "tests/app/made_track.h"
+#include "tests/app/run_process.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t entries(const fs::path& dir) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(dir), fs::directory_iterator{}));
+}
+
+}  // namespace
+
+TEST_CASE("analyze writes its files, and --json prints exactly results.json") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const tests::ProcessResult result =
+      tests::glidelab({"analyze", (temp / "made").string(), "--out", (temp / "out").string(), "--json"});
+  INFO(result.err);
+  REQUIRE(result.status == 0);
+  CHECK(result.out == base::read_file(temp / "out/results.json"));
+  const json document = json::parse(result.out);
+  CHECK(document.at("format") == 1);
+  CHECK(document.at("clips").at(0).at("name") == "up");
+  CHECK(document.at("clips").at(0).at("frames") == 340);
+  CHECK(document.at("configurations").at(0).at("mass_kg") == 0.335);
+  CHECK(document.at("calibration").is_null());
+  CHECK(fs::exists(temp / "out/report.html"));
+  const base::CsvTable phase =
+      base::read_csv(temp / "out/phase-up.csv", {"t_s", "x_m", "v_m_s", "a_m_s2", "used"}, {}, true);
+  CHECK(phase.column("t_s").size() > 100);
+  CHECK(entries(temp.path()) == 2);  // made, out: no staging folder is left
+}
+
+TEST_CASE("analyze takes the bandwidth from the rule that is named, and says so") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const auto clip_of = [&](const std::string& bandwidth) {
+    const tests::ProcessResult result = tests::glidelab({"analyze", (temp / "made").string(), "--bandwidth", bandwidth,
+                                                         "--out", (temp / bandwidth).string(), "--json"});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    return json::parse(result.out).at("clips").at(0);
+  };
+  CHECK(clip_of("plug-in").at("bandwidth_method").get<std::string>().starts_with("plug-in"));
+  CHECK(clip_of("ebbs").at("bandwidth_method").get<std::string>().starts_with("empirical bias"));
+  CHECK(clip_of("0.05").at("bandwidth_s") == 0.05);
+  CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("least mean squared error"));
+}
+
+TEST_CASE("analyze fits generalised lines where they are asked for, in the same form") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  json found[2];
+  int at = 0;
+  for (const std::string estimator : {"phase-diagram", "phase-diagram-gls"}) {
+    const tests::ProcessResult result = tests::glidelab({"analyze", (temp / "made").string(), "--estimator", estimator,
+                                                         "--out", (temp / estimator).string(), "--json"});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    found[at] = json::parse(result.out);
+    CHECK(found[at].at("estimator") == estimator);
+    ++at;
+  }
+  const auto sd = [](const json& of) {
+    return of.at("configurations").at(0).at("k_over_m_1_s").at("sd").get<double>();
+  };
+  CHECK(sd(found[1]) < sd(found[0]));
+  const json &plain = found[0].at("clips").at(0).at("segments").at(0),
+             &better = found[1].at("clips").at(0).at("segments").at(0);
+  for (const auto& [key, value] : plain.items()) CHECK(better.contains(key));
+}
+
+TEST_CASE("analyze takes a file that another program exported, its column of x by name") {
+  const tests::TempDir temp;
+  std::string text = "Run 1: Time (s);Run 1: Position (cm);Run 2: Time (s);Run 2: Position (cm)\n";
+  for (int i = 0; i < 300; ++i) {  // 1.2 m/s, slowing down at 2 1/s and 0.07 m/s^2; a decimal comma
+    const double t = 0.005 * i, x = 100.0 * (-0.035 * t - 0.6175 * std::expm1(-2.0 * t));
+    std::string row = fmt::format("{:.3f};{:.6f};{:.3f};{:.6f}\n", t, 0.5 * x, t, x + 1e-3 * ((i * 37) % 11 - 5));
+    std::replace(row.begin(), row.end(), '.', ',');
+    text += row;
+  }
+  base::write_file(temp / "glider.csv", text);
+  const std::string file = (temp / "glider.csv").string(), out = (temp / "out").string();
+  const tests::ProcessResult unclear = tests::glidelab({"analyze", file, "--out", out});
+  CHECK(unclear.status == 1);
+  CHECK(unclear.err.find("Run 2: Position (cm)") != std::string::npos);
+  CHECK_FALSE(fs::exists(out));
+  const tests::ProcessResult result =
+      tests::glidelab({"analyze", file, "--column", "Run 2: Position", "--mass", "0.3", "--out", out, "--json"});
+  INFO(result.err);
+  REQUIRE(result.status == 0);
+  const json document = json::parse(result.out);
+  CHECK(document.at("configurations").at(0).at("mass_kg") == 0.3);
+  CHECK(document.at("clips").at(0).at("name") == "glider");
+  const json& k = document.at("clips").at(0).at("segments").at(0).at("k_over_m_1_s");
+  CHECK(std::abs(k.at("value").get<double>() - 2.0) < 4.0 * k.at("sd").get<double>());
+  CHECK(fs::exists(temp / "out/motion-glider.csv"));
+  CHECK(fs::exists(temp / "out/report.html"));
+  const tests::ProcessResult without = tests::glidelab({"analyze", file, "--column", "4", "--out", out});
+  CHECK(without.status == 0);
+  tests::write_track_experiment(temp / "made");
+  const tests::ProcessResult folder = tests::glidelab({"analyze", (temp / "made").string(), "--column", "2"});
+  CHECK(folder.status == 1);
+  CHECK(folder.err.find("--column") != std::string::npos);
+}
+
+TEST_CASE("analyze without --json prints a table, and the same files for any number of jobs") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  for (const char* jobs : {"1", "2"}) {
+    const tests::ProcessResult result = tests::glidelab(
+        {"analyze", (temp / "made").string(), "--out", (temp / jobs).string(), "--jobs", jobs, "--seed", "7"});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    CHECK(result.out.find("K/m (1/s)") != std::string::npos);
+    CHECK(result.err.find("report: ") != std::string::npos);
+    CHECK(result.err.find('\r') == std::string::npos);  // no bar where there is no terminal
+  }
+  const std::string plot = "plots/01-acceleration-over-velocity-with-fitted-lines.";
+  for (const std::string& file :
+       {std::string("results.json"), std::string("phase-up.csv"), std::string("motion-up.csv"),
+        std::string("report.html"), plot + "svg", plot + "pdf", plot + "gp", plot + "csv"}) {
+    CHECK(base::read_file(temp / "1" / file) == base::read_file(temp / "2" / file));
+  }
+}
+
+TEST_CASE("a quiet analysis says nothing on standard error") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const tests::ProcessResult result = tests::glidelab({"analyze", (temp / "made").string(), "-q"}, temp.path());
+  CHECK(result.status == 0);
+  CHECK(result.err.empty());
+  CHECK(fs::exists(temp / "glidelab-out/analyze-made/results.json"));  // the documented default
+}
+
+TEST_CASE("a second analysis replaces its own files and leaves the others") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  fs::create_directories(temp / "out");
+  base::write_file(temp / "out/notes.txt", "mine");
+  base::write_file(temp / "out/results.json", "old");
+  const tests::ProcessResult result =
+      tests::glidelab({"analyze", (temp / "made").string(), "--out", (temp / "out").string()});
+  CHECK(result.status == 0);
+  CHECK(base::read_file(temp / "out/notes.txt") == "mine");
+  CHECK(base::read_file(temp / "out/results.json") != "old");
+}
+
+TEST_CASE("a wrong experiment.toml is status 1, one line for each error, and what stood there stays") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  std::string text = base::read_file(temp / "made/experiment.toml");
+  text += "mas_kg = 1\nend_s = \"soon\"\n";
+  base::write_file(temp / "made/experiment.toml", text);
+  fs::create_directories(temp / "out");
+  base::write_file(temp / "out/results.json", "old");
+  const tests::ProcessResult result =
+      tests::glidelab({"analyze", (temp / "made").string(), "--out", (temp / "out").string()});
+  CHECK(result.status == 1);
+  CHECK(result.out.empty());
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 2);
+  CHECK(result.err.find("experiment.toml:12: clip[1].mas_kg") != std::string::npos);
+  CHECK(result.err.find("experiment.toml:13: clip[1].end_s") != std::string::npos);
+  CHECK(base::read_file(temp / "out/results.json") == "old");
+  CHECK(entries(temp / "out") == 1);
+}
+
+TEST_CASE("an output that cannot be written is status 3, found before the work") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  base::write_file(temp / "file", "in the way");
+  for (const std::string& out : {(temp / "file").string(), (temp / "file/below").string(), std::string("/proc/out")}) {
+    const tests::ProcessResult result = tests::glidelab({"analyze", (temp / "made").string(), "--out", out});
+    INFO(out << ": " << result.err);
+    CHECK(result.status == 3);
+    CHECK(result.err.starts_with("glidelab: error: "));
+    CHECK(result.err.find(out) != std::string::npos);
+  }
+  CHECK(base::read_file(temp / "file") == "in the way");
+  CHECK(entries(temp.path()) == 2);
+}
+
+TEST_CASE("a disk that fills up is status 3, and nothing is left under the final name") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  // Files of at most 8 blocks of 512 bytes: smaller than any of the results.
+  const tests::ProcessResult result =
+      tests::run({"sh", "-c", "ulimit -f 8 && exec \"$0\" analyze made --out out", tests::kBinary}, temp.path());
+  INFO(result.err);
+  CHECK(result.status == 3);
+  CHECK(entries(temp.path()) == 1);
+}
+
+TEST_CASE("a standard output that cannot be written is status 3") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const tests::ProcessResult result =
+      tests::run({"sh", "-c", "exec \"$0\" analyze made --json --out out > /dev/full", tests::kBinary}, temp.path());
+  CHECK(result.status == 3);
+}
+
+TEST_CASE("a missing gnuplot is status 3, found before the work") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  fs::create_directories(temp / "empty");
+  const tests::ProcessResult result = tests::run(
+      {"env", "PATH=" + (temp / "empty").string(), tests::kBinary, "analyze", "made", "--out", "out"}, temp.path());
+  CHECK(result.status == 3);
+  CHECK(result.err.find("gnuplot") != std::string::npos);
+  CHECK_FALSE(fs::exists(temp / "out"));
+}
+
+TEST_CASE("clip names of any text neither break the page nor leave the folder") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made", "<script>alert(1)</script> it's ünï");
+  const tests::ProcessResult result =
+      tests::glidelab({"analyze", (temp / "made").string(), "--out", (temp / "out").string()});
+  INFO(result.err);
+  if (result.status == 1) {  // the reader may refuse such a name
+    CHECK(result.err.find("name") != std::string::npos);
+    return;
+  }
+  CHECK(result.status == 0);
+  CHECK(base::read_file(temp / "out/report.html").find("<script") == std::string::npos);
+  CHECK(entries(temp / "out") == 3);
+}

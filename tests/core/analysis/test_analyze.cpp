@@ -1,0 +1,162 @@
+#include "core/analysis/analyze.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "base/errors.h"
+#include "tests/catch.h"
+#include "tests/core/simulated_track.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+using core::analyze;
+
+namespace {
+
+const tests::Law kLaw{4.3, 0.0071, 2.77};
+
+void write_track(const std::filesystem::path& file, const tests::SimulatedMotion& motion, unsigned seed) {
+  const core::TrackData track = tests::film(motion, {200.0, 1.7, 2e-5, seed});
+  std::ofstream out(file);
+  out << "t_s,x_m\n";
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) out << fmt::format("{},{}\n", track.t_s[i], track.x_m[i]);
+}
+
+/// A folder with an "up" and a "down" of kLaw, stated as 4 degrees.
+std::filesystem::path make_folder(const std::filesystem::path& folder, unsigned seed, const std::string& extra = {}) {
+  std::filesystem::create_directories(folder / "tracks");
+  write_track(folder / "tracks/up.csv", tests::launch(kLaw, -1.3, 1.7), seed);
+  write_track(folder / "tracks/down.csv", tests::launch(kLaw, 1.2, 1.7), seed + 1);
+  std::ofstream toml(folder / "experiment.toml");
+  toml << "format = 1\nname = \"" << folder.filename().string() << " (test)\"\n"
+       << extra << "[track]\ndownhill = \"+X\"\n";
+  for (const std::string name : {"up", "down"}) {
+    toml << fmt::format(
+        "[[clip]]\nname = \"{0}\"\ntrack = \"tracks/{0}.csv\"\nmass_kg = 0.335\nincline_deg = 4.0\n"
+        "launched = \"{0}\"\n",
+        name);
+  }
+  return folder;
+}
+
+}  // namespace
+
+TEST_CASE("a folder of two tracks gives the law that made them") {
+  const tests::TempDir temp;
+  const auto results = analyze({make_folder(temp / "one", 1)}, {});
+  REQUIRE(results.clips.size() == 2);
+  CHECK(results.clips[0].name == "up");
+  CHECK(results.clips[0].experiment == "one (test)");
+  CHECK(results.estimator == "phase-diagram");
+  REQUIRE(results.configurations.size() == 1);
+  const core::ConfigurationResult& found = results.configurations[0];
+  CHECK(found.clips == std::vector<std::string>{"up", "down"});
+  // Four standard deviations, as stated: 1 in 16,000 by chance.
+  const auto close = [](const core::Quantity& quantity, double truth) {
+    REQUIRE(quantity.estimate);
+    INFO(quantity.estimate->value << " +- " << quantity.estimate->sd << ", truth " << truth);
+    CHECK(std::abs(quantity.estimate->value - truth) < 4.0 * quantity.estimate->sd);
+    CHECK(quantity.estimate->low95 < quantity.estimate->value);
+    CHECK(quantity.estimate->high95 > quantity.estimate->value);
+  };
+  close(found.k_over_m_1_s, kLaw.k_1_s);
+  close(found.mu, kLaw.mu);
+  close(found.alpha_deg, kLaw.alpha_deg);
+  close(found.v_lim_m_s, kLaw.v_lim());
+}
+
+TEST_CASE("a file alone that goes up and down gives mu and alpha whatever mass and inclination are stated") {
+  const tests::TempDir temp;
+  write_track(temp / "up.csv", tests::launch(kLaw, -1.3, 1.7), 1);
+  for (const double incline_deg : {-4.0, 0.0, 4.0}) {
+    core::AnalysisOptions options;
+    options.bare.mass_kg = 0.2;
+    options.bare.incline_deg = incline_deg;
+    const auto results = analyze({temp / "up.csv"}, options);
+    INFO("stated " << incline_deg);
+    for (const core::LeftOutInterval& interval : results.clips.at(0).left_out) {
+      CHECK(interval.reason != core::LeftOut::hand);
+    }
+    const core::ConfigurationResult& found = results.configurations.at(0);
+    REQUIRE(found.mu.estimate);
+    REQUIRE(found.alpha_deg.estimate);
+    // Four standard deviations, as stated: 1 in 16,000 by chance.
+    CHECK(std::abs(found.mu.estimate->value - kLaw.mu) < 4.0 * found.mu.estimate->sd);
+    CHECK(std::abs(found.alpha_deg.estimate->value - kLaw.alpha_deg) < 4.0 * found.alpha_deg.estimate->sd);
+  }
+}
+
+TEST_CASE("a launch stated the wrong way round is why there is no mu, with the clip and the time of the turn") {
+  const tests::TempDir temp;
+  const auto folder = make_folder(temp / "one", 1);
+  std::ifstream in(folder / "experiment.toml");
+  std::string toml((std::istreambuf_iterator<char>(in)), {});
+  toml.replace(toml.find("launched = \"up\""), 15, "launched = \"down\"");
+  std::ofstream(folder / "experiment.toml") << toml;
+  const auto results = analyze({folder}, {});
+  const core::Quantity& mu = results.configurations.at(0).mu;
+  CHECK_FALSE(mu.estimate);
+  const std::string before = "up: what moves towards -x before ";
+  const auto at = mu.why.find(before);
+  REQUIRE(at != std::string::npos);
+  // v = 0 in closed form, give or take the first smoothing's four frames.
+  const double turn_s = std::log1p(1.3 * kLaw.k_1_s / kLaw.a0(-1)) / kLaw.k_1_s;
+  CHECK(std::abs(std::stod(mu.why.substr(at + before.size())) - turn_s) < 0.02);
+}
+
+TEST_CASE("clips of one name in two folders get their folder's name, and join one configuration") {
+  const tests::TempDir temp;
+  const auto results = analyze({make_folder(temp / "one", 1), make_folder(temp / "two", 11)}, {});
+  REQUIRE(results.clips.size() == 4);
+  CHECK(results.clips[0].name == "one-up");
+  CHECK(results.clips[3].name == "two-down");
+  REQUIRE(results.configurations.size() == 1);
+  CHECK(results.configurations[0].clips.size() == 4);
+}
+
+TEST_CASE("any number of jobs gives the same results") {
+  const tests::TempDir temp;
+  const auto folder = make_folder(temp / "one", 1);
+  const auto alone = analyze({folder}, {}), together = analyze({folder}, {std::nullopt, 4});
+  for (std::size_t i = 0; i < alone.clips.size(); ++i) {
+    CHECK(alone.clips[i].bandwidth_s == together.clips[i].bandwidth_s);
+    REQUIRE(alone.clips[i].segments.size() == together.clips[i].segments.size());
+    for (std::size_t s = 0; s < alone.clips[i].segments.size(); ++s) {
+      CHECK(alone.clips[i].segments[s].k_over_m_1_s.value == together.clips[i].segments[s].k_over_m_1_s.value);
+    }
+  }
+}
+
+TEST_CASE("a bandwidth given is used for all clips, and one that is no time is an input error") {
+  const tests::TempDir temp;
+  const auto folder = make_folder(temp / "one", 1);
+  const auto results = analyze({folder}, {0.05, 1});
+  for (const core::ClipResult& clip : results.clips) CHECK(clip.bandwidth_s == 0.05);
+  CHECK_THROWS_AS(analyze({folder}, {0.0, 1}), base::InputError);
+  CHECK_THROWS_AS(analyze({folder}, {std::numeric_limits<double>::quiet_NaN(), 1}), base::InputError);
+}
+
+TEST_CASE("folders that cannot be analysed together are input errors that name them") {
+  const tests::TempDir temp;
+  const auto one = make_folder(temp / "one", 1), moon = make_folder(temp / "moon", 1, "gravity_m_s2 = 1.62\n");
+  CHECK_THROWS_WITH(analyze({one, moon}, {}), Contains("moon") && Contains("1.62"));
+  CHECK_THROWS_WITH(analyze({one, temp / "one/../one"}, {}), Contains("second time"));
+  CHECK_THROWS_AS(analyze({}, {}), base::InputError);
+  std::ofstream(temp / "lines.csv") << "mass_kg,incline_deg,direction,a0_m_s2,k_over_m_1_s,r2\n";
+  std::ofstream(temp / "experiment.toml") << "format = 1\nname = \"t\"\nlines = \"lines.csv\"\n[track]\ndownhill = "
+                                             "\"+X\"\n";
+  CHECK_THROWS_WITH(analyze({temp.path()}, {}),
+                    Contains("lines: found a table of lines") && Contains("glidelab diagnose"));
+}
+
+TEST_CASE("progress is told up to the end, and may stop the work") {
+  const tests::TempDir temp;
+  const auto folder = make_folder(temp / "one", 1);
+  double last = 0.0;
+  analyze({folder}, {}, [&](std::string_view, double fraction) { last = fraction; });
+  CHECK(last == 1.0);
+  CHECK_THROWS_AS(analyze({folder}, {}, [](std::string_view, double) { throw base::Interrupted(); }),
+                  base::Interrupted);
+}

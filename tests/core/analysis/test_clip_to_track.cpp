@@ -1,0 +1,130 @@
+#include "core/analysis/clip_to_track.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/catch.h"
+#include "tests/core/small_clip.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kRate = 100.0, kPixelsPerMetre = 400.0, kSpeed = 300.0;  // px/s, along the picture's diagonal
+const cv::Size kSize(240, 200);
+
+/// Pixels along the line of motion at a time.
+cv::Point2d place(double t) {
+  return cv::Point2d(30.0, 25.0) + kSpeed * t * cv::Point2d(0.8, 0.6);
+}
+
+core::Experiment experiment_of(const std::filesystem::path& clip, double line_readout_s) {
+  core::Experiment experiment;
+  experiment.name = "rolling";
+  experiment.camera.emplace().frame_rate_hz = kRate;
+  if (line_readout_s > 0.0) {
+    experiment.camera->shutter = core::Shutter::rolling;
+    experiment.camera->line_readout_s = line_readout_s;
+  }
+  experiment.scale = core::ScaleSetup{kPixelsPerMetre, 0.0};
+  experiment.marker.emplace().diameter_m = 12.0 / kPixelsPerMetre;
+  core::ClipSetup setup;
+  setup.name = "clip";
+  setup.file = clip;
+  setup.mass_kg = 0.3;
+  setup.group = "all";
+  experiment.clips = {setup};
+  return experiment;
+}
+
+}  // namespace
+
+TEST_CASE("a rolling shutter's rows have their own times where the experiment declares it") {
+  const tests::TempDir dir;
+  const double line_readout_s = 4e-5;  // 8 ms for 200 rows
+  std::vector<cv::Mat> frames;
+  for (int k = 0; k < 45; ++k) {
+    // The row on which the marker is seen: v = v(t_k + readout (v - middle row)), solved for v.
+    const double middle = 0.5 * (kSize.height - 1), slope = kSpeed * 0.6 * line_readout_s;
+    const double v = (place(k / kRate).y - slope * middle) / (1.0 - slope);
+    const double t = k / kRate + line_readout_s * (v - middle);
+    cv::Mat picture(kSize, CV_64F, cv::Scalar(60.0));
+    tests::put_disc(picture, place(t), 6.0, 210.0);
+    frames.push_back(picture);
+  }
+  tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
+  const auto error_of = [&](double declared_s) {
+    const auto results = core::tracks_of(experiment_of(dir / "clip.mkv", declared_s), 1);
+    const core::TrackData& track = results.tracks.at(0);
+    REQUIRE(track.t_s.size() >= 40);
+    // The origin is the picture's: x at t minus its first value is the way gone since.
+    double worst = 0.0;
+    for (std::size_t i = 0; i < track.t_s.size(); ++i) {
+      const double way = kSpeed / kPixelsPerMetre * (track.t_s[i] - track.t_s[0]);
+      worst = std::max(worst, std::abs(track.x_m[i] - track.x_m[0] - way));
+    }
+    return worst;
+  };
+  // Noise of 1 of 150 leaves 0.005 px a coordinate; two positions, the largest of 45: 0.03 px.
+  CHECK(error_of(line_readout_s) < 0.03 / kPixelsPerMetre);
+  // Not declared: the marker goes down 79 rows, which at 40 us each is 3.2 ms, in which it moves by 0.95 px.
+  CHECK(error_of(0.0) > 0.5 / kPixelsPerMetre);
+}
+
+namespace {
+
+/// A card of this brightness with discs on it (where they are on the card, and how bright) moves over a grey wall.
+std::filesystem::path card_clip(const tests::TempDir& dir, double card,
+                                const std::vector<std::pair<cv::Point2d, double>>& discs) {
+  std::vector<cv::Mat> frames;
+  for (int k = 0; k < 45; ++k) {
+    cv::Mat picture(kSize, CV_64F, cv::Scalar(110.0));
+    const cv::Point2d at = place(k / kRate);
+    tests::put_box(picture, cv::Rect(cv::Point(at) - cv::Point(28, 16), cv::Size(56, 32)), card);
+    for (const auto& [on_card, value] : discs) tests::put_disc(picture, at + on_card, 6.0, value);
+    frames.push_back(picture);
+  }
+  tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
+  return dir / "clip.mkv";
+}
+
+core::TrackData only_track(const std::filesystem::path& clip) {
+  return core::tracks_of(experiment_of(clip, 0.0), 1).tracks.at(0);
+}
+
+/// Largest distance of a sighting from a place on the card, in pixels.
+double worst_px(const core::TrackData& track, cv::Point2d on_card) {
+  double worst = 0.0;
+  for (const core::MarkerSighting& seen : track.sightings) {
+    const cv::Point2d true_px = place(static_cast<double>(seen.frame) / kRate) + on_card;
+    worst = std::max(worst, cv::norm(cv::Point2d(seen.u_px, seen.v_px) - true_px));
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a marker whose colour is not stated is found bright on dark and dark on bright, and a note says which") {
+  const tests::TempDir dir;
+  // 0.03 px: noise of 1 of 120 at 40 pixels of the outline is 0.005 px, and the card moves by whole pixels under it.
+  const core::TrackData dark = only_track(card_clip(dir, 190.0, {{{0.0, 0.0}, 20.0}}));
+  CHECK(dark.dark_marker);
+  CHECK(dark.sightings.size() >= 40);
+  CHECK(worst_px(dark, {0.0, 0.0}) < 0.03);
+  CHECK(std::any_of(dark.notes.begin(), dark.notes.end(), [](const std::string& note) {
+    return note.find("darker than its surroundings") != std::string::npos;
+  }));
+  const core::TrackData bright = only_track(card_clip(dir, 30.0, {{{0.0, 0.0}, 200.0}}));
+  CHECK(!bright.dark_marker);
+  CHECK(worst_px(bright, {0.0, 0.0}) < 0.03);
+}
+
+TEST_CASE("of a bright and a dark disc the bright one is the marker, and of two bright ones neither") {
+  const tests::TempDir dir;
+  const core::TrackData both = only_track(card_clip(dir, 110.0, {{{-14.0, 0.0}, 200.0}, {{14.0, 0.0}, 20.0}}));
+  CHECK(!both.dark_marker);
+  CHECK(worst_px(both, {-14.0, 0.0}) < 0.03);
+  const auto clip = card_clip(dir, 110.0, {{{-20.0, 0.0}, 200.0}, {{0.0, 0.0}, 20.0}, {{20.0, 0.0}, 200.0}});
+  CHECK_THROWS_WITH(only_track(clip), Catch::Contains("two markers that look and move alike"));
+}

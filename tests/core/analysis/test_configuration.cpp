@@ -1,0 +1,228 @@
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/analysis/analyze_motion.h"
+#include "core/motion/lines/line_fit.h"
+#include "tests/catch.h"
+#include "tests/core/simulated_track.h"
+
+using namespace glidelab;
+using namespace glidelab::core;
+using tests::kGravity;
+
+namespace {
+
+struct Line {
+  int direction;
+  double k, a0, sd_k, sd_a0;
+};
+
+/// A clip whose used points lie exactly on the lines; the lines state their random errors.
+ClipResult clip_on(const std::vector<Line>& lines) {
+  ClipResult clip;
+  clip.name = "clip";
+  for (const Line& line : lines) {
+    LineFit fit;
+    fit.direction = line.direction;
+    fit.points = 20;
+    fit.k_over_m_1_s.value = line.k;
+    fit.a0_m_s2.value = line.a0;
+    fit.parts.var_k = line.sd_k * line.sd_k;
+    fit.parts.var_a0 = line.sd_a0 * line.sd_a0;
+    fit.parts.degrees = std::numeric_limits<double>::infinity();
+    complete_line(fit);
+    clip.segments.push_back(fit);
+    for (int i = 1; i <= 20; ++i) {
+      MotionPoint point;
+      point.smoothed = true;
+      point.v_m_s = line.direction * 0.02 * i;
+      point.a_m_s2 = line.a0 - line.k * point.v_m_s;
+      clip.motion.push_back(point);
+    }
+  }
+  return clip;
+}
+
+ConfigurationResult join(const std::vector<ClipSetup>& setups, const std::vector<ClipResult>& clips) {
+  const auto results = join_configurations(setups, clips, kGravity);
+  REQUIRE(results.size() == 1);
+  return results.front();
+}
+
+constexpr double kClock = kClockSdRelative;  // in every standard deviation: once for K/m and v_lim, twice else
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+const ClipSetup kUp = tests::clip_setup(Launched::up, 4.0);
+const ClipSetup kDown = tests::clip_setup(Launched::down, 4.0);
+
+}  // namespace
+
+TEST_CASE("equation (13) turns the intercepts of two lines into the inclination and the friction they came from") {
+  const tests::Law law{4.3, 0.0071, 2.77};
+  const auto result = join(
+      {kUp, kDown}, {clip_on({{-1, 2.77, law.a0(-1), 0.01, 0.002}}), clip_on({{1, 2.77, law.a0(1), 0.01, 0.001}})});
+  // Exact but for rounding: some 10 operations of 1e-16, and mu is a difference of numbers 100 times as large.
+  CHECK(result.alpha_deg.estimate->value == Approx(4.3).epsilon(1e-12));
+  CHECK(result.mu.estimate->value == Approx(0.0071).epsilon(1e-10));
+  CHECK(result.k_over_m_1_s.estimate->value == Approx(2.77).epsilon(1e-12));
+  CHECK(result.v_lim_m_s.estimate->value == Approx(law.v_lim()).epsilon(1e-12));
+  const double g_cos = kGravity * std::cos(4.3 * std::numbers::pi / 180.0);
+  const double half = 0.5 * std::hypot(0.002, 0.001);
+  const double of_clock = 2.0 * kClock * std::tan(4.3 / kDegrees);
+  CHECK(result.alpha_deg.estimate->sd == Approx(std::hypot(half / g_cos, of_clock) * kDegrees).epsilon(1e-9));
+  // mu = jump / (2 g cos): the mean of the intercepts enters by tan(alpha) mu only, 5e-4 of it.
+  CHECK(result.mu.estimate->sd == Approx(half / g_cos).epsilon(2e-3));
+  CHECK(result.incline_deg == 4.0);
+  CHECK(result.clips.size() == 2);
+}
+
+TEST_CASE(
+    "the K/m of two directions that agree is their weighted mean, of two that do not their mean with the spread") {
+  const auto agreeing =
+      join({kUp, kDown}, {clip_on({{-1, 2.00, 0.8, 0.01, 0.002}}), clip_on({{1, 2.01, 0.6, 0.02, 0.002}})});
+  // Exact but for rounding (1e-16 an operation).
+  CHECK(agreeing.k_over_m_1_s.estimate->value == Approx((2.0 * 4.0 + 2.01) / 5.0).epsilon(1e-12));
+  CHECK(agreeing.k_over_m_1_s.estimate->sd ==
+        Approx(std::hypot(std::sqrt(1.0 / (1e4 + 2500.0)), kClock * 2.002)).epsilon(1e-12));
+  const auto apart =
+      join({kUp, kDown}, {clip_on({{-1, 2.5, 0.8, 0.01, 0.002}}), clip_on({{1, 1.7, 0.6, 0.02, 0.002}})});
+  // Weights 1/(tau^2 + sd^2) with tau = 0.57 and sd of 0.01 and 0.02 differ by 1e-3; half of that, and of what they are
+  // apart over their mean (0.2), is far below the tolerance.
+  CHECK(apart.k_over_m_1_s.estimate->value == Approx(2.1).epsilon(2e-3));
+  CHECK(apart.k_over_m_1_s.estimate->sd == Approx(0.4).epsilon(2e-3));  // half of what they are apart
+}
+
+TEST_CASE("a configuration of one direction has K/m, and null for mu and alpha with the reason") {
+  const auto result = join({kDown}, {clip_on({{1, 2.0, 0.6, 0.01, 0.002}})});
+  CHECK(result.k_over_m_1_s.estimate);
+  CHECK(result.v_lim_m_s.estimate);
+  CHECK_FALSE(result.mu.estimate);
+  CHECK_FALSE(result.alpha_deg.estimate);
+  CHECK_THAT(result.mu.why, Catch::Matchers::Contains("v < 0"));
+  const auto none = join({kDown}, {ClipResult{}});
+  CHECK_FALSE(none.k_over_m_1_s.estimate);
+  CHECK_FALSE(none.v_lim_m_s.estimate);
+}
+
+TEST_CASE("an inclination stated as not known, with more than 90 degrees, keeps its standard deviation") {
+  ClipSetup unknown = kDown;
+  unknown.incline_sd_rad = 120.0 / kDegrees;
+  const auto result = join({unknown}, {clip_on({{1, 2.0, 0.6, 0.01, 0.002}})});
+  REQUIRE(result.incline_sd_deg);
+  CHECK(*result.incline_sd_deg == Approx(120.0).epsilon(1e-12));  // degrees to radians and back
+}
+
+TEST_CASE("a line that is missing because the motion went against the stated launch says so, for what needs it alone") {
+  ClipResult clip = clip_on({{-1, 2.0, 0.6, 0.01, 0.002}});
+  clip.against_launch = AgainstLaunch{1, 0.542, 0.4, true};
+  const auto result = join({kUp}, {clip});
+  for (const Quantity* quantity : {&result.mu, &result.alpha_deg, &result.v_lim_m_s}) {
+    CHECK_THAT(quantity->why, Catch::Matchers::Contains(
+                                  "clip: what moves towards +x before 0.542 s is left out as the hand: the launch was "
+                                  "towards -x (launched and downhill"));
+  }
+  clip.against_launch->direction = -1;  // of which there is a line: that is not why
+  CHECK_THAT(join({kUp}, {clip}).mu.why, !Catch::Matchers::Contains("hand"));
+}
+
+TEST_CASE("a configuration a hundred times as heavy as the lightest has a note, one ninety times has none") {
+  for (const double kg : {221.0, 0.318 * 90.0}) {
+    const std::vector<ClipSetup> setups = {tests::clip_setup(Launched::up, 4.0, 0.318),
+                                           tests::clip_setup(Launched::up, 4.0, kg)};
+    const ClipResult clip = clip_on({{-1, 2.0, 0.6, 0.01, 0.002}});
+    const auto results = join_configurations(setups, {clip, clip}, kGravity);
+    REQUIRE(results.size() == 2);
+    CHECK(results[0].notes.empty());
+    CHECK(results[1].notes.size() == (kg > 100.0 ? 1 : 0));
+  }
+}
+
+TEST_CASE("the friction of a negative jump comes out negative, and intercepts beyond gravity give no inclination") {
+  CHECK(join({kUp}, {clip_on({{-1, 2.0, 0.60, 0.01, 0.002}, {1, 2.0, 0.62, 0.01, 0.002}})}).mu.estimate->value < 0.0);
+  const auto steep = join({kUp}, {clip_on({{-1, 2.0, 11.0, 0.01, 0.002}, {1, 2.0, 10.0, 0.01, 0.002}})});
+  CHECK_FALSE(steep.alpha_deg.estimate);
+  CHECK_THAT(steep.alpha_deg.why, Catch::Matchers::Contains("gravity"));
+}
+
+TEST_CASE("the joint line of two clips is least squares through the points of both") {
+  // Two clips on the same line but over different v: the joint line is that line; N-weighted covariance by hand.
+  ClipResult slow = clip_on({{1, 2.0, 0.6, 0.01, 0.002}}), fast = clip_on({{1, 2.0, 0.6, 0.01, 0.002}});
+  for (MotionPoint& point : fast.motion) {
+    point.v_m_s += 0.4;
+    point.a_m_s2 = 0.6 - 2.0 * point.v_m_s;
+  }
+  const auto result = join({kUp, kDown}, {slow, fast});
+  REQUIRE(result.lines.size() == 1);
+  CHECK(result.lines[0].points == 40);
+  // Sums of 40 points: 1e-14, and the inverses of their moments (condition 100): 1e-12; roots of products to 1e-9.
+  CHECK(result.lines[0].k_over_m_1_s.value == Approx(2.0).epsilon(1e-12));
+  CHECK(result.lines[0].r2 == Approx(1.0).epsilon(1e-12));
+  Eigen::Matrix2d joint = Eigen::Matrix2d::Zero(), random = joint;
+  for (const ClipResult* clip : {&slow, &fast}) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    for (const MotionPoint& point : clip->motion) {
+      const Eigen::Vector2d design(-point.v_m_s, 1.0);
+      normal += design * design.transpose();
+    }
+    joint += normal;
+    random += normal * Eigen::Vector2d(1e-4, 4e-6).asDiagonal() * normal;
+  }
+  const Eigen::Matrix2d covariance = joint.inverse() * random * joint.inverse();
+  CHECK(result.lines[0].k_over_m_1_s.sd == Approx(std::hypot(std::sqrt(covariance(0, 0)), kClock * 2.0)).epsilon(1e-9));
+  CHECK(result.lines[0].a0_m_s2.sd ==
+        Approx(std::hypot(std::sqrt(covariance(1, 1)), 2.0 * kClock * 0.6)).epsilon(1e-9));
+}
+
+TEST_CASE("clips of another mass, inclination or group make another configuration, in the order of the clips") {
+  std::vector<ClipSetup> setups(5, kUp);
+  setups[1].mass_kg = 0.435;
+  setups[2].incline_rad = 0.0;
+  setups[3].group = "other";
+  const std::vector<ClipResult> clips(5, clip_on({{-1, 2.0, 0.8, 0.01, 0.002}}));
+  const auto results = join_configurations(setups, clips, kGravity);
+  REQUIRE(results.size() == 4);
+  CHECK(results[0].clips.size() == 2);
+  CHECK(results[1].mass_kg == 0.435);
+  CHECK(results[2].incline_deg == 0.0);
+  CHECK(results[3].group == "other");
+}
+
+TEST_CASE("an error of the scale moves the inclination and the limit velocity in proportion, K/m not") {
+  ClipResult clip = clip_on({{-1, 2.0, 0.8, 0.0, 0.0}, {1, 2.0, 0.7, 0.0, 0.0}});
+  for (LineFit& line : clip.segments) {
+    line.parts.scale_relative = 0.01;
+    complete_line(line);
+  }
+  const auto result = join({kUp}, {clip});
+  const double alpha = std::asin(0.75 / kGravity);
+  // First-order propagation, here done by hand: exact but for rounding (as below).
+  CHECK(result.alpha_deg.estimate->sd ==
+        Approx(std::hypot(0.01, 2.0 * kClock) * std::tan(alpha) * kDegrees).epsilon(1e-9));
+  CHECK(result.v_lim_m_s.estimate->sd == Approx(std::hypot(0.01, kClock) * 0.35).epsilon(1e-9));
+  CHECK(result.k_over_m_1_s.estimate->sd == Approx(kClock * 2.0).epsilon(1e-9));
+}
+
+TEST_CASE("an error of the camera that both lines share cancels in mu or in alpha, by its signs") {
+  const auto with = [](LineShift minus, LineShift plus) {
+    ClipResult clip = clip_on({{-1, 2.0, 0.8, 0.0, 0.0}, {1, 2.0, 0.7, 0.0, 0.0}});
+    clip.segments[0].parts.calibration = {{}, minus};
+    clip.segments[1].parts.calibration = {{}, plus, {}};  // a folder's modes that the other line does not know of
+    for (LineFit& line : clip.segments) complete_line(line);
+    return join({kUp}, {clip});
+  };
+  const auto same = with({0.02, 0.003}, {0.02, 0.003});
+  const double alpha = std::asin(0.75 / kGravity), g_cos = kGravity * std::cos(alpha);
+  const double of_clock = 2.0 * kClock * std::tan(alpha);
+  CHECK(same.alpha_deg.estimate->sd == Approx(std::hypot(0.003 / g_cos, of_clock) * kDegrees).epsilon(1e-9));
+  CHECK(same.mu.estimate->sd < 3e-6);  // mu = 0.05 / g cos(alpha) changes with alpha only
+  CHECK(same.k_over_m_1_s.estimate->sd == Approx(std::hypot(0.02, kClock * 2.0)).epsilon(1e-9));
+  CHECK(same.v_lim_m_s.estimate->sd == Approx(std::hypot((0.003 - 0.35 * 0.02) / 2.0, kClock * 0.35)).epsilon(1e-9));
+  const auto opposite = with({0.02, 0.003}, {-0.02, -0.003});
+  CHECK(opposite.alpha_deg.estimate->sd == Approx(of_clock * kDegrees).epsilon(1e-9));
+  // mu goes with the clock as 2 + 2 tan^2(alpha), of which the second part is below 1e-6 of the sd.
+  CHECK(opposite.mu.estimate->sd == Approx(std::hypot(0.003 / g_cos, 2.0 * kClock * 0.05 / g_cos)).epsilon(1e-6));
+  CHECK(opposite.k_over_m_1_s.estimate->sd == Approx(kClock * 2.0).epsilon(1e-9));
+}

@@ -1,0 +1,288 @@
+#include "core/check/check_recording.h"
+
+#include <atomic>
+#include <cmath>
+
+#include "base/files/staged_output.h"
+#include "core/check/marker_smear.h"
+#include "tests/catch.h"
+#include "tests/core/simulated_track.h"
+#include "tests/core/small_clip.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kRate = 100.0, kPixelsPerMetre = 400.0, kSpeed = 300.0, kNoise = 3.0;
+constexpr double kMarker = 210.0, kBackground = 60.0;
+const cv::Size kSize(240, 200);
+
+/// A disc of 12 px along row 100, 60 frames.
+void write_clip(const std::filesystem::path& file) {
+  std::vector<cv::Mat> frames;
+  for (int k = 0; k < 60; ++k) {
+    cv::Mat picture(kSize, CV_64F, cv::Scalar(kBackground));
+    tests::put_disc(picture, {25.0 + kSpeed * k / kRate, 100.0}, 6.0, kMarker);
+    frames.push_back(picture);
+  }
+  tests::write_video(file, frames, kRate, kNoise);
+}
+
+core::Experiment experiment_of(const std::vector<std::filesystem::path>& clips) {
+  core::Experiment experiment;
+  experiment.name = "to check";
+  experiment.camera.emplace().frame_rate_hz = kRate;
+  experiment.scale = core::ScaleSetup{kPixelsPerMetre, 0.0};
+  experiment.marker.emplace().diameter_m = 12.0 / kPixelsPerMetre;
+  for (const std::filesystem::path& file : clips) {
+    core::ClipSetup setup;
+    setup.name = "clip " + std::to_string(experiment.clips.size());
+    setup.file = file;
+    setup.mass_kg = 0.3;
+    setup.group = "all";
+    experiment.clips.push_back(setup);
+  }
+  return experiment;
+}
+
+}  // namespace
+
+TEST_CASE("a check reads each clip once, and finds the noise and the contrast that the clip was given") {
+  const tests::TempDir dir;
+  write_clip(dir / "clip.mkv");
+  std::atomic<int> opened = 0;
+  const core::FrameOpener open = [&](const std::filesystem::path& file, const core::CameraSettings& camera,
+                                     bool with_color, std::optional<cv::Size> size) {
+    ++opened;
+    return core::open_frames(file, camera, with_color, size);
+  };
+  // One file for two clips, as where start_s and end_s cut it.
+  const core::Experiment experiment = experiment_of({dir / "clip.mkv", dir / "clip.mkv"});
+  const core::RecordingCheck check = core::check_recording(experiment, 2, base::no_progress, open);
+  CHECK(opened == 2);
+  REQUIRE(check.clips.size() == 2);
+  for (const core::ClipCheck& clip : check.clips) {
+    INFO(clip.failure);
+    CHECK(clip.seen == 60);
+    CHECK(clip.width_px == kSize.width);
+    CHECK(clip.height_px == kSize.height);
+    CHECK(clip.repeated == 0);
+    // Of 12 to 24 pairs some 1400 pixels each: the standard deviation of differences to 1 %. Rounding adds 1/12 to the
+    // variance, 0.5 %; what the 5 % left out are is known for continuous numbers, and these are whole: 2 %.
+    CHECK(std::abs(255.0 * clip.pixel_noise / kNoise - 1.0) < 0.05);
+    // Each of 60 fits knows the amplitude to the noise over the root of its 100 pixels, 0.3 of 150.
+    REQUIRE(clip.contrast.has_value());
+    CHECK(std::abs(255.0 * *clip.contrast - (kMarker - kBackground)) < 1.0);
+    REQUIRE(clip.marker_level.has_value());
+    CHECK(std::abs(255.0 * *clip.marker_level - kMarker) < 1.0);
+  }
+}
+
+TEST_CASE("a clip that cannot be read is a finding of its own and leaves the others looked at") {
+  const tests::TempDir dir;
+  write_clip(dir / "clip.mkv");
+  base::write_file(dir / "broken.mkv", "no video");
+  const core::RecordingCheck check = core::check_recording(experiment_of({dir / "broken.mkv", dir / "clip.mkv"}), 1);
+  REQUIRE(check.clips.size() == 2);
+  CHECK_FALSE(check.clips[0].failure.empty());
+  CHECK(check.clips[1].failure.empty());
+  CHECK(check.clips[1].seen == 60);
+  CHECK(check.clips[1].contrast.has_value());
+  CHECK_FALSE(check.usable);
+}
+
+namespace {
+
+/// A clip of 264 frames with nothing wrong but that the marker is seen in [first, first + spanned) only.
+core::ClipCheck seen_in(std::size_t first, std::size_t spanned) {
+  core::ClipCheck clip;
+  clip.name = "clip";
+  clip.frames = 264;
+  clip.first = first;
+  clip.seen = clip.spanned = spanned;
+  clip.frame_rate_hz = kRate;
+  clip.marker_px = clip.marker_expected_px = 12.0;
+  clip.bright_level = 0.8;
+  clip.contrast = 0.5;
+  return clip;
+}
+
+std::vector<core::Finding> findings(const core::ClipCheck& clip) {
+  core::RecordingCheck check;
+  check.clips = {clip};
+  return core::findings_of(experiment_of({"clip.mkv"}), check);
+}
+
+}  // namespace
+
+TEST_CASE("a marker that is not seen at a clip's start or end is a finding, worse the longer, less at the edge") {
+  CHECK(findings(seen_in(0, 264)).empty());
+  CHECK(findings(seen_in(3, 258)).empty());
+  const auto late = findings(seen_in(52, 212));
+  REQUIRE(late.size() == 1);
+  CHECK(late[0].severity == core::Severity::change);
+  CHECK(late[0].found == "the marker is first seen in frame 53 of 264");
+  const auto lost = findings(seen_in(0, 200));
+  REQUIRE(lost.size() == 1);
+  CHECK(lost[0].found == "the marker is last seen in frame 200 of 264");
+  CHECK(findings(seen_in(100, 164)).at(0).severity == core::Severity::unusable);
+  core::ClipCheck entered = seen_in(52, 212);
+  entered.entered = true;
+  CHECK(findings(entered).at(0).severity == core::Severity::note);
+  core::ClipCheck half = seen_in(0, 264);
+  half.seen = 135;  // 51 %
+  CHECK(findings(half).at(0).severity == core::Severity::unusable);
+}
+
+TEST_CASE("a marker that is not found for its size is looked for in others, and then its size is the finding") {
+  const tests::TempDir dir;
+  write_clip(dir / "clip.mkv");
+  for (const double factor : {2.4, 1.0 / 2.4}) {
+    core::Experiment experiment = experiment_of({dir / "clip.mkv", dir / "clip.mkv"});
+    experiment.marker->diameter_m *= factor;
+    const core::RecordingCheck check = core::check_recording(experiment, 2);
+    CHECK_FALSE(check.usable);
+    REQUIRE_FALSE(check.findings.empty());
+    INFO(check.findings[0].found);
+    CHECK(check.findings[0].severity == core::Severity::unusable);
+    CHECK(check.findings[0].about == "clip 0, clip 1");
+    CHECK(check.findings[0].found.find("diameter_m") != std::string::npos);
+    // A disc of 12 px, found by another size to a pixel.
+    for (const core::ClipCheck& clip : check.clips) CHECK(std::abs(clip.marker_px - 12.0) < 1.0);
+  }
+}
+
+TEST_CASE("what is found is said once, and in the words of the folder that it is about") {
+  core::ClipCheck clip = seen_in(0, 264);
+  clip.jumps = 1;
+  clip.repeated = 20;
+  clip.marker_px = 16.0;
+  clip.notes = {"20 of 264 frames are the very picture before them once more: duplicates",
+                "the marker looks 33 % larger than its diameter says", "something else"};
+  std::size_t notes = 0, once = 0, scale = 0, square = 0;
+  for (const core::Finding& finding : findings(clip)) {
+    notes += finding.severity == core::Severity::note;
+    once += finding.found.find("jumps once by") != std::string::npos;
+    scale += finding.advice.find("[scale]") != std::string::npos;
+    square += finding.advice.find("square_m") != std::string::npos;
+  }
+  CHECK(notes == 1);
+  CHECK(once == 1);
+  CHECK(scale == 1);
+  CHECK(square == 0);
+}
+
+namespace {
+
+/// The findings about the launch or the masses of a folder with a track each for `motions`, all filmed for 1.7 s.
+std::vector<core::Finding> of_setups(const std::vector<core::ClipSetup>& setups,
+                                     const std::vector<core::TrackData>& tracks, int downhill = 1) {
+  const tests::TempDir dir;
+  core::Experiment experiment;
+  experiment.track.downhill = downhill;
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    std::string csv = "t_s,x_m\n";
+    for (std::size_t k = 0; k < tracks[i].t_s.size(); ++k) {
+      csv += std::to_string(tracks[i].t_s[k]) + "," + std::to_string(tracks[i].x_m[k]) + "\n";
+    }
+    core::ClipSetup setup = setups[i];
+    setup.name += "-" + std::to_string(i);
+    setup.track = dir / (setup.name + ".csv");
+    base::write_file(setup.track, csv);
+    experiment.clips.push_back(setup);
+  }
+  std::vector<core::Finding> findings = core::check_recording(experiment, 1).findings;
+  std::erase_if(findings, [](const core::Finding& finding) {
+    return finding.about != "masses" && finding.found.find("launched = ") == std::string::npos;
+  });
+  return findings;
+}
+
+const tests::Law kSlope{4.3, 0.0071, 0.8};
+
+}  // namespace
+
+TEST_CASE("free motion against the stated launch is a finding that names the clip and both keys, with it is none") {
+  using core::Launched;
+  const core::TrackData up = tests::film(tests::launch(kSlope, -0.6, 1.7), {});
+  const core::TrackData down = tests::film(tests::launch(kSlope, 0.3, 1.7), {});
+  const auto clip = [](Launched launched) { return tests::clip_setup(launched, 4.3); };
+  CHECK(of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}).empty());
+  const auto turned = of_setups({clip(Launched::up)}, {up}, -1);
+  REQUIRE(turned.size() == 1);
+  CHECK(turned[0].severity == core::Severity::unusable);
+  CHECK(turned[0].about == "up-0");
+  // It turns at v = 0, in closed form; the first smoothing knows that to some frames of 5 ms.
+  const double turn_s = std::log1p(0.6 * kSlope.k_1_s / kSlope.a0(-1)) / kSlope.k_1_s;
+  const std::string before = "what moves towards +x before ";
+  REQUIRE(turned[0].found.rfind(before, 0) == 0);
+  CHECK(std::abs(std::stod(turned[0].found.substr(before.size())) - turn_s) < 0.02);
+  CHECK_THAT(turned[0].found, Catch::Matchers::Contains("launched = \"up\" and downhill = \"-X\""));
+  for (const Launched wrong : {Launched::down, Launched::released}) {
+    const auto findings = of_setups({clip(wrong)}, {up});
+    REQUIRE(findings.size() == 1);
+    CHECK_THAT(findings[0].found, Catch::Matchers::Contains("downhill = \"+X\""));
+  }
+  core::ClipSetup cut = clip(Launched::down);
+  cut.start_s = 0.0;  // the user's word
+  CHECK(of_setups({cut}, {up}).empty());
+}
+
+TEST_CASE("a downhill that turns every launch is said once, with the number of clips, their names and the worst") {
+  using core::Launched;
+  const core::TrackData up = tests::film(tests::launch(kSlope, -0.6, 1.7), {});
+  const core::TrackData down = tests::film(tests::launch(kSlope, 0.3, 1.7), {});
+  const auto clip = [](Launched launched) { return tests::clip_setup(launched, 4.3); };
+  const auto turned = of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}, -1);
+  REQUIRE(turned.size() == 1);
+  CHECK(turned[0].about == "up-0, down-1");
+  CHECK_THAT(turned[0].found,
+             Catch::Matchers::StartsWith("2 of 2 clips move freely against their launch; most of all down-1: it moves "
+                                         "towards -x only"));
+  CHECK_THAT(turned[0].advice, Catch::Matchers::Contains("launched of these clips, or downhill in [track]"));
+}
+
+TEST_CASE("a hand that carries the glider up and rests there is no finding") {
+  core::TrackData track = tests::film(tests::SimulatedMotion().rest(2.0).slide(kSlope, 3.6), {200.0, 3.6});
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) {  // half a cosine of 0.4 m in 1 s
+    if (track.t_s[i] < 1.0) track.x_m[i] += 0.2 * (1.0 + std::cos(std::numbers::pi * track.t_s[i]));
+  }
+  CHECK(of_setups({tests::clip_setup(core::Launched::released, 4.3)}, {track}).empty());
+}
+
+TEST_CASE("masses a hundred times apart are a finding that names the heavy clips, ninety times are none") {
+  const core::TrackData track = tests::film(tests::launch(kSlope, 0.3, 1.7), {});
+  const auto clip = [](double mass_kg) { return tests::clip_setup(core::Launched::down, 4.3, mass_kg); };
+  const auto grams = of_setups({clip(0.318), clip(221.0), clip(0.415)}, {track, track, track});
+  REQUIRE(grams.size() == 1);
+  CHECK(grams[0].severity == core::Severity::unusable);
+  CHECK_THAT(grams[0].found, Catch::Matchers::Contains("down-1 (221)") && Catch::Matchers::Contains("down-0 (0.318)"));
+  CHECK(of_setups({clip(0.01), clip(0.9)}, {track, track}).empty());
+}
+
+TEST_CASE("the exposure comes from how much longer than high the marker gets: L^2 / 12, in any direction") {
+  constexpr double kExposure = 0.006, kRadius = 6.0;
+  for (const double angle : {0.0, 0.7, 2.0}) {
+    std::vector<core::MarkerSighting> sightings;
+    std::vector<core::MarkerFit> fits;
+    double way_px = 0.0;
+    for (std::size_t k = 0; k < 60; ++k) {
+      const double speed_px_s = 600.0 - 8.0 * static_cast<double>(k);
+      const double along = kRadius * kRadius / 4.0 + std::pow(speed_px_s * kExposure, 2) / 12.0;
+      const double across = kRadius * kRadius / 4.0, c = std::cos(angle), s = std::sin(angle);
+      sightings.push_back({k, way_px * c, way_px * s, 0.01, kRadius});
+      fits.emplace_back().moments = {c * c * along + s * s * across, c * s * (along - across),
+                                     s * s * along + c * c * across};
+      // A place changes by the mean of two frames' speeds, so that the central difference is a frame's own.
+      way_px += (speed_px_s - 4.0) / kRate;
+    }
+    const auto smear = core::marker_smear(sightings, fits, kRate);
+    REQUIRE(smear.has_value());
+    CHECK(std::abs(smear->exposure_s / kExposure - 1.0) < 1e-9);
+    for (core::MarkerFit& fit : fits) fit.moments = {9.0, 0.0, 9.0};
+    CHECK_FALSE(core::marker_smear(sightings, fits, kRate).has_value());
+    fits.pop_back();
+    CHECK_FALSE(core::marker_smear(sightings, fits, kRate).has_value());
+  }
+}

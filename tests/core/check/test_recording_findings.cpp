@@ -1,0 +1,76 @@
+#include <algorithm>
+
+#include "core/check/check_recording.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A clip of 100 frames in which nothing is amiss.
+core::ClipCheck fine_clip() {
+  core::ClipCheck clip;
+  clip.name = "m1-up";
+  clip.pictures = true;
+  clip.frames = clip.seen = clip.spanned = 100;
+  clip.frame_rate_hz = 100.0;
+  clip.marker_px = clip.marker_expected_px = 12.0;
+  clip.bright_level = 0.8;
+  return clip;
+}
+
+core::Experiment experiment() {
+  core::Experiment experiment;
+  experiment.camera.emplace().frame_rate_hz = 100.0;
+  experiment.clips.resize(1);
+  experiment.clips[0].name = "m1-up";
+  experiment.clips[0].file = "m1-up.mkv";
+  experiment.clips[0].mass_kg = 0.3;
+  return experiment;
+}
+
+std::vector<core::Finding> of_clip(const core::ClipCheck& clip) {
+  core::RecordingCheck check;
+  check.clips = {clip};
+  return core::findings_of(experiment(), check);
+}
+
+/// A good camera: nothing is amiss but perhaps the number of its views.
+core::PatternCheck pattern_of(std::size_t found, std::size_t used) {
+  core::PatternCheck pattern;
+  pattern.covered = 0.9;
+  pattern.views.resize(found);
+  for (core::PatternView& view : pattern.views) view.tilt_deg = 35.0;
+  pattern.calibration.emplace();
+  pattern.calibration->views_used = used;
+  return pattern;
+}
+
+std::vector<core::Finding> of_pattern(const core::PatternCheck& pattern) {
+  core::RecordingCheck check;
+  check.pattern = pattern;
+  return core::findings_of(experiment(), check);
+}
+
+}  // namespace
+
+TEST_CASE("frames that came twice above 10 % make a clip unusable, as the very picture or as a standstill") {
+  CHECK(of_clip(fine_clip()).empty());
+  for (auto count : {&core::ClipCheck::repeated, &core::ClipCheck::stalls}) {
+    for (const std::size_t twice : {9u, 11u}) {
+      core::ClipCheck clip = fine_clip();
+      clip.*count = twice;
+      const auto findings = of_clip(clip);
+      REQUIRE(findings.size() == 1);
+      CHECK(findings[0].severity == (twice > 10 ? core::Severity::unusable : core::Severity::change));
+    }
+  }
+}
+
+TEST_CASE("a camera is judged by the views that it rests on, not by those in which the pattern was found") {
+  CHECK(of_pattern(pattern_of(9, 8)).empty());
+  const auto findings = of_pattern(pattern_of(9, 7));
+  REQUIRE(findings.size() == 1);
+  CHECK_THAT(findings[0].found, Contains("rests on 7 views"));
+}

@@ -1,0 +1,162 @@
+#include "core/check/statement_findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/files/staged_output.h"
+#include "core/check/check_recording.h"
+#include "core/result/stated_values.h"
+#include "tests/catch.h"
+#include "tests/core/simulated_track.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+using core::Launched;
+
+namespace {
+
+const tests::Law kSlope{4.3, 0.0071, 0.8};
+
+double angle_deg(double sine) {
+  return std::asin(sine) * 180.0 / std::numbers::pi;
+}
+
+/// A folder with one track for each launch on the slope of 4.3 degrees, whose lengths are `scale` times the true ones.
+struct Recorded {
+  tests::TempDir dir;
+  core::Experiment experiment;
+  explicit Recorded(const std::vector<Launched>& launches, double stated_deg = 4.3, double scale = 1.0) {
+    for (const Launched launched : launches) {
+      const double start_m_s = launched == Launched::up ? -0.6 : 0.3;
+      const core::TrackData track = tests::film(tests::launch(kSlope, start_m_s, 1.7), {});
+      std::string csv = "t_s,x_m\n";
+      for (std::size_t k = 0; k < track.t_s.size(); ++k) {
+        csv += std::to_string(track.t_s[k]) + "," + std::to_string(scale * track.x_m[k]) + "\n";
+      }
+      core::ClipSetup setup = tests::clip_setup(launched, stated_deg);
+      setup.name += std::to_string(experiment.clips.size());
+      setup.track = dir / (setup.name + ".csv");
+      base::write_file(setup.track, csv);
+      experiment.clips.push_back(setup);
+    }
+  }
+  std::vector<core::Finding> findings() const { return core::check_recording(experiment, 1).findings; }
+};
+
+const std::vector<Launched> kBoth = {Launched::up, Launched::down};
+
+/// "… makes the inclination 2.69 ± 0.01°, …": 2.69
+double found_deg(const core::Finding& finding) {
+  return std::stod(finding.found.substr(finding.found.find_first_of("0123456789")));
+}
+
+core::ClipCheck sized(const std::string& name, double marker_px, double expected_px) {
+  core::ClipCheck clip;
+  clip.name = name;
+  clip.marker_px = marker_px;
+  clip.marker_expected_px = expected_px;
+  clip.blur_px = 0.5;
+  return clip;
+}
+
+std::vector<core::Finding> of_sizes(const std::vector<core::ClipCheck>& clips) {
+  core::Experiment experiment;
+  experiment.calibration.emplace();
+  experiment.clips.resize(clips.size());
+  for (core::ClipSetup& clip : experiment.clips) clip.mass_kg = 0.3;
+  core::RecordingCheck check;
+  check.clips = clips;
+  return core::statement_findings(experiment, check);
+}
+
+}  // namespace
+
+TEST_CASE("an inclination, lengths and gravity that agree with the motion are no finding") {
+  CHECK(Recorded(kBoth).findings().empty());
+  CHECK(Recorded({Launched::up}).findings().empty());
+  CHECK(Recorded({Launched::down}).findings().empty());
+  Recorded loose(kBoth, 2.5);  // 1.8 degrees off
+  for (core::ClipSetup& clip : loose.experiment.clips) clip.incline_sd_rad = 0.8 / 57.3;
+  CHECK(loose.findings().empty());
+}
+
+TEST_CASE("lengths or a gravity 60 % off make the recording unusable, said once with the angle that they lead to") {
+  const double sine = std::sin(kSlope.alpha_deg * std::numbers::pi / 180.0);
+  const auto long_metres = Recorded({Launched::up, Launched::down, Launched::up, Launched::down}, 4.3, 1.6).findings();
+  REQUIRE(long_metres.size() == 1);
+  CHECK(long_metres[0].severity == core::Severity::unusable);
+  CHECK(std::abs(found_deg(long_metres[0]) - angle_deg(1.6 * sine)) < 0.05);
+  CHECK_THAT(long_metres[0].found, Contains("incline_deg says 4.3°"));
+  CHECK_THAT(long_metres[0].advice, Contains("the unit of x in the tracks"));
+  Recorded heavy(kBoth);
+  heavy.experiment.gravity_m_s2 *= 1.6;
+  const auto gravity = heavy.findings();
+  REQUIRE(gravity.size() == 1);
+  CHECK(gravity[0].severity == core::Severity::unusable);
+  CHECK(std::abs(found_deg(gravity[0]) - angle_deg(sine / 1.6)) < 0.05);
+  CHECK_THAT(gravity[0].advice, Contains("gravity_m_s2"));
+}
+
+TEST_CASE("an acceleration that no inclination has is told as that, and a track in millimetres has one") {
+  const auto findings = Recorded(kBoth, 4.3, 1000.0).findings();
+  REQUIRE_FALSE(findings.empty());
+  CHECK(findings[0].severity == core::Severity::unusable);
+  CHECK_THAT(findings[0].found, Contains("is more than gravity_m_s2 = 9.80665"));
+}
+
+TEST_CASE("motion in one direction bounds the inclination by friction, and contradicts it on one side only") {
+  const auto at_most = Recorded({Launched::up, Launched::up}, 10.0);  // they turn, and come back
+  CHECK(at_most.findings().size() == 1);
+  core::ConfigurationResult one_way;
+  one_way.incline_deg = 4.3;
+  core::LineFit line;
+  line.direction = -1;
+  line.a0_m_s2 = {kSlope.a0(-1), 0.001, 0.0, 0.0};
+  one_way.lines = {line};
+  const auto against = [&](double stated_deg) {
+    return core::incline_contradiction(one_way, tests::kGravity, {stated_deg, {}, "incline_deg"});
+  };
+  CHECK_FALSE(against(-30.0).has_value());
+  REQUIRE(against(10.0).has_value());
+  CHECK_THAT(against(10.0)->sentence, Contains("makes the inclination at most 4.71 ±"));
+  CHECK(std::abs(against(10.0)->off_deg - (10.0 - angle_deg(kSlope.a0(-1) / tests::kGravity))) < 1e-9);
+  one_way.lines[0].direction = 1;
+  CHECK_FALSE(against(10.0).has_value());
+  REQUIRE(against(-30.0).has_value());
+  CHECK_THAT(against(-30.0)->sentence, Contains("at least"));
+}
+
+TEST_CASE("a track off by less than a degree is advice, by less than half a degree none") {
+  CHECK(Recorded(kBoth, 4.7).findings().empty());
+  const auto findings = Recorded(kBoth, 5.1).findings();
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::change);
+}
+
+TEST_CASE("a glider that runs farther than the track is long is a finding") {
+  Recorded recorded(kBoth);
+  recorded.experiment.track.length_m = 2.0;
+  CHECK(recorded.findings().empty());
+  recorded.experiment.track.length_m = 0.5;
+  const auto findings = recorded.findings();
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::unusable);
+  CHECK_THAT(findings[0].found, Contains("length_m in [track] says 0.5 m"));
+}
+
+TEST_CASE("a marker of another size than stated is one finding for all clips, and unusable above 30 %") {
+  CHECK(of_sizes({sized("a", 10.0, 11.0), sized("b", 10.0, 9.0)}).empty());
+  const auto some = of_sizes({sized("a", 10.0, 12.0), sized("b", 10.0, 12.0)});
+  REQUIRE(some.size() == 1);
+  CHECK(some[0].severity == core::Severity::change);
+  CHECK(some[0].about == "a, b");
+  const auto much = of_sizes({sized("a", 10.0, 16.0), sized("b", 10.0, 15.9), sized("c", 10.0, 10.0)});
+  REQUIRE(much.size() == 1);
+  CHECK(much[0].severity == core::Severity::unusable);
+  CHECK(much[0].about == "a, b");
+  CHECK_THAT(much[0].found, Contains("60 % off") && Contains("square_m"));
+  core::ClipCheck smeared = sized("a", 16.0, 10.0);
+  smeared.blur_px = 12.0;  // its outline is the smear's
+  CHECK(of_sizes({smeared})[0].severity == core::Severity::change);
+}

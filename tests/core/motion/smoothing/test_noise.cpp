@@ -1,0 +1,103 @@
+#include "core/motion/smoothing/noise.h"
+
+#include <cmath>
+#include <random>
+
+#include "tests/catch.h"
+
+using namespace glidelab::core;
+
+namespace {
+
+std::vector<double> times(std::size_t count, double step) {
+  std::vector<double> t(count);
+  for (std::size_t i = 0; i < count; ++i) t[i] = static_cast<double>(i) * step;
+  return t;
+}
+
+/// A smooth motion like the paper's, so that nothing but noise is left by smoothing it.
+double place(double t) {
+  return 0.24 * t - 0.4 * std::exp(-2.8 * t);
+}
+
+PositionNoise noise_of(const std::vector<double>& t, const std::vector<double>& x, double bandwidth_s) {
+  const LocalCubic cubic(t, bandwidth_s);
+  return estimate_noise({{&cubic, x}}, 1e-9);
+}
+
+}  // namespace
+
+TEST_CASE("white noise on a smooth motion is found, and found to be white") {
+  const auto t = times(2000, 0.005);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0.0, 2e-5);
+  std::vector<double> x;
+  for (const double time : t) x.push_back(place(time) + normal(random));
+  // The standard deviation of a standard deviation of 2000 numbers is 1.6 %; the pilot uses the smaller half of
+  // correlated fourth differences, four times less efficient.
+  CHECK(pilot_noise(t, x) == Approx(2e-5).epsilon(0.13));
+  for (const double h : {0.01, 0.02, 0.04}) {
+    const PositionNoise noise = noise_of(t, x, h);
+    CHECK(noise.sd_m == Approx(2e-5).epsilon(0.07));
+    CHECK(noise.autocovariance.size() == 1);
+  }
+}
+
+TEST_CASE("noise is rarely taken for correlated when it is white") {
+  const auto t = times(400, 0.005);
+  int correlated = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal(0.0, 2e-5);
+    std::vector<double> x;
+    for (const double time : t) x.push_back(place(time) + normal(random));
+    correlated += noise_of(t, x, 0.02).autocovariance.size() > 1;
+  }
+  // At most 5 %; four standard deviations of a count of 15 in 300 above that are 30.
+  CHECK(correlated <= 30);
+}
+
+TEST_CASE("correlated noise is found with its correlation, in spite of what the smoothing takes away") {
+  const auto t = times(4000, 0.005);
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const double rho = 0.6, white = 1e-5, part = 2e-5;
+  std::vector<double> x;
+  double state = normal(random);
+  for (const double time : t) {
+    x.push_back(place(time) + white * normal(random) + part * state);
+    state = rho * state + std::sqrt(1.0 - rho * rho) * normal(random);
+  }
+  const PositionNoise noise = noise_of(t, x, 0.04);
+  // 4000 numbers of correlation 0.6 are worth some 2000; variance and correlation within four of their sd of 3 %, and
+  // the grid of rho.
+  CHECK(noise.sd_m == Approx(std::hypot(white, part)).epsilon(0.06));
+  REQUIRE(noise.autocovariance.size() > 3);
+  CHECK(noise.autocovariance[1] / noise.autocovariance[0] == Approx(0.8 * rho).margin(0.12));
+  CHECK(noise.autocovariance[2] / noise.autocovariance[0] == Approx(0.8 * rho * rho).margin(0.12));
+}
+
+TEST_CASE("rounded positions have at least the noise of their rounding, also where they rest") {
+  const auto t = times(500, 0.01);
+  const std::vector<double> resting(500, 0.42);
+  CHECK(pilot_noise(t, resting) < 1e-15);  // a constant: nothing is known of its step, and rounding is all there is
+  std::vector<double> flickering = resting;
+  flickering[100] = flickering[101] = flickering[300] = 0.43;
+  CHECK(pilot_noise(t, flickering) == Approx(0.01 / std::sqrt(12.0)).epsilon(1e-9));  // the step's uniform distribution
+  std::vector<double> moving;
+  for (const double time : t) moving.push_back(0.01 * std::round(100.0 * (0.4 * time + 0.05 * time * time)));
+  const LocalCubic cubic(t, 0.1);
+  const PositionNoise noise = estimate_noise({{&cubic, moving}}, pilot_noise(t, moving));
+  // Rounding of a motion that crosses a step every few frames is uniform within the step; slower parts less so.
+  CHECK(noise.sd_m == Approx(0.01 / std::sqrt(12.0)).epsilon(0.15));
+}
+
+TEST_CASE("outliers and impacts do not inflate the first figure of the noise") {
+  const auto t = times(1000, 0.005);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0.0, 2e-5);
+  std::vector<double> x;
+  for (const double time : t) x.push_back(std::abs(0.5 * std::sin(3.0 * time)) + normal(random));
+  for (std::size_t i = 50; i < 1000; i += 50) x[i] += 0.01;  // 2 % of the points, each seen by five neighbourhoods
+  CHECK(pilot_noise(t, x) == Approx(2e-5).epsilon(0.3));     // the median of 90 % clean ones: 12 % up, and its own 10 %
+}

@@ -1,0 +1,312 @@
+#include "core/pictures/marker/marker_track.h"
+
+#include <cmath>
+
+#include "base/errors.h"
+#include "tests/catch.h"
+#include "tests/core/small_clip.h"
+
+using namespace glidelab;
+
+namespace {
+
+const cv::Size kSize(240, 160);
+constexpr std::size_t kFrames = 60;
+constexpr double kRadius = 5.0;
+
+/// A wall that gets brighter to the right, with slow spots.
+cv::Mat wall(double slope = 0.3) {
+  cv::Mat picture(kSize, CV_64F);
+  for (int v = 0; v < kSize.height; ++v) {
+    for (int u = 0; u < kSize.width; ++u) {
+      picture.at<double>(v, u) = 50.0 + slope * u + 6.0 * std::sin(0.05 * u + 0.3) * std::cos(0.07 * v);
+    }
+  }
+  return picture;
+}
+
+/// Slows down as under friction: from u = 20 to about 190, rising 0.15 px a pixel.
+cv::Point2d place(std::size_t k) {
+  const double t = static_cast<double>(k);
+  const double u = 20.3 + 4.6 * t - 0.03 * t * t;
+  return {u, 60.4 + 0.15 * u};
+}
+
+core::MarkerSetup marker() {
+  core::MarkerSetup setup;
+  setup.diameter_m = 0.02;
+  return setup;
+}
+
+core::TrackedMarker track(const std::vector<cv::Mat>& frames, const core::MarkerSetup& setup = marker(),
+                          double noise_sd = 2.0, double expected_radius = kRadius) {
+  core::MarkerTracker tracker("clip.mkv", setup, [&](cv::Point2d) { return expected_radius; });
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    core::Frame frame;
+    frame.index = k;
+    const cv::Mat exposed = tests::expose(frames[k].reshape(1), noise_sd, 77 + k).reshape(frames[k].channels());
+    if (exposed.channels() == 3) {
+      frame.color = exposed;
+      cv::cvtColor(exposed, frame.grey, cv::COLOR_BGR2GRAY);
+    } else {
+      frame.grey = exposed;
+    }
+    tracker.add(frame);
+  }
+  return tracker.finish();
+}
+
+std::string error_of(const std::vector<cv::Mat>& frames, const core::MarkerSetup& setup = marker()) {
+  try {
+    track(frames, setup);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::vector<cv::Mat> clip(const std::function<void(cv::Mat&, std::size_t)>& scene, double slope = 0.3) {
+  std::vector<cv::Mat> frames;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    cv::Mat picture = wall(slope);
+    scene(picture, k);
+    frames.push_back(picture);
+  }
+  return frames;
+}
+
+/// Root mean square distance from where the marker was painted.
+double error_px(const core::TrackedMarker& tracked, const std::function<cv::Point2d(std::size_t)>& truth = place) {
+  double sum = 0.0;
+  for (const core::MarkerSighting& sighting : tracked.sightings) {
+    const cv::Point2d off = cv::Point2d(sighting.u_px, sighting.v_px) - truth(sighting.frame);
+    sum += off.dot(off);
+  }
+  return std::sqrt(sum / static_cast<double>(tracked.sightings.size()));
+}
+
+// At radius 5, contrast of 100 to 150 and noise 2 a coordinate's standard deviation is 0.006 px (test_marker.cpp); two
+// coordinates and the wall's curvature: 0.015 px.
+constexpr double kNoiseLimitPx = 0.015;
+
+}  // namespace
+
+TEST_CASE("a marker that moves over a wall of uneven brightness is found in every frame") {
+  const auto tracked = track(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); }));
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked) < kNoiseLimitPx);
+  CHECK(tracked.notes.empty());
+}
+
+TEST_CASE("clutter brighter than the marker, and a resting thing just like it, are not taken for it") {
+  const auto tracked = track(clip([](cv::Mat& p, std::size_t k) {
+    tests::put_box(p, {5, 5, 70, 22}, 250.0);  // a lamp
+    tests::put_box(p, {200, 120, 30, 30}, 240.0);
+    for (int i = 0; i < 8; ++i) tests::put_box(p, {20 + 22 * i, 130, 9, 9}, 235.0);  // labels of the marker's size
+    tests::put_disc(p, {150.0, 40.0}, kRadius, 250.0);                               // brighter, of the same size
+    tests::put_disc(p, {60.0, 100.0}, kRadius, 190.0);                               // the marker's twin
+    tests::put_disc(p, place(k), kRadius, 190.0);
+  }));
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked) < kNoiseLimitPx);
+}
+
+TEST_CASE("a larger and brighter thing that moves along is not the marker") {
+  const auto tracked = track(clip([](cv::Mat& p, std::size_t k) {
+    tests::put_disc(p, place(k) + cv::Point2d(-2.0, 30.0), 1.9 * kRadius, 250.0);
+    tests::put_disc(p, place(k), kRadius, 170.0);
+  }));
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked) < kNoiseLimitPx);
+}
+
+TEST_CASE("a marker on a dark glider with a bright plate beside it keeps its place") {
+  const auto tracked = track(clip([](cv::Mat& p, std::size_t k) {
+    const cv::Point at(static_cast<int>(std::lround(place(k).x)), static_cast<int>(std::lround(place(k).y)));
+    tests::put_box(p, {at.x - 16, at.y - 4, 32, 18}, 35.0);
+    tests::put_box(p, {at.x + 10, at.y, 5, 12}, 160.0);
+    tests::put_disc(p, place(k), kRadius, 200.0);
+  }));
+  CHECK(tracked.sightings.size() == kFrames);
+  // The glider is painted to whole pixels, so that its rim 4 px above the centre jitters by half a pixel beside it.
+  CHECK(error_px(tracked) < 0.25);
+}
+
+TEST_CASE("a marker that rests before and after its motion is found in all frames") {
+  const auto where = [](std::size_t k) { return place(k < 20 ? 0 : std::min<std::size_t>(2 * (k - 20), 50)); };
+  const auto tracked = track(clip([&](cv::Mat& p, std::size_t k) { tests::put_disc(p, where(k), kRadius, 210.0); }));
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked, where) < kNoiseLimitPx);
+}
+
+TEST_CASE("a marker that bounces within one frame is followed") {
+  const auto where = [](std::size_t k) {
+    const double t = static_cast<double>(k);
+    const double u = k < 30 ? 20.0 + 6.0 * t : 194.0 - 4.5 * (t - 29.0);
+    return cv::Point2d(u, 70.0);
+  };
+  const auto tracked = track(clip([&](cv::Mat& p, std::size_t k) { tests::put_disc(p, where(k), kRadius, 210.0); }));
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked, where) < kNoiseLimitPx);
+}
+
+TEST_CASE("frames in which the marker is hidden stay without a sighting") {
+  // A post 18 px wide hides the marker whole, or in part, for some frames; the wall behind is flat beside the post.
+  std::size_t free = 0;
+  const auto frames = clip([&](cv::Mat& p, std::size_t k) {
+    tests::put_disc(p, place(k), kRadius, 210.0);
+    tests::put_box(p, {110, 0, 18, kSize.height}, 60.0);
+    if (place(k).x < 110.0 - kRadius - 2.0 || place(k).x > 128.0 + kRadius + 2.0) ++free;
+  });
+  const auto tracked = track(frames);
+  for (const core::MarkerSighting& sighting : tracked.sightings) {
+    const bool hidden = sighting.u_px > 110.0 - 1.0 && sighting.u_px < 127.0 + 1.0;
+    INFO("frame " << sighting.frame << " at " << sighting.u_px);
+    CHECK_FALSE(hidden);
+  }
+  CHECK(tracked.sightings.size() >= free - 4);
+  CHECK(tracked.sightings.size() < kFrames);
+  CHECK(tracked.sightings.back().frame == kFrames - 1);
+  // Next to the post the window holds its edge.
+  CHECK(error_px(tracked) < 0.2);
+}
+
+TEST_CASE("a marker that comes into the picture late is followed back to where it came in") {
+  const auto where = [](std::size_t k) { return cv::Point2d(-60.0 + 4.0 * static_cast<double>(k), 70.0); };
+  const auto tracked = track(clip([&](cv::Mat& p, std::size_t k) { tests::put_disc(p, where(k), kRadius, 210.0); }));
+  // Its window (1.25 radii + 2.5 px = 8.75 px) is inside from u = 9 on: frame 18.
+  REQUIRE_FALSE(tracked.sightings.empty());
+  CHECK(tracked.sightings.front().frame <= 19);
+  CHECK(tracked.sightings.back().frame == kFrames - 1);
+  CHECK(error_px(tracked, where) < kNoiseLimitPx);
+}
+
+TEST_CASE("a brighter light that comes and goes does not lose the marker") {
+  const auto tracked = track(clip([](cv::Mat& p, std::size_t k) {
+    tests::put_disc(p, place(k), kRadius, 180.0);
+    p *= 1.0 + 0.2 * std::sin(0.9 * static_cast<double>(k));
+  }));
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked) < 1.5 * kNoiseLimitPx);
+}
+
+TEST_CASE("a 16-bit clip is tracked as an 8-bit one") {
+  core::MarkerTracker tracker("clip", marker(), [](cv::Point2d) { return kRadius; });
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    cv::Mat p = wall();
+    tests::put_disc(p, place(k), kRadius, 210.0);
+    core::Frame frame;
+    frame.index = k;
+    frame.grey = tests::expose(16.0 * p, 32.0, k + 1, CV_16U);
+    tracker.add(frame);
+  }
+  const auto tracked = tracker.finish();
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked) < kNoiseLimitPx);
+}
+
+TEST_CASE("two equal markers that move alike are an error, unless start_px says which") {
+  const cv::Point2d off(-10.0, 35.0);
+  const auto frames = clip([&](cv::Mat& p, std::size_t k) {
+    tests::put_disc(p, place(k), kRadius, 210.0);
+    tests::put_disc(p, place(k) + off, kRadius, 210.0);
+  });
+  CHECK_THAT(error_of(frames), Catch::Contains("clip.mkv") && Catch::Contains("two markers"));
+  core::MarkerSetup which = marker();
+  which.start_px = place(0) + off;
+  const auto tracked = track(frames, which);
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked, [&](std::size_t k) { return place(k) + off; }) < kNoiseLimitPx);
+}
+
+TEST_CASE("a second marker that comes while the first is followed is found, and followed back to where it came") {
+  for (const std::size_t came : {23u, 35u}) {
+    const std::string error = error_of(clip([&](cv::Mat& p, std::size_t k) {
+      tests::put_disc(p, place(k), kRadius, 210.0);
+      if (k >= came) tests::put_disc(p, {229.5 - 5.5 * static_cast<double>(k - came), 140.0}, kRadius, 210.0);
+    }));
+    CHECK_THAT(error, Catch::Contains("two markers") && Catch::Contains("in frame " + std::to_string(came)));
+  }
+}
+
+TEST_CASE("a clip without a marker is an error, and so is a start_px with nothing there") {
+  CHECK_THAT(error_of(clip([](cv::Mat&, std::size_t) {})), Catch::Contains("clip.mkv") && Catch::Contains("no marker"));
+  // Two things rest and none moves.
+  CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t) {
+               tests::put_disc(p, {60.0, 60.0}, kRadius, 210.0);
+               tests::put_disc(p, {160.0, 60.0}, kRadius, 210.0);
+             })),
+             Catch::Contains("2 such things rest"));
+  core::MarkerSetup elsewhere = marker();
+  elsewhere.start_px = cv::Point2d(200.0, 20.0);
+  CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); }), elsewhere),
+             Catch::Contains("no marker near start_px"));
+}
+
+TEST_CASE("something far larger than the marker that moves is no marker") {
+  CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), 3.0 * kRadius, 210.0); })),
+             Catch::Contains("no marker"));
+}
+
+TEST_CASE("a marker that rests all the time is found, with a note") {
+  const auto tracked = track(clip([](cv::Mat& p, std::size_t) { tests::put_disc(p, {60.3, 60.7}, kRadius, 210.0); }));
+  CHECK(tracked.sightings.size() == kFrames);
+  REQUIRE(tracked.notes.size() == 1);
+  CHECK_THAT(tracked.notes[0], Catch::Contains("does not move"));
+}
+
+TEST_CASE("a thing of a known colour is found among brighter ones of other colours") {
+  core::MarkerSetup green = marker();
+  green.color_bgr = cv::Vec3b(70, 115, 45);
+  std::vector<cv::Mat> frames;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    std::vector<cv::Mat> channels{wall() + 30.0, wall() + 25.0, wall() + 22.0};
+    const std::array<double, 3> own{70.0, 115.0, 45.0};
+    for (std::size_t c = 0; c < 3; ++c) {
+      tests::put_disc(channels[c], place(k) + cv::Point2d(0.0, 30.0), kRadius, c == 2 ? 240.0 : 60.0);  // red, moving
+      tests::put_disc(channels[c], {100.0, 30.0}, 2.0 * kRadius, 250.0);                                // white
+      tests::put_disc(channels[c], place(k), kRadius, own[c]);
+    }
+    cv::Mat frame;
+    cv::merge(channels, frame);
+    frames.push_back(frame);
+  }
+  const auto tracked = track(frames, green, 2.0);
+  CHECK(tracked.sightings.size() == kFrames);
+  // The hue's contrast is a third of a grey marker's, and likeness is worked out in whole steps of 255.
+  CHECK(error_px(tracked) < 4.0 * kNoiseLimitPx);
+  CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); }), green),
+             Catch::Contains("without colours"));
+}
+
+TEST_CASE("a dark marker is found where its colour says that it is dark") {
+  core::MarkerSetup dark = marker();
+  dark.color_bgr = cv::Vec3b(16, 16, 16);
+  const auto frames = clip([](cv::Mat& p, std::size_t k) {
+    p += 90.0;
+    tests::put_disc(p, place(k), kRadius, 16.0);
+  });
+  const auto tracked = track(frames, dark);
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked) < kNoiseLimitPx);
+}
+
+TEST_CASE("a diameter stated wrong by a quarter still finds the marker, with a note") {
+  const auto frames = clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); });
+  const auto tracked = track(frames, marker(), 2.0, 0.75 * kRadius);
+  CHECK(tracked.sightings.size() == kFrames);
+  CHECK(error_px(tracked) < kNoiseLimitPx);
+  REQUIRE(tracked.notes.size() == 1);
+  CHECK_THAT(tracked.notes[0], Catch::Contains("larger than its diameter"));
+}
+
+TEST_CASE("small and large markers are found") {
+  for (const double radius : {1.5, 2.5, 14.0}) {
+    const auto frames = clip([&](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), radius, 210.0); });
+    const auto tracked = track(frames, marker(), 2.0, radius);
+    INFO("radius " << radius << ": " << error_px(tracked) << " px");
+    // The largest one's window (20 px) leaves the picture in the first frame.
+    CHECK(tracked.sightings.size() >= kFrames - (radius > 10.0 ? 1 : 0));
+    CHECK(error_px(tracked) < 3.0 * kNoiseLimitPx);
+  }
+}

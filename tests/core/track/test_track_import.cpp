@@ -1,0 +1,147 @@
+#include "core/track/track_import.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/errors.h"
+#include "core/track/track_csv.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Ten rows of the given pattern; {0} is the number, {1} the time in hundredths of a second.
+std::string rows(const std::string& pattern) {
+  std::string text;
+  for (int i = 0; i < 10; ++i) text += fmt::format(fmt::runtime(pattern), i, i * i);
+  return text;
+}
+
+struct Made {
+  tests::TempDir folder;
+  std::filesystem::path file;
+  explicit Made(const std::string& text) : file(folder / "export.txt") { std::ofstream(file) << text; }
+  core::TrackData read(const std::string& column = {}) const { return core::read_track_csv(file, 1, column); }
+};
+
+/// t = 0.1 i, x = 0.01 i^2 in SI.
+void check_motion(const core::TrackData& track) {
+  REQUIRE(track.t_s.size() == 10);
+  for (std::size_t i = 0; i < 10; ++i) {
+    const auto n = static_cast<double>(i);
+    CHECK(track.t_s[i] == Approx(0.1 * n).margin(1e-12));  // decimal fractions
+    CHECK(track.x_m[i] == Approx(0.01 * n * n).margin(1e-12));
+  }
+  CHECK(track.frame_rate_hz == Approx(10.0).epsilon(1e-9));
+}
+
+bool has_note(const core::TrackData& track, const std::string& part) {
+  return std::any_of(track.notes.begin(), track.notes.end(),
+                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
+}  // namespace
+
+TEST_CASE("Tracker's table: tabs, a title, names without units, y beside x") {
+  const Made made("mass A\nt\tx\ty\n" + rows("0.{0}00E0\t{1}E-2\t0.5\n"));
+  const core::TrackData track = made.read();
+  check_motion(track);
+  CHECK(has_note(track, "no unit"));
+}
+
+TEST_CASE("Tracker's table in a country of decimal commas: semicolons") {
+  check_motion(Made("#multi:\nt;x;y\n" + rows("0,{0};{1}E-2;-0,5\n")).read());
+}
+
+TEST_CASE("Logger Pro's CSV: quoted names with units, several runs side by side, of different lengths") {
+  const std::string text =
+      "\"Run 1: Time (s)\",\"Run 1: Position (m)\",\"Run 1: Velocity (m/s)\",\"Latest: Time (s)\",\"Latest: Position "
+      "(cm)\"\n"
+      "0.05,0.7,1.0,0.0,0\n" +
+      rows("0.{0}7,0.5,1.0,0.{0},{1}\n").substr(std::string("0.07,0.5,1.0,0.0,0\n").size()) +
+      "1.5,0.5,1.0,,\n1.6,0.5,1.0,,\n";
+  const Made made(text);
+  CHECK_THROWS_WITH(made.read(), Contains("Run 1: Position") && Contains("--column") && Contains("Latest: Position"));
+  check_motion(made.read("Latest: Position"));
+  check_motion(made.read("latest: position (cm)"));
+  check_motion(made.read("5"));
+  const core::TrackData other = made.read("Run 1: Position");
+  CHECK(other.t_s.size() == 12);
+  CHECK(other.t_s[0] == 0.05);
+  CHECK_THROWS_WITH(made.read("Velocity"), Contains("m/s"));
+  CHECK_THROWS_WITH(made.read("height"), Contains("none of the name or number \"height\""));
+}
+
+TEST_CASE("Vernier's text: title lines, runs, names, short names and units in lines of their own") {
+  const Made made(
+      "Vernier Format 2\nUntitled.cmbl 11/4/2019 10:23:27 .\nRun 1\t\t\tLatest\t\t\n"
+      "Time\tPosition\tVelocity\tTime\tPosition\tVelocity\nt\tx\tv\tt\tx\tv\ns\tm\tm/s\tms\tmm\tm/s\n\n" +
+      rows("9.{0}\t7.5\t0\t{0}00\t{1}0\t0.3\n"));
+  const core::TrackData track = made.read("Latest: Position");
+  check_motion(track);
+  CHECK(has_note(track, "Latest"));
+  CHECK(made.read("2").x_m[0] == 7.5);
+}
+
+TEST_CASE("PASCO's CSV: a line of runs above the names, and runs behind them") {
+  check_motion(Made("Run #1,Run #1,Run #2,Run #2\nTime (s),Position (m),Time (s),Position (m)\n" +
+                    rows("0.{0},{1}e-2,3.{0},4.0\n"))
+                   .read("Run #1: Position"));
+  check_motion(Made("\"Time (s) Run #2\"\t\"Position (m) Run #2\"\n" + rows("0.{0}\t{1}e-2\n")).read());
+}
+
+TEST_CASE("phyphox: quotes, semicolons, decimal commas, scientific notation, NaN") {
+  const core::TrackData track =
+      Made("\"Time (s)\";\"Position (cm)\"\n" + rows("{0},0E-1;{1},0E0\n") + "0,95;NaN\n").read();
+  check_motion(track);
+  CHECK_FALSE(has_note(track, "left out"));  // it is the last row
+  const core::TrackData gap = Made("Time (s),x (m)\n" + rows("{0},{1}\n") + "10.5,NaN\n11,5\n").read();
+  CHECK(gap.t_s.size() == 11);
+  CHECK(has_note(gap, "1 rows between others"));
+}
+
+TEST_CASE("two columns without a header are time and place, and a byte-order mark and CRLF do not matter") {
+  check_motion(Made(rows("0.{0},{1}e-2\r\n")).read());
+  check_motion(Made("\xEF\xBB\xBFt (s),x (mm)\r\n" + rows("0.{0},{1}0\r\n")).read());
+  check_motion(Made("zeit_ms,weg_mm\n" + rows("{0}00,{1}0\n")).read());
+}
+
+TEST_CASE("a name that only contains t_s, as zeit_s, is another program's and imported") {
+  check_motion(Made("zeit_s,weg_mm\n" + rows("0.{0},{1}0\n")).read());
+  check_motion(Made("t_sec,x_mm\n" + rows("0.{0},{1}0\n")).read());
+}
+
+TEST_CASE("downhill towards -x turns the sign of an imported track") {
+  const Made made("t (s),x (m)\n" + rows("0.{0},{1}\n"));
+  CHECK(core::import_track(made.file, "", -1).x_m[3] == -9.0);
+}
+
+TEST_CASE("bad tables give one clear error each") {
+  struct Row {
+    std::string text, message;
+  };
+  const Row bad[] = {
+      {"a few words\nand some more\n", "no line with two numbers"},
+      {"", "t_s"},
+      {"t (s),x (m)\n" + rows("0.{0},{1}\n") + "0.95,oops\n", ":12: column 2: found \"oops\""},
+      {"t (s),x (m)\n" + rows("0.{0},{1}\n") + "0.9,1\n", ":12: column \"t (s)\""},
+      {"t (s),x (m)\n" + rows("0,{0},0,{1}\n"), "decimal comma"},
+      {"t (s),y (m),z (m)\n" + rows("0.{0},{1},1\n"), "--column"},
+      {"t (s),x (px)\n" + rows("0.{0},{1}\n"), "the unit \"px\""},
+      {"frame,x (m)\n" + rows("{0},{1}\n"), "0 columns of time"},
+      {"t (s),x (m)\n0,0\n1,1\n2,2\n", "3 points"},
+      {std::string("t\0 \0x\0", 6), "zero bytes"},
+  };
+  for (const Row& row : bad) {
+    INFO(row.message);
+    const Made made(row.text);
+    CHECK_THROWS_AS(made.read(), base::InputError);
+    CHECK_THROWS_WITH(made.read(), Contains(row.message));
+  }
+  CHECK_THROWS_AS(core::read_track_csv("nothing-here.csv", 1), base::InputError);
+}

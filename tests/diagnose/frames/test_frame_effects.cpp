@@ -1,0 +1,90 @@
+#include "diagnose/frames/frame_effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Errors of 1 mm in about one frame of fifty, each lasting `frames`; the noise is 20 µm.
+tests::MadeExperiment spoilt(std::size_t frames, unsigned seed) {
+  std::mt19937_64 random(seed + 40);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  std::size_t left = 0;
+  double error = 0.0;
+  const tests::MadeEffect effect{.seen = [&](double x, double) {
+    if (left == 0 && any(random) < 0.02 / static_cast<double>(frames)) {
+      left = frames;
+      error = any(random) < 0.5 ? -1e-3 : 1e-3;
+    }
+    if (left == 0) return x;
+    --left;
+    return x + error;
+  }};
+  return tests::made_experiment(tests::made_launches(), effect, seed, 2e-5, 250, 150.0);
+}
+
+diagnose::FrameEffect tails_of(const tests::MadeExperiment& made) {
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  return diagnose::scan_tails(set, diagnose::fit_nominal(set));
+}
+
+}  // namespace
+
+TEST_CASE("errors of single frames are heavy tails, errors that last are none and have no name") {
+  for (const unsigned seed : {1u, 2u}) {
+    const auto single = spoilt(1, seed), lasting = spoilt(3, seed);
+    CHECK(tails_of(single).log_evidence > 10.0);
+    CHECK(tails_of(single).in_runs <= 0.0);
+    CHECK_FALSE(tails_of(single).run);
+    const diagnose::FrameEffect tails = tails_of(lasting);
+    CHECK(tails.in_runs > 20.0);
+    REQUIRE(tails.run);
+    CHECK(tails.run->clip);
+    // Three frames from the first to the last are two steps; another error may follow at once, on the same side.
+    CHECK(tails.run->to_s - tails.run->from_s > 1.5 / 150.0);
+    CHECK(tails.run->to_s - tails.run->from_s < 5.5 / 150.0);
+    // 1 mm, of which the smooth curve under such errors takes a part, and the noise is a fiftieth.
+    CHECK(tails.run->size_m > 6e-4);
+    CHECK(tails.run->size_m < 1.1e-3);
+    CHECK(tails.run->excess > 10.0);
+    const auto named = diagnose::diagnose_results(single.results, single.setups, {.without = {}, .jobs = 2});
+    REQUIRE(named.verdict == "effect");
+    CHECK(named.effects.front().id == "heavy_tailed_noise");
+    const auto other = diagnose::diagnose_results(lasting.results, lasting.setups, {.without = {}, .jobs = 2});
+    CHECK(other.verdict == "unknown");
+  }
+}
+
+TEST_CASE("a tracker that has to find its marker at each clip's start makes no heavy tails") {
+  const tests::MadeEffect effect{.seen = [](double x, double t) { return t < 0.005 ? x + 4e-4 : x; }};
+  const auto made = tests::made_experiment(tests::made_launches(), effect, 3, 2e-5, 250, 150.0);
+  const diagnose::FrameEffect tails = tails_of(made);
+  CHECK(tails.in_runs > 10.0);
+  REQUIRE(tails.run);
+  CHECK_FALSE(tails.run->clip);  // of all clips
+  CHECK(tails.run->from_s == 0.0);
+  CHECK(tails.run->to_s < 0.02);  // three frames at 150 Hz
+  CHECK(tails.run->size_m > 2.5e-4);
+  CHECK(tails.run->size_m < 4.8e-4);  // 0.4 mm and four times the noise
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  for (const auto& named : diagnosis.effects) CHECK(named.probability < 0.5);
+}
+
+TEST_CASE("what the law lacks by a hundred deviations, and smoothly, is no error of the first frames") {
+  // A drag that falls along the track by a fifth a metre, at 60 frames a second: millimetres of the nominal fit.
+  const tests::MadeEffect gradient{.force = [](double, double x, double v, double) { return 0.2 * 0.93 * x * v; }};
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const auto made = tests::made_experiment(tests::made_launches(), gradient, seed, 3e-5, 100, 60.0);
+    diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+    CHECK(diagnose::scan_tails(set, nominal).log_evidence < 3.0);
+    CHECK(diagnose::set_tails_aside(set, nominal) == 0);
+  }
+}

@@ -1,0 +1,104 @@
+#include "diagnose/model/track_model.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Frames of 1.5 s, among them pairs that lie close together, and a gap.
+std::vector<double> times(double rate_hz) {
+  std::vector<double> t;
+  for (int i = 0; i < 1.5 * rate_hz; ++i) {
+    if (i > 20 && i < 24) continue;
+    t.push_back(i / rate_hz);
+    if (i % 7 == 3) t.push_back((i + 0.1) / rate_hz);
+  }
+  return t;
+}
+
+diagnose::TrackModel glider() {
+  diagnose::TrackModel model;
+  model.mass_kg = 0.4;
+  model.k_n_s_m = 0.9;
+  model.alpha_rad = 0.07;
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("a glider that runs up and comes back is where the closed form has it, whatever the frames") {
+  diagnose::TrackModel model = glider();
+  model.mu = 0.006;
+  model.x0_m = 0.5;
+  model.v0_m_s = -0.6;
+  const double k = model.k_n_s_m / model.mass_kg, g = model.gravity_m_s2;
+  const double drive = g * std::sin(model.alpha_rad), friction = model.mu * g * std::cos(model.alpha_rad);
+  const double up = (drive + friction) / k, down = (drive - friction) / k;  // speeds that it tends to
+  const double turn_s = std::log((up - model.v0_m_s) / up) / k;
+  const double turn_m = model.x0_m + up * turn_s + (model.v0_m_s - up) / k * (1.0 - std::exp(-k * turn_s));
+  REQUIRE(turn_s < 1.0);
+  for (const double rate : {50.0, 120.0, 240.0, 1000.0}) {
+    const std::vector<double> t = times(rate);
+    const diagnose::Moved moved = diagnose::move(model, t);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      INFO(rate << " frames a second, " << t[i] << " s");
+      const double since = t[i] - turn_s, to = since < 0.0 ? up : down;
+      const double from = since < 0.0 ? model.v0_m_s - up : -down, s = since < 0.0 ? t[i] : since;
+      CHECK(moved.v_m_s[i] == Approx(to + from * std::exp(-k * s)).margin(2e-8));
+      const double x = (since < 0.0 ? model.x0_m : turn_m) + to * s + from / k * (1.0 - std::exp(-k * s));
+      CHECK(moved.x_m[i] == Approx(x).margin(2e-8));
+    }
+  }
+}
+
+TEST_CASE("a shaken glider is where the closed form has it, whatever the frames") {
+  diagnose::TrackModel model = glider();
+  model.v0_m_s = 0.4;
+  model.effects.shake_m_s2 = 0.3;
+  model.effects.shake_phase = 0.8;
+  for (const double hz : {3.0, 11.0}) {
+    model.effects.shake_hz = hz;
+    const double k = model.k_n_s_m / model.mass_kg, omega = 2.0 * std::numbers::pi * hz;
+    const double drive = model.gravity_m_s2 * std::sin(model.alpha_rad);
+    const double part = model.effects.shake_m_s2 / (k * k + omega * omega);
+    const auto speed = [&](double t) {  // the forced motion
+      const double phase = omega * t + model.effects.shake_phase;
+      return drive / k + part * (k * std::sin(phase) - omega * std::cos(phase));
+    };
+    const auto place = [&](double t) {
+      const double phase = omega * t + model.effects.shake_phase;
+      return drive / k * t - part * (k / omega * std::cos(phase) + std::sin(phase));
+    };
+    const double own = model.v0_m_s - speed(0.0);  // and what dies away
+    for (const double rate : {50.0, 120.0, 240.0, 1000.0}) {
+      const std::vector<double> t = times(rate);
+      const diagnose::Moved moved = diagnose::move(model, t);
+      for (std::size_t i = 0; i < t.size(); ++i) {
+        INFO(hz << " Hz, " << rate << " frames a second, " << t[i] << " s");
+        const double gone = std::exp(-k * t[i]);
+        CHECK(moved.v_m_s[i] == Approx(speed(t[i]) + own * gone).margin(1e-5));  // of some mm/s
+        CHECK(moved.x_m[i] == Approx(place(t[i]) - place(0.0) + own / k * (1.0 - gone)).margin(1e-7));
+      }
+    }
+  }
+}
+
+TEST_CASE("a drag as no fit should ask for is not followed, where it would take for ever") {
+  diagnose::TrackModel model = glider();
+  model.v0_m_s = 0.6;
+  for (const double k : {1e6, 1e12, 1e300}) {  // stopped within a microsecond, in 1e5 to 1e300 steps of k h = 0.3
+    model.k_n_s_m = k;
+    const diagnose::Moved moved = diagnose::move(model, times(100.0));
+    REQUIRE(moved.x_m.size() == times(100.0).size());
+    CHECK_FALSE(std::isfinite(moved.x_m.back()));
+  }
+  model.k_n_s_m = 400.0;  // a thousand a second: three steps to a millisecond, and at rest but for the slope
+  const diagnose::Moved slow = diagnose::move(model, times(100.0));
+  const double v_lim = model.mass_kg * model.gravity_m_s2 * std::sin(model.alpha_rad) / model.k_n_s_m;
+  CHECK(std::abs(slow.v_m_s.back() - v_lim) < 1e-9);
+}

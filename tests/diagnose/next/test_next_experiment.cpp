@@ -1,0 +1,240 @@
+#include "diagnose/next/next_experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "diagnose/gap/held_out.h"
+#include "diagnose/next/expected_evidence.h"
+#include "diagnose/next/next_changes.h"
+#include "diagnose/next/next_clip.h"
+#include "diagnose/next/next_words.h"
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+using diagnose::Change;
+
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+/// On one inclination, which nobody states with an uncertainty.
+diagnose::TrackSet inclined(double rate_hz = 100.0, double incline_sd_deg = 0.0) {
+  const std::vector<tests::MadeLaunch> launches = {
+      {0.335, 4.0, 0.3, -1.1}, {0.335, 4.0, -0.6, 1.2}, {0.535, 4.0, 0.3, -1.1}, {0.535, 4.0, -0.6, 1.2}};
+  const auto made = tests::made_experiment(launches, {}, 11, 3e-5, 120, rate_hz, incline_sd_deg);
+  return diagnose::track_set(made.results, made.setups, true);
+}
+
+/// The fit's point with one effect of this size and other K, mu, alpha, nothing fitted.
+diagnose::MotionFit with(const diagnose::TrackSet& set, const diagnose::MotionFit& nominal, const char* id, double size,
+                         double k_n_s_m, double alpha_rad) {
+  const std::size_t effect = diagnose::effect_index(id);
+  diagnose::FitPoint at = diagnose::with_effect(set, nominal, effect, {size}, {});
+  at.global[0] = k_n_s_m;
+  at.global[2] = alpha_rad;
+  return diagnose::linearise_at(set, {effect}, at);
+}
+
+std::map<Change::Kind, double> most_of_each(const diagnose::TrackSet& set, const diagnose::MotionFit& nominal,
+                                            const diagnose::MotionFit& a, const diagnose::MotionFit& b) {
+  const Eigen::MatrixXd covariance = diagnose::common_covariance(b);
+  std::map<Change::Kind, double> most;
+  for (const Change& change : diagnose::feasible_changes(set, nominal)) {
+    double& of = most[change.kind];
+    of = std::max(of, diagnose::expected_split(set, a, b, covariance, change));
+  }
+  return most;
+}
+
+Change clip_of(const diagnose::NextClip& clip) {
+  Change change;
+  change.clip = clip;
+  return change;
+}
+
+double sd_of_k(const diagnose::TrackSet& set, const diagnose::MotionFit& fit, const diagnose::NextClip& clip) {
+  const Eigen::Index n = fit.at.global.size();
+  // Nothing known before: one N s/m, one of mu, one radian.
+  const Eigen::MatrixXd after = diagnose::expected_covariance(set, fit, Eigen::MatrixXd::Identity(n, n), clip_of(clip));
+  return std::sqrt(after(0, 0));
+}
+
+}  // namespace
+
+TEST_CASE("an asymmetry of the friction hides in an inclination that is known badly: a plumb view is what tells") {
+  const diagnose::TrackSet set = inclined();
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const double mu = nominal.at.global[1], alpha = nominal.at.global[2], d = 0.7;
+  // The nominal fit takes sin(a) - d mu cos(a) for its sin(alpha); mu itself is 3e-4 of it off, which hardly shows.
+  double a = alpha;
+  for (int i = 0; i < 20; ++i) a = std::asin(std::sin(alpha) + d * mu * std::cos(a));
+  const auto asymmetric = with(set, nominal, "direction_asymmetry", d, nominal.at.global[0], a);
+  auto most = most_of_each(set, nominal, asymmetric, nominal);
+  const double variance = std::pow(0.05 * kDegree, 2) + diagnose::common_covariance(nominal)(2, 2);
+  CHECK(most.at(Change::Kind::plumb) == Approx(0.5 * std::pow(a - alpha, 2) / variance).epsilon(1e-6));
+  CHECK(most.at(Change::Kind::plumb) > 5.0);
+  for (const auto& [kind, gain] : most) {
+    if (kind != Change::Kind::plumb) CHECK(gain < 1.0);
+  }
+}
+
+TEST_CASE("after a plumb view the variance of an inclination is that of the two together") {
+  const diagnose::TrackSet set = inclined();
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto fit = with(set, nominal, "direction_asymmetry", 0.1, nominal.at.global[0], nominal.at.global[2]);
+  const Eigen::MatrixXd before = diagnose::common_covariance(fit);
+  const double plumb = 0.05 * kDegree;
+  CHECK(std::sqrt(before(2, 2)) > 10.0 * plumb);
+  for (const Change& change : diagnose::feasible_changes(set, nominal)) {
+    if (change.kind != Change::Kind::plumb) continue;
+    const double after = diagnose::expected_covariance(set, fit, before, change)(2, 2);
+    CHECK(after == Approx(1.0 / (1.0 / before(2, 2) + 1.0 / (plumb * plumb))).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("no clip splits a wrong scale from a wrong clock: a measured length or a stop-watch does") {
+  const diagnose::TrackSet set = inclined(100.0, 0.05);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const double k = nominal.at.global[0], alpha = nominal.at.global[2], e = 0.02;
+  // (1 + e) x(t) obeys x'' = (1 + e) (g sin(alpha) -+ mu g cos(alpha)) - K/m x'; x((1 + c) t) the same where
+  // (1 + c)² = 1 + e and its own K is K/(1 + c).
+  const double c = std::sqrt(1.0 + e) - 1.0;
+  const auto scale = with(set, nominal, "scale_error", e, k, alpha);
+  const auto clock = with(set, nominal, "frame_rate_error", c, k / (1.0 + c), alpha);
+  auto most = most_of_each(set, nominal, scale, clock);
+  double low = 1e9, high = -1e9;
+  for (const auto& motion : set.motions) {
+    low = std::min(low, *std::min_element(motion.x_m.begin(), motion.x_m.end()));
+    high = std::max(high, *std::max_element(motion.x_m.begin(), motion.x_m.end()));
+  }
+  const double half = 0.5 * (high - low);
+  CHECK(most.at(Change::Kind::pattern) == Approx(std::pow(e * half / 5e-4, 2)).epsilon(1e-6));  // 2 halves of 1/2 z²
+  const double variance =
+      std::pow(1.0 / (10.0 * 100.0), 2) +
+      diagnose::common_covariance(clock)(
+          static_cast<Eigen::Index>(clock.layout->first_of(diagnose::effect_index("frame_rate_error"))),
+          static_cast<Eigen::Index>(clock.layout->first_of(diagnose::effect_index("frame_rate_error"))));
+  CHECK(most.at(Change::Kind::clock) == Approx(0.5 * c * c / variance).epsilon(1e-6));
+  CHECK(most.at(Change::Kind::pattern) > most.at(Change::Kind::clock));
+  for (const auto& [kind, gain] : most) {
+    if (kind != Change::Kind::pattern && kind != Change::Kind::clock) CHECK(gain < 0.1);
+  }
+}
+
+TEST_CASE("twice the frame rate knows the drag better by the root of two, half the exposure of a blurred clip twice") {
+  diagnose::TrackSet set = inclined();
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const diagnose::NextClip turning = {0, 0.335, -1.1, 100.0};
+  diagnose::NextClip twice = turning;
+  twice.rate_hz = 200.0;
+  // Of n = 120 frames the last one weighs 1/n.
+  CHECK(sd_of_k(set, nominal, turning) / sd_of_k(set, nominal, twice) == Approx(std::sqrt(2.0)).epsilon(0.02));
+  // Noise that is nearly all in proportion to the speed: 1e-3 s v beside 1e-7 m.
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    set.motions[i].sd_m = 1e-7;
+    for (const double v : nominal.motions[i].v_m_s) set.motions[i].wider.push_back(std::hypot(1.0, 1e4 * v));
+  }
+  const diagnose::NextClip passing = {0, 0.335, 1.2, 100.0};  // never slow
+  diagnose::NextClip sharper = passing;
+  sharper.exposure = 0.5;
+  CHECK(sd_of_k(set, nominal, passing) / sd_of_k(set, nominal, sharper) == Approx(2.0).epsilon(0.02));
+  const auto offered = [&] {
+    const auto changes = diagnose::feasible_changes(set, nominal);
+    return std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.kind == Change::Kind::exposure; });
+  };
+  CHECK_FALSE(offered());  // tracks
+  set.pictures = true;
+  CHECK(offered());
+  for (auto& motion : set.motions) motion.wider.clear();
+  CHECK_FALSE(offered());  // no blur that costs anything
+}
+
+TEST_CASE("a clip is worth what it is worth once it is recorded, also where the camera errs") {
+  const bool errs = GENERATE(false, true);
+  // Errors of a plane of some tenths of a millimetre over the view, the same in every clip.
+  const auto with_errors = [&](diagnose::TrackSet set) {
+    for (auto& motion : set.motions) {
+      if (!errs) continue;
+      for (int power = 1; power <= 3; ++power) {
+        motion.shared_m.emplace_back();
+        for (const double x : motion.x_m) motion.shared_m.back().push_back(3e-4 * std::pow(x, power));
+      }
+    }
+    if (errs) set.modes = 3;
+    return set;
+  };
+  const std::vector<tests::MadeLaunch> launches = {{0.335, 4.0, 0.3, -1.1}, {0.335, 4.0, -0.6, 1.2}};
+  const auto before = tests::made_experiment(launches, {}, 5, 3e-5, 120);
+  const diagnose::TrackSet set = with_errors(diagnose::track_set(before.results, before.setups, true));
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const Change change = clip_of({0, 0.7, 1.6, 100.0});
+  const diagnose::Moved clip = diagnose::next_motion(set, nominal, change).moved;
+  REQUIRE(clip.x_m.size() > 20);
+  std::vector<tests::MadeLaunch> more = launches;
+  more.push_back({0.7, 4.0, clip.x_m.front(), 1.6});
+  const auto after = tests::made_experiment(more, {}, 5, 3e-5, 120);
+  diagnose::TrackSet recorded = diagnose::track_set(after.results, after.setups, true);
+  auto& last = recorded.motions.back();
+  last.t_s.resize(clip.x_m.size());
+  last.x_m.resize(clip.x_m.size());
+  last.outlier.resize(clip.x_m.size());
+  recorded = with_errors(std::move(recorded));
+  const Eigen::MatrixXd now = diagnose::common_covariance(nominal);
+  const Eigen::MatrixXd expected = diagnose::expected_covariance(set, nominal, now, change);
+  const Eigen::MatrixXd found = diagnose::common_covariance(diagnose::fit_nominal(recorded));
+  // The noise level is measured anew from some 300 positions, to 1.15/sqrt(300), and the fit is another one.
+  for (Eigen::Index g = 0; g < 2; ++g) {
+    CHECK(std::sqrt(expected(g, g) / found(g, g)) == Approx(1.0).epsilon(0.2));
+    CHECK(expected(g, g) < now(g, g));
+  }
+}
+
+TEST_CASE("what only pictures or single frames show has a sentence with its reason, what moves a glider has none") {
+  using diagnose::Search;
+  for (const diagnose::EffectInfo& info : diagnose::effect_list()) {
+    const bool seen = info.search == Search::pictures || info.search == Search::noise ||
+                      info.search == Search::frames || info.search == Search::rows || info.id == "camera_motion";
+    INFO(info.id);
+    CHECK(diagnose::next_for_pictures(info.id).empty() != seen);
+  }
+  CHECK(diagnose::next_for_pictures("light_flicker").find("whole period") != std::string::npos);
+  CHECK(diagnose::next_for_pictures("rolling_shutter").find("upside down") != std::string::npos);
+}
+
+TEST_CASE("what has no name is followed into the speeds, places and masses in which it lies") {
+  const diagnose::TrackSet set = inclined();
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto words = [&](const char* variable, double from, double to, const char* what, const char* clip = "") {
+    diagnose::Diagnosis diagnosis;
+    diagnosis.verdict = "unknown";
+    diagnosis.regions = {{variable, from, to, 5.0, 0.01, "N", what, clip}};
+    return diagnose::next_for_unnamed(set, nominal, diagnosis);
+  };
+  // Only a launch of 1.8 times 1.2 m/s gets there, and only downhill.
+  CHECK(words("v_m_s", 1.5, 2.1, "force").find("downhill at 2.2 m/s") != std::string::npos);
+  CHECK(words("v_m_s", -2.1, -1.5, "force").find("uphill at 2") != std::string::npos);
+  CHECK(words("x_m", 0.0, 0.1, "force").find("Move the camera") != std::string::npos);
+  CHECK(words("mass_kg", 0.335, 0.335, "friction").find(" 435 g") != std::string::npos);
+  CHECK(words("t_s", 0.0, 1.0, "displacement", "clip2").find("clip clip2 three times") != std::string::npos);
+}
+
+TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and nothing is told from nothing") {
+  tests::MadeEffect drag;
+  drag.force = [](double, double, double v, double) { return -0.1 * v * std::abs(v); };
+  const auto advice = [](const std::vector<tests::MadeLaunch>& launches, const tests::MadeEffect& effect) {
+    const auto made = tests::made_experiment(launches, effect, 3, 2e-5, 120, 100.0, 0.01);
+    const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+    INFO(diagnosis.verdict << ": " << diagnosis.next_experiment);
+    CHECK(diagnosis.next_experiment.find("nothing") == std::string::npos);
+    return diagnosis.next_experiment;
+  };
+  CHECK(advice(tests::made_launches(), drag).find("known least is c of quadratic_drag") != std::string::npos);
+  const tests::MadeEffect scale{{}, [](double x, double) { return 1.02 * x; }};
+  const std::string alike = advice(tests::made_launches(), scale);
+  INFO(alike);
+  CHECK((alike.starts_with("Lay the pattern") || alike.starts_with("Film a running stop-watch")));
+}

@@ -1,0 +1,210 @@
+#include "diagnose/pictures/picture_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "diagnose/pictures/picture_shape.h"
+#include "diagnose/pictures/picture_sway.h"
+#include "diagnose/pictures/series_wave.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+struct Made {
+  double exposure_s = 0.001, line_s = 0.0, flicker = 0.0, sway_px = 0.0;
+};
+
+/// Two clips at 120 Hz, 150 frames each: a marker of 6 px radius that slows down from 400 px/s and one that speeds up
+/// over the same places; its shape, the light and the scene's place with noise.
+std::vector<diagnose::FilmedClip> filmed(const Made& made, double stated_s, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<diagnose::FilmedClip> clips;
+  for (const double direction : {1.0, -1.0}) {
+    auto record = std::make_shared<core::PictureRecord>();
+    record->width_px = 480;
+    record->height_px = 180;
+    record->codec = "FFV1";
+    record->lossy = false;
+    record->steps.mean.fill(1.0);
+    record->noise_memory = 1.0;
+    for (std::size_t k = 0; k < 150; ++k) {
+      const double t = static_cast<double>(k) / 120.0, speed = direction > 0.0 ? 400.0 - 250.0 * t : -120.0 - 100.0 * t;
+      core::MarkerLook look;
+      look.frame = k;
+      look.t_s = t;
+      look.u_px = (direction > 0.0 ? 30.0 + 400.0 * t - 125.0 * t * t : 450.0 - 120.0 * t - 50.0 * t * t) +
+                  0.01 * normal(random);
+      look.v_px = 90.0 + 0.01 * normal(random);
+      const double smear = speed * made.exposure_s, z = look.u_px / 480.0;
+      look.vv_px2 = 9.0;
+      look.stretch_px2 = 0.2 - 0.3 * z + 0.1 * z * z + smear * smear / 12.0 + 0.06 * normal(random);
+      look.uv_px2 = 0.05 * z + made.line_s * speed * 9.0 + 0.01 * normal(random);
+      look.amplitude = 150.0;
+      look.background = 40.0;
+      record->marker.push_back(look);
+      core::SceneLook scene;
+      scene.frame = k;
+      scene.t_s = t;
+      scene.u_px = made.sway_px * std::sin(2.0 * std::numbers::pi * 7.0 * t + direction) + 0.02 * normal(random);
+      scene.v_px = 0.005 * normal(random);
+      scene.sd_u_px = 0.02;
+      scene.sd_v_px = 0.005;
+      scene.gain.fill(made.flicker * std::cos(2.0 * std::numbers::pi * 100.0 * t + direction) +
+                      0.0004 * normal(random));
+      scene.gain_sd.fill(0.0004);
+      record->scene.push_back(scene);
+    }
+    diagnose::FilmedClip clip;
+    clip.name = direction > 0.0 ? "down" : "up";
+    clip.record = record;
+    clip.camera.frame_rate_hz = 120.0;
+    clip.camera.exposure_s = stated_s;
+    clip.px_per_m = 400.0;
+    clips.push_back(clip);
+  }
+  return clips;
+}
+
+/// A copy: the evidence may be gone before it is looked at.
+diagnose::PictureFinding finding(const diagnose::PictureEvidence& evidence, const std::string& id) {
+  const auto found =
+      std::find_if(evidence.findings.begin(), evidence.findings.end(), [&](const auto& f) { return f.id == id; });
+  REQUIRE(found != evidence.findings.end());
+  return *found;
+}
+
+}  // namespace
+
+TEST_CASE("Exposure and line time come out of the marker's shape within their standard deviations", "[pictures]") {
+  const diagnose::ShapeFit fit = diagnose::fit_marker_shape(filmed({0.006, 3e-5, 0.0, 0.0}, 0.001, 3));
+  REQUIRE(fit.known);
+  // Five standard deviations of two numbers: 1e-6 by chance.
+  CHECK(std::abs(fit.exposure_s - 0.006) < 5.0 * fit.exposure_sd_s);
+  CHECK(std::abs(fit.line_s - 3e-5) < 5.0 * fit.line_sd_s);
+  // sd of T: (0.06 px²) / (w² T/6) a frame at w = 300 px/s, over 290 frames of which some half tell.
+  CHECK(fit.exposure_sd_s < 0.0006);
+  CHECK(fit.line_sd_s < 2e-6);
+}
+
+TEST_CASE("compression has the name of the codec with loss that a file states, and else none", "[pictures]") {
+  std::vector<diagnose::FilmedClip> clips = filmed({0.003, 0.0, 0.0, 0.0}, 0.003, 1);
+  REQUIRE(clips.size() >= 2);
+  const auto codecs = [&clips] {
+    std::string words;
+    for (const auto& p : finding(diagnose::picture_evidence(clips), "compression").parameters) {
+      if (p.key == "codec") words += p.text;
+    }
+    return words;
+  };
+  CHECK(codecs().empty());
+  auto record = std::make_shared<core::PictureRecord>(*clips.back().record);
+  record->codec = "MJPG";
+  record->lossy = true;
+  clips.back().record = record;
+  CHECK(codecs() == "MJPG");
+}
+
+TEST_CASE("Pictures in which all is as stated show nothing", "[pictures]") {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const diagnose::PictureEvidence evidence = diagnose::picture_evidence(filmed({0.003, 0.0, 0.0, 0.0}, 0.003, seed));
+    CHECK(evidence.findings.size() == 6);
+    for (const auto& one : evidence.findings) {
+      INFO(one.id << ", seed " << seed);
+      CHECK_FALSE(one.seen);
+    }
+  }
+}
+
+TEST_CASE("Each thing that pictures alone can tell is seen where it is, and nothing else with it", "[pictures]") {
+  const std::vector<std::pair<std::string, Made>> cases = {{"exposure_blur", {0.007, 0.0, 0.0, 0.0}},
+                                                           {"rolling_shutter", {0.001, 3e-5, 0.0, 0.0}},
+                                                           {"light_flicker", {0.001, 0.0, 0.02, 0.0}},
+                                                           {"camera_motion", {0.001, 0.0, 0.0, 0.2}}};
+  for (const auto& [id, made] : cases) {
+    const diagnose::PictureEvidence evidence = diagnose::picture_evidence(filmed(made, 0.001, 5));
+    for (const auto& one : evidence.findings) {
+      INFO("made " << id << ", looked at " << one.id);
+      CHECK(one.seen == (one.id == id));
+    }
+  }
+  const diagnose::PictureFinding flicker =
+      finding(diagnose::picture_evidence(filmed({0.001, 0.0, 0.02, 0.0}, 0.001, 5)), "light_flicker");
+  // 100 Hz at 120 frames a second is seen as 20 Hz; the exposure of 1 ms passes 0.984 of the depth.
+  CHECK(flicker.parameters[1].value == 100.0);
+  CHECK(std::abs(flicker.parameters[0].value - 0.02 / 0.9836) < 5.0 * flicker.parameters[0].sd);
+}
+
+TEST_CASE("A camera's sway in the tracks is borne out by a scene that sways as much, and refuted by one at rest",
+          "[pictures]") {
+  const auto swaying = filmed({0.001, 0.0, 0.0, 0.2}, 0.001, 8), resting = filmed({}, 0.001, 8);
+  CHECK(diagnose::camera_sway_support(swaying, 0.2 / 400.0, 7.0) > 50.0);
+  CHECK(diagnose::camera_sway_support(resting, 0.2 / 400.0, 7.0) < -20.0);
+  // Too small to be seen in the scene: neither.
+  CHECK(std::abs(diagnose::camera_sway_support(resting, 0.001 / 400.0, 7.0)) < 1.0);
+}
+
+TEST_CASE("A wave is found with its frequency, and white noise has none", "[pictures]") {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::size_t alarms = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    std::vector<diagnose::Series> noise(4);
+    for (auto& series : noise) {
+      for (int k = 0; k < 150; ++k) {
+        series.t_s.push_back(k / 120.0);
+        series.value.push_back(normal(random));
+      }
+    }
+    if (diagnose::strongest_wave(noise).log_evidence > 0.0) ++alarms;
+    for (auto& series : noise) {
+      for (std::size_t k = 0; k < series.value.size(); ++k) {
+        series.value[k] += 0.8 * std::sin(2.0 * std::numbers::pi * 13.0 * series.t_s[k] + seed);
+      }
+    }
+    const diagnose::SeriesWave wave = diagnose::strongest_wave(noise);
+    CHECK(wave.log_evidence > 3.0);
+    // A fourth of a peak's width is the grid; 5 sd of the frequency, each series telling by itself.
+    CHECK(std::abs(wave.f_hz - 13.0) < 0.25 / 1.25 + 5.0 * wave.sd_hz);
+  }
+  CHECK(alarms == 0);  // the penalty leaves less than 1 in 100
+}
+
+TEST_CASE("Evidence of a deviation falls below nothing at none and grows with its square", "[pictures]") {
+  CHECK(diagnose::log_evidence_of(0.0, 100.0) < -1.0);
+  CHECK(diagnose::log_evidence_of(10.0, 100.0) > 40.0);
+  CHECK(diagnose::log_evidence_of(10.0, 100.0) < 50.0);  // z²/2 less what the unknown size costs
+  CHECK(diagnose::log_evidence_of(-10.0, 100.0) < diagnose::log_evidence_of(0.0, 100.0));
+}
+
+TEST_CASE("clips of several cameras are each held to what is stated of their own") {
+  const auto blur_of = [](double first_s, double second_s, double second_stated_s) {
+    std::vector<diagnose::FilmedClip> clips = filmed({.exposure_s = first_s}, first_s, 61);
+    for (diagnose::FilmedClip& clip : filmed({.exposure_s = second_s}, second_stated_s, 62)) {
+      clip.view = 1;
+      clips.push_back(clip);
+    }
+    return finding(diagnose::picture_evidence(clips), "exposure_blur");
+  };
+  CHECK(blur_of(0.001, 0.008, 0.008).log_evidence < 0.0);  // eight times the first one's, as stated
+  const diagnose::PictureFinding longer = blur_of(0.005, 0.006, 0.001);
+  CHECK(longer.log_evidence > 5.0);
+  CHECK(std::abs(longer.parameters.front().value - 0.006) < 4.0 * longer.parameters.front().sd);
+}
+
+TEST_CASE("the stated line time that goes with a rolling shutter is that of the camera that shows it") {
+  std::vector<diagnose::FilmedClip> clips = filmed({}, 0.001, 63);  // a global shutter, as stated
+  for (diagnose::FilmedClip& clip : filmed({.line_s = 4e-5}, 0.001, 64)) {
+    clip.view = 1;
+    clip.camera.shutter = core::Shutter::rolling;
+    clip.camera.line_readout_s = 1e-5;
+    clips.push_back(clip);
+  }
+  const diagnose::PictureEvidence evidence = diagnose::picture_evidence(clips);
+  CHECK(finding(evidence, "rolling_shutter").log_evidence > 5.0);
+  CHECK(evidence.stated_line_s == 1e-5);
+}

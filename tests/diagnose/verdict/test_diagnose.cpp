@@ -1,0 +1,307 @@
+#include "diagnose/verdict/diagnose.h"
+
+#include <algorithm>
+#include <random>
+#include <string_view>
+
+#include "base/errors.h"
+#include "diagnose/effects/effect.h"
+#include "diagnose/result/verdict_words.h"
+#include "diagnose/weigh/hypotheses.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+diagnose::Diagnosis diagnosed(const tests::MadeExperiment& made, const std::vector<std::string>& without = {}) {
+  return diagnose::diagnose_results(made.results, made.setups, {.without = without, .jobs = 2});
+}
+
+double total(const diagnose::Diagnosis& diagnosis) {
+  double sum = diagnosis.none + diagnosis.unknown;
+  for (const auto& ranked : diagnosis.ranking) sum += ranked.probability;
+  return sum;
+}
+
+struct Case {
+  std::string id;
+  tests::MadeEffect effect;
+  std::string key;
+  double truth;
+};
+
+/// Each strong enough to move positions by tens of the noise of 30 µm.
+std::vector<Case> strong_cases() {
+  const double pi = std::acos(-1.0);
+  std::vector<Case> cases;
+  cases.push_back({"quadratic_drag",
+                   {[](double, double, double v, double) { return -0.05 * v * std::abs(v); }, {}},
+                   "c_kg_m",
+                   0.05});
+  cases.push_back({"load_independent_friction",
+                   {[](double, double, double v, double) { return v < 0.0   ? 0.01
+                                                                  : v > 0.0 ? -0.01
+                                                                            : 0.0; }, {}},
+                   "force_n",
+                   0.01});
+  cases.push_back(
+      {"damping_gradient", {[](double, double x, double v, double) { return -0.93 * 0.1 * x * v; }, {}}, "b_1_m", 0.1});
+  cases.push_back({"tether",
+                   {[](double, double x, double, double) { return x > 0.1 ? -0.3 * (x - 0.1) : 0.0; }, {}},
+                   "k_n_m",
+                   0.3});
+  cases.push_back({"perspective_error", {{}, [](double x, double) { return x / (1.0 + 0.02 * x); }}, "p_1_m", 0.02});
+  cases.push_back({"scale_error", {{}, [](double x, double) { return 1.05 * x; }}, "e", 0.05});
+  cases.push_back(
+      {"base_vibration",
+       {[=](double m, double, double, double t) { return m * 0.5 * std::sin(2.0 * pi * 7.3 * t + 0.4); }, {}},
+       "f_hz",
+       7.3});
+  return cases;
+}
+
+}  // namespace
+
+TEST_CASE("a strong effect is named first, with its size, and its probabilities sum to 1") {
+  for (const Case& one : strong_cases()) {
+    INFO(one.id);
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), one.effect, 11));
+    REQUIRE(diagnosis.verdict == "effect");
+    std::vector<std::string> named = diagnosis.effects.front().equivalent_to;
+    named.push_back(diagnosis.effects.front().id);
+    CHECK(std::find(named.begin(), named.end(), one.id) != named.end());
+    CHECK(std::abs(total(diagnosis) - 1.0) < 1e-9);
+    for (const auto& parameter : diagnosis.effects.front().parameters) {
+      if (diagnosis.effects.front().id != one.id || parameter.key != one.key) continue;
+      // Five standard deviations, and 3 % for what differs between "x_mid = 0" here and the middle of the data there.
+      CHECK(std::abs(parameter.value - one.truth) < 5.0 * parameter.sd + 0.03 * one.truth);
+    }
+    REQUIRE(diagnosis.gap);
+    // At the floor: one part in ten above it would be four standard errors of 1200 points.
+    CHECK(diagnosis.gap->after < 1.1);
+  }
+}
+
+TEST_CASE("a wrong scale and a wrong frame rate are named together: tracks cannot tell them apart") {
+  const tests::MadeEffect scale = {{}, [](double x, double) { return 1.05 * x; }};
+  const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), scale, 3));
+  REQUIRE(diagnosis.verdict == "effect");
+  const auto& first = diagnosis.effects.front();
+  CHECK(first.probability < 0.8);
+  std::vector<std::string> named = first.equivalent_to;
+  named.push_back(first.id);
+  CHECK(std::find(named.begin(), named.end(), "scale_error") != named.end());
+  CHECK(std::find(named.begin(), named.end(), "frame_rate_error") != named.end());
+}
+
+TEST_CASE("a size that only the inclination tells is found in full, however well the positions are known") {
+  // 3 µm in 1200 positions know the scale beside K, mu and the inclination by a stated 0.05 degrees alone, thousands of
+  // times less well than by itself. A scale and a clock make the same of positions: one chi², from wherever it starts.
+  const tests::MadeEffect effect{.seen = [](double x, double) { return 1.06 * x; }};
+  const auto made = tests::made_experiment(tests::made_launches(), effect, 5, 3e-6);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  std::vector<double> gains;
+  for (const char* id : {"scale_error", "frame_rate_error"}) {
+    const std::size_t index = diagnose::effect_index(id);
+    for (const double start : {0.002, 0.03, -0.08}) {
+      const auto fit = diagnose::fit_motions(set, {index}, diagnose::with_effect(set, nominal, index, {start}, {}));
+      INFO(id << " from " << start);
+      CHECK(fit.converged);
+      gains.push_back(0.5 * (nominal.cost - fit.cost));
+    }
+  }
+  for (const double gain : gains) CHECK(std::abs(gain - gains.front()) < 0.05);  // the fit stops at changes of 0.001
+  CHECK(gains.front() > 8.0);  // 6 % of 4 degrees are 4.8 of 0.05: 11.5, give or take 4.8
+}
+
+TEST_CASE("a nominal experiment has nothing missing, and its gap is at the floor") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), {}, seed));
+    CHECK(diagnosis.verdict == "none");
+    CHECK(diagnosis.none > 0.5);
+    CHECK(std::abs(total(diagnosis) - 1.0) < 1e-9);
+    REQUIRE(diagnosis.gap);
+    // Of 1200 points with a noise that is itself estimated: 0.04 is a standard error.
+    CHECK(std::abs(diagnosis.gap->before - 1.0) < 0.16);
+  }
+}
+
+TEST_CASE("the parameters that an explanation is said to add are those that its fit has") {
+  const auto made = tests::made_experiment(tests::made_launches(), {}, 5);
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  const auto added = [&](const std::string& id) -> std::size_t {
+    const auto ranked =
+        std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const auto& one) { return one.id == id; });
+    return ranked == diagnosis.ranking.end() ? 0 : ranked->parameters;
+  };
+  // Tracks tell nothing of a camera that turns: its sway has a size and a frequency, and a phase in each of 8 motions.
+  CHECK(added("camera_motion") == 2 + 8);
+  CHECK(added("base_vibration") == 2 + 8);
+  CHECK(added("stribeck") == 2);
+  CHECK(added("timestamp_jitter") == 1);
+}
+
+TEST_CASE("a force that nobody listed is unknown, and the place where it acts is named") {
+  // A rough patch: extra friction between 0.10 and 0.22 m.
+  const tests::MadeEffect patch = {[](double m, double x, double v, double) {
+                                     const double size = x > 0.10 && x < 0.22 ? 0.15 * m : 0.0;
+                                     return v > 0.0 ? -size : size;
+                                   },
+                                   {}};
+  const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), patch, 5));
+  CHECK(diagnosis.verdict == "unknown");
+  REQUIRE(!diagnosis.regions.empty());
+  CHECK(diagnosis.regions.front().variable == "x_m");
+  // What has no chance is ranked by its evidence: probabilities that underflow are all the same.
+  const auto& ranking = diagnosis.ranking;
+  for (std::size_t r = 1; r < ranking.size(); ++r) {
+    if (ranking[r - 1].probability < 5e-4) {
+      CHECK(ranking[r].log_evidence_gain <= ranking[r - 1].log_evidence_gain);
+    }
+  }
+}
+
+TEST_CASE(
+    "in pictures a strong effect keeps its name beside a rest that shows weakly, and loses it to one that does not") {
+  // Drag that moves positions by centimetres, and a bend of the picture that nobody listed; the noise is 30 µm.
+  const auto compared = [](double bend_m, bool filmed) {
+    const auto made = tests::made_experiment(tests::made_launches(),
+                                             {[](double, double, double v, double) { return -0.05 * v * std::abs(v); },
+                                              [=](double x, double) { return x + bend_m * std::sin(9.0 * x); }},
+                                             5);
+    diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    set.pictures = filmed;
+    return diagnose::compare_hypotheses(set, {}, 2);
+  };
+  const std::size_t drag = diagnose::effect_index("quadratic_drag");
+  const auto by_tracks = compared(2e-5, false), filmed = compared(2e-5, true);
+  CHECK(by_tracks.unknown > 0.5);
+  CHECK(filmed.unknown < 0.1);
+  CHECK(filmed.effect_probability[drag] > 0.9);
+  double sum = 0.0;
+  for (const auto& hypothesis : filmed.all) sum += hypothesis.probability;
+  CHECK(std::abs(sum - 1.0) < 1e-9);
+  // 80 µm over 1600 positions: a gain of some thousand.
+  CHECK(compared(8e-5, true).unknown > 0.8);
+}
+
+TEST_CASE("a launch that is suggested can be made, also where a glider was released from rest") {
+  const std::vector<tests::MadeLaunch> launches = {
+      {0.335, 3.7, 0.75, -1.05}, {0.335, 3.7, 0.7, -0.8}, {0.335, 3.7, -0.1, 0.75}, {0.335, 3.7, -0.12, 0.0}};
+  const tests::MadeEffect bow{[](double m, double x, double, double) { return 0.02 * m * x; }, {}};
+  const auto diagnosis = diagnosed(tests::made_experiment(launches, bow, 2));
+  const std::string& words = diagnosis.next_experiment;
+  INFO(words);
+  if (const std::size_t at = words.find(" at "); at != std::string::npos && words.find("hill at ") < at) {
+    CHECK(std::stod(words.substr(at + 4)) >= 0.2);  // a fifth of the fastest
+  }
+  CHECK(words.find("hill at 0.0") == std::string::npos);
+}
+
+TEST_CASE("an effect that is left out of the list is unknown, never another name with high probability") {
+  const tests::MadeEffect bow = {[](double m, double x, double, double) { return m * 9.8 * 0.01 * x; }, {}};
+  const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), bow, 7), {"track_bow"});
+  for (const auto& effect : diagnosis.effects) CHECK(effect.probability < 0.8);
+}
+
+TEST_CASE("data that carry no verdict are refused or say so") {
+  SECTION("constant positions") {
+    const tests::MadeEffect held = {{}, [](double, double) { return 0.25; }};
+    CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), held, 1, 0.0)), base::InputError);
+  }
+  SECTION("a clip with 20 frames") {
+    const auto made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-5, 20);
+    CHECK_THROWS_AS(diagnosed(made), base::InputError);
+  }
+  SECTION("one clip: held-out quarters, and a note") {
+    const auto diagnosis = diagnosed(tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1));
+    CHECK(diagnosis.verdict == "none");
+    REQUIRE(diagnosis.gap);
+    CHECK(diagnosis.gap->held_out.size() == 4);
+    CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(),
+                      [](const std::string& note) { return note.find("one clip only") != std::string::npos; }));
+  }
+  SECTION("no plumb and no stated uncertainty of the inclination") {
+    const tests::MadeEffect scale = {{}, [](double x, double) { return 1.05 * x; }};
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), scale, 1, 3e-5, 150, 100.0, 0.0));
+    CHECK(diagnosis.verdict == "none");
+    const auto open = [](const std::string& note) { return note.find("neither a plumb line") != std::string::npos; };
+    REQUIRE(std::count_if(diagnosis.notes.begin(), diagnosis.notes.end(), open) == 1);  // one for both set-ups
+    const std::string note = *std::find_if(diagnosis.notes.begin(), diagnosis.notes.end(), open);
+    CHECK(note.find("Set-ups \"level\", \"inclined\" have") != std::string::npos);
+  }
+  SECTION("an effect that does not exist") {
+    CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), {}, 1), {"magic"}), base::InputError);
+  }
+}
+
+TEST_CASE("noise that a moving marker's blur adds is no uneven clock in pictures, and may be one in tracks") {
+  // 1.5 µm of noise at rest; and 2 µm more at 1 m/s, which 2 µs of jitter would make as well.
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  double last_x = 0.0, last_t = 0.0;
+  const tests::MadeEffect blur = {{}, [&](double x, double t) {
+                                    const double v = t > last_t ? (x - last_x) / (t - last_t) : 0.0;
+                                    last_x = x;
+                                    last_t = t;
+                                    return x + 2e-6 * v * normal(random);
+                                  }};
+  tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), blur, 5, 1.5e-6);
+  const auto of_tracks = diagnosed(made);
+  REQUIRE(of_tracks.verdict == "effect");
+  CHECK(of_tracks.effects.front().id == "timestamp_jitter");
+  for (core::ClipResult& clip : made.results.clips) clip.sightings.resize(1);
+  CHECK(diagnosed(made).verdict == "none");
+}
+
+TEST_CASE("what is not ruled out is neither claimed nor called explained") {
+  diagnose::Diagnosis open;
+  open.verdict = "none";
+  open.none = 0.30;
+  open.ranking.push_back({"late_release", 0.46, 2.9, 4.0, 1, {}});
+  const std::string words = diagnose::summary_of(open);
+  CHECK(words.find("leave it open") != std::string::npos);
+  CHECK(words.find("late_release (46 %)") != std::string::npos);
+  CHECK(words.find("Nothing is missing") == std::string::npos);
+  open.none = 0.9;
+  open.ranking.front().probability = 0.05;
+  CHECK(diagnose::summary_of(open).find("Nothing is missing") != std::string::npos);
+}
+
+TEST_CASE("a drag below zero, which would drive the glider, is a note") {
+  const auto note_of = [](const tests::MadeEffect& effect) {
+    const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), effect, 9));
+    const auto note = std::find_if(diagnosis.notes.begin(), diagnosis.notes.end(), [](const std::string& words) {
+      return words.find("below zero") != std::string::npos;
+    });
+    return note == diagnosis.notes.end() ? std::string() : *note;
+  };
+  // Driven by 1.3 K v against its drag of K v: -0.3 K is left, -0.279 N s/m.
+  const double k = tests::MadeGlider{}.k_n_s_m;
+  const std::string driven = note_of({.force = [k](double, double, double v, double) { return 1.3 * k * v; }});
+  const std::string words = "a drag below zero (";
+  REQUIRE(driven.find(words) != std::string::npos);
+  CHECK(std::abs(std::stod(driven.substr(driven.find(words) + words.size())) + 0.3 * k) < 0.01 * k);
+  CHECK(note_of({}).empty());
+}
+
+TEST_CASE("whoever is told how far it is can end a diagnosis between two fits") {
+  struct Enough {};
+  const tests::MadeEffect drag{.force = [](double, double, double v, double) { return -0.02 * v * std::abs(v); }};
+  const auto made = tests::made_experiment(tests::made_launches(), drag, 3);
+  int told = 0;
+  double last = 0.0;
+  const auto progress = [&](std::string_view stage, double fraction) {
+    if (stage != "weighing explanations") return;
+    CHECK(fraction >= last);
+    CHECK(fraction < 0.9);
+    last = fraction;
+    if (++told == 8) throw Enough{};
+  };
+  const auto run = [&] { diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 1}, progress); };
+  CHECK_THROWS_AS(run(), Enough);
+  CHECK(told == 8);
+}

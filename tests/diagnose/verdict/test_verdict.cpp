@@ -1,0 +1,43 @@
+#include "diagnose/verdict/verdict.h"
+
+#include <string>
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+diagnose::Hypothesis of(const std::vector<std::string>& ids, double probability) {
+  diagnose::Hypothesis hypothesis;
+  for (const std::string& id : ids) hypothesis.effects.push_back(diagnose::effect_index(id));
+  hypothesis.probability = probability;
+  return hypothesis;
+}
+
+std::string first(const diagnose::TrackSet& set, const std::vector<diagnose::Hypothesis>& by_falling_probability) {
+  diagnose::Comparison comparison;
+  comparison.all = by_falling_probability;
+  const diagnose::Hypothesis* best = diagnose::best_named(set, comparison);
+  return best == nullptr ? "" : std::string(diagnose::effect_list()[best->effects.back()].id);
+}
+
+}  // namespace
+
+TEST_CASE("two names for one cause count together against one name for another") {
+  diagnose::TrackSet tracks, films;
+  films.pictures = true;
+  CHECK(first(tracks, {of({"direction_asymmetry"}, 0.38), of({"scale_error"}, 0.32), of({"frame_rate_error"}, 0.3)}) ==
+        "scale_error");
+  CHECK(first(tracks, {of({"direction_asymmetry"}, 0.7), of({"scale_error"}, 0.16), of({"frame_rate_error"}, 0.14)}) ==
+        "direction_asymmetry");
+  // Beside another effect as well; a pair is another cause than either alone.
+  CHECK(first(tracks, {of({"stribeck", "direction_asymmetry"}, 0.4), of({"stribeck", "frame_rate_error"}, 0.3),
+                       of({"scale_error", "stribeck"}, 0.2), of({"scale_error"}, 0.1)}) == "frame_rate_error");
+  // What shakes, camera or table, only pictures can tell.
+  const std::vector<diagnose::Hypothesis> shaken = {of({"stribeck"}, 0.4), of({"camera_motion"}, 0.35),
+                                                    of({"base_vibration"}, 0.25)};
+  CHECK(first(tracks, shaken) == "camera_motion");
+  CHECK(first(films, shaken) == "stribeck");
+  CHECK(first(tracks, {of({}, 1.0)}).empty());
+}

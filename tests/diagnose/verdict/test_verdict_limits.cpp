@@ -1,0 +1,235 @@
+#include "diagnose/verdict/verdict_limits.h"
+
+#include <algorithm>
+#include <numbers>
+#include <sstream>
+
+#include "base/errors.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/result/verdict_words.h"
+#include "diagnose/verdict/derived_parameters.h"
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+diagnose::Diagnosis diagnosed(const tests::MadeExperiment& made) {
+  return diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Two masses, two launches each, on one inclination of 4 degrees.
+std::vector<tests::MadeLaunch> inclined_launches() {
+  return {{0.335, 4.0, 0.3, -1.1}, {0.335, 4.0, -0.6, 1.2}, {0.535, 4.0, 0.3, -0.9}, {0.535, 4.0, -0.6, 0.7}};
+}
+
+void state(core::ClipSetup& setup, double degrees, double sd_degrees) {
+  setup.incline_rad = degrees * kDegree;
+  setup.incline_sd_rad = sd_degrees * kDegree;
+}
+
+}  // namespace
+
+TEST_CASE("readings of one group are one set-up's as long as they agree, and each counts") {
+  tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 1, 3e-5, 60);
+  state(made.setups[0], 4.0, 0.05);
+  state(made.setups[1], 4.1, 0.05);
+  state(made.setups[2], 4.0, 0.05);
+  state(made.setups[3], 4.0, 0.2);
+  const diagnose::TrackSet one = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(one.groups.size() == 1);
+  CHECK(one.groups[0].statements.size() == 3);  // the third clip repeats the first one's
+
+  state(made.setups[1], 6.0, 0.05);
+  const diagnose::TrackSet apart = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(apart.groups.size() == 2);
+  CHECK(apart.motions[0].group == 0);
+  CHECK(apart.motions[1].group == 1);
+  REQUIRE(apart.groups[1].statements.size() == 1);
+  CHECK(apart.groups[1].statements[0].alpha_rad == 6.0 * kDegree);
+
+  // Another folder's group of that name is another set-up, with a plumb line of its own.
+  state(made.setups[1], 4.1, 0.05);
+  made.results.clips[1].experiment = "other";
+  core::PlumbResult plumb;
+  plumb.group = "inclined";
+  plumb.plumb_deg.estimate = {.value = 4.2, .sd = 0.1};
+  plumb.experiment = "other";
+  made.results.plumbs.push_back(plumb);
+  const diagnose::TrackSet folders = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(folders.groups.size() == 2);
+  CHECK(folders.groups[0].statements.size() == 2);
+  REQUIRE(folders.groups[1].statements.size() == 2);
+  CHECK(folders.groups[1].statements[0].against == "plumb");
+  CHECK(folders.groups[1].statements[1].alpha_rad == 4.1 * kDegree);
+}
+
+TEST_CASE("what everything else says of an inclination is what a fit without the statement finds") {
+  tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 2, 3e-4);
+  for (core::ClipSetup& setup : made.setups) state(setup, 4.02, 0.02);
+  const diagnose::TrackSet with = diagnose::track_set(made.results, made.setups, true);
+  const auto pulls = diagnose::statement_pulls(with, diagnose::fit_nominal(with));
+  REQUIRE(pulls.size() == 1);
+  for (core::ClipSetup& setup : made.setups) setup.incline_sd_rad.reset();
+  const diagnose::TrackSet without = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit fit = diagnose::fit_nominal(without);
+  const double sd = std::sqrt(diagnose::common_covariance(fit)(2, 2));
+  // Both are the minimum of one chi², up to where the fits stop (a thousandth of its change: 0.03 sd) and alpha's
+  // curvature over 0.02 degrees.
+  CHECK(std::abs(pulls[0].else_rad - fit.at.global[2]) < 0.05 * sd);
+  CHECK(std::abs(pulls[0].else_sd_rad - sd) < 0.02 * sd);
+  REQUIRE(pulls[0].z);
+  CHECK(std::abs(*pulls[0].z - (4.02 * kDegree - fit.at.global[2]) / std::hypot(0.02 * kDegree, sd)) < 0.05);
+}
+
+TEST_CASE("a stated inclination that the motion contradicts is said first, with both angles") {
+  tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 3);
+  for (core::ClipSetup& setup : made.setups) state(setup, 14.0, 0.05);
+  const auto diagnosis = diagnosed(made);
+  INFO(diagnosis.summary);
+  CHECK(diagnosis.verdict == "unknown");
+  const std::string begin = "The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated, and the motion says ";
+  REQUIRE(diagnosis.summary.starts_with(begin));
+  std::istringstream numbers(diagnosis.summary.substr(begin.size()));
+  double degrees = 0.0, sd = 0.0;
+  std::string sign;
+  numbers >> degrees >> sign >> sd;
+  CHECK(sd < 0.01);
+  CHECK(std::abs(degrees - 4.0) < 6.0 * sd);  // five, and a digit that is rounded
+  REQUIRE(diagnosis.limits.contradicted.size() == 1);
+  CHECK(std::count(diagnosis.notes.begin(), diagnosis.notes.end(), diagnosis.limits.contradicted[0]) == 1);
+  CHECK(contains(diagnosis.next_experiment, "Measure the inclination again"));
+}
+
+TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
+  // Downhill only: what is stated too small of the inclination is taken for friction that drives,
+  // mu' = (mu cos 4 - sin 4 + sin 3)/cos 3 = -0.0114.
+  const double mu =
+      (0.006 * std::cos(4.0 * kDegree) - std::sin(4.0 * kDegree) + std::sin(3.0 * kDegree)) / std::cos(3.0 * kDegree);
+  tests::MadeExperiment made = tests::made_experiment(
+      {{0.335, 4.0, -0.6, 1.2}, {0.335, 4.0, -0.6, 0.6}, {0.535, 4.0, -0.6, 1.0}, {0.535, 4.0, -0.6, 0.5}}, {}, 4);
+  CHECK(diagnosed(made).verdict == "none");
+  for (core::ClipSetup& setup : made.setups) state(setup, 3.0, 0.05);
+  const auto diagnosis = diagnosed(made);
+  INFO(diagnosis.summary);
+  CHECK(diagnosis.verdict == "unknown");
+  CHECK(diagnosis.none == 0.0);
+  double sum = diagnosis.unknown;
+  for (const auto& ranked : diagnosis.ranking) sum += ranked.probability;
+  CHECK(std::abs(sum - 1.0) < 1e-9);
+  CHECK(diagnosis.summary.starts_with("The fit has a friction below zero (" + std::to_string(mu).substr(0, 6)));
+  CHECK(diagnosis.regions.empty());
+  REQUIRE(diagnosis.gap);
+  CHECK(diagnosis.gap->before < 1.16);  // as of a nominal experiment: the positions tell nothing
+  CHECK(diagnosis.gap->after == diagnosis.gap->before);
+  CHECK(contains(diagnosis.next_experiment, "which way is downhill"));
+}
+
+TEST_CASE("where a fifth of the motion is set aside, the summary begins with it") {
+  const auto made = tests::made_experiment(inclined_launches(), {}, 5, 3e-5, 60);
+  diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  CHECK(set.left_out == 0);
+  const diagnose::MotionFit fit = diagnose::fit_nominal(set);
+  set.moving = 1000;
+  set.left_out = 190;
+  CHECK(diagnose::limits_of(set, fit).set_aside.empty());
+  set.left_out = 210;
+  diagnose::Diagnosis diagnosis;
+  diagnosis.verdict = "none";
+  diagnosis.none = 0.9;
+  diagnosis.limits = diagnose::limits_of(set, fit);
+  CHECK(diagnose::summary_of(diagnosis).starts_with("Of the 1000 positions of the motion 21 % are set aside"));
+  CHECK(contains(diagnose::summary_of(diagnosis), "Nothing is missing"));
+  // Outliers count with what is left out: 0.19 + 0.81 * 0.05 = 0.23.
+  set.left_out = 190;
+  for (diagnose::TrackedMotion& motion : set.motions) std::fill_n(motion.outlier.begin(), motion.t_s.size() / 20, 1);
+  CHECK(contains(diagnose::limits_of(set, fit).set_aside, "23 %"));
+}
+
+TEST_CASE("too little motion is told clip by clip, with their files") {
+  tests::MadeExperiment made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-5, 20);
+  const tests::MadeEffect held = {{}, [](double, double) { return 0.25; }};
+  const tests::MadeExperiment still = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, held, 1, 0.0);
+  made.results.clips.push_back(still.results.clips.front());
+  made.results.clips.back().name = "still";
+  made.setups.push_back(still.setups.front());
+  made.setups.back().track = "still.csv";
+  try {
+    diagnosed(made);
+    FAIL("twenty positions carry no verdict");
+  } catch (const base::InputError& error) {
+    REQUIRE(error.issues().size() == 2);
+    CHECK(error.issues()[0].file == "none.csv");
+    CHECK(error.issues()[0].key == "clip \"clip0\"");
+    CHECK(error.issues()[0].found == "20 positions of free motion");
+    CHECK(error.issues()[1].file == "still.csv");
+    CHECK(error.issues()[1].found == "nothing that moves freely");
+    CHECK(contains(error.issues()[1].expected, "at least 40"));
+  }
+}
+
+TEST_CASE("the middle that a gradient or a bow is about is stated, for each set-up") {
+  // K(x) = 0.93 (1 + 0.1 x) = K (1 + b (x - x_mid)): b = 0.1 / (1 + 0.1 x_mid).
+  const tests::MadeEffect gradient = {[](double, double x, double v, double) { return -0.93 * 0.1 * x * v; }, {}};
+  const auto made = tests::made_experiment(inclined_launches(), gradient, 6);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  double low = 1e9, high = -1e9;
+  for (const diagnose::TrackedMotion& motion : set.motions) {
+    for (const double x : motion.x_m) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+  }
+  const std::size_t effect = diagnose::effect_index("damping_gradient");
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto fit = diagnose::fit_motions(set, {effect}, diagnose::with_effect(set, nominal, effect, {0.05, 0.0}, {}));
+  const auto derived = diagnose::derived_parameters(set, fit, effect, {}, {});
+  REQUIRE(derived.size() == 1);
+  CHECK(derived[0].key == "x_mid_m");
+  CHECK(std::abs(derived[0].value - 0.5 * (low + high)) < 1e-12);
+  CHECK(derived[0].sd == 0.0);
+  const auto b = static_cast<Eigen::Index>(fit.layout->first_of(effect));
+  const double sd = std::sqrt(diagnose::common_covariance(fit)(b, b));
+  CHECK(sd < 0.01);
+  CHECK(std::abs(fit.at.global[b] - 0.1 / (1.0 + 0.1 * derived[0].value)) < 5.0 * sd);
+
+  const auto two = tests::made_experiment(tests::made_launches(), {}, 7, 3e-5, 60);
+  const diagnose::TrackSet both = diagnose::track_set(two.results, two.setups, true);
+  const std::size_t bow = diagnose::effect_index("track_bow");
+  const auto bowed =
+      diagnose::linearise_at(both, {bow}, diagnose::with_effect(both, diagnose::fit_nominal(both), bow, {0.0}, {}));
+  const auto middles = diagnose::derived_parameters(both, bowed, bow, {}, {});
+  REQUIRE(middles.size() == 2);
+  for (std::size_t g = 0; g < 2; ++g) {
+    CHECK(middles[g].key == "x_mid_m." + both.groups[g].name);
+    CHECK(middles[g].value == both.groups[g].x_mid_m);
+  }
+}
+
+TEST_CASE("a camera's sway is stated in pixels where they are known and of one size") {
+  const auto made = tests::made_experiment(inclined_launches(), {}, 8, 3e-5, 60);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const std::size_t sway = diagnose::effect_index("camera_motion");
+  diagnose::MotionFit fit = diagnose::fit_nominal(set);
+  fit.layout = std::make_shared<const diagnose::ParameterLayout>(set, std::vector{sway});
+  const std::vector<diagnose::DiagnosedParameter> known = {{"amplitude_m", 1e-3, 1e-5}};
+  CHECK(diagnose::derived_parameters(set, fit, sway, {}, known).empty());  // tracks
+  diagnose::PictureEvidence pictures;
+  pictures.clips.resize(2);
+  for (diagnose::FilmedClip& clip : pictures.clips) clip.px_per_m = 400.0;
+  const auto derived = diagnose::derived_parameters(set, fit, sway, pictures, known);
+  REQUIRE(derived.size() == 1);
+  CHECK(derived[0].key == "amplitude_px");
+  CHECK(std::abs(derived[0].value - 0.4) < 1e-12);
+  CHECK(std::abs(derived[0].sd - 0.004) < 1e-12);
+  pictures.clips.back().px_per_m = 500.0;
+  CHECK(diagnose::derived_parameters(set, fit, sway, pictures, known).empty());
+}

@@ -1,0 +1,198 @@
+#include "fit/trajectory/trajectory_fit.h"
+
+#include <cmath>
+#include <random>
+
+#include "fit/trajectory/trajectory_results.h"
+#include "sim/oracle/closed_forms.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kGravity = 9.80665;
+const Eigen::Vector3d kLaw(2.1, 0.735, 0.048);  // the paper's middle mass on its incline
+
+/// Closed form of equation (8), every 5 ms, with white noise.
+core::FreeBlock block_of(const Eigen::Vector3d& law, double x0_m, double v0_m_s, double duration_s, double noise_m,
+                         std::mt19937& random) {
+  std::normal_distribution<double> normal(0.0, 1.0);
+  core::FreeBlock block;
+  bool turned = false;
+  for (double t = 0.0; t < duration_s; t += 0.005) {
+    const sim::State state = sim::viscous_coulomb_motion({law[1], law[2], law[2]}, law[0], x0_m, v0_m_s, t);
+    block.t_s.push_back(2.0 + t);
+    block.x_m.push_back(state.x_m + noise_m * normal(random));
+    turned = turned || state.v_m_s * v0_m_s < 0.0;
+  }
+  const int first = v0_m_s < 0.0 ? -1 : 1;
+  block.directions = turned ? std::vector<int>{first, -first} : std::vector<int>{first};
+  return block;
+}
+
+/// As in the paper: up and back again, and down.
+struct Pair {
+  core::FreeBlock up, down;
+  std::vector<fit::FitBlock> blocks;
+  Pair(double noise_m, std::mt19937& random)
+      : up(block_of(kLaw, 0.2, -1.2, 1.7, noise_m, random)), down(block_of(kLaw, -0.5, 1.2, 1.7, noise_m, random)) {
+    const double variance = noise_m * noise_m;
+    blocks = {{&up, {variance}, 0.0}, {&down, {variance}, 0.0}};
+  }
+};
+
+const Eigen::Vector3d kStart(1.8, 0.7, 0.06);
+
+}  // namespace
+
+TEST_CASE("the fit of the whole motion finds the law of noise-free motions that turn") {
+  std::mt19937 random(1);
+  const Pair pair(0.0, random);
+  const auto fit = fit::fit_trajectories(pair.blocks, kStart);
+  REQUIRE(fit);
+  // The solver is good to 1e-9 m; a metre of motion makes 1e-8 of the parameters of it.
+  CHECK((fit->parameters - kLaw).norm() < 1e-6);
+  CHECK(std::abs(fit->starts[0][1] + 1.2) < 1e-6);
+  CHECK(fit->direction == 0);
+}
+
+TEST_CASE("errors of 200 noisy replicates are as large as stated, for every parameter") {
+  std::mt19937 random(20261121);
+  constexpr int kReplicates = 200;
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero(), means = squares;
+  for (int i = 0; i < kReplicates; ++i) {
+    const Pair pair(1e-4, random);
+    const auto fit = fit::fit_trajectories(pair.blocks, kStart);
+    REQUIRE(fit);
+    CHECK(std::abs(fit->scatter - 1.0) < 0.15);  // 680 points: 0.027 is one standard deviation
+    const Eigen::Vector3d z = (Eigen::Vector3d(fit->parameters) - kLaw)
+                                  .cwiseQuotient(Eigen::MatrixXd(fit->covariance).diagonal().cwiseSqrt());
+    squares += z.cwiseAbs2() / kReplicates;
+    means += z / kReplicates;
+  }
+  // The mean square of 200 standard normal numbers has the standard deviation 0.1; the mean, 0.07.
+  for (int p = 0; p < 3; ++p) {
+    INFO("parameter " << p << ": mean square " << squares[p] << ", mean " << means[p]);
+    CHECK(std::abs(squares[p] - 1.0) < 0.35);
+    CHECK(std::abs(means[p]) < 0.25);
+  }
+}
+
+TEST_CASE("an error of the camera moves the fit as the stated shift says") {
+  std::mt19937 random(3);
+  Pair pair(1e-5, random);
+  for (core::FreeBlock* block : {&pair.up, &pair.down}) {
+    block->shared_m.resize(1);
+    for (const double x : block->x_m) block->shared_m[0].push_back(2e-4 * x * x);
+  }
+  const auto before = fit::fit_trajectories(pair.blocks, kStart);
+  REQUIRE(before);
+  for (core::FreeBlock* block : {&pair.up, &pair.down}) {
+    for (std::size_t i = 0; i < block->x_m.size(); ++i) block->x_m[i] += block->shared_m[0][i];
+  }
+  const auto after = fit::fit_trajectories(pair.blocks, kStart);
+  REQUIRE(after);
+  REQUIRE(before->shared.size() == 3);  // the mode, the scale and the clock
+  const Eigen::VectorXd moved = after->parameters - before->parameters;
+  // To first order: the shift is a thousandth of the parameters, so its square is a thousandth of itself.
+  CHECK((moved - before->shared[0]).norm() < 0.02 * moved.norm());
+}
+
+TEST_CASE("motion in one direction determines K/m and the intercept, and says that the two parts are not apart") {
+  std::mt19937 random(4);
+  core::AnalysisResults results;
+  results.gravity_m_s2 = kGravity;
+  core::ClipResult clip;
+  clip.name = "down";
+  clip.noise_autocovariance_m2 = {1e-10};
+  clip.blocks = {block_of(kLaw, -0.5, 1.2, 1.7, 1e-5, random)};
+  results.clips = {clip};
+  core::ConfigurationResult configuration;
+  configuration.clips = {"down"};
+  results.configurations = {configuration};
+  const core::AnalysisResults fitted = fit::with_trajectory_fits(results);
+  CHECK(fitted.estimator == "trajectory");
+  const core::ConfigurationResult& found = fitted.configurations[0];
+  REQUIRE(found.k_over_m_1_s.estimate);
+  CHECK(std::abs(found.k_over_m_1_s.estimate->value - kLaw[0]) < 5.0 * found.k_over_m_1_s.estimate->sd);
+  REQUIRE(found.v_lim_m_s.estimate);
+  CHECK(std::abs(found.v_lim_m_s.estimate->value - (kLaw[1] - kLaw[2]) / kLaw[0]) < 5.0 * found.v_lim_m_s.estimate->sd);
+  CHECK_FALSE(found.mu.estimate);
+  CHECK_FALSE(found.alpha_deg.estimate);
+  CHECK(found.mu.why.find("0.68") != std::string::npos);  // 0.735 - 0.048 m/s², to 1e-3
+}
+
+namespace {
+
+/// Clips "up" and "down" with the noise of 50 um that the pair was made with; no configuration yet.
+core::AnalysisResults results_of(const Pair& pair) {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = kGravity;
+  for (const core::FreeBlock* block : {&pair.up, &pair.down}) {
+    core::ClipResult clip;
+    clip.name = block == &pair.up ? "up" : "down";
+    clip.noise_autocovariance_m2 = {25e-10};
+    clip.blocks = {*block};
+    results.clips.push_back(clip);
+  }
+  return results;
+}
+
+}  // namespace
+
+TEST_CASE("both directions give alpha, mu and v_lim with intervals that hold the truth") {
+  std::mt19937 random(5);
+  const Pair pair(5e-5, random);
+  core::AnalysisResults results = results_of(pair);
+  core::ConfigurationResult configuration;
+  configuration.clips = {"up", "down"};
+  results.configurations = {configuration};
+  const core::ConfigurationResult found = fit::with_trajectory_fits(results).configurations[0];
+  const double alpha = std::asin(kLaw[1] / kGravity);
+  const auto close = [](const core::Quantity& quantity, double truth) {
+    REQUIRE(quantity.estimate);
+    INFO(quantity.estimate->value << " ± " << quantity.estimate->sd << ", truth " << truth);
+    CHECK(std::abs(quantity.estimate->value - truth) < 4.0 * quantity.estimate->sd);
+    CHECK(quantity.estimate->sd < 0.01 * truth);
+  };
+  close(found.k_over_m_1_s, kLaw[0]);
+  close(found.alpha_deg, alpha * 57.29577951308232);
+  close(found.mu, kLaw[2] / (kGravity * std::cos(alpha)));
+  close(found.v_lim_m_s, (kLaw[1] - kLaw[2]) / kLaw[0]);
+}
+
+TEST_CASE("a track with a known force and one without free motion are not fitted, and say so") {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = kGravity;
+  core::ClipResult clip;
+  clip.name = "motor";
+  clip.forced = true;
+  results.clips = {clip};
+  core::ConfigurationResult configuration;
+  configuration.clips = {"motor"};
+  results.configurations = {configuration};
+  CHECK(fit::with_trajectory_fits(results).configurations[0].mu.why.find("force") != std::string::npos);
+  results.clips[0].forced = false;
+  CHECK(fit::with_trajectory_fits(results).configurations[0].k_over_m_1_s.why == "no free motion");
+}
+
+TEST_CASE("what is stated wrong is noted beside the fit of the whole motion as it is beside lines") {
+  std::mt19937 random(6);
+  const Pair pair(5e-5, random);
+  core::AnalysisResults results = results_of(pair);
+  core::ConfigurationResult light, heavy;
+  light.mass_kg = 0.335;
+  heavy.mass_kg = 335.0;
+  light.clips = heavy.clips = {"up", "down"};
+  light.incline_deg = heavy.incline_deg = std::asin(kLaw[1] / kGravity) * 57.29577951308232;
+  results.configurations = {light, heavy};
+  const auto fitted = fit::with_trajectory_fits(results).configurations;
+  CHECK(fitted[0].notes.empty());
+  REQUIRE(fitted[1].notes.size() == 1);
+  CHECK(fitted[1].notes[0].find("grams") != std::string::npos);
+  results.gravity_m_s2 *= 1.6;
+  const auto notes = fit::with_trajectory_fits(results).configurations[0].notes;
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("incline_deg says") != std::string::npos);
+}

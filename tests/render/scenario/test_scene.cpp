@@ -1,0 +1,141 @@
+#include "render/scenario/scene.h"
+
+#include <cmath>
+
+#include "render/film/experiment_and_truth_files.h"
+#include "tests/catch.h"
+
+using namespace glidelab::render;
+
+namespace {
+
+Scenario small_scenario() {
+  Scenario scenario;
+  scenario.camera.width_px = 800;
+  scenario.camera.height_px = 600;
+  scenario.camera.focal_px = {1200.0, 1200.0};
+  scenario.camera.center_px = {404.0, 296.0};
+  scenario.camera.lens = {-0.12, 0.06, 0.0, 0.0004, -0.0003};
+  scenario.camera.X_WC = look_at({0.14, 0.12, 2.4}, {0.0, 0.0, 0.0}, 0.012);
+  glidelab::sim::ConfigurationSetup configuration;
+  configuration.body.mass_kg = 0.335;
+  configuration.body.incline_rad = 0.07;
+  scenario.motion.configurations.push_back(configuration);
+  return scenario;
+}
+
+}  // namespace
+
+TEST_CASE("Every calibration view shows the whole board with its border, and together they fill the picture") {
+  Scenario scenario = small_scenario();
+  for (const auto& [columns, rows, square] : {std::tuple{9, 6, 0.04}, {11, 8, 0.03}, {5, 4, 0.1}, {7, 7, 0.02}}) {
+    scenario.pattern.inner_columns = columns;
+    scenario.pattern.inner_rows = rows;
+    scenario.pattern.square_m = square;
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+      const std::vector<Chessboard> boards = calibration_boards(scenario, seed);
+      REQUIRE(boards.size() == 12);
+      Eigen::Vector2d low(1e9, 1e9);
+      Eigen::Vector2d high(-1e9, -1e9);
+      double steepest = 0.0;
+      for (const Chessboard& board : boards) {
+        // Seen from its printed side: Z away from the camera.
+        const Eigen::Vector3d away = board.X_WP.translation() - scenario.camera.X_WC.translation();
+        CHECK(board.X_WP.linear().col(2).dot(away) > 0.0);
+        CHECK(std::abs(board.X_WP.linear().determinant() - 1.0) < 1e-12);
+        for (const Eigen::Vector3d& corner : outline_of(board)) {
+          const auto pixel = project(scenario.camera, corner);
+          REQUIRE(pixel);
+          CHECK(in_picture(scenario.camera, *pixel, 1.0));
+          low = low.cwiseMin(*pixel);
+          high = high.cwiseMax(*pixel);
+        }
+        const double cosine = board.X_WP.linear().col(2).dot(scenario.camera.X_WC.linear().col(2));
+        steepest = std::max(steepest, std::acos(std::min(1.0, cosine)));
+      }
+      CHECK(low.x() < 80.0);
+      CHECK(low.y() < 60.0);
+      CHECK(high.x() > 720.0);
+      CHECK(high.y() > 540.0);
+      CHECK(steepest > 0.5);   // 29 degrees
+      CHECK(steepest < 0.70);  // 40 degrees
+    }
+  }
+}
+
+TEST_CASE("Calibration views are the same for one seed and others for another") {
+  const Scenario scenario = small_scenario();
+  const auto first = calibration_boards(scenario, 1);
+  const auto again = calibration_boards(scenario, 1);
+  const auto other = calibration_boards(scenario, 2);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    CHECK(first[i].X_WP.matrix() == again[i].X_WP.matrix());
+    CHECK(first[i].X_WP.matrix() != other[i].X_WP.matrix());
+  }
+}
+
+TEST_CASE("The plane board lies in z = 0, its X along the track up to its rotation, its Z away from the camera") {
+  Scenario scenario = small_scenario();
+  scenario.pattern.plane_x_m = {0.1, -0.4};
+  scenario.pattern.plane_rotation_rad = 0.02;
+  for (std::size_t view = 0; view < 2; ++view) {
+    const Chessboard board = plane_board(scenario, view);
+    const Eigen::Matrix3d axes = board.X_WP.linear();
+    CHECK(std::abs(axes.determinant() - 1.0) < 1e-12);
+    CHECK(axes.col(2) == Eigen::Vector3d(0.0, 0.0, -1.0));
+    // The track falls to the right by 0.07 rad; the board is turned anticlockwise by 0.02.
+    CHECK(std::abs(std::atan2(axes.col(0).y(), axes.col(0).x()) + 0.05) < 1e-12);
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& corner : outline_of(board)) middle += 0.25 * corner;
+    CHECK((middle - scenario.pattern.plane_x_m[view] * track_direction_W(scenario.track, 0.07)).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("x counts downhill whichever way the track falls, and the pattern's origin is where its corner projects") {
+  Scenario scenario = small_scenario();
+  for (const int downhill : {1, -1}) {
+    scenario.track.downhill = downhill;
+    const Eigen::Vector3d step = marker_position_W(scenario, 0.07, 1.0) - marker_position_W(scenario, 0.07, 0.0);
+    CHECK(std::abs(step.x() - downhill * std::cos(0.07)) < 1e-15);
+    CHECK(std::abs(step.y() + std::sin(0.07)) < 1e-15);
+    const Eigen::Vector3d corner = plane_board(scenario, 0).X_WP.translation();
+    const Eigen::Vector3d foot = x_origin_m(scenario, 0.07) * track_direction_W(scenario.track, 0.07);
+    CHECK(std::abs((corner - foot).dot(track_direction_W(scenario.track, 0.07))) < 1e-12);
+    // The first corner is at the board's upper left: before the middle where x grows to the right.
+    CHECK(x_origin_m(scenario, 0.07) * downhill < 0.0);
+  }
+}
+
+TEST_CASE("The glider stands on its track with the marker before it, a weight more for each 100 g") {
+  Scenario scenario = small_scenario();
+  scenario.marker.height_m = 0.015;
+  const StaticScene track = empty_track(scenario, 0.07);
+  glidelab::sim::Body body = scenario.motion.configurations.front().body;
+  for (const int weights : {0, 1, 2}) {
+    body.mass_kg = 0.335 + 0.1 * weights;
+    const MovingBody moving = glider(scenario, track, body, 0.3);
+    CHECK(moving.boxes.size() == 1u + static_cast<std::size_t>(weights));
+    REQUIRE(moving.marker);
+    CHECK((moving.marker->center_W + 0.3 * moving.direction_W - marker_position_W(scenario, 0.07, 0.3)).norm() < 1e-15);
+    // The sphere touches the front of the body and does not sink in.
+    const MovingBox& carriage = moving.boxes.front();
+    CHECK(carriage.center_W.z() + carriage.half_m.z() <= 0.015 - 0.010 + 1e-12);
+  }
+}
+
+TEST_CASE("The plumb's region holds the line over the wall, where the camera sees it") {
+  Scenario scenario = small_scenario();
+  CHECK_FALSE(plumb_region(scenario));
+  scenario.plumb = PlumbSetup{};
+  const PixelRect region = plumb_region(scenario).value();
+  CHECK(region.height > 200);
+  CHECK(region.width < 100);
+  for (double y = 0.1; y < 0.5; y += 0.05) {
+    const Eigen::Vector2d pixel = project(scenario.camera, {scenario.plumb->x_m, y, 0.0}).value();
+    if (pixel.y() < region.y || pixel.y() > region.y + region.height) continue;
+    CHECK(pixel.x() > region.x + 10);
+    CHECK(pixel.x() < region.x + region.width - 10);
+  }
+  scenario.plumb->x_m = 5.0;
+  CHECK_FALSE(plumb_region(scenario));
+}

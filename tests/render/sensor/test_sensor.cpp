@@ -1,0 +1,177 @@
+#include "render/sensor/sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "tests/catch.h"
+
+using namespace glidelab::render;
+
+namespace {
+
+FloatPicture flat(int width, int height, float value) {
+  FloatPicture picture(width, height);
+  std::fill(picture.values.begin(), picture.values.end(), value);
+  return picture;
+}
+
+/// All levels side by side: dark enough for the exact path, and up to beyond the full well.
+FloatPicture all_levels(int width, int height, double full_well) {
+  FloatPicture picture(width, height);
+  for (std::size_t i = 0; i < picture.values.size(); ++i) {
+    picture.values[i] = static_cast<float>(1.1 * full_well * static_cast<double>((i * 7919) % 1000) / 1000.0);
+  }
+  return picture;
+}
+
+template <typename Code>
+std::vector<Code> codes_of(const Sensor& sensor, const FloatPicture& picture, const NoiseKey& key, PixelRect rect = {},
+                           Simd simd = Simd::best) {
+  if (rect.empty()) rect = {0, 0, picture.width, picture.height};
+  std::vector<Code> codes(static_cast<std::size_t>(rect.width) * rect.height);
+  read_out(sensor, picture, key, rect, std::span<Code>(codes), simd);
+  return codes;
+}
+
+struct Sample {
+  double mean = 0.0, variance = 0.0, third = 0.0, fourth = 0.0;
+};
+
+template <typename Code>
+Sample sample_of(const std::vector<Code>& codes) {
+  Sample sample;
+  const auto n = static_cast<double>(codes.size());
+  for (const Code code : codes) sample.mean += code / n;
+  for (const Code code : codes) {
+    const double d = code - sample.mean;
+    sample.variance += d * d / n;
+    sample.third += d * d * d / n;
+    sample.fourth += d * d * d * d / n;
+  }
+  return sample;
+}
+
+/// 16 bits at one code an electron: nothing but the noise itself.
+Sensor counting_sensor() {
+  return {.bit_depth = 16, .full_well_e = 60000.0, .read_noise_e = 20.0, .gain_dn_per_e = 1.0, .offset_dn = 200.0};
+}
+
+}  // namespace
+
+TEST_CASE("Mean and variance of the codes are those of the photon transfer, dark and bright") {
+  // Of n = 480,000 pixels the mean errs by sigma/sqrt(n), the variance by sqrt((mu4 - sigma⁴)/n); 4.5 of them,
+  // two-sided 7e-6 a test. Rounding to a code adds 1/12 to the variance.
+  const Sensor sensor = counting_sensor();
+  const double n = 480'000.0;
+  std::uint32_t stream = 0;
+  for (const double electrons : {0.0, 0.4, 3.0, 40.0, 255.0, 257.0, 1000.0, 30000.0}) {
+    const FloatPicture picture = flat(800, 600, static_cast<float>(electrons));
+    const Sample sample = sample_of(codes_of<std::uint16_t>(sensor, picture, {11, stream++, 3}));
+    const double variance = electrons + 400.0 + 1.0 / 12.0;
+    CAPTURE(electrons);
+    CHECK(std::abs(sample.mean - 200.0 - electrons) < 4.5 * std::sqrt(variance / n));
+    CHECK(std::abs(sample.variance - variance) <
+          4.5 * std::sqrt((sample.fourth - sample.variance * sample.variance) / n));
+  }
+}
+
+TEST_CASE("The noise is normal where it is said to be, and Poisson's skewness is there below") {
+  const double n = 480'000.0;
+  Sensor sensor = counting_sensor();
+  const auto bright = sample_of(codes_of<std::uint16_t>(sensor, flat(800, 600, 20000.0f), {5, 1, 1}));
+  const double sigma = std::sqrt(bright.variance);
+  // Standard errors of skewness and kurtosis of a normal sample: sqrt(6/n), sqrt(24/n).
+  CHECK(std::abs(bright.third / (sigma * sigma * sigma)) < 4.5 * std::sqrt(6.0 / n));
+  CHECK(std::abs(bright.fourth / (bright.variance * bright.variance) - 3.0) < 4.5 * std::sqrt(24.0 / n));
+  sensor.read_noise_e = 0.0;
+  const auto dark = sample_of(codes_of<std::uint16_t>(sensor, flat(800, 600, 4.0f), {5, 2, 1}));
+  // Skewness 1/sqrt(4); its standard error for this distribution is below 4 sqrt(6/n).
+  CHECK(std::abs(dark.third / std::pow(dark.variance, 1.5) - 0.5) < 4.5 * 4.0 * std::sqrt(6.0 / n));
+}
+
+TEST_CASE("Pixels, frames and streams are not correlated") {
+  // The correlation of n independent pairs has a standard deviation of 1/sqrt(n) = 1.4e-3; 4.5 of them.
+  const Sensor sensor = counting_sensor();
+  const FloatPicture picture = flat(800, 600, 5000.0f);
+  const auto base = codes_of<std::uint16_t>(sensor, picture, {1, 1, 1});
+  const auto correlation = [&](const std::vector<std::uint16_t>& other, std::size_t lag) {
+    const Sample a = sample_of(base);
+    const Sample b = sample_of(other);
+    double sum = 0.0;
+    for (std::size_t i = 0; i + lag < base.size(); ++i) sum += (base[i] - a.mean) * (other[i + lag] - b.mean);
+    return sum / static_cast<double>(base.size() - lag) / std::sqrt(a.variance * b.variance);
+  };
+  const double limit = 4.5 / std::sqrt(480'000.0);
+  for (const std::size_t lag : {1u, 2u, 4u, 8u, 16u, 24u, 32u, 256u, 800u})
+    CHECK(std::abs(correlation(base, lag)) < limit);
+  for (const NoiseKey& key :
+       {NoiseKey{1, 1, 2}, NoiseKey{1, 2, 1}, NoiseKey{2, 1, 1}, NoiseKey{1ull << 32 | 1, 1, 1}}) {
+    CHECK(std::abs(correlation(codes_of<std::uint16_t>(sensor, picture, key), 0)) < limit);
+  }
+  CHECK(codes_of<std::uint16_t>(sensor, picture, {1, 1, 1}) == base);
+}
+
+TEST_CASE("Every way to compute a pixel gives the same code") {
+  for (const int width : {800, 801, 64, 33, 7}) {
+    const Sensor sensor{};
+    const FloatPicture picture = all_levels(width, 50, sensor.full_well_e);
+    const NoiseKey key{99, 4, 12};
+    const auto best = codes_of<std::uint8_t>(sensor, picture, key);
+    CHECK(codes_of<std::uint8_t>(sensor, picture, key, {}, Simd::baseline) == best);
+    CHECK(codes_of<std::uint8_t>(sensor, picture, key, {}, Simd::portable) == best);
+    const auto deep = codes_of<std::uint16_t>(sensor, picture, key);
+    CHECK(std::equal(best.begin(), best.end(), deep.begin()));
+  }
+}
+
+TEST_CASE("A part of the picture has the codes of the whole, in any order and on any thread") {
+  const Sensor sensor{};
+  const FloatPicture picture = all_levels(203, 90, sensor.full_well_e);
+  const NoiseKey key{7, 0, 5};
+  const auto whole = codes_of<std::uint8_t>(sensor, picture, key);
+  std::vector<PixelRect> parts;
+  for (int y = 0; y < 90; y += 17) {
+    for (int x = 0; x < 203; x += 29) {
+      parts.push_back(intersection({x, y, 29, 17}, {0, 0, 203, 90}));
+    }
+  }
+  std::shuffle(parts.begin(), parts.end(), std::mt19937(3));
+  std::vector<std::uint8_t> together(whole.size());
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 0; t < 3; ++t) {
+      threads.emplace_back([&, t] {
+        for (std::size_t i = t; i < parts.size(); i += 3) {
+          const PixelRect& part = parts[i];
+          const auto codes = codes_of<std::uint8_t>(sensor, picture, key, part);
+          for (int y = 0; y < part.height; ++y) {
+            std::copy_n(codes.begin() + y * part.width, part.width, together.begin() + (part.y + y) * 203 + part.x);
+          }
+        }
+      });
+    }
+  }
+  CHECK(together == whole);
+}
+
+TEST_CASE("Codes saturate at the full well and at the largest code, never wrap") {
+  // Full well at half the codes: offset 10 + 0.5 * 30000/... the clip comes before the read noise, which stays.
+  const Sensor sensor{
+      .bit_depth = 12, .full_well_e = 2000.0, .read_noise_e = 3.0, .gain_dn_per_e = 1.0, .offset_dn = 100.0};
+  const auto over = sample_of(codes_of<std::uint16_t>(sensor, flat(400, 300, 50000.0f), {1, 0, 0}));
+  // Mean 2100, variance 9 + 1/12: all charge above the well is lost.
+  CHECK(std::abs(over.mean - 2100.0) < 4.5 * std::sqrt(9.1 / 120000.0));
+  CHECK(std::abs(over.variance - 9.0 - 1.0 / 12.0) < 4.5 * std::sqrt(2.0 * 9.1 * 9.1 / 120000.0));
+  const Sensor narrow{
+      .bit_depth = 8, .full_well_e = 1e6, .read_noise_e = 100.0, .gain_dn_per_e = 0.01, .offset_dn = 1.0};
+  const auto white = codes_of<std::uint8_t>(narrow, flat(100, 100, 90000.0f), {1, 0, 0});
+  CHECK(std::count(white.begin(), white.end(), 255) == 10000);
+  // Dark, with read noise of one code about the offset of 1: what would be negative is 0.
+  const auto black = codes_of<std::uint8_t>(narrow, flat(100, 100, 0.0f), {1, 0, 0});
+  CHECK(*std::max_element(black.begin(), black.end()) < 8);
+  CHECK(std::count(black.begin(), black.end(), 0) > 2000);
+}

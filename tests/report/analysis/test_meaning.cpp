@@ -1,0 +1,205 @@
+#include "report/analysis/meaning.h"
+
+#include <limits>
+
+#include "report/analysis/analysis_report.h"
+#include "report/analysis/text_table.h"
+#include "report/blind/blind_targets.h"
+#include "report/characterize/camera_report.h"
+#include "report/check/check_report.h"
+#include "report/diagnosis/diagnosis_lead.h"
+#include "report/diagnosis/diagnosis_report.h"
+#include "report/diagnosis/plan_report.h"
+#include "report/validation/validation_report.h"
+#include "tests/catch.h"
+#include "tests/report/made_results.h"
+
+using namespace glidelab;
+
+namespace {
+
+bool any_has(const std::vector<std::string>& texts, const std::string& part) {
+  for (const std::string& text : texts) {
+    if (text.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// One clip whose lines the noise explains: their random part is as good as known.
+core::AnalysisResults one_clip() {
+  core::AnalysisResults results;
+  results.clips = {tests::made_clip("up", 2.7, 0.8, 0.65)};
+  for (core::LineFit& line : results.clips[0].segments) line.parts.degrees = std::numeric_limits<double>::infinity();
+  core::ConfigurationResult configuration;
+  configuration.mass_kg = 0.335;
+  configuration.incline_deg = 4.3;
+  configuration.group = "slope";
+  configuration.k_over_m_1_s = tests::known(2.7, 0.006);
+  configuration.mu = tests::known(0.0071, 0.0002);
+  configuration.lines = results.clips[0].segments;
+  results.configurations = {configuration};
+  return results;
+}
+
+}  // namespace
+
+TEST_CASE("where the law serves, nothing is doubted and no next step is named") {
+  CHECK(report::doubts_about(one_clip()).empty());
+  CHECK(report::analysis_text(one_clip()).find("glidelab diagnose") == std::string::npos);
+}
+
+TEST_CASE("a drag or a friction below zero by more than chance is doubted, by less is not") {
+  core::AnalysisResults results = one_clip();
+  results.configurations[0].k_over_m_1_s = tests::known(-0.367, 0.055);
+  CHECK(any_has(report::doubts_about(results), "K/m = -0.367 ± 0.055 is below zero"));
+  CHECK(report::meaning_of(results).find("slows it at -") == std::string::npos);
+  results.configurations[0].k_over_m_1_s = tests::known(-0.367, 0.355);
+  CHECK(report::doubts_about(results).empty());
+  results.configurations[0].mu = tests::known(-0.010, 0.002);
+  CHECK(any_has(report::doubts_about(results), "µ = -0.0100 ± 0.0020 is below zero"));
+}
+
+TEST_CASE("points far off their line are told with the clip and the next step, on the page and in the terminal") {
+  core::AnalysisResults results = one_clip();
+  results.clips[0].segments[1].parts.degrees = 7.0;
+  results.clips[0].segments[1].parts.scatter = 38.4;
+  CHECK(any_has(report::doubts_about(results), "up, v > 0: the points lie 38 times as far off their line"));
+  CHECK(any_has(report::doubts_about(results), "Next: glidelab check"));
+  CHECK(report::analysis_text(results).find("38 times") != std::string::npos);
+  CHECK(report::meaning_of(results).find("v &gt; 0: the points lie 38 times") != std::string::npos);
+  results.clips[0].segments[1].parts.scatter = 1.4;
+  CHECK(report::doubts_about(results).empty());
+}
+
+TEST_CASE("where the law is in doubt the doubt comes first and the numbers are called no more than what a fit gives") {
+  core::AnalysisResults results = one_clip();
+  results.configurations[0].mu = tests::known(-0.010, 0.002);
+  const std::string doubted = report::meaning_of(results);
+  const std::size_t doubt = doubted.find("does not fit"), number = doubted.find("K/m = 2.7");
+  REQUIRE(doubt != std::string::npos);
+  REQUIRE(number != std::string::npos);
+  CHECK(doubt < number);
+  CHECK(doubted.find("need not be a property") < number);
+  CHECK(doubted.find("slows it at") == std::string::npos);
+  CHECK(doubted.find("Coulomb friction is") == std::string::npos);
+  const std::string page = report::analysis_report("doubted", results, {}).html;
+  CHECK(page.find("does not fit") < page.find("id=\"recovered\""));
+  CHECK(report::meaning_of(one_clip()).find("Coulomb friction is µ = 0.0071") != std::string::npos);
+  results.configurations[0].mu = tests::known(-0.002, 0.002);
+  CHECK(report::meaning_of(results).find("no Coulomb friction can be told from zero") != std::string::npos);
+}
+
+TEST_CASE("what blind cases mean is told of what was there, with intervals, and what is missed is named") {
+  validate::BlindScore score;
+  score.methods.resize(1);
+  score.methods[0].single["strong"] = {4, 4};
+  score.false_alarm = {10, 1};
+  score.calibration_error = 0.02;
+  const auto has = [&](const char* part) { return report::blind_meaning(score).find(part) != std::string::npos; };
+  // Clopper and Pearson, all of n: the lower end is 0.025^(1/n), 0.398 of 4.
+  CHECK(has("in 100 % (4 of 4; 95 %: 40 to 100 %)"));
+  CHECK(has("can be taken at its word"));
+  CHECK(has("Missed: nothing: another verdict than none"));  // 10 % of at most 5
+  CHECK_FALSE(has("moderate"));
+  score.false_alarm = {20, 1};
+  CHECK(has("All 3 targets"));  // one strong effect, nothing wrong, the calibration
+  score.calibration_error = 0.2;
+  score.reliability = {{0.8, 1.0, 0.9, {10, 7}}};
+  CHECK(has("too sure of itself"));
+  score.reliability[0].stated = 0.5;
+  CHECK(has("too modest"));
+  CHECK(has("Missed: the expected calibration error"));  // no other: 5 % of false alarms are allowed
+}
+
+namespace {
+
+/// The first paragraph of "What this means", which stands above every other part of the page; empty where it does not.
+std::string meaning_on(const report::Page& page) {
+  const std::size_t first = page.html.find("<h2");
+  const std::string heading = "<h2 id=\"meaning\">What this means</h2>\n<p>";
+  if (first == std::string::npos || page.html.compare(first, heading.size(), heading) != 0) return {};
+  const std::size_t from = first + heading.size();
+  return page.html.substr(from, page.html.find("</p>", from) - from);
+}
+
+bool tells(const report::Page& page, const std::string& part) {
+  return meaning_on(page).find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict means for the numbers of an analysis") {
+  diagnose::Diagnosis of;
+  of.summary = "The data show <a drag>.";
+  diagnose::Diagnosis lines = of;
+  lines.lines.emplace();
+  for (diagnose::Diagnosis* diagnosis : {&of, &lines}) {
+    diagnosis->verdict = "effect";
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "The data show &lt;a drag&gt;. An analysis of these data"));
+    diagnosis->verdict = "unknown";
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "need not be properties of the track"));
+    diagnosis->verdict = "none";
+    CHECK(meaning_on(report::diagnosis_report("d", *diagnosis)) == "The data show &lt;a drag&gt;.");
+  }
+}
+
+TEST_CASE(
+    "a plan says at the top what a diagnosis could find, and where it could find nothing that its none is empty") {
+  diagnose::Plan plan;
+  plan.clips = 2;
+  plan.effects = {{"scale_error", "a wrong scale", "e", 0.28, true, {}},
+                  {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
+  CHECK(tells(report::plan_page("p", plan), "smaller ones may still act"));
+  plan.effects.front().seen = false;
+  CHECK(tells(report::plan_page("p", plan), "would say nothing"));
+}
+
+TEST_CASE("a check says at the top whether to analyse, to record again or to mend, and how well positions are known") {
+  core::RecordingCheck check;
+  check.clips.resize(2);
+  check.clips[0].frames = check.clips[1].frames = 100;
+  check.clips[0].seen = 99;
+  check.clips[1].seen = 90;
+  check.clips[0].position_noise_m = 2.5e-6;
+  check.clips[1].position_noise_m = 3.6e-6;
+  const auto page = [&] { return report::check_report(check, {}); };
+  CHECK(tells(page(), "Usable as it is.</b> Nothing needs to be recorded again"));
+  CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
+  CHECK(tells(page(), "off by 0.0036\u00a0mm or less"));
+  check.findings = {{core::Severity::change, "m1", "dark", "more light"}};
+  CHECK(tells(page(), "should it be recorded again"));
+  check.findings = {{core::Severity::unusable, "m1", "black", "more light"}};
+  check.usable = false;
+  CHECK(tells(page(), "mend what “must change”"));
+}
+
+TEST_CASE("a rehearsal's page says at the top how many values lie near the truth, above all its tables") {
+  validate::Comparison comparison;
+  comparison.quantities = {{"m1", 0.335, 4.0, "trajectory", "mu", 0.0071, 0.0072, 0.0001, 0.0001, ""}};
+  CHECK(tells(report::validation_report("v", tests::made_results(), comparison, {}), "lie within two of their"));
+}
+
+TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and that some numbers are missing") {
+  core::CameraMeasurement camera;
+  camera.curve.resize(2);
+  camera.curve[1].mean_dn = camera.curve[1].variance_dn2 = camera.saturation_dn = 100.0;
+  CHECK(tells(report::camera_report(camera), "do not tell"));
+  camera.gain_dn_per_e.value = 0.5;
+  camera.read_noise_e.value = 7.0;
+  camera.full_well_e.value = 10000.0;
+  CHECK(tells(report::camera_report(camera), "by 7 electrons (3.5 codes)"));
+  CHECK(
+      tells(report::camera_report(camera), "full at 10000 electrons, where it wavers by 1\u00a0%"));  // 1 / sqrt(10^4)
+}
+
+TEST_CASE("an analysis leaves an effect out, but puts lost frames right") {
+  diagnose::Diagnosis diagnosis;
+  diagnosis.verdict = "effect";
+  diagnosis.effects.emplace_back().id = "quadratic_drag";
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") != std::string::npos);
+  diagnosis.effects[0].id = "dropped_frames";
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") == std::string::npos);
+  CHECK(report::diagnosis_meaning(diagnosis).find("puts the times behind them right") != std::string::npos);
+  diagnosis.effects.emplace_back().id = "quadratic_drag";
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") != std::string::npos);
+}

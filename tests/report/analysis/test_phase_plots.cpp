@@ -1,0 +1,106 @@
+/// The phase diagram's bands and bars, and the files of its numbers.
+#include "report/analysis/phase_plots.h"
+
+#include <cmath>
+#include <random>
+
+#include "report/validation/validation_plots.h"
+#include "tests/catch.h"
+#include "tests/report/made_results.h"
+
+using namespace glidelab;
+using report::line_half95_m_s2;
+
+namespace {
+
+core::LineFit correlated_line() {
+  core::LineFit line = tests::made_line(1, 2.768, 0.667);
+  line.covariance = 0.8 * line.k_over_m_1_s.sd * line.a0_m_s2.sd;
+  return line;
+}
+
+const report::PlotData& block(const report::Plot& plot, const std::string& name) {
+  for (const report::PlotData& data : plot.drawing.data) {
+    if (data.name == name) return data;
+  }
+  FAIL("no block " << name);
+  return plot.drawing.data.front();
+}
+
+}  // namespace
+
+TEST_CASE("the band of a line holds 95 % of the lines that its errors allow, at every speed") {
+  const core::LineFit line = correlated_line();
+  // At v = 0 it is the interval of a0 itself.
+  CHECK(std::abs(line_half95_m_s2(line, 0.0) - (line.a0_m_s2.high95 - line.a0_m_s2.value)) < 1e-12);
+  // Elsewhere: lines drawn with these errors and this correlation. 40000 of them put the share within 4 standard
+  // deviations, 4 sqrt(0.95 x 0.05 / 40000) = 0.0044.
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  constexpr int kLines = 40000;
+  for (const double v : {-1.0, 0.3, 1.2}) {
+    const double half = line_half95_m_s2(line, v);
+    int within = 0;
+    for (int i = 0; i < kLines; ++i) {
+      const double u = normal(random), w = normal(random);
+      const double k = line.k_over_m_1_s.sd * u, a0 = line.a0_m_s2.sd * (0.8 * u + 0.6 * w);
+      if (std::abs(a0 - k * v) <= half) ++within;
+    }
+    INFO("v = " << v);
+    CHECK(std::abs(within / static_cast<double>(kLines) - 0.95) < 0.0044);
+  }
+}
+
+TEST_CASE("a phase diagram carries its lines' bands and the bars of some points, and says what its columns are") {
+  const core::AnalysisResults results = tests::made_results();
+  const std::vector<report::PhaseGroup> groups = report::phase_groups(results);
+  REQUIRE_FALSE(groups.empty());
+  const std::vector<report::Plot> plots = report::phase_plots(results, groups.front());
+  REQUIRE(plots.size() == 3);
+  for (const report::Plot& plot : plots) {
+    for (const report::PlotData& data : plot.drawing.data) {
+      INFO(plot.description << ": " << data.name);
+      REQUIRE_FALSE(data.columns.empty());
+      CHECK(data.columns.front() == "v (m/s)");
+      for (const auto& row : data.rows) CHECK((row.empty() || row.size() == data.columns.size()));
+    }
+    CHECK(plot.drawing.script.find("filledcurves") != std::string::npos);
+    CHECK(plot.drawing.script.find("with vectors nohead") != std::string::npos);
+  }
+  // Seven labels of v at most, of -1.2 to 0.23 m/s (the lines), of 15 % of what is used both ways, and of -1 to 0.2
+  // m/s.
+  CHECK(plots[0].drawing.script.find("set xtics 0.5\n") != std::string::npos);
+  CHECK(plots[1].drawing.script.find("set xtics 0.05\n") != std::string::npos);
+  CHECK(plots[2].drawing.script.find("set xtics 0.2\n") != std::string::npos);
+  const core::ConfigurationResult& first = results.configurations[groups.front().configurations.front()];
+  for (const auto& row : block(plots[0], "lines0").rows) {
+    if (row.empty() || row[0] == 0.0) continue;
+    const core::LineFit& line = first.lines[row[0] < 0.0 ? 0 : 1];
+    CHECK(row[2] == line_half95_m_s2(line, row[0]));
+    CHECK(std::abs(row[1] - (line.a0_m_s2.value - line.k_over_m_1_s.value * row[0])) < 1e-12);
+  }
+  // 1.96 of the points' own standard deviation, 0.02 m/s².
+  for (const auto& row : block(plots[0], "bars0").rows) CHECK(std::abs(row[3] - 0.0392) < 1e-5);
+  CHECK(block(plots[0], "bars0").rows.size() <= 13);
+}
+
+TEST_CASE("colours that stand for clips are told by name where each clip has its own") {
+  core::AnalysisResults results = tests::made_results();
+  validate::Comparison comparison;
+  for (const std::size_t clips : {std::size_t{2}, std::size_t{9}}) {
+    results.clips.resize(2);
+    for (std::size_t c = 2; c < clips; ++c) results.clips.push_back(results.clips[0]);
+    comparison.restitution.points.clear();
+    for (std::size_t c = 0; c < clips; ++c) {
+      results.clips[c].name = "run " + std::to_string(c);
+      validate::RestitutionPoint point{};
+      point.clip = c;
+      comparison.restitution.points.push_back(point);
+    }
+    for (const report::Plot& plot : report::validation_plots(results, comparison)) {
+      if (plot.description != "Restitution error over the true position") continue;
+      CHECK((plot.drawing.script.find("title 'run 1'") != std::string::npos) == (clips == 2));
+      CHECK((plot.caption.find("in turn") != std::string::npos) == (clips != 2));
+    }
+  }
+}

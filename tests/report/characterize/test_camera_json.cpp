@@ -1,0 +1,97 @@
+#include "report/characterize/camera_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "report/characterize/camera_report.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+core::Measured measured(double value, double sd, std::string how = {}) {
+  return {value, sd, std::move(how), {}, {}};
+}
+
+core::Measured missing(std::string why, std::optional<double> limit = {}) {
+  return {{}, 0.0, {}, std::move(why), limit};
+}
+
+core::CameraMeasurement made_camera() {
+  core::CameraMeasurement camera;
+  camera.folder.name = "a <b> camera";
+  camera.folder.bit_depth = 12;
+  camera.picture = {640, 480};
+  camera.frames = 44;
+  camera.gain_dn_per_e = measured(0.40123, 0.0017);
+  camera.read_noise_e = missing("below what the quantisation shows: less than 3.2 e-", 3.2);
+  camera.offset_dn = measured(64.02, 0.01);
+  camera.full_well_e = missing("no level reaches saturation: more than 5400 e-", 5400.0);
+  camera.saturation_capacity_e = missing("no light is brighter");
+  camera.dark_signal_e_s = missing("it needs dark frames");
+  camera.prnu = measured(0.0101, 0.0002, "at 49 % of saturation");
+  camera.dsnu_e = measured(3.01, 0.04);
+  camera.linearity_error = measured(0.0004, 0.0001);
+  camera.curve = {{"flat-00", 0.001, 300.0, 300.0, 125.0, 0.5, 0.0, true},
+                  {"flat-01", 0.002, 600.0, 600.0, 245.0, 1.0, 0.0, true},
+                  {"flat-02", 0.003, 900.0, 900.0, 365.0, 1.5, 0.0, true},
+                  {"flat-03", 0.2, 3600.0, 3600.0, 3.0, 0.1, 0.9, false}};
+  camera.intercept_dn2 = 5.0;
+  camera.saturation_dn = 3600.0;
+  camera.notes = {"The lamp flickers & more."};
+  return camera;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("characterize.json holds values with their sd, and null with reason and limit for what is missing") {
+  const nlohmann::json json = nlohmann::json::parse(report::camera_json(made_camera()));
+  const nlohmann::json& sensor = json.at("sensor");
+  CHECK(sensor.at("gain_dn_per_e").at("value") == 0.40123);
+  CHECK(sensor.at("gain_dn_per_e").at("sd") == 0.0017);
+  CHECK(sensor.at("prnu").at("how") == "at 49 % of saturation");
+  CHECK(sensor.at("read_noise_e").is_null());
+  CHECK(sensor.at("limit").at("read_noise_e") == 3.2);
+  CHECK(contains(sensor.at("why").at("full_well_e"), "no level reaches saturation"));
+  CHECK(sensor.at("why").at("dark_signal_e_s") == "it needs dark frames");
+  CHECK(json.at("photon_transfer").size() == 4);
+  CHECK(json.at("photon_transfer")[3].at("used") == false);
+  CHECK(json.at("line_intercept_dn2") == 5.0);
+  CHECK(json.at("width_px") == 640);
+}
+
+TEST_CASE("the camera's table shows digits that the sd supports, limits as such, and reasons below") {
+  const std::string text = report::camera_text(made_camera());
+  for (const char* part : {"0.4012  0.0017", "< 3.2", "> 5400", "1.010   0.020", "full well: no level reaches",
+                           "note: The lamp flickers & more.", "640 x 480"}) {
+    INFO(part << "\n" << text);
+    CHECK(contains(text, part));
+  }
+}
+
+TEST_CASE("the camera's page holds both plots and escapes names") {
+  const std::string page = report::camera_report(made_camera()).html;
+  CHECK(contains(page, "a &lt;b&gt; camera"));
+  CHECK_FALSE(contains(page, "a <b> camera"));
+  CHECK(contains(page, "Photon transfer"));
+  CHECK(contains(page, "Linearity"));
+  CHECK(contains(page, "flickers &amp; more"));
+}
+
+TEST_CASE("a camera without a gain still has a page, which says why") {
+  core::CameraMeasurement camera = made_camera();
+  camera.gain_dn_per_e = missing("the noise of neighbouring pixels is correlated");
+  camera.intercept_dn2.reset();
+  for (core::TransferPoint& point : camera.curve) {
+    point.used = false;
+    point.exposure_s.reset();
+  }
+  const std::string page = report::camera_report(camera).html;
+  CHECK(contains(page, "neighbouring pixels is correlated"));
+  CHECK_FALSE(contains(page, "Linearity: mean over exposure"));
+  CHECK(nlohmann::json::parse(report::camera_json(camera)).at("line_intercept_dn2").is_null());
+}

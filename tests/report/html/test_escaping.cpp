@@ -1,0 +1,317 @@
+/// Names, titles, notes and reasons that come from files are text on every page, whatever is written in them.
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+
+#include "base/files/staged_output.h"
+#include "report/analysis/analysis_report.h"
+#include "report/blind/blind_report.h"
+#include "report/characterize/camera_report.h"
+#include "report/check/check_report.h"
+#include "report/coverage/coverage_report.h"
+#include "report/diagnosis/diagnosis_report.h"
+#include "report/diagnosis/line_report.h"
+#include "report/diagnosis/plan_report.h"
+#include "report/requirement/requirement_report.h"
+#include "report/sweep/sweep_report.h"
+#include "report/validation/validation_report.h"
+#include "teach/page/laws_report.h"
+#include "test_paths.h"
+#include "tests/catch.h"
+#include "tests/report/made_results.h"
+
+using namespace glidelab;
+
+namespace {
+
+const std::string kEvil = R"(<script>alert(1)</script>&"x')";
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// It is there to be read, and nowhere markup: not in the page, and not in the plots beside it, which a browser opens
+/// as well.
+void check_is_text(const report::Page& page) {
+  const std::size_t raw = std::min(page.html.find("<script>alert"), page.html.find("&\"x'"));
+  INFO("near: " << (raw == std::string::npos ? "" : page.html.substr(raw - std::min<std::size_t>(raw, 120), 180)));
+  CHECK(has(page.html, "&lt;script&gt;alert(1)&lt;/script&gt;&amp;&quot;x&#39;"));
+  CHECK_FALSE(has(page.html, "<script>alert"));
+  CHECK_FALSE(has(page.html, "alert(1)</script>"));
+  CHECK_FALSE(has(page.html, "&\"x'"));
+  for (const auto& [name, bytes] : page.files) {
+    if (!name.ends_with(".svg")) continue;
+    INFO(name);
+    CHECK_FALSE(has(bytes, "<script>alert"));
+  }
+}
+
+core::AnalysisResults evil_results() {
+  core::AnalysisResults results = tests::made_results();
+  for (core::ClipResult& clip : results.clips) {
+    clip.name = clip.experiment = clip.bandwidth_method = kEvil;
+    clip.notes = {kEvil};
+  }
+  for (core::ConfigurationResult& configuration : results.configurations) {
+    configuration.group = kEvil;
+    configuration.clips = {kEvil};
+    configuration.mu = {std::nullopt, kEvil};
+    configuration.notes = {kEvil};
+  }
+  core::CalibrationResult& calibration = results.calibrations[0];
+  calibration.experiment = calibration.model = kEvil;
+  calibration.notes = {kEvil};
+  calibration.rests = {800, 600, {{100.0, 100.0, 0.01, 0.02, 0.01, 9}, {500.0, 300.0, 0.01, 0.02, 0.01, 9}}, 0.01, 1.2};
+  results.calibrations.push_back(calibration);  // of two folders each is named beside its plot
+  core::PlumbResult plumb;
+  plumb.group = plumb.experiment = plumb.plumb_deg.why = kEvil;
+  results.plumbs.push_back(plumb);
+  results.estimator = kEvil;
+  return results;
+}
+
+std::vector<core::Preview> evil_previews() {
+  const core::Preview preview{{{0, 0.0, "jpeg"}}, "", 1.0, kEvil};
+  return {preview, preview};
+}
+
+diagnose::Diagnosis evil_diagnosis() {
+  diagnose::Diagnosis of;
+  of.verdict = "effect";
+  of.points = 100;
+  of.effects = {{kEvil,
+                 kEvil,
+                 kEvil,
+                 0.9,
+                 {kEvil},
+                 {{kEvil, 1.0, 0.1, "", ""}, {"codec", 0.0, 0.0, kEvil, ""}},
+                 0.95,
+                 {{kEvil, kEvil, 0.5}}}};
+  of.ranking = {{kEvil, 0.9, 10.0, 12.0, 1, 1.0, ""}, {kEvil, 0.0, 0.0, 0.0, 1, {}, kEvil}};
+  of.none = 0.05;
+  of.unknown = 0.05;
+  of.stage = of.next_experiment = of.summary = kEvil;
+  of.regions = {{"t_s", 0.0, 1.0, 5.0, 1e-3, kEvil, kEvil, kEvil, {}, 1e-4, 0, 0.5}};
+  of.limits = {{kEvil}, {kEvil}, kEvil};
+  of.notes = {kEvil};
+  of.pictures = {{kEvil, kEvil, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
+  of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
+  of.residuals = {{kEvil,
+                   {0.0, 1.0, 2.0},
+                   {0.0, 1.0, 2.0},
+                   {1.0, 1.0, 1.0},
+                   {1e-3, 0.0, 1e-3},
+                   {0.0, 0.0, 0.0},
+                   {1e-5, 1e-5, 1e-5}}};
+  of.calibrations = {{kEvil, evil_results().calibrations[0].rests}, {kEvil, evil_results().calibrations[0].rests}};
+  of.isolability = {{kEvil, kEvil}, {1.0, 1.0}, {{1.0, 0.5}, {0.5, 1.0}}};
+  of.twin_lacks = {{kEvil, kEvil}};
+  diagnose::GapSizes gap;
+  gap.before = 5.0;
+  gap.after = 1.0;
+  gap.held_out = {kEvil, kEvil};
+  gap.before_by_clip = {5.0, 4.0};
+  gap.after_by_clip = {1.0, 1.1};
+  gap.interval95.why_none = kEvil;
+  gap.parameters = {{kEvil, kEvil, kEvil, 4.0, 0.3, diagnose::DiagnosedParameter{kEvil, 1.0, 0.1, "", ""}, {}}};
+  gap.domains = {{"positions", 5.0, 1.0}};
+  of.gap = gap;
+  return of;
+}
+
+}  // namespace
+
+TEST_CASE("the pages of an analysis and of a rehearsal have every name from a file as text") {
+  const core::AnalysisResults results = evil_results();
+  check_is_text(report::analysis_report(kEvil, results, evil_previews()));
+  validate::Comparison comparison;
+  comparison.quantities = {{kEvil, 0.335, 4.0, kEvil, kEvil, 1.0, 1.1, 0.1, 0.1, kEvil},
+                           {kEvil, 0.335, 4.0, kEvil, "mu", 1.0, {}, {}, {}, kEvil}};
+  comparison.lines = {{kEvil, -1, 0.9999}};
+  comparison.restitution.points = {{}};
+  check_is_text(report::validation_report(kEvil, results, comparison, evil_previews()));
+}
+
+TEST_CASE("the page of a check has every name from a file as text") {
+  core::RecordingCheck check;
+  check.name = kEvil;
+  check.usable = false;
+  check.findings = {{core::Severity::unusable, kEvil, kEvil, kEvil}};
+  core::PatternCheck pattern;
+  pattern.views = {{kEvil, true, 0.1, 3.0, {{100.0, 100.0}}}};
+  pattern.without = {kEvil};
+  pattern.failure = kEvil;
+  pattern.width_px = 800;
+  pattern.height_px = 600;
+  check.pattern = pattern;
+  core::ClipCheck clip;
+  clip.name = kEvil;
+  clip.notes = {kEvil};
+  check.clips = {clip, clip};
+  check.clips[1].failure = kEvil;
+  check.plumb_failure = kEvil;
+  check_is_text(report::check_report(check, evil_previews()));
+}
+
+TEST_CASE("the page of a diagnosis has every name from a file as text, for each verdict and with a twin") {
+  diagnose::Diagnosis of = evil_diagnosis();
+  const validate::TwinMotion twin{kEvil,      {0.0, 1.0}, {0.0, 1e-4}, {1e-5, 1e-5},
+                                  {1.0, 0.9}, {0.0, 0.1}, {1.0, 0.9},  {0.0, 0.1}};
+  check_is_text(report::diagnosis_report(kEvil, of, {twin}));
+  for (const std::string verdict : {"none", "unknown"}) {
+    of.verdict = verdict;
+    check_is_text(report::diagnosis_report(kEvil, of, {}));
+  }
+}
+
+TEST_CASE("the page of a diagnosed table of lines has every name from a file as text") {
+  diagnose::Diagnosis of = evil_diagnosis();
+  diagnose::LineComparison lines;
+  lines.lines = 2;
+  lines.either_of = {kEvil, kEvil};
+  lines.candidates = {{kEvil, kEvil, 0.5, 1.0, 1.0, 1, {{kEvil, 1.0, 0.1}}, 3.0, 1.0, ""},
+                      {kEvil, "", 0.0, 0.0, 0.0, 1, {}, {}, {}, kEvil}};
+  lines.off = {{0.335, 4.0, 1, 2.7, 0.01, 0.0}, {0.335, 4.0, -1, 2.7, -0.01, 0.0}};
+  lines.curves = {{kEvil, {0.335, 0.435}, {2.7, 2.1}, {0.01, 0.01}}};
+  of.lines = lines;
+  check_is_text(report::line_report(kEvil, of));
+  of.lines->either_of.clear();
+  check_is_text(report::line_report(kEvil, of));
+}
+
+TEST_CASE("the page of a plan has every name from a file as text") {
+  diagnose::Plan plan;
+  plan.clips = 2;
+  plan.points = 100;
+  plan.noise_m = 1e-5;
+  plan.effects = {{kEvil, kEvil, kEvil, 0.1, true, {kEvil}}, {kEvil, kEvil, kEvil, 0.0, false, {}}};
+  plan.notes = {kEvil};
+  plan.isolability = evil_diagnosis().isolability;
+  check_is_text(report::plan_page(kEvil, plan));
+}
+
+TEST_CASE("the pages of require and of coverage have every name from a file as text") {
+  validate::Requirement requirement;
+  requirement.name = kEvil;
+  requirement.targets = {{"mu", validate::Target::Measure::sd, 5e-4}};
+  for (const validate::Verdict verdict :
+       {validate::Verdict::reached, validate::Verdict::missed, validate::Verdict::refused}) {
+    validate::Candidate candidate;
+    candidate.name = candidate.price_class = candidate.why = kEvil;
+    candidate.verdict = verdict;
+    candidate.pixels_s = 1e7;
+    candidate.results = {{1e-4, 2e-4, 1e-5, 200, 3, kEvil}};
+    candidate.limits = {{kEvil, 3.0}};
+    requirement.candidates.push_back(candidate);
+  }
+  check_is_text(report::requirement_report(requirement));
+
+  validate::Coverage coverage;
+  coverage.replicates = 200;
+  coverage.noise_sd_m = {2e-5};
+  coverage.levels = {0.95};
+  validate::CoverageRow row;
+  row.configuration = kEvil;
+  row.estimator = "trajectory";
+  row.quantity = "mu";
+  row.determined = row.covered = 200;
+  row.sd = 1e-4;
+  row.stated_sd = 1e-5;
+  row.levels = {{0.95, 100, 0.5, 0.4, 0.6, 0.0}};
+  coverage.rows = {row};
+  check_is_text(report::coverage_page(kEvil, coverage));
+}
+
+TEST_CASE("the page of a sweep has every name from a file as text, with its masses") {
+  validate::ErrorStatistics statistics;
+  statistics.runs = statistics.answered = 400;
+  statistics.rms = 1e-3;
+  statistics.sd = 1e-4;  // too small, and its intervals too narrow: both are named in words
+  statistics.coverage = 0.5;
+  const auto series = [&](const std::string& quantity) {
+    validate::GroupStatistics other{kEvil, 1.0, statistics};
+    other.statistics.rms = 2e-3;
+    return validate::Series{quantity, kEvil, {{kEvil, 0.0, statistics}, other}};
+  };
+  validate::SweepSummary of;
+  of.name = kEvil;
+  of.runs = of.failed = 400;
+  of.planned = 800;
+  of.failures = {kEvil};
+  of.overall = {series("mu"), series(kEvil)};
+  of.accelerations = {{kEvil, kEvil, 10, 0.1, 1.0, 1.2}};
+  of.configurations = {{kEvil, {series("mu")}, of.accelerations}, {kEvil, {series("mu")}, of.accelerations}};
+  validate::AxisSummary axis;
+  axis.name = axis.unit = kEvil;
+  axis.words = true;
+  axis.labels = {kEvil, kEvil};
+  axis.series = {series("mu")};
+  axis.of_configurations = {axis.series, axis.series};
+  of.axes = {axis};
+  validate::MassRow row{kEvil, kEvil, 0.02, 0.0071, {{0.335, 0.0075, 1e-4, 0.999}, {0.535, 0.0071, 1e-4, 0.999}}};
+  of.masses = {{row}, {{{kEvil, 0.0075, 0.0051, 0.9996, kEvil}, kEvil, row, {}, {}}}};
+  check_is_text(report::sweep_report(of));
+}
+
+TEST_CASE("the page of a measured camera has every name from a file as text") {
+  core::CameraMeasurement camera;
+  camera.folder.name = camera.folder.price_class = kEvil;
+  camera.picture = {640, 480};
+  for (core::Measured* of : {&camera.gain_dn_per_e, &camera.offset_dn, &camera.full_well_e}) {
+    *of = {1.0, 0.1, kEvil, "", {}};
+  }
+  camera.read_noise_e = {{}, 0.0, "", kEvil, 3.0};
+  camera.prnu = {{}, 0.0, "", kEvil, {}};
+  camera.curve = {{kEvil, 0.001, 300.0, 300.0, 125.0, 0.5, 0.0, true},
+                  {kEvil, 0.002, 600.0, 600.0, 245.0, 1.0, 0.0, false}};
+  camera.saturation_dn = 3600.0;
+  camera.notes = {kEvil};
+  check_is_text(report::camera_report(camera));
+}
+
+TEST_CASE("the page of laws has every name from a file as text") {
+  teach::LawStudy study;
+  study.name = study.text = kEvil;
+  study.curves = {{kEvil, 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0}}, {0}}};
+  study.motions = {{kEvil, kEvil, {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
+  teach::LawFilm film;
+  film.frames = 2;
+  film.frame_rate_hz = 25.0;
+  film.clips = {kEvil};
+  check_is_text(teach::laws_report({study}, {film}));
+}
+
+TEST_CASE("the page of blind cases has every name from a file as text") {
+  validate::BlindOutcome outcome;
+  outcome.kind = validate::BlindKind::single;
+  outcome.causes = {{kEvil, 1.0, {}, kEvil, 20.0}};
+  outcome.verdict.verdict = outcome.verdict.why = kEvil;
+  outcome.verdict.where = {kEvil};
+  validate::BlindOutcome named = outcome;
+  named.verdict.effects = {{kEvil, 0.9, {kEvil}}};
+  report::BlindRun run;
+  run.outcomes = {outcome, named};
+  run.score.methods = {{kEvil, {1, 1}, {1, 1}, {1, 1}, {}}};
+  run.score.left_out = {{kEvil, {1, 1}}};
+  run.score.confusion = {{kEvil, {{kEvil, 1}}}};
+  check_is_text(report::blind_page(run));
+}
+
+TEST_CASE("every page that report can make is among those whose texts are tested here") {
+  const std::filesystem::path root = tests::kSourceDir;
+  const std::string here = base::read_file(root / "tests/report/test_escaping.cpp");
+  const std::regex makes("\nPage ([a-z_]+)\\(");
+  std::size_t pages = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(root / "report")) {
+    if (entry.path().extension() != ".h") continue;
+    const std::string header = base::read_file(entry.path());
+    for (std::sregex_iterator it(header.begin(), header.end(), makes); it != std::sregex_iterator(); ++it) {
+      const std::string name = (*it)[1];
+      if (name == "page" || name == "explorer_page") continue;  // the frame of all, and one that reads no file
+      INFO(name << " of " << entry.path().filename());
+      CHECK(has(here, "report::" + name + "("));
+      ++pages;
+    }
+  }
+  CHECK(pages >= 12);
+}

@@ -1,0 +1,142 @@
+/// What a browser makes of a page's style: dark, narrow, printed. Skipped where there is no chromium.
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/errors.h"
+#include "base/files/child_process.h"
+#include "base/files/staged_output.h"
+#include "report/html/html.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// What chromium prints, or nothing where it is not there.
+std::optional<std::string> browser(const std::filesystem::path& folder, std::vector<std::string> arguments) {
+  std::vector<std::string> all = {"--headless", "--no-sandbox", "--disable-gpu"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  const std::filesystem::path log = folder / "browser.txt";
+  try {
+    if (base::run_program("chromium", all, log) != 0) return std::nullopt;
+  } catch (const base::EnvironmentError&) {
+    return std::nullopt;
+  }
+  return base::read_file(log);
+}
+
+/// A plot, a photograph, a film, a table that is too wide, and one whose first column holds numbers.
+std::string page_with(const std::string& script) {
+  report::Html body("<h1>look</h1>");
+  body += report::figures({{{"plot sin(x)", {}}, "a curve", "a curve"}});
+  body +=
+      "<figure><img id=\"photo\" alt=\"\" src=\"data:image/gif;base64,R0lGODlhAQABAAAAACw=\">"
+      "<figcaption>photograph</figcaption></figure>\n<figure><video></video><figcaption>film</figcaption></figure>\n";
+  report::HtmlTable wide({"direction", "what", "prose"}, 9), numbers({"n", "size"});
+  const std::string words = "as many words as a line can hold and then some more of them";
+  wide.row({"of a friction", "v &lt; 0", words + " " + words + " " + words + std::string(300, 'm')});
+  numbers.row({"7", "1"});
+  body += wide.str() + numbers.str();
+  std::string html = report::page("look", body).html;
+  const std::size_t end = html.find("</body>");
+  return html.insert(end, "<script>const said = document.documentElement.dataset;\n" + script + "</script>");
+}
+
+bool says(const std::string& dom, const std::string& what) {
+  return dom.find("data-" + what) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("on a dark page plots are dark and photographs as they are, and a light one changes nothing") {
+  const tests::TempDir temp;
+  base::write_file(temp / "page.html", page_with("const filter = (e) => getComputedStyle(e).filter;\n"
+                                                 "said.photo = filter(document.getElementById('photo'));\n"
+                                                 "said.plot = filter(document.querySelector('img'));\n"));
+  const std::string at = "file://" + (temp / "page.html").string();
+  for (const bool dark : {true, false}) {
+    const auto dom = browser(
+        temp.path(), {std::string("--blink-settings=preferredColorScheme=") + (dark ? "0" : "1"), "--dump-dom", at});
+    if (!dom) {
+      WARN("skipped: no chromium program");
+      return;
+    }
+    CHECK(says(*dom, "photo=\"none\""));
+    CHECK(says(*dom, "plot=\"none\"") == !dark);
+    CHECK(says(*dom, "plot=\"invert(") == dark);
+  }
+}
+
+TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one line, and numbers no width for names") {
+  const tests::TempDir temp;
+  base::write_file(temp / "page.html",
+                   page_with("const [wide, narrow] = document.querySelectorAll('.scroll');\n"
+                             "said.cut = wide.scrollWidth > wide.clientWidth;\n"
+                             "said.page = document.documentElement.scrollWidth <= innerWidth;\n"
+                             "const attached = getComputedStyle(wide).backgroundAttachment.split(', ');\n"
+                             "said.shadow = attached.includes('scroll') && attached.includes('local');\n"
+                             "const range = document.createRange();\n"
+                             "range.selectNodeContents(wide.querySelectorAll('td')[1]);\n"
+                             "said.lines = range.getClientRects().length;\n"
+                             "said.spare = narrow.querySelector('td').clientWidth < 60;\n"
+                             "said.prose = wide.querySelectorAll('td')[2].clientWidth > 180;\n"));
+  const auto dom =
+      browser(temp.path(), {"--window-size=500,900", "--dump-dom", "file://" + (temp / "page.html").string()});
+  if (!dom) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  CHECK(says(*dom, "cut=\"true\""));
+  CHECK(says(*dom, "page=\"true\""));
+  CHECK(says(*dom, "shadow=\"true\""));
+  CHECK(says(*dom, "lines=\"1\""));
+  CHECK(says(*dom, "prose=\"true\""));  // 22ch
+  CHECK(says(*dom, "spare=\"true\""));  // 13ch are some 125 pixels
+}
+
+TEST_CASE("four pictures stand in one row or two by two, a note with a list is as wide as one without") {
+  const tests::TempDir temp;
+  std::string pictures;
+  for (int i = 0; i < 4; ++i) pictures += "<figure><figcaption>picture</figcaption></figure>";
+  std::string html =
+      report::page("look", "<div class=\"figures\">" + pictures +
+                               "</div><p class=\"note\">text</p><div class=\"note\"><ul><li>text</li></ul>"
+                               "</div>")
+          .html;
+  html.insert(html.find("</body>"),
+              "<script>const rows = new Set([...document.querySelectorAll('.figures figure')].map(f => f.offsetTop));\n"
+              "document.documentElement.dataset.rows = rows.size;\n"
+              "const [one, other] = document.querySelectorAll('.note');\n"
+              "document.documentElement.dataset.wide = one.clientWidth == other.clientWidth;</script>");
+  base::write_file(temp / "page.html", html);
+  for (const auto& [width, rows] : {std::pair(1280, 1), std::pair(900, 2)}) {
+    const auto dom = browser(temp.path(), {"--window-size=" + std::to_string(width) + ",900", "--dump-dom",
+                                           "file://" + (temp / "page.html").string()});
+    if (!dom) {
+      WARN("skipped: no chromium program");
+      return;
+    }
+    CHECK(says(*dom, "rows=\"" + std::to_string(rows) + "\""));
+    CHECK(says(*dom, "wide=\"true\""));
+  }
+}
+
+TEST_CASE("a printed page has its photographs and no empty box where a film was") {
+  const tests::TempDir temp;
+  base::write_file(temp / "page.html", page_with(""));
+  const std::string pdf = (temp / "page.pdf").string();
+  if (!browser(temp.path(), {"--print-to-pdf=" + pdf, "file://" + (temp / "page.html").string()})) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  if (std::system(("pdftotext '" + pdf + "' '" + pdf + ".txt'").c_str()) != 0) {
+    WARN("skipped: no pdftotext program");
+    return;
+  }
+  const std::string text = base::read_file(pdf + ".txt");
+  CHECK(text.find("photograph") != std::string::npos);
+  CHECK(text.find("film") == std::string::npos);
+}

@@ -1,0 +1,226 @@
+/// The page of a sweep: what it says first, and what is apart by configuration.
+#include <cmath>
+
+#include "report/html/gnuplot.h"
+#include "report/sweep/mass_study_report.h"
+#include "report/sweep/sweep_meaning.h"
+#include "report/sweep/sweep_plots.h"
+#include "report/sweep/sweep_report.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+validate::GroupStatistics group(const std::string& label, double position, double rms) {
+  validate::ErrorStatistics of;
+  of.runs = of.answered = 400;
+  of.rms = of.sd = rms;
+  of.coverage = 0.95;
+  return {label, position, of};
+}
+
+/// Two estimators of mu over a rate; twice the error without the reversal.
+validate::SweepSummary summary() {
+  validate::SweepSummary of;
+  of.name = "small";
+  of.runs = of.planned = 800;
+  const auto series = [](const std::string& estimator, double rms) {
+    return validate::Series{"mu", estimator, {group("", 0.0, rms)}};
+  };
+  of.overall = {series("phase-diagram", 3e-4), series("trajectory", 1e-4)};
+  of.configurations = {{"turning", {series("phase-diagram", 2e-4), series("trajectory", 8e-5)}},
+                       {"straight", {series("phase-diagram", 4e-4), series("trajectory", 1.6e-4)}}};
+  of.axes.resize(1);
+  validate::AxisSummary& axis = of.axes.front();
+  axis.name = "rate_hz";
+  axis.unit = "Hz";
+  const auto over = [](double factor) {
+    return std::vector<validate::Series>{
+        {"mu", "phase-diagram", {group("50", 50.0, factor * 6e-4), group("200", 200.0, factor * 3e-4)}},
+        {"mu", "trajectory", {group("50", 50.0, factor * 2e-4), group("200", 200.0, factor * 1e-4)}}};
+  };
+  axis.series = over(1.0);
+  axis.of_configurations = {over(0.8), over(1.6)};
+  return of;
+}
+
+}  // namespace
+
+TEST_CASE("every sweep's page says first who errs least, along which key it changes, and whose intervals fail") {
+  validate::SweepSummary of = summary();
+  const std::string meaning = report::sweep_meaning(of);
+  CHECK(has(meaning, "least rms error over all runs is that of trajectory in µ (0.0001)"));
+  CHECK(has(meaning, "<li>along rate_hz: 0.0001 at 200 Hz and 0.0002 at 50 Hz, 2 times as much</li>"));
+  CHECK(has(meaning, "turning: 0.00008; straight: 0.00016"));
+  CHECK(has(meaning, "as often as they say"));
+  of.overall[0].groups[0].statistics.coverage = 0.9;  // 4.6 binomial standard errors of 400
+  CHECK(has(report::sweep_meaning(of), "less often: µ by phase-diagram (90 %)"));
+  of.overall.clear();
+  CHECK(report::sweep_meaning(of).empty());
+}
+
+TEST_CASE("a sweep's page names the best of several given bandwidths, for each quantity that it is best in") {
+  validate::SweepSummary of = summary();
+  const auto add = [&](const std::string& quantity, const std::string& estimator, double rms) {
+    of.overall.push_back({quantity, estimator, {group("", 0.0, rms)}});
+  };
+  add("k_over_m_1_s", "phase-diagram h=0.02 s", 0.004);
+  add("mu", "phase-diagram h=0.02 s", 5e-4);
+  CHECK_FALSE(has(report::sweep_meaning(of), "given bandwidths"));  // of one there is nothing to choose
+  add("k_over_m_1_s", "phase-diagram h=0.04 s", 0.001);
+  add("alpha_deg", "phase-diagram h=0.04 s", 0.003);
+  add("mu", "phase-diagram h=0.04 s", 4e-4);
+  CHECK(has(report::sweep_meaning(of),
+            "Of the 2 given bandwidths of the lines the least rms error is that of h=0.04 s in K/m (0.001 1/s), µ "
+            "(0.0004), α (0.003°). Two whose errors differ by less than 10 % may be alike."));  // 2 / sqrt(400)
+  of.overall.back().groups.front().statistics.rms = 6e-4;
+  CHECK(has(report::sweep_meaning(of), "h=0.04 s in K/m (0.001 1/s); h=0.02 s in µ (0.0005); h=0.04 s in α"));
+}
+
+TEST_CASE("a sweep's tables have the quantities as all pages do, whatever order the database has") {
+  validate::SweepSummary of = summary();
+  of.overall.insert(of.overall.begin(), {"alpha_deg", "trajectory", {group("", 0.0, 0.003)}});
+  of.overall.push_back({"k_over_m_1_s", "trajectory", {group("", 0.0, 0.003)}});
+  for (const std::string& text : {report::sweep_text(of), report::sweep_report(of).html}) {
+    const std::size_t k = text.find("K/m (1/s)"), alpha = text.find("α (°)");
+    CHECK(k < alpha);
+    CHECK(alpha != std::string::npos);
+  }
+}
+
+TEST_CASE("where runs have no answer the page compares like runs, or says that it cannot") {
+  validate::SweepSummary of = summary();
+  validate::Series& series = of.axes[0].series[1];
+  series.likeness = {false, 6, 4};
+  for (validate::GroupStatistics& group : series.groups) {
+    group.alike = group.statistics;
+    group.alike->rms = group.position == 50.0 ? 1.5e-4 : 1e-4;
+  }
+  const std::string meaning = report::sweep_meaning(of);
+  CHECK(has(meaning,
+            "along rate_hz: 0.0001 at 200 Hz and 0.00015 at 50 Hz, 1.5 times as much, over those 4 of 6 "
+            "combinations of all else that have an answer at each value"));
+  of.axes[0].of_configurations.clear();
+  std::vector<report::Plot> plots = report::sweep_plots(of.axes[0], "mu");
+  CHECK(plots[0].drawing.data[1].rows[0][1] == 1.5e-4);
+  CHECK(has(plots[0].drawing.script, "'trajectory, 4 of 6'"));
+  CHECK(has(plots[0].caption, "n of m: over those combinations of all else that have an answer at every value"));
+  series.likeness = {false, 0, 0};  // with drawn values
+  for (validate::GroupStatistics& group : series.groups) group.alike.reset();
+  const std::string none = report::sweep_meaning(of);
+  CHECK_FALSE(has(none, "times as much"));
+  CHECK(has(none, "along rate_hz it is not compared: some runs have no answer"));
+  CHECK(has(none, "drawn"));
+  plots = report::sweep_plots(of.axes[0], "mu");
+  CHECK(has(plots[0].drawing.script, "'trajectory, unlike runs'"));
+  CHECK(has(plots[0].caption, "unlike runs: some have no answer"));
+}
+
+TEST_CASE("a stated sd that is far from the rms error is named with its factor, where chance does not do that") {
+  validate::SweepSummary of = summary();
+  CHECK_FALSE(has(report::sweep_meaning(of), "Stated standard deviations"));
+  validate::ErrorStatistics& lines = of.overall[0].groups[0].statistics;
+  validate::ErrorStatistics& fit = of.overall[1].groups[0].statistics;
+  lines.sd = lines.rms / 3.0;
+  fit.sd = 2.5 * fit.rms;
+  const std::string meaning = report::sweep_meaning(of);
+  CHECK(has(meaning, "more than 2 times smaller than the rms error: µ by phase-diagram (3 times)."));
+  CHECK(has(meaning, "And larger than the rms error: µ by trajectory (2.5 times)."));
+  fit.sd = 1.9 * fit.rms;
+  lines.runs = lines.answered = 6;  // of which the rms error is known to 29 % (one standard error)
+  CHECK_FALSE(has(report::sweep_meaning(of), "Stated standard deviations"));
+}
+
+TEST_CASE("over a key with one value there is no plot and no heading") {
+  validate::SweepSummary of = summary();
+  CHECK(has(report::sweep_report(of).html, "Over rate_hz"));
+  const auto keep_one = [](std::vector<validate::Series>& all) {
+    for (validate::Series& series : all) series.groups.resize(1);
+  };
+  keep_one(of.axes[0].series);
+  for (std::vector<validate::Series>& all : of.axes[0].of_configurations) keep_one(all);
+  CHECK(report::sweep_plots(of.axes[0], "mu", of.configurations).empty());
+  CHECK_FALSE(has(report::sweep_report(of).html, "Over rate_hz"));
+}
+
+TEST_CASE("bars of several estimators at one value stand side by side, and coverage within its axis") {
+  validate::SweepSummary of = summary();
+  of.axes[0].of_configurations.clear();
+  for (validate::Series& series : of.axes[0].series) {
+    for (validate::GroupStatistics& group : series.groups) group.statistics.coverage = 1.0;
+  }
+  const report::Plot plot = report::sweep_plots(of.axes[0], "mu").back();
+  REQUIRE(plot.description == "Coverage of µ over rate_hz");
+  const std::vector<double>&a = plot.drawing.data[0].rows[0], &b = plot.drawing.data[1].rows[0];
+  CHECK(a[0] == b[0]);
+  CHECK(a.back() < 50.0);
+  CHECK(b.back() > 50.0);
+  // Wilson's interval of 400 out of 400: from 1 / (1 + z^2 / 400) to 1, z the normal quantile of 0.975.
+  CHECK(std::abs(a[7] - 100.0 / (1.0 + 1.959963984540054 * 1.959963984540054 / 400.0)) < 1e-9);
+  CHECK(std::abs(a[8] - 100.0) < 1e-9);
+}
+
+TEST_CASE("a sweep of two configurations has a table and an error plot of each, named after its quantity") {
+  const validate::SweepSummary of = summary();
+  const report::Page page = report::sweep_report(of);
+  CHECK(has(page.html, "Each configuration"));
+  CHECK(page.html.find("What this means") < page.html.find("All runs"));
+  const std::vector<report::Plot> plots = report::sweep_plots(of.axes[0], "mu", of.configurations);
+  REQUIRE(plots.size() == 4);
+  const std::vector<std::string> names = report::plot_file_names(plots);
+  CHECK(names[0] == "01-error-and-standard-deviation-of-mu-over-rate-hz-turning");
+  CHECK(names[1] == "02-error-and-standard-deviation-of-mu-over-rate-hz-straight");
+  CHECK(names[2] == "03-bias-of-mu-over-rate-hz");
+  CHECK(plots[0].drawing.data[0].rows[0][1] == 0.8 * 6e-4);
+  CHECK(plots[1].drawing.data[0].rows[0][1] == 1.6 * 6e-4);
+}
+
+TEST_CASE("the legend of many lines has a place of its own above the plot") {
+  validate::SweepSummary of = summary();
+  of.axes[0].of_configurations.clear();
+  const report::Plot few = report::sweep_plots(of.axes[0], "mu").front();
+  for (const char* rule : {"gcv", "cv-correlated", "rsc", "plug-in", "ebbs", "best-possible", "h=0.01 s", "h=0.02 s"}) {
+    validate::Series series = of.axes[0].series[0];
+    series.estimator = std::string("phase-diagram ") + rule;
+    of.axes[0].series.push_back(series);
+  }
+  const report::Plot plot = report::sweep_plots(of.axes[0], "mu").front();
+  CHECK(has(plot.drawing.script, "title 'cv-correlated'"));
+  CHECK(has(plot.caption, "lines of the phase diagram"));
+  // What is left below the legend is as much as with two lines.
+  const auto below = [](const report::Plot& of_axis) {
+    const std::size_t at = of_axis.drawing.script.find("set tmargin at screen ");
+    REQUIRE(at != std::string::npos);
+    return std::stod(of_axis.drawing.script.substr(at + 22)) * of_axis.drawing.size.height;
+  };
+  CHECK(std::abs(below(plot) - below(few)) < 1.0);
+  CHECK(plot.drawing.size.height > few.drawing.size.height);
+}
+
+TEST_CASE("the question of mu and mass is answered in words, with its standard errors") {
+  validate::MassStudy study;
+  validate::MassRow row;
+  row.configuration = "level";
+  row.truth = 0.0071;
+  row.bandwidth_s = 0.1;
+  row.masses = {{0.335, 0.00965, 3e-5, 0.9986}, {0.535, 0.00812, 4e-5, 0.9990}};
+  study.rows = {row};
+  validate::FallAnswer answer;
+  answer.published = {"level", 0.0075, 0.0051, 0.9996, "Table 2"};
+  answer.widest = row;
+  study.answers = {answer};
+  std::string text = report::mass_study_section(study);
+  CHECK(has(text, "Table 2 has a fall of µ from 0.0075 to 0.0051, by 0.0024"));
+  CHECK(has(text, "h = 0.1 s makes 0.001530 ± 0.000050, with R² = 0.9986"));
+  CHECK(has(text, "all of these lines are worse"));
+  study.answers[0].whole = validate::FallAt{0.126, 0.0024, 0.0, 0.9971};
+  study.answers[0].at_r2 = validate::FallAt{0.07, 0.0007, 0.0, 0.9996};
+  text = report::mass_study_section(study);
+  CHECK(has(text, "makes all of it with h = 0.13 s, and its lines then have R² = 0.9971"));
+  CHECK(has(text, "R² of 0.99960 it can make 0.00070, 29 % of the fall, at h = 0.07 s"));
+}

@@ -1,0 +1,136 @@
+#include "teach/study/law_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <tuple>
+
+#include "sim/force/force_terms.h"
+#include "test_paths.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+teach::LawStudy study(const std::string& name) {
+  return teach::study_law(std::filesystem::path(tests::kSourceDir) / "scenarios/laws" / (name + ".toml"));
+}
+
+}  // namespace
+
+TEST_CASE("Every teaching scenario is a whole scenario, and its motions run on its curves") {
+  std::size_t count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(tests::kSourceDir) / "scenarios/laws")) {
+    INFO(entry.path().filename().string());
+    const teach::LawStudy found = teach::study_law(entry.path());
+    CHECK_FALSE(found.text.empty());
+    CHECK_FALSE(found.motions.empty());
+    for (const teach::LawMotion& motion : found.motions) {
+      CHECK(motion.x_m.size() == motion.t_s.size());
+      const auto [low, high] = std::minmax_element(motion.x_m.begin(), motion.x_m.end());
+      CHECK(*low > -1.0);  // on the 2 m track
+      CHECK(*high < 1.0);
+    }
+    ++count;
+  }
+  CHECK(count == 8);
+}
+
+TEST_CASE("Launched up, from rest and too fast, the viscous glider tends to the v_lim of equation (4)") {
+  const teach::LawStudy found = study("1-viscous");
+  const double v_lim = 9.80665 * std::sin(4.311 * std::acos(-1.0) / 180.0) / 2.768;
+  REQUIRE(found.curves.size() == 2);
+  REQUIRE(found.curves[0].equilibria.size() == 1);
+  CHECK(found.curves[0].equilibria[0].v_m_s == 0.0);
+  REQUIRE(found.curves[1].equilibria.size() == 1);
+  CHECK(std::abs(found.curves[1].equilibria[0].v_m_s - v_lim) < 1e-12);
+  std::set<int> starts;
+  for (const std::size_t m : found.curves[1].motions) {
+    const teach::LawMotion& motion = found.motions[m];
+    starts.insert(motion.v_m_s.front() < 0.0 ? -1 : motion.v_m_s.front() > v_lim ? 2 : 0);
+    // What is left of the start after the clip: e^(-K t / m) of it.
+    const double left = std::abs(motion.v_m_s.front() - v_lim) * std::exp(-2.768 * motion.t_s.back());
+    CHECK(std::abs(std::abs(motion.v_m_s.back() - v_lim) - left) < 1e-9);
+  }
+  CHECK(starts == std::set<int>{-1, 0, 2});
+}
+
+TEST_CASE("The look-alikes are a millimetre apart in x and a quarter m/s2 and more in a") {
+  const teach::LawStudy found = study("8-look-alike");
+  REQUIRE(found.x_apart_m);
+  // The fit of the second law's parameters to the first one's x(t) leaves 1.0 mm.
+  CHECK(*found.x_apart_m < 1.1e-3);
+  // At v -> 0 the one has no friction, the other mu g = 0.294 m/s2.
+  CHECK(std::abs(*found.a_apart_m_s2 - 0.030003 * 9.80665) < 1e-3);
+}
+
+TEST_CASE("Stribeck's slow glider sticks below an unstable equilibrium, the faster ones tend to the one beyond it") {
+  const teach::LawStudy found = study("6-stribeck");
+  REQUIRE(found.curves.size() == 2);
+  const teach::LawCurve& inclined = found.curves[1];
+  REQUIRE(inclined.equilibria.size() == 3);
+  const auto [rest, edge, limit] = std::tuple(inclined.equilibria[0], inclined.equilibria[1], inclined.equilibria[2]);
+  // a(v) of the file's numbers.
+  const double alpha = 2.0 * std::acos(-1.0) / 180.0;
+  const auto a = [&](double v) {
+    const double friction = 0.02 * (1.0 + 2.0 * std::exp(-std::pow(v / 0.15, 2)));
+    return 9.80665 * (std::sin(alpha) - friction * std::cos(alpha)) - 0.3 * v;
+  };
+  CHECK(rest.v_m_s == 0.0);
+  CHECK((rest.stable && rest.stops));
+  CHECK_FALSE(edge.stable);
+  CHECK(limit.stable);
+  for (const double v : {edge.v_m_s, limit.v_m_s}) CHECK(std::abs(a(v)) < 1e-14);
+  CHECK((a(edge.v_m_s - 0.01) < 0.0 && a(edge.v_m_s + 0.01) > 0.0 && a(limit.v_m_s + 0.01) < 0.0));
+  for (const std::size_t m : inclined.motions) {
+    const std::vector<double>& v = found.motions[m].v_m_s;
+    INFO(found.motions[m].clip);
+    if (v.front() < edge.v_m_s) {
+      CHECK(v.back() == 0.0);
+    } else {
+      CHECK(std::abs(v.back() - limit.v_m_s) < 0.5 * std::abs(v.front() - limit.v_m_s));
+    }
+  }
+}
+
+TEST_CASE("The eddy-current brake holds up to the second zero of a(v), and nothing beyond it") {
+  const teach::LawStudy found = study("7-eddy-rolloff");
+  // g sin(alpha) (1 + (v / v_c)²) = k v has two roots.
+  const double drive = 9.80665 * std::sin(4.311 * std::acos(-1.0) / 180.0), k = 2.768, v_c = 0.6;
+  const double root = std::sqrt(k * k - std::pow(2.0 * drive / v_c, 2)), twice = 2.0 * drive / (v_c * v_c);
+  REQUIRE(found.curves[1].equilibria.size() == 2);
+  const teach::Equilibrium held = found.curves[1].equilibria[0], lost = found.curves[1].equilibria[1];
+  CHECK(held.stable);
+  CHECK_FALSE(lost.stable);
+  CHECK(std::abs(held.v_m_s - (k - root) / twice) < 1e-14);
+  CHECK(std::abs(lost.v_m_s - (k + root) / twice) < 1e-13);
+}
+
+TEST_CASE("Only friction brings a glider to rest: with a drag alone it tends there, with nothing it goes on") {
+  const auto on_the_level = [](std::shared_ptr<const sim::ForceTerm> force) {
+    sim::Body body{0.3, 0.0, 9.80665, {}};
+    if (force) body.forces.push_back(std::move(force));
+    return teach::equilibria(body, -1.0, 1.0);
+  };
+  CHECK(on_the_level(nullptr).empty());
+  for (const auto& drag : std::vector<std::shared_ptr<const sim::ForceTerm>>{
+           std::make_shared<sim::ViscousForce>(0.5), std::make_shared<sim::QuadraticForce>(0.5),
+           std::make_shared<sim::EddyRolloffForce>(0.5, 0.6), std::make_shared<sim::PowerLawForce>(0.5, 1.5)}) {
+    INFO(drag->law());
+    const auto found = on_the_level(drag);
+    REQUIRE(found.size() == 1);
+    CHECK((found[0].v_m_s == 0.0 && found[0].stable && !found[0].stops));
+  }
+  for (const auto& friction : std::vector<std::shared_ptr<const sim::ForceTerm>>{
+           std::make_shared<sim::CoulombForce>(0.01), std::make_shared<sim::StribeckForce>(0.01, 2.0, 0.1),
+           std::make_shared<sim::PowerLawForce>(0.5, 0.5)}) {  // the last stops at 2 sqrt(v0) / k
+    INFO(friction->law());
+    const auto found = on_the_level(friction);
+    REQUIRE(found.size() == 1);
+    CHECK((found[0].v_m_s == 0.0 && found[0].stable && found[0].stops));
+  }
+}

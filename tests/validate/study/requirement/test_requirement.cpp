@@ -1,0 +1,245 @@
+#include "validate/study/requirement/requirement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "tests/catch.h"
+#include "tests/one_glider.h"
+#include "tests/temp_dir.h"
+#include "tests/validate/small_sweep.h"
+#include "validate/film/film_studio.h"
+#include "validate/study/sweep/sweep_run.h"
+#include "validate/tracks/camera_noise.h"
+#include "validate/tracks/made_tracks.h"
+
+using namespace glidelab;
+
+namespace {
+
+validate::Sweep grid(const tests::TempDir& dir, const std::string& vary) {
+  return validate::read_sweep(tests::write_sweep(dir.path(), "", "[tracks]\nnoise_m = 1e-5\n" + vary));
+}
+
+const validate::Candidate& named(const validate::Requirement& requirement, const std::string& name) {
+  const auto found = std::find_if(requirement.candidates.begin(), requirement.candidates.end(),
+                                  [&](const auto& candidate) { return candidate.name == name; });
+  REQUIRE(found != requirement.candidates.end());
+  return *found;
+}
+
+}  // namespace
+
+TEST_CASE("Where noise limits, the least sd goes as sigma / sqrt(frame rate), and runs find the same") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = grid(dir, R"(
+[[vary]]
+key = "camera.frame_rate_hz"
+values = [100, 400]
+[[vary]]
+key = "tracks.noise_m"
+values = [1e-5, 4e-5]
+)");
+  validate::RequirementOptions options;
+  options.targets = {validate::parse_target("k_over_m_1_s=0.02")};
+  options.confirm = validate::Confirm::tracks;
+  options.track_runs = 40;
+  const validate::Requirement requirement = validate::find_requirement(sweep, options);
+  REQUIRE(requirement.candidates.size() == 4);
+  const auto bound = [&](const std::string& name) { return *named(requirement, name).results[0].bound; };
+  const double reference = bound("camera.frame_rate_hz = 100, tracks.noise_m = 1e-05");
+  CHECK(std::abs(bound("camera.frame_rate_hz = 100, tracks.noise_m = 4e-05") / reference - 4.0) < 1e-9);
+  // What differs beyond sqrt(4): at 100 Hz the last frame is 7.5 ms of 1.2 s earlier than at 400, and the sd of K/m
+  // falls with less than the fourth power of the time seen: 2.5 %.
+  CHECK(std::abs(bound("camera.frame_rate_hz = 400, tracks.noise_m = 1e-05") / reference - 0.5) < 0.5 * 0.03);
+  for (const validate::Candidate& candidate : requirement.candidates) {
+    const validate::TargetResult& result = candidate.results[0];
+    if (!result.found) continue;
+    // The rms of 40 errors has a relative sd of 1/sqrt(80); four of it.
+    CHECK(std::abs(*result.found / *result.bound - 1.0) < 4.0 / std::sqrt(80.0));
+    CHECK(result.estimator == "trajectory");
+  }
+}
+
+TEST_CASE("A target that the bound forbids is impossible, one with room needs no run, and what limits is said") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = grid(dir, R"(
+[[vary]]
+key = "tracks.noise_m"
+values = [1e-7, 1e-2]
+[[vary]]
+key = "camera.frame_rate_hz"
+values = [50, 125]
+)");
+  validate::RequirementOptions options;
+  options.targets = {validate::parse_target("mu=0.0005")};
+  options.confirm = validate::Confirm::none;
+  const validate::Requirement requirement = validate::find_requirement(sweep, options);
+  CHECK(requirement.any_reached());
+  CHECK_FALSE(requirement.by_price);
+  const validate::Candidate& quiet = named(requirement, "tracks.noise_m = 1e-07, camera.frame_rate_hz = 50");
+  CHECK(quiet.verdict == validate::Verdict::by_bound);
+  const validate::Candidate& noisy = named(requirement, "tracks.noise_m = 0.01, camera.frame_rate_hz = 125");
+  CHECK(noisy.verdict == validate::Verdict::impossible);
+  REQUIRE(noisy.limits.size() == 1);
+  // 1000 Hz in place of 125: sqrt(8), but for the frames at the ends (1/150)
+  CHECK(std::abs(noisy.limits[0].gain - std::sqrt(8.0)) < 0.05);
+  // cheapest first: by pixels a second
+  CHECK(requirement.candidates.front().frame_rate_hz == 50.0);
+  CHECK(requirement.candidates.back().frame_rate_hz == 125.0);
+}
+
+TEST_CASE("A target within the errors' uncertainty is undecided") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = grid(dir, "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n");
+  validate::RequirementOptions options;
+  options.targets = {validate::parse_target("k_over_m_1_s:bias=1")};
+  const validate::TargetResult found = validate::find_requirement(sweep, options).candidates.front().results[0];
+  CHECK(found.runs == 200);
+  CHECK(found.beyond == 0);
+  const auto verdict_at = [&](double target) {
+    options.targets.front().value = target;
+    return validate::describe(validate::find_requirement(sweep, options).candidates.front());
+  };
+  CHECK(verdict_at(*found.found + 0.5 * found.found_sd) == "undecided, by tracks");
+  CHECK(verdict_at(*found.found + 1.5 * found.found_sd) == "reached, by tracks");
+}
+
+TEST_CASE("Whoever wants to stop a search for cameras waits for one run, not for all of a camera") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = grid(dir, "[[vary]]\nkey = \"tracks.noise_m\"\nvalues = [1e-5]\n");
+  validate::RequirementOptions options;
+  options.targets = {validate::parse_target("k_over_m_1_s=0.0001")};
+  options.track_runs = 30;
+  options.targets.front().value = 1.5 * *validate::find_requirement(sweep, options).candidates.front().results[0].bound;
+  int runs = 0;
+  options.before_run = [&] { ++runs; };
+  struct Stopped {};
+  const auto stop_after_three = [&](std::string_view, double) {
+    if (runs > 3) throw Stopped{};
+  };
+  CHECK_THROWS_AS(validate::find_requirement(sweep, options, stop_after_three), Stopped);
+  CHECK(runs == 4);
+}
+
+TEST_CASE("Targets are read with their measure, and anything else is refused") {
+  CHECK(validate::parse_target("mu=0.0005").measure == validate::Target::Measure::sd);
+  CHECK(validate::parse_target("alpha_deg:error95=0.1").measure == validate::Target::Measure::error95);
+  CHECK(validate::parse_target("v_lim_m_s:bias=1e-3").value == 1e-3);
+  for (const char* wrong : {"mu", "mu=", "mu=x", "mu=0", "mu=-1", "mass=1", "mu:mean=1", "mu=1 m", ""}) {
+    CHECK_THROWS_AS(validate::parse_target(wrong), base::InputError);
+  }
+}
+
+TEST_CASE("The predicted noise of a position is that of rendered clips within a third") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml", R"(format = 1
+name = "noise"
+[camera]
+width_px = 320
+height_px = 200
+frame_rate_hz = 100.0
+exposure_s = 0.001
+focal_px = [480.0, 480.0]
+position_m = [0.0, 0.05, 2.0]
+[sensor]
+full_well_e = 8000.0
+read_noise_e = 40.0
+[calibration]
+inner_corners = [7, 4]
+square_m = 0.05
+views = 6
+[marker]
+diameter_m = 0.04
+)" + tests::one_glider(3.0, 1.5, 0.006, {{"m1-up", 0.4, -0.9, 1.2}}));
+  const render::Scenario scenario = render::read_scenario(dir / "s.toml");
+  const validate::MadeTracks made = validate::make_tracks(scenario, 1);
+  const double predicted = validate::predicted_noise_m(scenario, made.truth).front();
+  const double found = validate::analyze_tracks(validate::film_tracks(scenario, 3, 2), core::MotionOptions{})
+                           .clips.front()
+                           .position_noise_m;
+  // The estimate from 120 positions has 10 %; the prediction takes one brightness of the wall, one distance and a
+  // normal edge for a smear, and a bound where the analysis fits a disc: together within a third.
+  CHECK(found / predicted > 0.75);
+  CHECK(found / predicted < 4.0 / 3.0);
+  // Without any limitation nothing is left.
+  CHECK(validate::predicted_noise_m(scenario, made.truth,
+                                    {.shot_noise = true, .camera_noise = true, .motion_blur = true, .finer = 1.0})
+            .front() < 1e-3 * predicted);
+}
+
+TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost, one at a time", "[slow]") {
+  const tests::TempDir dir;
+  base::write_file(dir / "scenario.toml", tests::kSweptScenario +
+                                              "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n"
+                                              "[shutter]\nkind = \"rolling\"\nline_readout_s = 6e-5\n"
+                                              "[codec]\nname = \"mjpeg\"\nquality = 20\n");
+  base::write_file(dir / "sweep.toml",
+                   "format = 1\nname = \"limits\"\nscenario = \"scenario.toml\"\nlevel = \"clips\"\n"
+                   "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [60]\n");
+  const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
+  validate::RequirementOptions options;
+  options.confirm = validate::Confirm::clips;
+  options.runs = 3;
+  // The bound, which knows no codec, says that this is just within reach; the runs must say that it is not.
+  options.targets = {validate::parse_target("k_over_m_1_s=1")};
+  const double bound = *validate::find_requirement(sweep, options).candidates.front().results[0].bound;
+  options.targets[0].value = 1.01 * bound;
+  validate::ConfirmationSize size;
+  options.before_rendering = [&](const validate::ConfirmationSize& told) { size = told; };
+  const validate::Requirement requirement = validate::find_requirement(sweep, options);
+  const validate::Candidate& only = requirement.candidates.front();
+  REQUIRE(only.verdict == validate::Verdict::missed);
+  CHECK(validate::describe(only) == "missed, by clips");
+  CHECK(size.close == 1);
+  CHECK(size.points == 1);
+  CHECK(size.recordings == 3);
+  CHECK(size.seconds > 0.0);
+  // On two threads the runs are the same.
+  options.jobs = 2;
+  const validate::Requirement again = validate::find_requirement(sweep, options);
+  CHECK(again.candidates.front().results[0].found == only.results[0].found);
+  REQUIRE(again.candidates.front().limits.size() == only.limits.size());
+  for (std::size_t i = 0; i < only.limits.size(); ++i) {
+    CHECK(again.candidates.front().limits[i].name == only.limits[i].name);
+    CHECK(again.candidates.front().limits[i].gain == only.limits[i].gain);
+  }
+  // A target that tracks reach with a factor of 4 to spare is not worth a picture.
+  options.targets[0].value = 100.0 * bound;
+  const validate::Requirement easy = validate::find_requirement(sweep, options);
+  CHECK(validate::describe(easy.candidates.front()) == "reached, by tracks");
+  CHECK(size.close == 0);
+  CHECK(size.recordings == 0);
+  const auto gain = [&](const std::string& start) {
+    const auto found = std::find_if(only.limits.begin(), only.limits.end(),
+                                    [&](const validate::Limit& limit) { return limit.name.starts_with(start); });
+    REQUIRE(found != only.limits.end());
+    return found->gain;
+  };
+  // Blocks of 8 pixels at quality 20 shift a marker of 8 pixels by more than the noise of a clean picture; a shutter
+  // whose line time is declared is corrected, and costs less.
+  CHECK(gain("codec") > 1.0);
+  CHECK(gain("rolling shutter") < gain("codec"));
+  CHECK(gain("lens, calibration and tracking") > 1.0);
+  // A calibration from six views of 28 corners is no part of what a coarse codec spoils: hardly anything.
+  CHECK(gain("calibration (the true camera") < gain("codec"));
+}
+
+TEST_CASE("Whoever wants to stop while a recording is made waits for a picture or some frames, not for its end") {
+  const tests::TempDir dir;
+  base::write_file(dir / "s.toml",
+                   tests::kSweptScenario + "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n");
+  const render::Scenario scenario = render::read_scenario(dir / "s.toml");
+  int calls = 0;
+  struct Stopped {};
+  validate::film_tracks(scenario, 1, 1, [&](std::string_view, double) { ++calls; });
+  CHECK(calls >= 8 + 73 / 10);  // 7 views of the pattern and the empty track, and one in ten of the clip's 73 frames
+  for (const int last : {3, calls - 2}) {
+    int before = 0;
+    const auto stop = [&](std::string_view, double) {
+      if (++before == last) throw Stopped{};
+    };
+    CHECK_THROWS_AS(validate::film_tracks(scenario, 1, 1, stop), Stopped);
+    CHECK(before == last);
+  }
+}

@@ -1,0 +1,174 @@
+#include "validate/study/sweep/sweep_database.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "base/errors.h"
+#include "base/files/staged_output.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+#include "tests/validate/small_sweep.h"
+#include "validate/study/sweep/run_sweep.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// All tables but the times, in order.
+std::string contents(const std::filesystem::path& file) {
+  validate::Database database(file, validate::Database::Mode::read);
+  std::string text;
+  for (const char* select : {"SELECT * FROM run ORDER BY run", "SELECT * FROM result ORDER BY 1, 2, 3, 4",
+                             "SELECT * FROM clip ORDER BY 1, 2, 3"}) {
+    validate::SqlStatement rows = database.prepare(select);
+    while (rows.step()) {
+      for (int column = 0; column < 12; ++column) text += rows.text(column) + "|";
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and at once or in parts") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 2", tests::kTwoKeys));
+  validate::SweepOutcome outcome;
+  {
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    CHECK(validate::estimate_sweep(sweep, database, {}, 1, dir.path()).missing == 12);
+    outcome = validate::run_sweep(sweep, database, {}, 1);
+    CHECK(outcome.done == 12);
+    CHECK(outcome.failed == 0);
+    CHECK(validate::run_sweep(sweep, database, {}, 1).done == 0);
+  }
+  {
+    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {});
+    CHECK_THROWS_AS(validate::run_sweep(sweep, database, {}, 2,
+                                        [](std::string_view, double fraction) {
+                                          if (fraction > 0.3) throw base::Interrupted();
+                                        }),
+                    base::Interrupted);
+    CHECK(database.runs() >= 4);
+    CHECK(database.runs() <= 6);
+  }
+  {
+    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {});
+    validate::run_sweep(sweep, database, {}, 2);
+  }
+  for (const std::uint64_t part : {1u, 2u, 3u}) {
+    validate::SweepDatabase database(dir / fmt::format("c{}.sqlite", part), sweep, "1", {part, 3});
+    CHECK(validate::run_sweep(sweep, database, {part, 3}, 1).done == 4);
+  }
+  validate::SweepDatabase merged(dir / "c.sqlite", sweep, "1", {});
+  // Half of a merge is none: what is missing, or differs, leaves nothing behind.
+  CHECK_THROWS_AS(merged.take({dir / "c3.sqlite", dir / "none.sqlite", dir / "c1.sqlite"}), base::InputError);
+  CHECK(merged.runs() == 0);
+  std::filesystem::copy_file(dir / "c3.sqlite", dir / "changed.sqlite");
+  validate::Database(dir / "changed.sqlite", validate::Database::Mode::write)
+      .run("UPDATE result SET value = value * (1 + 1e-15) WHERE run = (SELECT max(run) FROM run)");
+  CHECK_THROWS_WITH(merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "changed.sqlite"}),
+                    Contains("changed.sqlite: run 11: found other results than " + (dir / "c3.sqlite").string()));
+  CHECK(merged.runs() == 0);
+  // What several have alike is taken once, in one merge or in two.
+  merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c3.sqlite"});
+  CHECK(merged.runs() == 8);
+  CHECK_THROWS_WITH(merged.take({dir / "c2.sqlite", dir / "changed.sqlite"}),
+                    Contains("changed.sqlite: run 11: found other results than " + (dir / "c.sqlite").string()));
+  CHECK(merged.runs() == 8);
+  merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c2.sqlite"});
+  CHECK(merged.runs() == 12);
+  const std::string all = contents(dir / "a.sqlite");
+  // 12 runs; 1 configuration x 2 estimators x 4 quantities; 1 clip
+  CHECK(std::count(all.begin(), all.end(), '\n') == 12 + 12 * 8 + 12);
+  CHECK(contents(dir / "b.sqlite") == all);
+  CHECK(contents(dir / "c.sqlite") == all);
+}
+
+TEST_CASE("Every column of every table has a row in the schema") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", tests::kTwoKeys));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SqlStatement none = database.database().prepare(
+      "SELECT t.name || '.' || c.name FROM sqlite_master t JOIN pragma_table_info(t.name) c "
+      "WHERE t.type = 'table' AND t.name IN ('run', 'result', 'clip', 'timing') AND NOT EXISTS "
+      "(SELECT 1 FROM \"schema\" s WHERE s.\"table\" = t.name AND s.\"column\" = c.name)");
+  std::string missing;
+  while (none.step()) missing += none.text(0) + " ";
+  CHECK(missing == "");
+}
+
+TEST_CASE("A database of another sweep, another version or no sweep at all is refused, and so is a second writer") {
+  const tests::TempDir dir;
+  const std::filesystem::path file = tests::write_sweep(dir.path(), "replicates = 2", tests::kTwoKeys);
+  const validate::Sweep sweep = validate::read_sweep(file);
+  {
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    CHECK_THROWS_AS(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {}), base::EnvironmentError);
+  }
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "2", {}),
+                    Contains("program version") && Contains("\"1\""));
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {1, 2}), Contains("shard"));
+  validate::Sweep other = sweep;
+  other.scenario_text += "\n# another\n";
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", other, "1", {}), Contains("scenario's text"));
+  base::write_file(dir / "b.sqlite", "this is a text and certainly no database, however long one makes it");
+  CHECK_THROWS_AS(validate::SweepDatabase(dir / "b.sqlite", sweep, "1", {}), base::InputError);
+}
+
+TEST_CASE("A full disk is an error of the environment that keeps what is finished, and the sweep goes on later") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep =
+      validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 20", tests::kTwoKeys));
+  std::uint64_t kept = 0;
+  {
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    database.database().run("PRAGMA max_page_count = 24");  // what a full disk is to SQLite, for this connection
+    CHECK_THROWS_WITH(validate::run_sweep(sweep, database, {}, 1), Contains("disk is full"));
+    kept = database.runs();
+    CHECK(kept > 0);
+    CHECK(kept < 120);
+  }
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  CHECK(validate::run_sweep(sweep, database, {}, 2).done == 120 - kept);
+}
+
+TEST_CASE("A part whose runs are not those of the sweep by number or seed is refused whole") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", tests::kTwoKeys));
+  const auto refusal = [&](const std::string& change) {
+    std::filesystem::remove(dir / "part.sqlite");
+    {
+      validate::SweepDatabase part(dir / "part.sqlite", sweep, "1", {1, 2});
+      validate::run_sweep(sweep, part, {1, 2}, 1);
+      part.database().run(change);
+    }
+    validate::SweepDatabase whole(dir / "whole.sqlite", sweep, "1", {});
+    std::string said = "taken";
+    try {
+      whole.take({dir / "part.sqlite"});
+    } catch (const base::InputError& error) {
+      said = error.what();
+      CHECK(whole.runs() == 0);
+    }
+    return said;
+  };
+  const std::string all_tables =
+      "; UPDATE result SET run = run + %; UPDATE clip SET run = run + %; "
+      "UPDATE timing SET run = run + %";
+  const auto moved = [&](const std::string& by) {
+    std::string sql = "UPDATE run SET run = run + %" + all_tables;
+    for (std::size_t at = sql.find('%'); at != std::string::npos; at = sql.find('%')) sql.replace(at, 1, by);
+    return sql;
+  };
+  CHECK_THAT(refusal(moved("1000")),
+             Contains("part.sqlite: run 1000: found no run of this sweep, expected the runs 0 to 5"));
+  CHECK_THAT(refusal(moved("1")), Contains("part.sqlite: run 1: found the seed"));  // there is such a run
+  CHECK_THAT(refusal("UPDATE clip SET run = run + 1000 WHERE run = 2"), Contains("run 1002: found rows in clip alone"));
+  CHECK(refusal("SELECT 1") == "taken");
+}

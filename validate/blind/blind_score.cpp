@@ -1,0 +1,299 @@
+#include "validate/blind/blind_score.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "validate/blind/blind_left_out.h"
+#include "validate/blind/case/blind_effects.h"
+#include "validate/blind/case/blind_scene_effects.h"
+
+namespace glidelab::validate {
+namespace {
+
+constexpr double kModerate = 15.0, kStrong = 50.0;  // log likelihood, as the targets have them
+constexpr double kSameShrink = 0.95;
+constexpr double kClearGap = 3.0;  // standard errors: a shrink of less is noise over noise
+constexpr std::size_t kBins = 10;
+
+std::set<std::string> classes_of(const BlindOutcome& outcome) {
+  std::set<std::string> classes;
+  for (const BlindCause& cause : outcome.causes) classes.insert(blind_class(cause.id, outcome.filmed));
+  return classes;
+}
+
+const std::vector<std::string>& library_of(const BlindOutcome& outcome) {
+  return outcome.filmed ? filmed_effects() : library_effects();
+}
+
+/// What a way of deciding says of one case: none, unknown, or names (the first first).
+struct Saying {
+  std::string word;  // none, unknown, effect, failed
+  std::vector<std::string> names;
+};
+
+Saying of_diagnosis(const BlindVerdict& verdict) {
+  Saying saying{verdict.verdict, {}};
+  for (const BlindNamed& effect : verdict.effects) saying.names.push_back(effect.id);
+  return saying;
+}
+
+const BlindRanked* most(const std::vector<BlindRanked>& ranking, std::size_t size, const std::string& with,
+                        double by_parameter) {
+  const BlindRanked* best = nullptr;
+  double best_value = 0.0;
+  for (const BlindRanked& one : ranking) {
+    if (one.ids.size() != size) continue;
+    if (!with.empty() && std::find(one.ids.begin(), one.ids.end(), with) == one.ids.end()) continue;
+    const double value = one.log_likelihood_gain - by_parameter * one.parameters;
+    if (best != nullptr && value <= best_value) continue;
+    best = &one;
+    best_value = value;
+  }
+  return best;
+}
+
+/// The effect whose refit lowers the residuals most; it always names one.
+Saying of_best_residual(const BlindVerdict& verdict) {
+  if (verdict.verdict == "failed") return {"failed", {}};
+  const BlindRanked* best = most(verdict.ranking, 1, "", 0.0);
+  return best == nullptr ? Saying{"none", {}} : Saying{"effect", best->ids};
+}
+
+/// Forward selection by Schwarz's criterion: one effect if it lowers it, a second one if that lowers it further.
+Saying of_stepwise_bic(const BlindVerdict& verdict) {
+  if (verdict.verdict == "failed") return {"failed", {}};
+  const double price = 0.5 * std::log(std::max(2.0, verdict.points));
+  const auto value = [&](const BlindRanked& one) { return one.log_likelihood_gain - price * one.parameters; };
+  const BlindRanked* first = most(verdict.ranking, 1, "", price);
+  if (first == nullptr || value(*first) <= 0.0) return {"none", {}};
+  const BlindRanked* second = most(verdict.ranking, 2, first->ids.front(), price);
+  if (second == nullptr || value(*second) <= value(*first)) return {"effect", first->ids};
+  Saying saying{"effect", first->ids};
+  for (const std::string& id : second->ids) {
+    if (id != first->ids.front()) saying.names.push_back(id);
+  }
+  return saying;
+}
+
+void count(BlindShare& share, bool yes) {
+  ++share.of;
+  if (yes) ++share.yes;
+}
+
+void count_saying(const BlindOutcome& outcome, const Saying& saying, BlindMethod& method) {
+  const std::set<std::string> truth = classes_of(outcome);
+  std::size_t found = 0;
+  for (const std::string& cause : truth) {
+    found += std::any_of(saying.names.begin(), saying.names.end(),
+                         [&](const std::string& name) { return blind_class(name, outcome.filmed) == cause; });
+  }
+  switch (outcome.kind) {
+    case BlindKind::none:
+      return count(method.none, saying.word == "none");
+    case BlindKind::single:
+      return count(method.single[std::string(strength_word(outcome))],
+                   !saying.names.empty() && truth.contains(blind_class(saying.names.front(), outcome.filmed)));
+    case BlindKind::pair:
+      return count(method.pair, found == truth.size());
+    case BlindKind::outside:
+      return count(method.outside, saying.word == "unknown");
+  }
+}
+
+/// Picking among all effects, none and unknown with equal odds: expected shares, as if of 10,000 tries.
+BlindMethod picking(const std::vector<BlindOutcome>& outcomes) {
+  BlindMethod method{"picking at random", {}, {}, {}, {}};
+  constexpr std::size_t kTries = 10000;
+  const double words =
+      2.0 + static_cast<double>((outcomes.empty() ? library_effects() : library_of(outcomes.front())).size());
+  const auto expected = [&](double share) { return static_cast<std::size_t>(std::lround(share * kTries)); };
+  std::map<std::string, std::pair<double, double>> single;
+  for (const BlindOutcome& outcome : outcomes) {
+    if (outcome.kind != BlindKind::single) continue;
+    double same = 0.0;
+    for (const std::string& id : library_of(outcome)) {
+      same += blind_class(id, outcome.filmed) == true_class(outcome) ? 1.0 : 0.0;
+    }
+    auto& [sum, of] = single[std::string(strength_word(outcome))];
+    sum += same / words;
+    of += 1.0;
+  }
+  method.none = method.outside = {kTries, expected(1.0 / words)};
+  method.pair = {kTries, 0};
+  for (const auto& [strength, sums] : single) method.single[strength] = {kTries, expected(sums.first / sums.second)};
+  return method;
+}
+
+/// The likeliest word of a verdict with its probability, classes of effects summed up.
+std::pair<std::string, double> likeliest(const BlindVerdict& verdict, bool filmed) {
+  std::map<std::string, double> sums = {{"none", verdict.none}, {"unknown", verdict.unknown}};
+  for (const BlindRanked& ranked : verdict.ranking) {
+    std::set<std::string> classes;
+    for (const std::string& id : ranked.ids) classes.insert(blind_class(id, filmed));
+    for (const std::string& id : classes) sums[id] += ranked.probability;
+  }
+  const auto best =
+      std::max_element(sums.begin(), sums.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return {best->first, std::min(1.0, best->second)};
+}
+
+bool is_right(const BlindOutcome& outcome, const std::string& said) {
+  if (outcome.kind == BlindKind::none) return said == "none";
+  if (outcome.kind == BlindKind::outside) return said == "unknown";
+  return classes_of(outcome).contains(said);
+}
+
+void add_reliability(const std::vector<BlindOutcome>& outcomes, BlindScore& score) {
+  score.reliability.resize(kBins);
+  std::array<double, kBins> sums{};
+  double of = 0.0, off = 0.0;
+  for (std::size_t b = 0; b < kBins; ++b) {
+    score.reliability[b].from = static_cast<double>(b) / kBins;
+    score.reliability[b].to = static_cast<double>(b + 1) / kBins;
+  }
+  for (const BlindOutcome& outcome : outcomes) {
+    if (outcome.verdict.verdict == "failed") continue;
+    const auto [said, p] = likeliest(outcome.verdict, outcome.filmed);
+    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(p * kBins));
+    sums[bin] += p;
+    count(score.reliability[bin].right, is_right(outcome, said));
+    of += 1.0;
+  }
+  for (std::size_t b = 0; b < kBins; ++b) {
+    const auto n = static_cast<double>(score.reliability[b].right.of);
+    if (n == 0.0) continue;
+    score.reliability[b].stated = sums[b] / n;
+    off += n * std::abs(score.reliability[b].stated - score.reliability[b].right.share());
+  }
+  score.calibration_error = of > 0.0 ? off / of : 0.0;
+}
+
+void add_shrink(const BlindOutcome& outcome, BlindScore& score) {
+  if (outcome.kind != BlindKind::single || strength_word(outcome) != "strong") return;
+  const BlindVerdict& verdict = outcome.verdict;
+  std::optional<double> oracle;
+  for (const BlindRanked& ranked : verdict.ranking) {
+    if (ranked.ids == std::vector<std::string>{outcome.causes.front().id}) oracle = ranked.gap_after;
+  }
+  if (!oracle || verdict.gap_before - *oracle < kClearGap * verdict.gap_error) return;
+  const double reached = (verdict.gap_before - verdict.gap_after) / (verdict.gap_before - *oracle);
+  count(score.shrunk, reached >= kSameShrink);
+}
+
+void add_case(const BlindOutcome& outcome, BlindScore& score) {
+  const BlindVerdict& verdict = outcome.verdict;
+  const std::string strength(strength_word(outcome));
+  if (outcome.kind == BlindKind::none) count(score.false_alarm, verdict.verdict != "none");
+  if (outcome.kind == BlindKind::single) {
+    count(score.in_set[strength], named_by(outcome).contains(true_class(outcome)));
+    count(score.exact[strength], !verdict.effects.empty() && verdict.effects.front().id == outcome.causes.front().id);
+    if (outcome.left_out) {
+      const std::string said = verdict_without(outcome);
+      for (const char* word :
+           {"unknown", "equivalent", "none", "another name", "another name, probability over 0.8", "failed"}) {
+        count(score.left_out[word], said == word);
+      }
+      const auto variables = variables_of(outcome.causes.front().id);
+      if (said == "unknown" && !variables.empty()) {
+        const auto& where = outcome.left_out->where;
+        count(score.left_out_where,
+              !where.empty() && std::find(variables.begin(), variables.end(), where.front()) != variables.end());
+      }
+    }
+  }
+  if (outcome.kind == BlindKind::outside) {
+    count(score.recognised[strength], verdict.verdict == "unknown");
+    count(score.wrong_name, std::any_of(verdict.effects.begin(), verdict.effects.end(),
+                                        [](const BlindNamed& effect) { return effect.probability > kSureName; }));
+    if (verdict.verdict == "unknown") {
+      const auto& where = verdict.where;
+      const std::string& variable = outcome.causes.front().variable;
+      count(score.where, std::find(where.begin(), where.end(), variable) != where.end());
+      count(score.where_first, !where.empty() && where.front() == variable);
+    }
+  }
+  add_shrink(outcome, score);
+  if (verdict.verdict == "failed") ++score.failed;
+}
+
+void add_confusion(const BlindOutcome& outcome, BlindScore& score) {
+  std::string truth = "none";
+  for (const BlindCause& cause : outcome.causes) truth = truth == "none" ? cause.id : "two effects";
+  auto row =
+      std::find_if(score.confusion.begin(), score.confusion.end(), [&](const auto& r) { return r.truth == truth; });
+  if (row == score.confusion.end()) {
+    score.confusion.push_back({truth, {}});
+    row = std::prev(score.confusion.end());
+  }
+  const BlindVerdict& verdict = outcome.verdict;
+  std::string said = verdict.effects.empty() ? verdict.verdict : verdict.effects.front().id;
+  if (outcome.kind == BlindKind::pair && !verdict.effects.empty()) {
+    std::size_t found = 0;
+    for (const std::string& cause : classes_of(outcome)) found += named_by(outcome).contains(cause);
+    said = fmt::format("{} of the two named", found);
+  }
+  ++row->said[said];
+}
+
+}  // namespace
+
+std::string blind_class(const std::string& id, bool filmed) {
+  if (id == "frame_rate_error") return "scale_error";
+  if (id == "base_vibration" && !filmed) return "camera_motion";
+  return id;
+}
+
+std::string true_class(const BlindOutcome& outcome) {
+  return blind_class(outcome.causes.front().id, outcome.filmed);
+}
+
+std::set<std::string> named_by(const BlindOutcome& outcome) {
+  std::set<std::string> named;
+  for (const BlindNamed& effect : outcome.verdict.effects) {
+    named.insert(blind_class(effect.id, outcome.filmed));
+    for (const std::string& id : effect.equivalent_to) named.insert(blind_class(id, outcome.filmed));
+  }
+  return named;
+}
+
+std::string_view strength_word(const BlindOutcome& outcome) {
+  if (outcome.causes.empty()) return "";
+  double gain = outcome.causes.front().gain;
+  for (const BlindCause& cause : outcome.causes) gain = std::min(gain, cause.gain);
+  return gain > kStrong ? "strong" : gain >= kModerate ? "moderate" : "weak";
+}
+
+BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
+  BlindScore score;
+  score.methods = {{"glidelab diagnose", {}, {}, {}, {}},
+                   {"refit that lowers the residuals most", {}, {}, {}, {}},
+                   {"stepwise BIC", {}, {}, {}, {}}};
+  for (const BlindOutcome& outcome : outcomes) {
+    Saying said = of_diagnosis(outcome.verdict);
+    count_saying(outcome, said, score.methods[0]);
+    count_saying(outcome, of_best_residual(outcome.verdict), score.methods[1]);
+    count_saying(outcome, of_stepwise_bic(outcome.verdict), score.methods[2]);
+    add_case(outcome, score);
+    add_confusion(outcome, score);
+  }
+  // Both of two effects: also where one of them is named as an equal of what is.
+  BlindShare both;
+  for (const BlindOutcome& outcome : outcomes) {
+    if (outcome.kind != BlindKind::pair) continue;
+    const std::set<std::string> truth = classes_of(outcome), named = named_by(outcome);
+    count(both,
+          outcome.verdict.effects.size() > 1 && std::includes(named.begin(), named.end(), truth.begin(), truth.end()));
+  }
+  score.methods[0].pair = both;
+  score.methods.push_back(picking(outcomes));
+  add_reliability(outcomes, score);
+  std::sort(score.confusion.begin(), score.confusion.end(),
+            [](const auto& a, const auto& b) { return a.truth < b.truth; });
+  return score;
+}
+
+}  // namespace glidelab::validate

@@ -1,0 +1,93 @@
+/// Diagnoses of blind cases held against their truths.
+///
+/// Two pairs of effects are the same thing on tracks and count as one (effects.md: "cannot be told apart, always"):
+/// scale_error and frame_rate_error; camera_motion and base_vibration. Pictures tell the second pair apart. Weak cases
+/// gain less than 15 in log likelihood, moderate ones 15 to 50, strong ones more.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validate/blind/blind_verdict.h"
+#include "validate/blind/case/blind_case.h"
+#include "validate/truth/binomial.h"
+
+namespace glidelab::validate {
+
+inline constexpr double kSureName = 0.8;  ///< probability; a name with more is a sure one
+
+struct BlindOutcome {
+  std::size_t index = 0;
+  BlindKind kind = BlindKind::none;
+  std::vector<BlindCause> causes;
+  std::size_t clips = 0;
+  BlindVerdict verdict;
+  std::optional<BlindVerdict> left_out;  ///< with the true effect taken from the list
+  bool filmed = false;
+};
+
+/// scale_error and frame_rate_error give one word; so do camera_motion and base_vibration on tracks.
+std::string blind_class(const std::string& id, bool filmed);
+/// That of the one cause.
+std::string true_class(const BlindOutcome& outcome);
+/// All that a verdict names, as classes: its effects and their equals.
+std::set<std::string> named_by(const BlindOutcome& outcome);
+
+/// "weak", "moderate", "strong"; of a pair by its weaker cause.
+std::string_view strength_word(const BlindOutcome& outcome);
+
+struct BlindShare {
+  std::size_t of = 0, yes = 0;
+  /// 0 of none.
+  double share() const { return of == 0 ? 0.0 : static_cast<double>(yes) / static_cast<double>(of); }
+  /// Its 95 % interval (Clopper and Pearson); 0 to 1 of none.
+  ProportionInterval interval95() const { return proportion_interval(yes, of, 0.95); }
+};
+
+/// How often one way of deciding is right.
+struct BlindMethod {
+  std::string name;
+  BlindShare none, outside, pair;
+  std::map<std::string, BlindShare> single;  ///< by strength
+};
+
+struct ReliabilityBin {
+  double from = 0.0, to = 0.0;
+  double stated = 0.0;  ///< mean
+  BlindShare right;
+};
+
+/// One line of a table of confusions.
+struct ConfusionRow {
+  std::string truth;
+  std::map<std::string, std::size_t> said;  ///< first name, none, unknown, failed
+};
+
+struct BlindScore {
+  std::vector<BlindMethod> methods;              ///< the diagnosis first
+  std::map<std::string, BlindShare> in_set;      ///< single cases: truth among what is named, by strength
+  std::map<std::string, BlindShare> exact;       ///< single cases: the very id first, by strength
+  std::map<std::string, BlindShare> recognised;  ///< outside: unknown, by strength
+  BlindShare false_alarm;                        ///< none: anything else
+  BlindShare wrong_name;                         ///< outside: a sure name (kSureName)
+  BlindShare where;                              ///< outside and unknown: the true variable among the regions
+  BlindShare where_first;                        ///< outside and unknown: it is that of the first one
+  std::vector<ReliabilityBin> reliability;       ///< ten of equal width, from 0 to 1
+  double calibration_error = 0.0;                ///< expected: mean |stated - right| over cases
+  /// Single and strong, and the gap that the true effect's own fit closes is clear: the diagnosis' closes 95 % of it.
+  BlindShare shrunk;
+  std::map<std::string, BlindShare> left_out;  ///< by each word of verdict_without() (blind_left_out.h)
+  BlindShare left_out_where;                   ///< unknown of those: the first region is in a variable of the effect
+  std::vector<ConfusionRow> confusion;
+  std::size_t failed = 0;
+};
+
+/// Every case counts; one that could not be diagnosed as wrong, but not among the probabilities.
+BlindScore score_blind(const std::vector<BlindOutcome>& outcomes);
+
+}  // namespace glidelab::validate

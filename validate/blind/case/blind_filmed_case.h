@@ -1,0 +1,42 @@
+/// One filmed blind case: a small experiment rendered by the program's own renderer in a process of its own, with
+/// nothing (25 of 100), one effect (57) or one of no list (18) that its folder does not tell of.
+///
+/// Drawn from (seed, index) alone: scene, cause and strength (blind_scene_effects.h; 8 to 1500). The folder shown to
+/// the diagnosis is what the renderer wrote, less what is withheld; the scenario, the renderer's own truth and all that
+/// was done to the pictures are kept from it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validate/blind/case/blind_case.h"
+#include "validate/blind/case/blind_scene.h"
+
+namespace glidelab::validate {
+
+struct FilmedCase : DrawnCase {
+  BlindScene scene;
+  /// Effects that act and are no secret: a file with loss says so itself. To name them is neither asked for nor wrong.
+  std::vector<std::string> told;
+
+  std::string scenario() const;
+};
+
+/// NumericalError where no scene of many shows the wanted effect.
+FilmedCase make_filmed_case(std::uint64_t seed, std::size_t index, const BlindDraw& draw = {});
+
+/// Renders a scenario file into a folder that is not there yet, in another process; returns "" or what went wrong.
+using FilmRenderer =
+    std::function<std::string(const std::filesystem::path& scenario, const std::filesystem::path& folder)>;
+
+/// The experiment folder; `scratch` is used meanwhile and is gone afterwards. EnvironmentError where rendering fails.
+void film_blind_folder(const FilmedCase& one, const std::filesystem::path& folder, const std::filesystem::path& scratch,
+                       const FilmRenderer& render);
+
+/// truth_of(), the noise, what is no secret, what experiment.toml says otherwise, and the scenario that was rendered.
+std::string filmed_truth_json(const FilmedCase& one);
+
+}  // namespace glidelab::validate

@@ -1,0 +1,172 @@
+#include "validate/blind/run_blind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.h"
+#include "base/files/staged_output.h"
+#include "base/parallel.h"
+#include "validate/blind/case/blind_effects.h"
+#include "validate/blind/case/blind_scene_effects.h"
+
+namespace glidelab::validate {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+void check(const BlindOptions& options) {
+  if (options.cases < 1 || options.cases > kMostBlindCases) {
+    throw base::InputError(
+        base::Issue{"", 0, "--cases", fmt::format("{}", options.cases), fmt::format("1 to {}", kMostBlindCases)});
+  }
+  if (options.only.empty()) return;
+  std::string known;
+  const auto& library = options.pictures ? filmed_effects() : library_effects();
+  const auto& outside = options.pictures ? filmed_outside_effects() : outside_effects();
+  for (const auto* list : {&library, &outside}) {
+    for (const std::string& id : *list) {
+      if (id == options.only) return;
+      known += (known.empty() ? "" : ", ") + id;
+    }
+  }
+  throw base::InputError(base::Issue{"", 0, "--only", fmt::format("\"{}\"", options.only), "one of " + known});
+}
+
+/// What makes two runs the same but for their number of cases.
+void check_same_run(const BlindOptions& options, const fs::path& out) {
+  Json wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
+  if (options.pictures) wanted["pictures"] = true;
+  const fs::path file = out / "run.json";
+  if (!fs::exists(file)) {
+    for (const char* name : {"cases", "diagnoses", "truth"}) {  // whose parts are made anew where they are not whole
+      if (!fs::exists(out / name)) continue;
+      throw base::InputError(base::Issue{(out / name).string(), 0, "--out", "a folder that no run of blind made",
+                                         "an empty folder, or that of an earlier run (it has a run.json)"});
+    }
+    base::StagedOutput staged(out);
+    base::write_file(staged.dir() / "run.json", wanted.dump(2) + "\n");
+    staged.publish_files();
+    return;
+  }
+  const Json found = Json::parse(base::read_file(file), nullptr, false);
+  if (found == wanted) return;
+  throw base::InputError(base::Issue{file.string(), 0, "", found.is_discarded() ? "no JSON" : found.dump(),
+                                     "the seed and effect of this run, " + wanted.dump() + ", or an empty folder"});
+}
+
+constexpr const char* kDiagnosis = "diagnosis.json";  // in the folder of a diagnosis,
+constexpr const char* kFailure = "failure.txt";       // and what is there where it failed
+
+bool is_diagnosed(const fs::path& folder) {
+  return fs::exists(folder / kDiagnosis) || fs::exists(folder / kFailure);
+}
+
+void diagnose_into(const fs::path& folder, const Diagnoser& diagnose, const fs::path& experiment,
+                   const std::vector<std::string>& without) {
+  fs::create_directories(folder);
+  const std::string failure = diagnose(experiment, folder, without);
+  if (!failure.empty()) base::write_file(folder / kFailure, failure);
+}
+
+/// Less what the folder itself tells of.
+BlindVerdict verdict_in(const fs::path& folder, const std::vector<std::string>& told) {
+  BlindVerdict verdict;
+  if (fs::exists(folder / kFailure)) {
+    verdict.verdict = "failed";
+    verdict.why = base::read_file(folder / kFailure);
+  } else {
+    verdict = read_blind_verdict(folder / kDiagnosis);
+  }
+  set_aside(told, verdict);
+  return verdict;
+}
+
+/// A case of either sort.
+struct Made {
+  BlindKind kind = BlindKind::none;
+  std::vector<BlindCause> causes;
+  std::size_t clips = 0;
+  std::vector<std::string> told;
+  std::string truth_json;
+  std::function<void(const fs::path& folder)> write;
+};
+
+Made make_case(const BlindOptions& options, const fs::path& out, std::size_t index, const FilmRenderer& render) {
+  if (!options.pictures) {
+    const auto one = std::make_shared<BlindCase>(make_blind_case(options.seed, index, {options.only}));
+    return {
+        one->kind, one->causes, one->design.clips.size(), {}, blind_truth_json(*one), [one](const fs::path& folder) {
+          write_blind_folder(*one, folder);
+        }};
+  }
+  const auto one = std::make_shared<FilmedCase>(make_filmed_case(options.seed, index, {options.only}));
+  const fs::path scratch = out / fmt::format("making-{:04d}", index);
+  return {one->kind,
+          one->causes,
+          one->scene.motion.clips.size(),
+          one->told,
+          filmed_truth_json(*one),
+          [=](const fs::path& folder) { film_blind_folder(*one, folder, scratch, render); }};
+}
+
+/// One whole case; what it leaves on disk is complete once the truth is there.
+BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::size_t index, const Diagnoser& diagnose,
+                      const FilmRenderer& render) {
+  const Made one = make_case(options, out, index, render);
+  const std::string name = fmt::format("{:04d}", index);
+  const fs::path folder = out / "cases" / name, diagnosis = out / "diagnoses" / name;
+  const fs::path truth = out / "truth" / (name + ".json");
+  const bool leaves_out = options.leave_out && one.kind == BlindKind::single;
+  const fs::path without = diagnosis / "left-out";
+  const bool done = fs::exists(truth) && is_diagnosed(diagnosis);
+  if (done && base::read_file(truth) != one.truth_json) {
+    throw base::InputError(base::Issue{truth.string(), 0, "", "a case of another version of this program",
+                                       "an empty folder, or the version that made it"});
+  }
+  if (!done) {
+    fs::remove_all(folder);
+    fs::remove_all(diagnosis);
+    one.write(folder);
+    diagnose_into(diagnosis, diagnose, folder, {});
+  }
+  if (leaves_out && !is_diagnosed(without)) diagnose_into(without, diagnose, folder, {one.causes.front().id});
+  if (!done) {
+    base::StagedOutput staged(out / "truth");
+    base::write_file(staged.dir() / truth.filename(), one.truth_json);
+    staged.publish_files();
+  }
+  BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.pictures};
+  outcome.verdict = verdict_in(diagnosis, one.told);
+  if (leaves_out) outcome.left_out = verdict_in(without, one.told);
+  return outcome;
+}
+
+}  // namespace
+
+std::size_t kept_cases(const BlindOptions& options, const fs::path& out) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < options.cases; ++i) kept += fs::exists(out / "truth" / fmt::format("{:04d}.json", i));
+  return kept;
+}
+
+std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path& out, const Diagnoser& diagnose,
+                                    const base::Progress& progress, const FilmRenderer& render) {
+  check(options);
+  fs::create_directories(out);
+  check_same_run(options, out);
+  std::vector<BlindOutcome> outcomes(options.cases);
+  std::atomic<std::size_t> done{0};
+  base::for_each_parallel(options.cases, options.jobs, [&](std::size_t i) {
+    progress("diagnosing blind cases", static_cast<double>(done) / static_cast<double>(options.cases));
+    outcomes[i] = run_case(options, out, i, diagnose, render);
+    ++done;
+  });
+  return outcomes;
+}
+
+}  // namespace glidelab::validate

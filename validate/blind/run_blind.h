@@ -1,0 +1,50 @@
+/// Blind cases, one after the other or a few at once: made, diagnosed by another process, and only then their truth
+/// written down; in the end all are scored.
+///
+///     OUT/run.json                     what was asked for; a run with other seeds or effects is refused
+///     OUT/cases/0012/                  the experiment folder: all that the diagnosing process is told of
+///     OUT/diagnoses/0012/              diagnosis.json, or failure.txt where it could not be diagnosed
+///     OUT/diagnoses/0012/left-out/     the same of the diagnosis without the case's effect
+///     OUT/truth/0012.json              written after the diagnosis
+///
+/// With pictures a case is rendered in OUT/making-0012/, which is gone before the diagnosis begins.
+///
+/// Run again, it goes on where it stopped: a case counts as done when its truth is there.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "validate/blind/blind_score.h"
+#include "validate/blind/case/blind_filmed_case.h"
+
+namespace glidelab::validate {
+
+inline constexpr std::size_t kMostBlindCases = 100000;
+
+struct BlindOptions {
+  std::uint64_t seed = 1;
+  std::size_t cases = 0;
+  bool leave_out = false;  ///< diagnose each case of one effect once more, its effect taken from the list
+  std::string only;        ///< an effect that every case has
+  bool pictures = false;   ///< filmed experiments in place of tracks
+  int jobs = 1;
+};
+
+/// Diagnoses the folder and leaves diagnosis.json in `out`, in another process; returns "" or what went wrong.
+using Diagnoser = std::function<std::string(const std::filesystem::path& folder, const std::filesystem::path& out,
+                                            const std::vector<std::string>& without)>;
+
+/// How many of the cases are whole in `out`: a run goes on behind them.
+std::size_t kept_cases(const BlindOptions& options, const std::filesystem::path& out);
+
+/// InputError for no cases, for an unknown effect, and where OUT holds another run. `render` is for pictures only.
+std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
+                                    const Diagnoser& diagnose, const base::Progress& progress = base::no_progress,
+                                    const FilmRenderer& render = {});
+
+}  // namespace glidelab::validate

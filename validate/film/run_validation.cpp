@@ -1,0 +1,47 @@
+#include "validate/film/run_validation.h"
+
+#include <chrono>
+
+#include <algorithm>
+
+#include "base/errors.h"
+#include "fit/trajectory/trajectory_results.h"
+#include "validate/truth/cramer_rao.h"
+#include "validate/truth/truth_folder.h"
+
+namespace glidelab::validate {
+namespace {
+
+/// What the analysis found the positions of each clip of the truth to scatter by.
+std::vector<double> noise_of(const core::AnalysisResults& results, const Truth& truth) {
+  std::vector<double> noise_sd_m;
+  for (const TrueClip& clip : truth.clips) {
+    const auto found = std::find_if(results.clips.begin(), results.clips.end(),
+                                    [&](const core::ClipResult& candidate) { return candidate.name == clip.name; });
+    if (found == results.clips.end())
+      throw base::InputError(base::Issue{"truth.json", 0, "clips", clip.name, "clips that were analysed"});
+    noise_sd_m.push_back(found->position_noise_m);
+  }
+  return noise_sd_m;
+}
+
+}  // namespace
+
+ValidationResult run_validation(const render::Scenario& scenario, const std::filesystem::path& experiment_dir,
+                                const std::filesystem::path& truth_dir, const ValidationOptions& options,
+                                const base::Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  render::render_experiment(scenario, experiment_dir, truth_dir, options.render, progress);
+  ValidationResult result;
+  result.results = core::analyze({experiment_dir}, options.analysis, progress);
+  const Truth truth = read_truth(truth_dir);
+  result.comparison = compare(result.results, truth);
+  const core::AnalysisResults whole_motion = fit::with_trajectory_fits(result.results);
+  result.comparison.quantities =
+      with_bounds(join_estimators(result.comparison.quantities, compare_quantities(whole_motion, truth)),
+                  least_sds(truth, noise_of(result.results, truth), scenario.motion.gravity_m_s2));
+  result.comparison.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace glidelab::validate

@@ -1,0 +1,257 @@
+#include "validate/study/coverage/interval_coverage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "base/errors.h"
+#include "base/parallel.h"
+#include "core/math/quantile.h"
+#include "core/motion/lines/line_fit.h"
+#include "core/result/estimate.h"
+#include "fit/trajectory/trajectory_results.h"
+#include "validate/study/coverage/naive_lines.h"
+#include "validate/tracks/camera_noise.h"
+#include "validate/tracks/made_tracks.h"
+#include "validate/truth/binomial.h"
+#include "validate/truth/least_sd_of.h"
+
+namespace glidelab::validate {
+namespace {
+
+constexpr double kLevel = 0.95;
+
+/// What one estimator said of one quantity in one replicate.
+using Outcome = std::optional<core::Estimate>;
+
+const core::Quantity& quantity_of(const core::ConfigurationResult& found, int which) {
+  switch (which) {
+    case 0:
+      return found.k_over_m_1_s;
+    case 1:
+      return found.mu;
+    case 2:
+      return found.alpha_deg;
+    default:
+      return found.v_lim_m_s;
+  }
+}
+
+constexpr const char* kNames[] = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"};
+
+std::optional<double> truth_of(const TrueConfiguration& truth, int which) {
+  return which == 0 ? truth.k_over_m_1_s : which == 1 ? truth.mu : which == 2 ? truth.alpha_deg : truth.v_lim_m_s;
+}
+
+/// The same scenario filmed with another clock of its kind: its rate is off by a normal deviate of the standard
+/// deviation that the estimators assume of clocks. Frames are lost as the scenario says.
+render::Scenario with_other_clock(render::Scenario scenario, std::uint64_t seed) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0xC10Cu};
+  std::mt19937_64 engine(sequence);
+  std::normal_distribution<double> deviate(0.0, core::kClockSdRelative);
+  scenario.recording.clock.rate_error_ppm = 1e6 * deviate(engine);
+  return scenario;
+}
+
+/// The bound with what the clock adds: K/m goes with its rate, accelerations with the square.
+LeastSd with_clock(LeastSd least, const TrueConfiguration& truth) {
+  constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
+  const double rate = core::kClockSdRelative;
+  if (least.k_over_m_1_s) least.k_over_m_1_s = std::hypot(*least.k_over_m_1_s, rate * truth.k_over_m_1_s.value_or(0.0));
+  if (least.mu) least.mu = std::hypot(*least.mu, 2.0 * rate * truth.mu.value_or(0.0));
+  if (least.v_lim_m_s) least.v_lim_m_s = std::hypot(*least.v_lim_m_s, rate * truth.v_lim_m_s.value_or(0.0));
+  if (least.alpha_deg && truth.alpha_deg) {
+    const double by_rate = 2.0 * rate * std::tan(*truth.alpha_deg / kDegreesPerRad) * kDegreesPerRad;
+    least.alpha_deg = std::hypot(*least.alpha_deg, by_rate);
+  }
+  return least;
+}
+
+/// Which of the results' configurations each true one is: by its first clip.
+std::vector<std::size_t> places_of(const Truth& truth, const core::AnalysisResults& results) {
+  std::vector<std::size_t> places;
+  for (const TrueConfiguration& configuration : truth.configurations) {
+    for (std::size_t i = 0; i < results.configurations.size(); ++i) {
+      const std::vector<std::string>& clips = results.configurations[i].clips;
+      if (std::find(clips.begin(), clips.end(), configuration.clips.front()) != clips.end()) places.push_back(i);
+    }
+  }
+  return places;
+}
+
+LevelCount counted(double level, std::size_t covered, std::size_t n) {
+  LevelCount count{level, covered, static_cast<double>(covered) / static_cast<double>(n)};
+  const ProportionInterval interval = proportion_interval(covered, n, kLevel);
+  count.low95 = interval.low;
+  count.high95 = interval.high;
+  count.p_value = binomial_p_value(covered, n, level);
+  return count;
+}
+
+bool holds(const core::Estimate& estimate, double truth, double level) {
+  const double ratio = level == kLevel ? 1.0 : arm_ratio(level, 0.5 * (estimate.high95 - estimate.low95), estimate.sd);
+  return estimate.value - ratio * (estimate.value - estimate.low95) <= truth &&
+         truth <= estimate.value + ratio * (estimate.high95 - estimate.value);
+}
+
+void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t place, const std::vector<double>& levels,
+               CoverageRow& row) {
+  double sum = 0.0, squares = 0.0, stated = 0.0;
+  std::vector<std::size_t> covered(levels.size());
+  for (const std::vector<Outcome>& replicate : outcomes) {
+    const std::optional<core::Estimate>& estimate = replicate[place];
+    if (!estimate) continue;
+    ++row.determined;
+    if (estimate->low95 <= row.truth && row.truth <= estimate->high95) ++row.covered;
+    for (std::size_t i = 0; i < levels.size(); ++i) covered[i] += holds(*estimate, row.truth, levels[i]) ? 1 : 0;
+    const double error = estimate->value - row.truth;
+    sum += error;
+    squares += error * error;
+    stated += estimate->sd * estimate->sd;
+  }
+  if (row.determined == 0) return;
+  const auto n = static_cast<double>(row.determined);
+  row.bias = sum / n;
+  row.sd = row.determined > 1 ? std::sqrt(std::max(0.0, squares - n * row.bias * row.bias) / (n - 1.0)) : 0.0;
+  row.stated_sd = std::sqrt(stated / n);
+  row.coverage = static_cast<double>(row.covered) / n;
+  const LevelCount at95 = counted(kLevel, row.covered, row.determined);
+  row.low95 = at95.low95;
+  row.high95 = at95.high95;
+  row.p_value = at95.p_value;
+  for (std::size_t i = 0; i < levels.size(); ++i) row.levels.push_back(counted(levels[i], covered[i], row.determined));
+  const double mean_square = row.sd * row.sd + row.bias * row.bias;
+  if (row.cramer_rao_sd && mean_square > 0.0) row.efficiency = *row.cramer_rao_sd * *row.cramer_rao_sd / mean_square;
+}
+
+}  // namespace
+
+Coverage measure_coverage(const render::Scenario& scenario, const CoverageOptions& options,
+                          const base::Progress& progress) {
+  if (options.noise_sd_m && !(std::isfinite(*options.noise_sd_m) && *options.noise_sd_m > 0.0)) {
+    throw base::InputError(
+        base::Issue{"", 0, "noise", fmt::format("{}", *options.noise_sd_m), "a length in metres above 0"});
+  }
+  if (options.replicates == 0) {
+    throw base::InputError(base::Issue{"", 0, "replicates", "0", "a whole number above 0"});
+  }
+  for (std::size_t i = 0; i < options.levels.size(); ++i) {
+    const double level = options.levels[i];
+    if (!(level > 0.0 && level < 1.0)) {
+      throw base::InputError(base::Issue{"", 0, "level", fmt::format("{}", level), "a number above 0 and below 1"});
+    }
+    if (std::count(options.levels.begin(), options.levels.end(), level) > 1) {
+      throw base::InputError(base::Issue{"", 0, "level", fmt::format("{} twice", level), "each level once"});
+    }
+  }
+  const MadeTracks clean = make_tracks(with_other_clock(scenario, options.seed), options.seed);
+  const std::vector<double> noise_sd_m = options.noise_sd_m
+                                             ? std::vector<double>(clean.tracks.size(), *options.noise_sd_m)
+                                             : predicted_noise_m(scenario, clean.truth);
+  for (const double sd : noise_sd_m) {
+    if (std::isfinite(sd) && sd > 0.0) continue;
+    throw base::InputError(base::Issue{"", 0, "camera", "a picture in which the marker has no edge of its own",
+                                       "a marker of two pixels or more that is brighter than the wall, or --noise-m"});
+  }
+  const std::vector<LeastSd> bounds = least_sds(clean.truth, noise_sd_m, clean.gravity_m_s2);
+  const std::size_t configurations = clean.truth.configurations.size();
+  std::vector<std::vector<Outcome>> outcomes(options.replicates);
+  std::atomic<std::size_t> done = 0;
+  base::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
+    const MadeTracks noisy = with_noise(make_tracks(with_other_clock(scenario, options.seed + r), options.seed + r),
+                                        noise_sd_m, options.seed + r);
+    const core::AnalysisResults lines = analyze_tracks(noisy, options.bandwidth_s);
+    const core::MotionOptions generalised{.bandwidth_s = options.bandwidth_s, .lines = core::LineMethod::generalised};
+    const core::AnalysisResults results[] = {lines, analyze_tracks(noisy, generalised),
+                                             fit::with_trajectory_fits(lines), with_naive_lines(lines)};
+    const std::vector<std::size_t> places = places_of(clean.truth, lines);
+    for (const core::AnalysisResults& by : results) {
+      for (std::size_t c = 0; c < configurations; ++c) {
+        for (int which = 0; which < 4; ++which)
+          outcomes[r].push_back(quantity_of(by.configurations[places[c]], which).estimate);
+      }
+    }
+    progress("replicates", static_cast<double>(++done) / static_cast<double>(options.replicates));
+  });
+  Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, options.levels, {}};
+  for (std::size_t c = 0; c < configurations; ++c) {
+    for (std::size_t e = 0; e < kCoverageEstimators.size(); ++e) {
+      for (int which = 0; which < 4; ++which) {
+        const std::optional<double> truth = truth_of(clean.truth.configurations[c], which);
+        if (!truth) continue;
+        CoverageRow row;
+        row.configuration = clean.truth.configurations[c].name;
+        row.estimator = kCoverageEstimators[e];
+        row.quantity = kNames[which];
+        row.truth = *truth;
+        row.cramer_rao_sd = least_sd_of(with_clock(bounds[c], clean.truth.configurations[c]), kNames[which]);
+        summarise(outcomes, (e * configurations + c) * 4 + static_cast<std::size_t>(which), options.levels, row);
+        coverage.rows.push_back(std::move(row));
+      }
+    }
+  }
+  return coverage;
+}
+
+CoverageBand band_of(double level, std::size_t n) {
+  // The least k with P(X <= k) at least `part`.
+  const auto quantile = [&](double part) {
+    long low = -1, high = static_cast<long>(n);
+    while (high - low > 1) {
+      const long middle = low + (high - low) / 2;
+      (binomial_cdf(middle, n, level) < part ? low : high) = middle;
+    }
+    return static_cast<double>(high) / static_cast<double>(n);
+  };
+  return {quantile(0.025), quantile(0.975)};
+}
+
+double arm_ratio(double level, double half95, double sd) {
+  using boost::math::quantile;
+  using boost::math::students_t;
+  const double wanted = half95 / sd, upper = 0.5 * (1.0 + level);
+  constexpr double kMost = 1e6;  // degrees: as good as normal
+  if (!(wanted > core::student_t975(kMost))) {
+    return quantile(boost::math::normal(), upper) / core::kNormal95;
+  }
+  double low = 1.0, high = kMost;  // t falls with the degrees
+  while (high - low > 1e-9 * high) {
+    const double middle = std::sqrt(low * high);
+    (core::student_t975(middle) > wanted ? low : high) = middle;
+  }
+  return quantile(students_t(low), upper) / quantile(students_t(low), 0.975);
+}
+
+namespace {
+
+std::vector<CoverageFailure> significant(const Coverage& coverage, bool below) {
+  std::vector<CoverageFailure> judged, failing;
+  for (const CoverageRow& row : coverage.rows) {
+    if (row.estimator == kNaiveLines || row.determined == 0) continue;
+    for (const LevelCount& at : row.levels) judged.push_back({row, at});
+  }
+  for (const CoverageFailure& one : judged) {
+    if (one.at.p_value < 0.01 / static_cast<double>(judged.size()) && (one.at.coverage < one.at.level) == below) {
+      failing.push_back(one);
+    }
+  }
+  return failing;
+}
+
+}  // namespace
+
+std::vector<CoverageFailure> too_narrow(const Coverage& coverage) {
+  return significant(coverage, true);
+}
+
+std::vector<CoverageFailure> too_wide(const Coverage& coverage) {
+  return significant(coverage, false);
+}
+
+}  // namespace glidelab::validate

@@ -1,0 +1,46 @@
+/// Whether one point of a requirement (validate/requirement.h) reaches its targets, by runs; and what keeps it from
+/// that.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "validate/film/film_studio.h"
+#include "validate/study/requirement/requirement.h"
+#include "validate/study/requirement/requirement_bound.h"
+#include "validate/study/sweep/design/sweep.h"
+
+namespace glidelab::validate {
+
+/// The runs of one point, on options.jobs threads. Rendered ones share what stands still, and each run's calibration
+/// with what is thought away.
+class RecordedRuns {
+ public:
+  /// As RequirementOptions::confirm says, tracks or clips: options.runs of them. All outlive this.
+  RecordedRuns(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options)
+      : sweep_(sweep), setting_(setting), point_(point), options_(options), studios_(options.runs) {}
+
+  /// Fills `results` (one for each target) with the better estimator's errors over the runs; reached, missed (any of
+  /// them), or undecided.
+  Verdict judge(std::vector<TargetResult>& results) { return judge(setting_, options_.confirm, results); }
+
+  /// What is in no bound, thought away one by one, by the same runs: how many times smaller the errors in `results` are
+  /// with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec, with the true
+  /// camera in place of the calibrated one (not of a rational lens, which the analysis cannot write), and with the true
+  /// positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
+  std::vector<Limit> limits(const std::vector<TargetResult>& results);
+
+ private:
+  Verdict judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results);
+  MadeTracks tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run, Confirm confirm);
+
+  const Sweep& sweep_;
+  const Setting& setting_;
+  std::uint64_t point_;
+  const RequirementOptions& options_;
+  std::vector<std::unique_ptr<FilmStudio>> studios_;  ///< of each run, once it was filmed
+  std::shared_ptr<const render::Stage> stage_;        ///< once any was
+};
+
+}  // namespace glidelab::validate

@@ -1,0 +1,109 @@
+/// A sweep: one scenario, the keys of it that vary, how their values are combined, and what analyses every run.
+///
+/// Read from one TOML file (docs/sweep.md). A point is one combination of values; every point is run `replicates`
+/// times with seeds of its own. Run r belongs to point r / replicates. What a run is depends on the sweep's seed and
+/// its number alone, so the order of the runs and the number of threads do not matter.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/toml/toml_set.h"
+
+namespace glidelab::validate {
+
+enum class Level {
+  tracks,  ///< true positions at the frames' times and white noise, no pictures
+  clips,   ///< rendered in memory, calibrated and tracked
+};
+
+enum class Design { factorial, latin_hypercube, sobol };
+
+/// Where the values of a key come from.
+struct AxisSource {
+  enum class Kind {
+    list,         ///< `values`
+    linear,       ///< from `from` to `to`: `count` of them (factorial), or anywhere between
+    logarithmic,  ///< the same with equal ratios
+    uniform,      ///< the rest: drawn for every run
+    log_uniform,
+    normal,      ///< `mean`, `sd`
+    log_normal,  ///< `mean` is the median, `sd` that of the natural logarithm
+  };
+  Kind kind = Kind::list;
+  std::vector<base::TomlScalar> values;
+  double from = 0.0, to = 0.0;
+  std::size_t count = 0;
+  double mean = 0.0, sd = 0.0;
+  bool whole = false;  ///< of ranges and uniform draws: their whole numbers only
+  bool drawn() const { return kind >= Kind::uniform; }
+};
+
+/// Keys that belong together, as a shutter and its line time. Of the keys that an axis' choices name, those that the
+/// chosen one does not name are not in the scenario.
+struct Choice {
+  std::string label;  ///< its value in the database
+  std::vector<base::TomlAssignment> keys;
+  int line = 0;  ///< of the sweep's file
+};
+
+struct Axis {
+  std::string name;               ///< its column in the database
+  std::vector<std::string> keys;  ///< dotted paths in the scenario, all with one value; or "tracks.noise_m"
+  AxisSource source;
+  std::vector<Choice> choices = {};  ///< then `keys` has those of all of them, and `source` lists the labels
+  int line = 0;                      ///< of the sweep's file, where the keys stand
+};
+
+/// The rule that knows the truth (validate/oracle_bandwidth.h).
+inline constexpr const char* kBestPossible = "best-possible";
+
+/// One way to analyse a run's clips.
+struct Analysis {
+  std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory", "all-points"
+  std::optional<double> bandwidth_s;        ///< given; else chosen
+  std::string bandwidth_rule = {};          ///< of core/bandwidth_rule.h, or kBestPossible; empty: the default one
+  std::string name() const;                 ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
+};
+
+/// What was published of a quantity that falls with mass: mu of the lightest and the heaviest glider on one track, and
+/// the least R² of the lines that it is from.
+struct PublishedFall {
+  std::string configuration;
+  double mu_lightest = 0.0, mu_heaviest = 0.0;
+  double r2 = 0.0;
+  std::string source;
+};
+
+struct Sweep {
+  std::filesystem::path file;
+  std::string text;  ///< of the file
+  std::string name;
+  std::filesystem::path scenario_file;
+  std::string scenario_text;
+  Level level = Level::tracks;
+  Design design = Design::factorial;
+  std::uint64_t seed = 1;
+  std::uint64_t samples = 0;  ///< points of a design other than factorial
+  std::uint64_t replicates = 1;
+  double noise_m = 0.0;  ///< standard deviation of a track's positions
+  /// With rendered clips: the replicates of a point share the calibration of the first one, as recordings before one
+  /// camera do; else each has stills and a calibration of its own.
+  bool calibrate_once = false;
+  std::optional<double> field_m;  ///< width of the plane that the picture shall show: sets the camera's distance
+  std::vector<Axis> axes;
+  std::vector<Analysis> analyses;
+  std::vector<PublishedFall> published_falls = {};  ///< to lay beside (validate/mass_study.h)
+  /// Texts of the cameras that occur (the scenario's own, or those of an axis), as part of what the sweep is.
+  std::vector<std::string> camera_files;
+};
+
+/// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,
+/// a value that the scenario refuses (each value of each axis is tried, the others at their first ones), with the line
+/// of the sweep's file that the key stands on.
+Sweep read_sweep(const std::filesystem::path& path);
+
+}  // namespace glidelab::validate

@@ -1,0 +1,60 @@
+/// Errors of a sweep's runs by the values of one axis, or by configuration.
+///
+/// Where runs have no answer the runs at one value of an axis are not like those at another: the hard combinations may
+/// be missing at one of them alone. In a factorial design without drawn keys the errors are then also given over those
+/// combinations of the other keys (and the configuration) that are answered at every value, by half of their replicates
+/// or more, all with one weight:
+///
+///     rms² = mean over combinations of the mean over replicates of error²
+///
+/// Configurations are compared over the runs in which each has an answer, whatever the design.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/sweep_database.h"
+#include "validate/study/sweep/sweep_summary.h"
+
+namespace glidelab::validate {
+
+/// How the rows of `result` (s) and `run` (r) are put together: an SQL expression.
+struct Grouping {
+  std::string expression = "0";
+  double from = 0.0, to = 0.0;  ///< of the bins
+  bool binned = false, logarithmic = false, words = false;
+  bool switched = false;    ///< the words are false and true
+  bool as_written = false;  ///< the words are files, two of one name, which their folders tell apart
+  /// Two SQL expressions, of what has to be answered in every group to be compared; empty where the design has no such.
+  std::string combination = {};
+  std::uint64_t combinations = 0;  ///< how many there are, of one configuration
+  std::uint64_t runs = 1;          ///< of one combination in one group
+  bool of_runs = false;            ///< a combination is a run, with all of its configurations
+};
+
+/// By an axis' values, or by bins where these are many.
+Grouping grouping_of(const Sweep& sweep, const Axis& axis, Database& database);
+Grouping by_configuration(const Sweep& sweep);
+
+/// Of all configurations, where none is named. The groups come in rising order of the expression. `words`: the labels
+/// that positions are numbers of; new ones are added.
+std::vector<Series> series_of(Database& database, const Grouping& grouping, std::vector<std::string>& words,
+                              const std::string& configuration = {});
+
+/// By quantity and estimator: how many configurations have a truth in some run.
+using ConfigurationCounts = std::map<std::pair<std::string, std::string>, std::uint64_t>;
+ConfigurationCounts configurations_of(Database& database);
+
+/// Sets `likeness` of each series that series_of() gave with the same arguments, and `alike` of its groups.
+void find_alike(const Sweep& sweep, Database& database, const Grouping& grouping, const ConfigurationCounts& counts,
+                const std::string& configuration, std::vector<Series>& all);
+
+/// Clip and configuration, one after the other, by their names in the first run that did not fail; no other run has
+/// other names. Empty where there is none.
+std::vector<std::string> clips_and_configurations(const Sweep& sweep, Database& database);
+
+}  // namespace glidelab::validate

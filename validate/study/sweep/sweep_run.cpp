@@ -1,0 +1,152 @@
+#include "validate/study/sweep/sweep_run.h"
+
+#include <algorithm>
+
+#include "base/errors.h"
+#include "fit/trajectory/trajectory_results.h"
+#include "validate/film/film_studio.h"
+#include "validate/study/coverage/naive_lines.h"
+#include "validate/study/sweep/design/sweep_design.h"
+#include "validate/study/sweep/design/sweep_scenario.h"
+#include "validate/tracks/oracle_bandwidth.h"
+#include "validate/truth/cramer_rao.h"
+
+namespace glidelab::validate {
+namespace {
+
+QuantityRow row_of(const char* quantity, const std::optional<double>& truth, const core::Quantity& found,
+                   const std::optional<double>& least_sd) {
+  QuantityRow row;
+  row.quantity = quantity;
+  row.truth = truth;
+  row.least_sd = least_sd;
+  row.why = found.why;
+  if (!found.estimate) return row;
+  row.value = found.estimate->value;
+  row.sd = found.estimate->sd;
+  row.low95 = found.estimate->low95;
+  row.high95 = found.estimate->high95;
+  if (found.smoothing_correction) row.uncorrected = row.value.value() - *found.smoothing_correction;
+  return row;
+}
+
+void add_quantities(const core::AnalysisResults& results, const Truth& truth, const std::vector<LeastSd>& least,
+                    const std::string& estimator, std::vector<QuantityRow>& rows) {
+  for (std::size_t c = 0; c < truth.configurations.size(); ++c) {
+    const TrueConfiguration& expected = truth.configurations[c];
+    const LeastSd bound = c < least.size() ? least[c] : LeastSd{};
+    const auto found =
+        std::find_if(results.configurations.begin(), results.configurations.end(), [&](const auto& result) {
+          return std::find(result.clips.begin(), result.clips.end(), expected.clips.front()) != result.clips.end();
+        });
+    if (found == results.configurations.end()) continue;
+    for (QuantityRow row : {row_of("k_over_m_1_s", expected.k_over_m_1_s, found->k_over_m_1_s, bound.k_over_m_1_s),
+                            row_of("mu", expected.mu, found->mu, bound.mu),
+                            row_of("alpha_deg", expected.alpha_deg, found->alpha_deg, bound.alpha_deg),
+                            row_of("v_lim_m_s", expected.v_lim_m_s, found->v_lim_m_s, bound.v_lim_m_s)}) {
+      row.configuration = expected.name;
+      row.estimator = estimator;
+      rows.push_back(std::move(row));
+    }
+  }
+}
+
+void add_clips(const core::AnalysisResults& results, const Truth& truth, const std::string& estimator,
+               std::vector<ClipRow>& rows) {
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    const core::ClipResult& clip = results.clips[c];
+    ClipRow row{clip.name,     estimator,        clip.frames,
+                clip.detected, clip.bandwidth_s, clip.position_noise_m,
+                std::nullopt,  std::nullopt,     acceleration_error_m_s2(clip, truth.clips[c])};
+    for (const core::LineFit& line : clip.segments) (line.direction < 0 ? row.r2_up : row.r2_down) = line.r2;
+    rows.push_back(std::move(row));
+  }
+}
+
+bool same_for_all_seeds(const render::ClockSetup& clock) {
+  return clock.jitter_s == 0.0 && clock.dropped_fraction == 0.0 && clock.duplicated_fraction == 0.0;
+}
+
+}  // namespace
+
+MadeTracks RunWorker::tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario) {
+  if (!same_for_all_seeds(scenario.recording.clock)) return make_tracks(scenario, record.seed);
+  if (made_of_ != text) {
+    made_ = make_tracks(scenario, record.seed);
+    made_of_ = text;
+  }
+  return made_;
+}
+
+FilmStudio& RunWorker::studio_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario) {
+  if (!studio_ || studio_point_ != record.point || studio_of_ != text) {
+    studio_.reset();
+    const std::uint64_t seed = seed_of(sweep_, record.point * sweep_.replicates);
+    studio_ = std::make_unique<FilmStudio>(scenario, seed, 1, nullptr, progress_);
+    studio_point_ = record.point;
+    studio_of_ = text;
+  }
+  return *studio_;
+}
+
+void RunWorker::fill(RunRecord& record) {
+  const RunScenario run = scenario_with(sweep_, record.values);
+  MadeTracks made;
+  std::vector<LeastSd> least;
+  if (sweep_.level == Level::clips) {
+    made = sweep_.calibrate_once ? studio_for(record, run.text, run.scenario).film(run.scenario, record.seed, 1)
+                                 : film_tracks(run.scenario, record.seed, 1, progress_);
+  } else {
+    const MadeTracks clean = tracks_for(record, run.text, run.scenario);
+    made = with_noise(clean, run.noise_m, record.seed);
+    if (run.noise_m > 0.0) {
+      least = least_sds(clean.truth, std::vector<double>(clean.truth.clips.size(), run.noise_m), clean.gravity_m_s2);
+    }
+  }
+  std::optional<core::AnalysisResults> by_default;  // serves the fit of the whole motion as well
+  for (const Analysis& analysis : sweep_.analyses) {
+    const bool plain = !analysis.bandwidth_s && analysis.bandwidth_rule.empty();
+    if (analysis.estimator == "trajectory" || (analysis.estimator == "phase-diagram" && plain)) {
+      if (!by_default) by_default = analyze_tracks(made, core::MotionOptions{});
+      if (analysis.estimator == "trajectory") {
+        add_quantities(fit::with_trajectory_fits(*by_default), made.truth, least, analysis.name(), record.quantities);
+        continue;
+      }
+    }
+    const core::LineMethod lines =
+        analysis.estimator == "phase-diagram-gls" ? core::LineMethod::generalised : core::LineMethod::ordinary;
+    const core::AnalysisResults results =
+        analysis.estimator == "all-points"         ? lines_through_all_points(made, *analysis.bandwidth_s)
+        : analysis.bandwidth_rule == kBestPossible ? with_best_bandwidths(made)
+        : analysis.estimator == "phase-diagram" && plain
+            ? *by_default
+            : analyze_tracks(made, core::MotionOptions{analysis.bandwidth_s, analysis.bandwidth_rule, lines});
+    add_clips(results, made.truth, analysis.name(), record.clips);
+    add_quantities(results, made.truth, least, analysis.name(), record.quantities);
+  }
+}
+
+RunRecord RunWorker::evaluate(std::uint64_t run) {
+  RunRecord record;
+  record.run = run;
+  record.point = run / sweep_.replicates;
+  record.replicate = run % sweep_.replicates;
+  record.seed = seed_of(sweep_, run);
+  record.values = values_of(sweep_, run);
+  try {
+    fill(record);
+  } catch (const base::InputError& error) {
+    record.failed = true;
+    record.why = error.what();
+  } catch (const base::NumericalError& error) {
+    record.failed = true;
+    record.why = error.what();
+  }
+  if (record.failed) {
+    record.quantities.clear();
+    record.clips.clear();
+  }
+  return record;
+}
+
+}  // namespace glidelab::validate

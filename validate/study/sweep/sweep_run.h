@@ -1,0 +1,78 @@
+/// One run of a sweep: its scenario is simulated (and filmed), analysed in every way that the sweep names, and
+/// compared.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/progress.h"
+#include "validate/film/film_studio.h"
+#include "validate/study/sweep/design/sweep.h"
+#include "validate/tracks/made_tracks.h"
+
+namespace glidelab::validate {
+
+/// A recovered quantity of one configuration beside its truth.
+struct QuantityRow {
+  std::string configuration;
+  std::string estimator;  ///< Analysis::name()
+  std::string quantity;   ///< "k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"
+  std::optional<double> truth, value, sd, low95, high95;
+  std::optional<double> least_sd;  ///< Cramér-Rao bound; only of tracks, whose noise is known
+  std::string why;                 ///< why there is no value
+  /// The value with the smoothing's bias in it; nothing where none was taken off.
+  std::optional<double> uncorrected = {};
+};
+
+struct ClipRow {
+  std::string clip;
+  std::string estimator;
+  std::size_t frames = 0, detected = 0;
+  double bandwidth_s = 0.0;
+  double position_noise_m = 0.0;
+  std::optional<double> r2_up, r2_down;    ///< of the line for v < 0, v > 0
+  std::optional<double> a_rms_error_m_s2;  ///< of the points that count (validate/oracle_bandwidth.h)
+};
+
+struct RunRecord {
+  std::uint64_t run = 0, point = 0, replicate = 0, seed = 0;
+  std::vector<base::TomlScalar> values;  ///< one for each axis
+  bool failed = false;                   ///< scenario, simulation or analysis refused it; `why` says what
+  std::string why;
+  std::vector<QuantityRow> quantities;
+  std::vector<ClipRow> clips;
+};
+
+/// Evaluates runs, one after the other; one worker for each thread. What a run gives does not depend on those before
+/// it.
+class RunWorker {
+ public:
+  /// `progress` is called often while a recording is made; an exception from it comes out.
+  explicit RunWorker(const Sweep& sweep, base::Progress progress = base::no_progress)
+      : sweep_(sweep), progress_(std::move(progress)) {}
+  /// InputError and NumericalError of a run are its outcome; EnvironmentError comes out.
+  RunRecord evaluate(std::uint64_t run);
+
+ private:
+  void fill(RunRecord& record);
+  MadeTracks tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
+  /// Of the record's point, whose stills have the noise of its first run's seed.
+  FilmStudio& studio_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
+
+  const Sweep& sweep_;
+  base::Progress progress_;
+  // Replicates of one point share their calibration where the sweep says so; what is drawn may change the scenario.
+  std::uint64_t studio_point_ = 0;
+  std::string studio_of_;
+  std::unique_ptr<FilmStudio> studio_;
+  // The motion of replicates of one point is the same, but for a clock that errs at random.
+  std::string made_of_;
+  MadeTracks made_;
+};
+
+}  // namespace glidelab::validate

@@ -1,0 +1,167 @@
+#include "validate/study/sweep/sweep_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "validate/study/sweep/design/sweep_design.h"
+#include "validate/study/sweep/failure_kinds.h"
+#include "validate/study/sweep/sweep_groups.h"
+
+namespace glidelab::validate {
+namespace {
+
+/// The value below which the given part of a column lies, of `count` rows of one estimator.
+std::optional<double> quantile_of(Database& database, const std::string& rows, const std::string& column,
+                                  const std::string& estimator, std::uint64_t count, double part) {
+  if (count == 0) return std::nullopt;
+  SqlStatement select = database.prepare(fmt::format("SELECT {} {} ORDER BY 1 LIMIT 1 OFFSET ?2", column, rows));
+  select.bind(1, std::string_view(estimator)).bind(2, static_cast<std::int64_t>(part * static_cast<double>(count - 1)));
+  if (!select.step()) return std::nullopt;
+  return select.maybe_number(0);
+}
+
+/// Of the clips of one configuration, or of all where none is named. `names` as clips_and_configurations() has them.
+std::vector<AccelerationError> accelerations_of(Database& database, const std::vector<std::string>& names,
+                                                const std::string& configuration) {
+  std::string counted = "c.estimator = ?1 AND c.a_rms_error_m_s2 IS NOT NULL";
+  if (!configuration.empty()) {
+    std::string clips;  // their names have no apostrophes
+    for (std::size_t i = 0; i + 1 < names.size(); i += 2) {
+      if (names[i + 1] == configuration) clips += fmt::format("{}'{}'", clips.empty() ? "" : ", ", names[i]);
+    }
+    counted += " AND c.clip IN (" + clips + ")";
+  }
+  const std::string best = Analysis{"phase-diagram", std::nullopt, kBestPossible}.name();
+  const std::string alone = "FROM clip c WHERE " + counted;
+  const std::string beside = fmt::format(
+      "FROM clip c JOIN clip b ON b.run = c.run AND b.clip = c.clip AND b.estimator = '{}' "
+      "WHERE {} AND b.a_rms_error_m_s2 > 0",
+      best, counted);
+  const auto rows_of = [&](const std::string& rows, const std::string& estimator) {
+    SqlStatement count = database.prepare("SELECT count(*) " + rows);
+    count.bind(1, std::string_view(estimator)).step();
+    return static_cast<std::uint64_t>(count.integer(0));
+  };
+  std::vector<AccelerationError> all;
+  SqlStatement estimators = database.prepare("SELECT DISTINCT estimator FROM clip ORDER BY estimator");
+  while (estimators.step()) {
+    AccelerationError of;
+    of.configuration = configuration;
+    of.estimator = estimators.text(0);
+    of.clips = rows_of(alone, of.estimator);
+    const auto median = quantile_of(database, alone, "c.a_rms_error_m_s2", of.estimator, of.clips, 0.5);
+    if (!median) continue;  // it has no a(t)
+    of.median_m_s2 = *median;
+    const std::uint64_t pairs = rows_of(beside, of.estimator);
+    const char* const ratio = "c.a_rms_error_m_s2 / b.a_rms_error_m_s2";
+    of.regret = quantile_of(database, beside, ratio, of.estimator, pairs, 0.5);
+    of.regret90 = quantile_of(database, beside, ratio, of.estimator, pairs, 0.9);
+    all.push_back(std::move(of));
+  }
+  return all;
+}
+
+/// "6 runs with camera.frame_rate_hz = 120: …": what is wrong with a scenario names it at first. Of runs whose reasons
+/// differ in their numbers the first is shown.
+std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
+  constexpr std::size_t kShown = 5;
+  FailureKinds reasons;
+  SqlStatement select = database.prepare("SELECT why FROM run WHERE status = 'failed' ORDER BY run");
+  while (select.step()) reasons.add(select.text(0));
+  const std::vector<FailureKind> kinds = reasons.by_number();
+  const std::string file = sweep.scenario_file.string() + " with ";
+  std::vector<std::string> failures;
+  std::uint64_t others = failed;
+  for (std::size_t k = 0; k < std::min(kinds.size(), kShown); ++k) {
+    const FailureKind& kind = kinds[k];
+    const bool names = kind.example.starts_with(file);
+    const std::string why = with_rounded_numbers(names ? kind.example.substr(file.size()) : kind.example);
+    failures.push_back(fmt::format("{} {}{}{}{}", kind.runs, kind.runs == 1 ? "run" : "runs",
+                                   kind.one_text ? "" : ", one of them", names ? " with " : ": ", why));
+    others -= kind.runs;
+  }
+  if (const std::size_t more = kinds.size() - failures.size(); more > 0) {
+    failures.push_back(fmt::format("and {} more {} ({} {})", more, more == 1 ? "kind" : "kinds", others,
+                                   others == 1 ? "run" : "runs"));
+  }
+  return failures;
+}
+
+/// Empty where the scenario has one.
+std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Database& database,
+                                                      const ConfigurationCounts& counts) {
+  const Grouping grouping = by_configuration(sweep);
+  std::vector<std::string> names;
+  std::vector<Series> all = series_of(database, grouping, names);
+  if (names.size() < 2) return {};
+  find_alike(sweep, database, grouping, counts, {}, all);
+  std::sort(names.begin(), names.end());
+  std::vector<ConfigurationSummary> configurations;
+  for (const std::string& name : names) {
+    configurations.push_back({name, {}});
+    for (const Series& series : all) {
+      for (const GroupStatistics& group : series.groups) {
+        if (group.label != name) continue;
+        configurations.back().overall.push_back({series.quantity, series.estimator, {group}, series.likeness});
+      }
+    }
+  }
+  return configurations;
+}
+
+}  // namespace
+
+const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group) {
+  if (series.likeness.whole) return &group.statistics;
+  return group.alike ? &*group.alike : nullptr;
+}
+
+SweepSummary summarize(const Sweep& sweep, Database& database) {
+  SweepSummary summary;
+  summary.name = sweep.name;
+  summary.planned = run_count(sweep);
+  SqlStatement counts = database.prepare("SELECT count(*), total(status = 'failed') FROM run");
+  counts.step();
+  summary.runs = static_cast<std::uint64_t>(counts.integer(0));
+  summary.failed = static_cast<std::uint64_t>(counts.integer(1));
+  summary.failures = failures_of(sweep, database, summary.failed);
+  SqlStatement timing = database.prepare("SELECT total(wall_s) FROM timing");
+  timing.step();
+  summary.cpu_s = timing.number(0);
+  std::vector<std::string> no_words;
+  summary.overall = series_of(database, {}, no_words);
+  const ConfigurationCounts with_truth = configurations_of(database);
+  summary.configurations = by_configuration_of(sweep, database, with_truth);
+  for (const Axis& axis : sweep.axes) {
+    const Grouping grouping = grouping_of(sweep, axis, database);
+    AxisSummary of_axis;
+    of_axis.name = axis.name;
+    of_axis.words = grouping.words;
+    of_axis.logarithmic = grouping.logarithmic;
+    const auto series = [&](const std::string& configuration) {
+      std::vector<Series> all = series_of(database, grouping, of_axis.labels, configuration);
+      find_alike(sweep, database, grouping, with_truth, configuration, all);
+      return all;
+    };
+    of_axis.series = series({});
+    if (summary.configurations.size() <= kMostSplit) {
+      for (const ConfigurationSummary& of : summary.configurations) {
+        of_axis.of_configurations.push_back(series(of.name));
+      }
+    }
+    SqlStatement unit = database.prepare("SELECT unit FROM \"schema\" WHERE \"table\" = 'run' AND \"column\" = ?1");
+    unit.bind(1, std::string_view(axis.name));
+    if (unit.step()) of_axis.unit = unit.text(0);
+    summary.axes.push_back(std::move(of_axis));
+  }
+  const std::vector<std::string> clips = clips_and_configurations(sweep, database);
+  summary.accelerations = accelerations_of(database, clips, {});
+  for (ConfigurationSummary& of : summary.configurations) {
+    of.accelerations = accelerations_of(database, clips, of.name);
+  }
+  summary.masses = study_masses(sweep, database);
+  return summary;
+}
+
+}  // namespace glidelab::validate

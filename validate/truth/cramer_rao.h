@@ -1,0 +1,34 @@
+/// How well the motion can tell K/m, mu, alpha and v_lim at all: the Cramér-Rao bound.
+///
+/// Positions x_i with independent normal noise of one standard deviation s a clip, equation (8) with k = K/m, drive d =
+/// g sin(alpha) and friction f = mu g cos(alpha) for all clips of one configuration, and a start (x0, v0) of each
+/// clip's own, none of them known before:
+///
+///     F = sum over clips of J'(1 - P)J / s^2,   J = dx/d(k, d, f),   P projects on dx/d(x0, v0);
+///     least variance of q(k, d, f) = grad q' F^-1 grad q.
+///
+/// The derivatives are those of the true motion (sim/sensitivity.h), through its reversals. Frames in which the glider
+/// has stopped for good are not counted: no estimator here looks at them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validate/truth/truth_folder.h"
+
+namespace glidelab::validate {
+
+/// Of one configuration; a quantity that the motion does not determine, or the truth does not have, is empty.
+struct LeastSd {
+  std::string configuration;
+  std::optional<double> k_over_m_1_s;
+  std::optional<double> mu;
+  std::optional<double> alpha_deg;
+  std::optional<double> v_lim_m_s;
+};
+
+/// `noise_sd_m` of each clip of the truth, above 0. Where all motion goes one way only k and v_lim have a bound.
+std::vector<LeastSd> least_sds(const Truth& truth, const std::vector<double>& noise_sd_m, double gravity_m_s2);
+
+}  // namespace glidelab::validate
