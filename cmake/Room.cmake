@@ -44,12 +44,12 @@ function(glidelab_warnings target)
 endfunction()
 
 # glidelab_precompile(TARGET FROM <target> | OWN <header>): what nearly every file includes of the libraries is compiled once, with the
-# target that OWNs it, and read by all others.
+# target that OWNs it, and read by all others. Named <so>, the same in every checkout, as a compiler cache needs it.
 function(glidelab_precompile target)
   cmake_parse_arguments(PRECOMPILE "" "FROM;OWN" "" ${ARGN})
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   if(PRECOMPILE_OWN)
-    target_precompile_headers(${target} PRIVATE ${GLIDELAB_ROOT}/${PRECOMPILE_OWN})
+    target_precompile_headers(${target} PRIVATE <${PRECOMPILE_OWN}>)
   else()
     target_precompile_headers(${target} REUSE_FROM ${PRECOMPILE_FROM})
   endif()
