@@ -1,4 +1,4 @@
-/// A folder of flat fields and dark frames, from which a camera is characterised (docs/characterize.md).
+/// A folder of flat fields and dark frames, from which a camera is characterised (docs/reference/characterize.md).
 ///
 ///     FOLDER/
 ///       characterize.toml

@@ -19,7 +19,7 @@ RecordingCheck check_recording(const Experiment& experiment, int jobs,
                                const base::Progress& progress = base::no_progress,
                                const FrameOpener& open = open_frames);
 
-/// What the measurements of `check` say, the gravest first; the limits stand in docs/check.md.
+/// What the measurements of `check` say, the gravest first; the limits stand in docs/reference/check.md.
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check);
 
 }  // namespace glidelab::core

@@ -11,7 +11,7 @@
 namespace glidelab::core {
 namespace {
 
-// What each limit rests on is in docs/check.md.
+// What each limit rests on is in docs/reference/check.md.
 constexpr std::size_t kFewestSightings = 20, kEnoughSightings = 60;
 constexpr double kMostlySeen = 0.95, kPartlySeen = 2.0 / 3.0;
 constexpr std::size_t kFewUnseen = 3;  // frames at a clip's start or end

@@ -1,4 +1,4 @@
-/// What the measurements of one clip say of it: marker, light, times (the limits stand in docs/check.md).
+/// What the measurements of one clip say of it: marker, light, times (the limits stand in docs/reference/check.md).
 #pragma once
 
 #include "core/check/finding_words.h"

@@ -13,7 +13,7 @@
 namespace glidelab::core {
 namespace {
 
-// What each limit rests on is in docs/check.md.
+// What each limit rests on is in docs/reference/check.md.
 constexpr std::size_t kEnoughViews = 8;
 constexpr double kFinePatternPx = 0.3, kWorstPatternPx = 1.0;  // rms of the camera's fit, per corner
 constexpr double kFinePlanePx = 0.05, kPlaneRatio = 3.0, kWorstPlanePx = 1.0;

@@ -13,7 +13,7 @@
 namespace glidelab::core {
 namespace {
 
-// What each limit rests on is in docs/check.md.
+// What each limit rests on is in docs/reference/check.md.
 constexpr double kSizeAgrees = 0.15;       // of the logarithm
 constexpr double kSizeContradicts = 0.26;  // 30 %
 constexpr double kSharp = 0.5;             // marker diameters of smear, above which an outline is no measure of size

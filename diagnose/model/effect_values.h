@@ -1,6 +1,6 @@
 /// The sizes of all effects at once, as one motion feels them. At the values given here every effect is absent.
 ///
-/// Names and meanings are those of the list of effects (docs/diagnose.md); x downhill, v = dx/dt.
+/// Names and meanings are those of the list of effects (docs/reference/effects.md); x downhill, v = dx/dt.
 #pragma once
 
 #include <limits>

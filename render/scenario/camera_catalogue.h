@@ -1,4 +1,5 @@
-/// A camera of the catalogue (docs/cameras.md): the values that a scenario takes over where it has none of its own.
+/// A camera of the catalogue (docs/reference/cameras.md): the values that a scenario takes over where it has none of
+/// its own.
 #pragma once
 
 #include <filesystem>

@@ -150,7 +150,7 @@ Scenario read_scenario(const std::filesystem::path& path) {
     const bool recording = std::filesystem::exists(path / "experiment.toml", ignored);
     throw base::InputError(base::Issue{path.string(), 0, "",
                                        recording ? "a folder with an experiment.toml, a recording" : "a folder",
-                                       "a scenario, a file (docs/scenario.md)"});
+                                       "a scenario, a file (docs/reference/scenario.md)"});
   }
   return read_scenario(base::read_file(path), path);
 }

@@ -1,5 +1,5 @@
 /// A scenario: the true motions, and everything that stands before the camera and in it. Read from one TOML file
-/// (docs/scenario.md). SI units and radians; pixels where the name says so.
+/// (docs/reference/scenario.md). SI units and radians; pixels where the name says so.
 #pragma once
 
 #include <cstdint>

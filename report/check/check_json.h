@@ -1,4 +1,4 @@
-/// check.json: what `glidelab check` found (docs/check.md).
+/// check.json: what `glidelab check` found (docs/reference/check.md).
 #pragma once
 
 #include <string>

@@ -40,8 +40,8 @@ struct MotionScenario {
 };
 
 /// Reads `format`, `name`, `gravity_m_s2` and [[configuration]] with its [[configuration.force]] and
-/// [[configuration.clip]] (docs/scenario.md). What is wrong is recorded in the file and thrown by its finish(); the
-/// caller reads its own tables and calls that.
+/// [[configuration.clip]] (docs/reference/scenario.md). What is wrong is recorded in the file and thrown by its
+/// finish(); the caller reads its own tables and calls that.
 MotionScenario read_motions(const base::TomlTable& root);
 
 }  // namespace glidelab::sim

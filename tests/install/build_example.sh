@@ -17,6 +17,6 @@ cmake -S "$work/predict" -B "$work/built" -DCMAKE_PREFIX_PATH="$work/installed" 
   cmake --build "$work/built" >> "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 "$work/built/predict" > "$work/said"
 cat "$work/said"
-# The kernel's bias is taken off up to some 1e-4 of K/m (docs/estimators.md); without noise nothing else is left.
+# The kernel's bias is taken off up to some 1e-4 of K/m (docs/guide/estimators.md); without noise nothing else is left.
 awk '/^true K\/m/ { truth = $3 } /^recovered K\/m/ { found = $3 }
      END { exit !(truth > 0 && found > 0 && (found / truth - 1) ^ 2 < 0.0005 ^ 2) }' "$work/said"

@@ -78,8 +78,8 @@ Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, 
 void complete_line(LineFit& line);
 
 /// Relative standard deviation of a camera's or a sensor's clock, where nothing else is known: that of a quartz
-/// crystal over the temperatures of a room (docs/cameras.md, G1). A clock that is slow by e makes K/m (1 + e) and
-/// a0 (1 + e)^2 times as large, on all lines alike.
+/// crystal over the temperatures of a room (docs/reference/cameras.md, G1). A clock that is slow by e makes K/m (1 + e)
+/// and a0 (1 + e)^2 times as large, on all lines alike.
 inline constexpr double kClockSdRelative = 2e-5;
 
 /// Changes of the line by one standard deviation of everything that it may share with others: the kernel's bias (what

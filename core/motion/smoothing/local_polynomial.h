@@ -20,7 +20,7 @@
 /// Where many points of uniform step and weight are smoothed, the weights are one filter, applied as such.
 ///
 /// Covariances are exact for noise of a given autocovariance, white or not, times a factor of each point's own.
-/// Asymptotic variance and bias: docs/bandwidth.md; Fan and Gijbels 1996, section 3.2.
+/// Asymptotic variance and bias: docs/guide/bandwidth.md; Fan and Gijbels 1996, section 3.2.
 #pragma once
 
 #include <Eigen/Core>

@@ -23,7 +23,8 @@
 namespace glidelab::validate {
 
 inline constexpr double kClear = 4.0;
-/// Clips of a cheap camera with a compressing codec were seen to err 13 times as much as tracks (docs/sweep.md).
+/// Clips of a cheap camera with a compressing codec were seen to err 13 times as much as tracks
+/// (docs/evidence/requirements.md).
 inline constexpr double kClearOfClips = 20.0;
 
 /// Resamples of the runs' errors that a ± comes from (validate/error_measure.h).

@@ -133,7 +133,7 @@ void refuse_scenario(const std::string& text, const std::filesystem::path& path)
   const base::TomlFile file = base::TomlFile::parse(text, path.string());
   if (!file.root().has("configuration") || file.root().has("scenario") || file.root().has("vary")) return;
   throw base::InputError(base::Issue{path.string(), 0, "", "a scenario",
-                                     "a sweep: scenario = \"FILE\" and tables [[vary]] (docs/sweep.md)"});
+                                     "a sweep: scenario = \"FILE\" and tables [[vary]] (docs/reference/sweep.md)"});
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 /// A sweep: one scenario, the keys of it that vary, how their values are combined, and what analyses every run.
 ///
-/// Read from one TOML file (docs/sweep.md). A point is one combination of values; every point is run `replicates`
-/// times with seeds of its own. Run r belongs to point r / replicates. What a run is depends on the sweep's seed and
-/// its number alone, so the order of the runs and the number of threads do not matter.
+/// Read from one TOML file (docs/reference/sweep.md). A point is one combination of values; every point is run
+/// `replicates` times with seeds of its own. Run r belongs to point r / replicates. What a run is depends on the
+/// sweep's seed and its number alone, so the order of the runs and the number of threads do not matter.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// Reads one [[vary]] of a sweep's file: its keys, and where their values come from (docs/sweep.md).
+/// Reads one [[vary]] of a sweep's file: its keys, and where their values come from (docs/reference/sweep.md).
 #pragma once
 
 #include <filesystem>
