@@ -1,4 +1,4 @@
-"""The tables and the plot of bench/peers: peers.md, readme.md (README's tables as they stand there), errors.csv, parameters.csv, peers.svg."""
+"""The tables and the plot of bench/peers: peers.md, readme.md (the same, shortened), errors.csv, parameters.csv, peers.svg."""
 
 import csv
 import os

@@ -51,9 +51,10 @@ std::string examples() {
         "glidelab validate scenarios/rehearsals/raspberry-90.toml -o raspberry",
         "glidelab diagnose --plan scenarios/rehearsals/raspberry-90.toml --noise-m 1.5e-5 -o plan"}},
       {"I have recorded clips:",
-       {"glidelab pattern -o sheets", "glidelab new my-track", "glidelab check my-track", "glidelab analyze my-track",
-        "glidelab diagnose my-track"}},
-      {"I teach:", {"glidelab explore -o class", "glidelab laws scenarios/laws -o laws"}}};
+       {"glidelab new my-track", "glidelab check my-track", "glidelab analyze my-track", "glidelab diagnose my-track"}},
+      {"I teach:",
+       {"glidelab explore -o class", "glidelab laws scenarios/laws -o laws",
+        "glidelab simulate scenarios/laws/6-stribeck.toml -o stribeck"}}};
   std::string text =
       ".SH EXAMPLES\nThe scenarios lie in the source's folder, and of what is installed in share/glidelab/scenarios.\n";
   for (const Example& example : kExamples) {
