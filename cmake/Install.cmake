@@ -22,6 +22,7 @@ install(FILES ${texts}/glidelab.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-c
 install(FILES ${texts}/_glidelab DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/glidelab)
 install(FILES README.md CHANGELOG.md CONVENTIONS.md CONTRIBUTING.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # where Debian looks for it
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/glidelab)

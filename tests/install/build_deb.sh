@@ -38,7 +38,8 @@ awk '$2 != "root/root" || substr($1, 9, 1) == "w" && substr($1, 1, 1) != "l" || 
 dpkg-deb --extract "$deb" "$work/root"
 usr=$work/root/usr
 for name in bin/glidelab share/man/man1/glidelab.1.gz share/bash-completion/completions/glidelab \
-            share/zsh/vendor-completions/_glidelab share/glidelab/scenarios/tutorial.toml share/doc/glidelab/README.md; do
+            share/zsh/vendor-completions/_glidelab share/glidelab/scenarios/tutorial.toml share/doc/glidelab/README.md \
+            share/doc/glidelab/copyright share/doc/glidelab/docs/guide/tutorial.md share/doc/glidelab/docs/evidence/peers.svg; do
   [ -s "$usr/$name" ] || fail "not in the package: $name"
 done
 diff -r "$source/scenarios" "$usr/share/glidelab/scenarios" || fail "the scenarios are not those of the source"
