@@ -8,9 +8,9 @@
 
 namespace glidelab::sim {
 
-/// Reads `law` and the keys of that law (docs/reference/scenario.md, Motions) from one [[configuration.force]].
-/// `mass_kg` turns k_over_m_1_s into K. What is wrong is recorded in the file; the term then holds NaN and must not be
-/// used before finish().
+/// Reads `law` and the keys of that law (law_list.h) from one [[configuration.force]]. `mass_kg` turns a value over the
+/// mass into the value. What is wrong is recorded in the file; the term then holds NaN and must not be used before
+/// finish().
 std::shared_ptr<const ForceTerm> read_force(const base::TomlTable& table, double mass_kg);
 
 }  // namespace glidelab::sim
