@@ -145,7 +145,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
   command
       ->add_option("--bandwidth", options->bandwidth,
                    fmt::format("Width of the smoothing kernel in seconds, or the rule that chooses it for each clip: "
-                               "{} (docs/guide/bandwidth.md)",
+                               "{} (docs/bandwidth.md)",
                                fmt::join(rule_names(), ", ")))
       ->type_name("SECONDS|RULE")
       ->check(CLI::Validator([](std::string& text) { return check_bandwidth(text); },

@@ -59,7 +59,7 @@ void add_characterize(CLI::App& app, Command& chosen) {
       "characterize", "Measure a camera by its own flat fields and dark frames, and write its camera file");
   command
       ->add_option("FOLDER", options->folder,
-                   "A folder with characterize.toml, dark/ and flat-…/ (docs/reference/characterize.md is the recipe)")
+                   "A folder with characterize.toml, dark/ and flat-…/ (docs/characterize.md is the recipe)")
       ->required();
   add_common_options(*command, options->common, "glidelab-out/characterize-<name of the folder>",
                      "Accepted as by every command; nothing here draws random numbers");

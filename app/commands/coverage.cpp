@@ -99,7 +99,7 @@ void add_coverage(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CoverageCommand>();
   CLI::App* command = app.add_subcommand(
       "coverage", "Analyse many replicates of a scenario's motions, and count how often the intervals hold the truth");
-  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
   CLI::Option* noise =

@@ -180,11 +180,10 @@ void add_diagnose(CLI::App& app, Command& chosen) {
           "Folders that hold an experiment.toml; several share the glider and the track. Or one .csv, a table of lines")
       ->type_name("DIR|FILE")
       ->required();
-  CLI::Option* without = command
-                             ->add_option("--without", options->without,
-                                          "Effects that are not considered (ids as in docs/reference/effects.md)")
-                             ->type_name("EFFECT")
-                             ->check(one_of(diagnose::effect_words()));
+  CLI::Option* without =
+      command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")
+          ->type_name("EFFECT")
+          ->check(one_of(diagnose::effect_words()));
   CLI::Option* twin =
       command
           ->add_option("--twin", options->twin,

@@ -70,7 +70,7 @@ void add_render(CLI::App& app, Command& chosen) {
   command->footer(
       "DIR and DIR.truth are replaced as a whole where they hold nothing but what render made there; with anything of "
       "your own in them, or anything changed, nothing is touched and the exit status is 1.");
-  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
   command->add_flag("--ideal", options->ideal,

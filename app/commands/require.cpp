@@ -74,7 +74,7 @@ void add_require(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "require",
       "Which cameras and settings of a sweep reach a target, the cheapest first, and what limits the others");
-  command->add_option("SWEEP", options->sweep, "A sweep over cameras or settings (docs/reference/sweep.md)")
+  command->add_option("SWEEP", options->sweep, "A sweep over cameras or settings (docs/sweep.md)")
       ->type_name("FILE")
       ->required();
   command

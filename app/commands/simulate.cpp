@@ -152,7 +152,7 @@ std::string check_rate(const std::string& text) {
 void add_simulate(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = app.add_subcommand("simulate", "Move the gliders of a scenario: write their true trajectories");
-  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
   command->add_option("--rate", options->rate_hz, "States per second; default: the scenario's frame rate")

@@ -80,7 +80,7 @@ void add_validate(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command = app.add_subcommand(
       "validate", "Film a scenario, analyse the pictures, and compare what comes out with the truth");
-  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
   command
