@@ -9,7 +9,7 @@
 
 #include "base/files/staged_output.h"
 #include "report/html/gnuplot.h"
-#include "report/text/typeset_numbers.h"
+#include "report/html/typeset_numbers.h"
 
 namespace glidelab::report {
 namespace {

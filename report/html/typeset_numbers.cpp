@@ -1,4 +1,4 @@
-#include "report/text/typeset_numbers.h"
+#include "report/html/typeset_numbers.h"
 
 #include <algorithm>
 #include <array>
