@@ -23,8 +23,8 @@
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "fit/trajectory/trajectory_results.h"
 #include "report/analysis/analysis_report.h"
+#include "report/analysis/analysis_text.h"
 #include "report/analysis/results_json.h"
-#include "report/analysis/text_table.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::app {

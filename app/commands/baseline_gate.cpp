@@ -10,7 +10,7 @@
 #include "base/files/staged_output.h"
 #include "base/text/number_text.h"
 #include "render/scenario/scenario.h"
-#include "report/analysis/text_table.h"
+#include "report/text/text_table.h"
 #include "validate/study/baseline/baseline.h"
 #include "validate/study/baseline/baseline_power.h"
 

@@ -13,8 +13,8 @@
 #include "base/text/csv.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scenario.h"
-#include "report/analysis/text_table.h"
 #include "report/text/json_numbers.h"
+#include "report/text/text_table.h"
 #include "sim/motion/simulate.h"
 
 namespace glidelab::app {

@@ -12,9 +12,9 @@
 #include "app/shell/progress_display.h"
 #include "base/files/staged_output.h"
 #include "render/scenario/scenario.h"
-#include "report/analysis/text_table.h"
 #include "report/html/gnuplot.h"
 #include "report/validation/comparison_json.h"
+#include "report/validation/comparison_text.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
 

@@ -18,7 +18,6 @@ namespace {
 constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
 constexpr double kBelowZero = 2.0;  // standard deviations: what chance does in one of forty
 constexpr double kOffLine = 2.0;    // times the noise: more than a wrong idea of the noise makes
-constexpr double kWithin = 2.0;     // standard deviations from the truth: 95 of 100 values
 
 std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
@@ -173,49 +172,6 @@ std::string meaning_of(const core::AnalysisResults& results) {
         "<p>Not every a(v) is a straight line or stands clear of its noise: the lowest R² is {}. Where the residuals "
         "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
         base::r2_text(worst));
-  }
-  return meaning_section(text);
-}
-
-std::string meaning_of(const validate::Comparison& comparison) {
-  std::size_t compared = 0;
-  std::size_t within = 0;
-  double worst = 0.0;
-  const validate::QuantityComparison* worst_quantity = nullptr;
-  for (const validate::QuantityComparison& quantity : comparison.quantities) {
-    if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
-    ++compared;
-    const double in_sd = std::abs(*quantity.error) / *quantity.sd;
-    if (in_sd <= kWithin) ++within;
-    if (in_sd > worst) {
-      worst = in_sd;
-      worst_quantity = &quantity;
-    }
-  }
-  std::string text;
-  if (compared > 0) {
-    text += fmt::format("<p>{} of {} recovered values lie within two of their standard deviations of the truth", within,
-                        compared);
-    if (worst_quantity != nullptr) {
-      text += fmt::format("; the farthest off is {} of {} by {}, by {} standard deviations",
-                          escape(symbol_of(worst_quantity->quantity)), escape(worst_quantity->configuration),
-                          worst_quantity->estimator == "trajectory" ? "the fit of the whole motion" : "the lines",
-                          base::number_text(worst, 2));
-    }
-    text += ".</p>\n";
-  } else {
-    text += "<p>No recovered value could be compared with a truth.</p>\n";
-  }
-  const validate::RestitutionComparison& restitution = comparison.restitution;
-  if (!restitution.points.empty() && restitution.field_m > 0.0) {
-    text += fmt::format(
-        "<p>The marker was found in {} of {} frames; its measured position is off by {} mm (rms), at most {} mm, which "
-        "is {} % and {} % of the {} m that the motion covers.</p>\n",
-        comparison.detected, comparison.frames, base::number_text(restitution.rms_m * 1e3, 2),
-        base::number_text(restitution.max_m * 1e3, 2),
-        base::number_text(100.0 * restitution.rms_m / restitution.field_m, 2),
-        base::number_text(100.0 * restitution.max_m / restitution.field_m, 2),
-        base::number_text(restitution.field_m, 3));
   }
   return meaning_section(text);
 }

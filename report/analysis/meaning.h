@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/result/results.h"
-#include "validate/truth/comparison.h"
 
 namespace glidelab::report {
 
@@ -16,8 +15,5 @@ std::string meaning_of(const core::AnalysisResults& results);
 /// What of the numbers the assumed law cannot mean, and what to do next: drag or friction below zero, points that lie
 /// far off their line. One sentence each, plain text; none where the law serves.
 std::vector<std::string> doubts_about(const core::AnalysisResults& results);
-
-/// On how well the truth was recovered. HTML.
-std::string meaning_of(const validate::Comparison& comparison);
 
 }  // namespace glidelab::report

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "report/analysis/text_table.h"
 #include "report/characterize/camera_rows.h"
 #include "report/text/json_numbers.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

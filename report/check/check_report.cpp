@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/html/html.h"
 #include "report/html/plot_style.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

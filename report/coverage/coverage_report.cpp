@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/coverage/coverage_plots.h"
 #include "report/html/html.h"
 #include "report/text/json_numbers.h"
 #include "report/text/quantity_names.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {
@@ -203,7 +203,8 @@ std::string coverage_json(const validate::Coverage& coverage) {
                                     {"p_value", at.p_value}});
       }
     }
-    put(object, "cramer_rao_sd", row.cramer_rao_sd, "the motion does not determine it, or the law is not equation (8)");
+    put(object, "cramer_rao_sd", row.cramer_rao_sd,
+        "the motion does not determine it, or the law is not viscous drag with Coulomb friction");
     put(object, "efficiency", row.efficiency, "no bound, or no value");
     document["quantities"].push_back(std::move(object));
   }

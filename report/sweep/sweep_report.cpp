@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/html/html.h"
 #include "report/sweep/mass_study_report.h"
 #include "report/sweep/sweep_advice.h"
@@ -13,6 +12,7 @@
 #include "report/sweep/sweep_plots.h"
 #include "report/text/json_numbers.h"
 #include "report/text/quantity_names.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

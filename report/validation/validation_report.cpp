@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
-#include "report/analysis/meaning.h"
 #include "report/analysis/sections.h"
 #include "report/html/html.h"
 #include "report/text/quantity_names.h"
+#include "report/validation/comparison_text.h"
 #include "report/validation/validation_plots.h"
 
 namespace glidelab::report {
