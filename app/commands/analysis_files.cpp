@@ -2,10 +2,9 @@
 
 #include "base/files/staged_output.h"
 #include "core/experiment/experiment.h"
-#include "report/analysis/motion_csv.h"
-#include "report/analysis/phase_csv.h"
+#include "report/analysis/clip_csv.h"
 #include "report/analysis/results_json.h"
-#include "report/text/output_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::app {
 namespace {

@@ -8,12 +8,11 @@
 #include <memory>
 
 #include "app/commands/analysis_files.h"
-#include "app/shell/allow_outside.h"
 #include "app/shell/commands.h"
 #include "app/shell/common_options.h"
+#include "app/shell/experiment_arguments.h"
 #include "app/shell/interrupt.h"
 #include "app/shell/progress_display.h"
-#include "app/shell/refuse_scenario.h"
 #include "base/errors.h"
 #include "base/files/staged_output.h"
 #include "base/text/nearest_word.h"
@@ -23,7 +22,6 @@
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "fit/trajectory/trajectory_results.h"
 #include "report/analysis/analysis_report.h"
-#include "report/analysis/analysis_text.h"
 #include "report/analysis/results_json.h"
 #include "report/html/gnuplot.h"
 

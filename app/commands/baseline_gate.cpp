@@ -12,6 +12,8 @@
 #include "render/scenario/scenario.h"
 #include "report/text/text_table.h"
 #include "validate/study/baseline/baseline.h"
+#include "validate/study/baseline/baseline_comparison.h"
+#include "validate/study/baseline/baseline_file.h"
 #include "validate/study/baseline/baseline_power.h"
 
 namespace glidelab::app {

@@ -4,12 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/allow_outside.h"
 #include "app/shell/commands.h"
 #include "app/shell/common_options.h"
+#include "app/shell/experiment_arguments.h"
 #include "app/shell/interrupt.h"
 #include "app/shell/progress_display.h"
-#include "app/shell/refuse_scenario.h"
 #include "base/errors.h"
 #include "base/files/staged_output.h"
 #include "core/analysis/preview.h"

@@ -13,6 +13,7 @@
 #include "report/html/gnuplot.h"
 #include "report/requirement/requirement_report.h"
 #include "validate/study/requirement/requirement.h"
+#include "validate/study/sweep/design/read_sweep.h"
 
 namespace glidelab::app {
 namespace {

@@ -16,6 +16,7 @@
 #include "report/html/gnuplot.h"
 #include "report/sweep/sweep_report.h"
 #include "report/text/json_numbers.h"
+#include "validate/study/sweep/design/read_sweep.h"
 #include "validate/study/sweep/design/sweep_design.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
 #include "validate/study/sweep/run_sweep.h"

@@ -14,7 +14,6 @@
 #include "render/scenario/scenario.h"
 #include "report/html/gnuplot.h"
 #include "report/validation/comparison_json.h"
-#include "report/validation/comparison_text.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
 

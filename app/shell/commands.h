@@ -2,8 +2,11 @@
 /// work.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <functional>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace glidelab::app {
 

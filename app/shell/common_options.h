@@ -1,7 +1,6 @@
 /// What every command takes, and how a command speaks: files, tables and JSON.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,6 +9,10 @@
 #include <string_view>
 
 #include "base/errors.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace glidelab::app {
 

@@ -1,10 +1,14 @@
 /// Completion for shells, from the commands and options as CLI11 holds them.
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Validators.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
 
 namespace glidelab::app {
 

@@ -9,8 +9,8 @@
 
 #include "base/text/number_text.h"
 #include "report/html/html.h"
-#include "report/text/configuration_name.h"
 #include "report/text/quantity_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::report {
 namespace {

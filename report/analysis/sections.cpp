@@ -9,16 +9,15 @@
 
 #include "base/text/number_text.h"
 #include "report/analysis/camera_plots.h"
+#include "report/analysis/clip_csv.h"
 #include "report/analysis/fitted_lines.h"
-#include "report/analysis/motion_csv.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/phase_plots.h"
 #include "report/analysis/pixel_phase.h"
 #include "report/analysis/results_json.h"
 #include "report/html/html.h"
-#include "report/text/configuration_name.h"
-#include "report/text/output_names.h"
 #include "report/text/quantity_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::report {
 namespace {

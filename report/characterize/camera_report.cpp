@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
-#include "report/characterize/camera_rows.h"
+#include "report/characterize/camera_json.h"
 #include "report/html/html.h"
 #include "report/html/plot_axis.h"
 #include "report/html/plot_style.h"

@@ -50,9 +50,6 @@ const std::set<std::string> kStandingWithoutHeader = {
     "teach/page/explorer_motion.cpp",
     "teach/page/explorer_view.cpp",
     "teach/page/explorer_words.cpp",
-    "validate/study/baseline/baseline_file.cpp",
-    "validate/study/baseline/baseline_tests.cpp",
-    "validate/study/sweep/design/read_sweep.cpp",
 };
 
 std::vector<std::string> too_long(const std::vector<Source>& sources) {

@@ -1,6 +1,6 @@
 /// sweep.toml beside a small scenario and a camera. A sweep whose scenario cannot be solved is refused by
 /// NumericalError.
-#include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/design/read_sweep.h"
 
 #include "tests/fuzz/target.h"
 #include "tests/one_glider.h"

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "report/analysis/analysis_report.h"
-#include "report/analysis/analysis_text.h"
 #include "report/blind/blind_targets.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"

@@ -1,4 +1,4 @@
-/// How small a worsening a comparison with a baseline (validate/baseline.h) still finds, quantity by quantity.
+/// How small a worsening a comparison with a baseline (baseline_comparison.h) still finds, quantity by quantity.
 ///
 /// Of each test at the level that it is made at, the change that it finds with probability kFound, from the spread that
 /// the baseline itself has and normal quantiles z:
@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "validate/study/baseline/baseline.h"
+#include "validate/study/baseline/baseline_comparison.h"
 
 namespace glidelab::validate {
 

@@ -16,11 +16,10 @@
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
 #include "fit/trajectory/trajectory_results.h"
-#include "validate/study/coverage/naive_lines.h"
 #include "validate/tracks/camera_noise.h"
 #include "validate/tracks/made_tracks.h"
 #include "validate/truth/binomial.h"
-#include "validate/truth/least_sd_of.h"
+#include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
 namespace {

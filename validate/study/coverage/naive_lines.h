@@ -8,6 +8,9 @@
 
 namespace glidelab::validate {
 
+/// Their name among the estimators: for contrast, and not asked to keep what they say.
+inline constexpr const char* kNaiveLines = "naive-lines";
+
 /// The same results with K/m, mu, alpha and v_lim by the naive lines, and estimator = "naive-lines".
 core::AnalysisResults with_naive_lines(core::AnalysisResults results);
 

@@ -1,11 +1,11 @@
-/// What the Cramér-Rao bound says of one point of a requirement (validate/requirement.h), and what limits it.
+/// What the Cramér-Rao bound says of one point of a requirement (requirement.h), and what limits it.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "render/scenario/scenario.h"
-#include "validate/study/requirement/requirement.h"
+#include "validate/study/requirement/candidate.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {

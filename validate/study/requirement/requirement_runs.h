@@ -1,4 +1,4 @@
-/// Whether one point of a requirement (validate/requirement.h) reaches its targets, by runs; and what keeps it from
+/// Whether one point of a requirement (requirement.h) reaches its targets, by runs; and what keeps it from
 /// that.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "validate/film/film_studio.h"
-#include "validate/study/requirement/requirement.h"
+#include "validate/study/requirement/candidate.h"
 #include "validate/study/requirement/requirement_bound.h"
 #include "validate/study/sweep/design/sweep.h"
 

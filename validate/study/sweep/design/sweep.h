@@ -101,9 +101,4 @@ struct Sweep {
   std::vector<std::string> camera_files;
 };
 
-/// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,
-/// a value that the scenario refuses (each value of each axis is tried, the others at their first ones), with the line
-/// of the sweep's file that the key stands on.
-Sweep read_sweep(const std::filesystem::path& path);
-
 }  // namespace glidelab::validate

@@ -1,11 +1,18 @@
-#include "validate/study/requirement/error_measure.h"
+#include "validate/study/requirement/target.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <sstream>
 #include <vector>
+
+#include "base/errors.h"
+#include "base/text/nearest_word.h"
 
 namespace glidelab::validate {
 namespace {
@@ -53,6 +60,37 @@ double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
 }
 
 }  // namespace
+
+std::string Target::name() const {
+  const char* measures[] = {"sd", "95 % error", "bias"};
+  return fmt::format("{} {} {}", quantity, measures[static_cast<int>(measure)], value);
+}
+
+Target parse_target(const std::string& text) {
+  Target target;
+  const std::size_t equals = text.find('='), colon = text.find(':');
+  target.quantity = text.substr(0, std::min(colon, equals));
+  const std::string measure =
+      colon < equals && equals != std::string::npos ? text.substr(colon + 1, equals - colon - 1) : "sd";
+  const std::vector<std::string> quantities = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"};
+  std::istringstream number(equals == std::string::npos ? "" : text.substr(equals + 1));
+  const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
+  const bool known = std::find(quantities.begin(), quantities.end(), target.quantity) != quantities.end();
+  const std::vector<std::string> measures = {"sd", "error95", "bias"};
+  const bool known_measure = std::find(measures.begin(), measures.end(), measure) != measures.end();
+  if (!read || !known || !(target.value > 0.0) || !known_measure) {
+    throw base::InputError(base::Issue{
+        "", 0, "--target", fmt::format("\"{}\"", text),
+        fmt::format("QUANTITY=VALUE, or QUANTITY:sd|error95|bias=VALUE, with one of {} "
+                    "and a number above 0{}{}",
+                    fmt::join(quantities, ", "), known ? "" : base::did_you_mean(target.quantity, quantities),
+                    known_measure ? "" : base::did_you_mean(measure, measures))});
+  }
+  target.measure = measure == "sd"     ? Target::Measure::sd
+                   : measure == "bias" ? Target::Measure::bias
+                                       : Target::Measure::error95;
+  return target;
+}
 
 ErrorMeasure measure_errors(std::span<const double> errors, const Target& target) {
   assert(errors.size() >= 2);

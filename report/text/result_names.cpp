@@ -1,4 +1,4 @@
-#include "report/text/output_names.h"
+#include "report/text/result_names.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,15 @@
 #include <set>
 
 namespace glidelab::report {
+
+std::string configuration_name(const core::AnalysisResults& results, const core::ConfigurationResult& configuration) {
+  const auto alike = std::count_if(
+      results.configurations.begin(), results.configurations.end(), [&](const core::ConfigurationResult& other) {
+        return other.mass_kg == configuration.mass_kg && other.incline_deg == configuration.incline_deg;
+      });
+  const std::string name = fmt::format("{:.6g} kg, {:.4g}°", configuration.mass_kg, configuration.incline_deg);
+  return alike > 1 ? name + ", " + configuration.group : name;
+}
 
 std::string file_name_part(std::string_view text) {
   std::string name;

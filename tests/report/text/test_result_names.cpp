@@ -1,4 +1,4 @@
-#include "report/text/configuration_name.h"
+#include "report/text/result_names.h"
 
 #include "tests/catch.h"
 #include "tests/report/made_results.h"

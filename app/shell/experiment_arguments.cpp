@@ -1,5 +1,6 @@
-#include "app/shell/refuse_scenario.h"
+#include "app/shell/experiment_arguments.h"
 
+#include <CLI/App.hpp>
 #include <filesystem>
 
 #include "base/errors.h"
@@ -24,6 +25,12 @@ std::string sort_of(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+void add_allow_outside(CLI::App& command, core::OutsideFiles& outside) {
+  command.add_flag_callback(
+      "--allow-outside", [&outside] { outside = core::OutsideFiles::allowed; },
+      "Follow absolute names and `..` in experiment.toml to files outside the folder");
+}
 
 void refuse_scenarios(const std::vector<std::string>& inputs) {
   std::vector<base::Issue> issues;

@@ -1,14 +1,40 @@
-#include "report/analysis/motion_csv.h"
+#include "report/analysis/clip_csv.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <optional>
 
+#include "base/errors.h"
 #include "base/text/csv.h"
+#include "core/result/results.h"
 #include "report/analysis/fitted_lines.h"
-#include "report/analysis/motion_row.h"
-#include "report/text/output_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::report {
 namespace {
+
+/// Of one frame of the clip, at t_s. Table and clip outlive it.
+class MotionRow {
+ public:
+  MotionRow(base::CsvWriter& table, const core::ClipResult& clip, double t_s) : table_(table), clip_(clip), t_s_(t_s) {}
+  /// NumericalError where the number is not finite; it names the clip and the time.
+  void put(std::optional<double> value) {
+    if (!value) {
+      table_.empty();
+    } else if (std::isfinite(*value)) {
+      table_.number(*value);
+    } else {
+      throw base::NumericalError(
+          fmt::format("clip \"{}\": the smoothed motion at t = {} s is not finite", clip_.name, t_s_));
+    }
+  }
+
+ private:
+  base::CsvWriter& table_;
+  const core::ClipResult& clip_;
+  double t_s_;
+};
 
 /// a on the clip's own line; nothing where there is none, and for a clip with a known force.
 std::optional<double> own_line_at(const core::ClipResult& clip, double v_m_s) {
@@ -17,6 +43,21 @@ std::optional<double> own_line_at(const core::ClipResult& clip, double v_m_s) {
 }
 
 }  // namespace
+
+std::string phase_csv(const core::ClipResult& clip) {
+  base::CsvWriter table("t_s,x_m,v_m_s,a_m_s2,used,sd_v_m_s,sd_a_m_s2,measured_x_m,reason");
+  for (const core::MotionPoint& point : clip.motion) {
+    if (!point.smoothed) continue;
+    MotionRow row(table, clip, point.t_s);
+    for (const double value : {point.t_s, point.x_m, point.v_m_s, point.a_m_s2}) row.put(value);
+    row.put(point.left_out == core::LeftOut::used ? 1.0 : 0.0);
+    for (const double value : {point.sd_v_m_s, point.sd_a_m_s2}) row.put(value);
+    row.put(point.measured_m);
+    table.text(core::describe(point.left_out));
+    table.end_row();
+  }
+  return table.str();
+}
 
 std::string motion_csv(const core::ClipResult& clip) {
   base::CsvWriter table(

@@ -1,4 +1,4 @@
-#include "validate/study/requirement/error_measure.h"
+#include "validate/study/requirement/target.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-/// What the errors of many runs come to in a target's measure (validate/requirement.h), and how sure that is.
+/// What a requirement asks for, and what the errors of many runs come to beside it.
 ///
 /// Over n errors e_i, an infinite one for a run without an answer:
 ///
@@ -13,10 +13,23 @@
 
 #include <cstddef>
 #include <span>
-
-#include "validate/study/requirement/requirement.h"
+#include <string>
 
 namespace glidelab::validate {
+
+struct Target {
+  enum class Measure { sd, error95, bias };  ///< sd: root mean square error
+  std::string quantity;                      ///< "mu"
+  Measure measure = Measure::sd;
+  double value = 0.0;
+  std::string name() const;  ///< "mu sd 0.0005"
+};
+
+/// "mu=0.0005", "k_over_m_1_s:error95=0.01"; InputError for anything else.
+Target parse_target(const std::string& text);
+
+/// Resamples of the runs' errors that a ± comes from.
+inline constexpr int kResamples = 1000;
 
 struct ErrorMeasure {
   double value = 0.0;  ///< in the errors' unit; infinite where the unanswered runs make it so

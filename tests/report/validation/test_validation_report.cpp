@@ -1,4 +1,4 @@
-#include "report/validation/comparison_text.h"
+#include "report/validation/validation_report.h"
 
 #include <optional>
 #include <string>

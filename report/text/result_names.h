@@ -1,4 +1,5 @@
-/// Names of the files that a result is written to. A clip's name is any text; a file's name is not.
+/// What a result's configurations are called, and the files it is written to. A clip's name is any text; a file's name
+/// is not.
 #pragma once
 
 #include <string>
@@ -8,6 +9,10 @@
 #include "core/result/results.h"
 
 namespace glidelab::report {
+
+/// "0.335 kg, 4°", and with the group where another of the results has the same mass and stated inclination: "0.5 kg,
+/// 2°, plunger". Text from a file: to be escaped.
+std::string configuration_name(const core::AnalysisResults& results, const core::ConfigurationResult& configuration);
 
 /// The text with '/', '%' and control characters written as %XX, so that it names one file of a folder.
 std::string file_name_part(std::string_view text);

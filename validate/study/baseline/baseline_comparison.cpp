@@ -1,5 +1,5 @@
-// The comparison of two baselines: one-sided tests of each error's spread, bias, coverage and answers, and of
-// smoothing.
+#include "validate/study/baseline/baseline_comparison.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "base/errors.h"
-#include "validate/study/baseline/baseline.h"
 
 namespace glidelab::validate {
 namespace {
@@ -161,10 +160,6 @@ BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) 
   }
   tell_power(static_cast<double>(then.runs), static_cast<double>(now.runs), comparison);
   return comparison;
-}
-
-std::uint64_t other_seed(const Baseline& then) {
-  return then.seed.value_or(1) + 1;
 }
 
 }  // namespace glidelab::validate

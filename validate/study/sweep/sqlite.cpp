@@ -1,4 +1,4 @@
-#include "validate/study/database/sqlite.h"
+#include "validate/study/sweep/sqlite.h"
 
 #include <fmt/format.h>
 #include <sqlite3.h>
