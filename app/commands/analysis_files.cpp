@@ -32,8 +32,7 @@ std::vector<core::Preview> previews_of(const std::vector<std::filesystem::path>&
     const core::Experiment experiment = core::read_input(folder, bare);
     for (const core::ClipSetup& setup : experiment.clips) {
       if (!setup.file.empty())
-        progress("preparing pictures",
-                 static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));
+        progress("preparing images", static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));
       core::PreviewOptions options;
       options.video = !setup.file.empty() && videos < kVideos;
       if (options.video) ++videos;

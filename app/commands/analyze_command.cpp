@@ -64,8 +64,8 @@ void check_file_options(const AnalyzeOptions& options, const std::vector<fs::pat
   if (bare.column.empty() && !bare.mass_kg && !bare.incline_deg) return;
   for (const fs::path& input : inputs) {
     if (core::is_bare_track(input)) continue;
-    throw base::InputError(base::Issue{input.string(), 0, "--column, --mass, --incline", "no file with a track",
-                                       "a file; for a folder experiment.toml says column, mass_kg and incline_deg"});
+    throw base::InputError(base::Issue{input.string(), 0, "--column, --mass, --incline", "not a file with a track",
+                                       "a file; for a folder, experiment.toml states column, mass_kg and incline_deg"});
   }
 }
 
@@ -124,7 +124,7 @@ std::string check_incline(const std::string& text) {
   constexpr double kSteepest_deg = 89.9;
   double value_deg = 0.0;
   if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
-  return fmt::format("\"{0}\" is no number of degrees from -{1} to {1}", text, kSteepest_deg);
+  return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}", text, kSteepest_deg);
 }
 
 }  // namespace
@@ -159,21 +159,21 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->check(CLI::IsMember({"phase-diagram", "phase-diagram-gls", "trajectory"}))
       ->capture_default_str();
   command->add_flag("--robust", options->robust,
-                    "With \"trajectory\": leave out positions that lie off the motion by more than four scaled median "
-                    "deviations, found by Huber's weights");
+                    "With \"trajectory\": leave out positions more than four scaled median absolute deviations off the "
+                    "motion, found with Huber's weights");
   command
       ->add_option("--column", options->bare.column,
-                   "Of a file: the column that is x, by its header or its number; default: found by its header")
+                   "For a file: the column that holds x, by header or number; default: found by its header")
       ->type_name("NAME|NUMBER");
-  command->add_option("--mass", options->bare.mass_kg, "Of a file: mass of the glider in kilograms")
+  command->add_option("--mass", options->bare.mass_kg, "For a file: mass of the glider in kilograms")
       ->type_name("KG")
       ->check(check_above_0);
-  command->add_option("--incline", options->bare.incline_deg, "Of a file: inclination in degrees, as stated")
+  command->add_option("--incline", options->bare.incline_deg, "For a file: stated inclination in degrees")
       ->type_name("DEG")
       ->check(check_incline);
   add_allow_outside(*command, options->bare.outside);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
-                     "Accepted as by every command; an analysis draws no random numbers");
+                     "Accepted by every command; an analysis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });
 }
 

@@ -83,17 +83,19 @@ void add_blind(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<BlindCommand>();
   CLI::App* command = app.add_subcommand(
       "blind", "Make experiments whose cause is withheld, diagnose each in another process, and score the diagnoses");
-  command->add_option("--cases", options->blind.cases, "How many; run again with more, it goes on where it stopped")
+  command
+      ->add_option("--cases", options->blind.cases, "Number of cases; run again with more to continue where it stopped")
       ->check(CLI::Range(std::size_t{1}, validate::kMostBlindCases))
       ->required();
   command
-      ->add_option("--only", options->blind.only, "Every case has this effect (default: nothing, one, two, unlisted)")
+      ->add_option("--only", options->blind.only,
+                   "Give every case this effect; default: none, one, two, or one that is not on the list")
       ->type_name("EFFECT");
   command->add_flag(
       "--pictures", options->blind.pictures,
-      "Filmed experiments, rendered as clips, in place of tracks; their effects are those that pictures show");
+      "Film the experiments as rendered clips instead of tracks; their effects are those that images show");
   command->add_flag("--leave-out", options->blind.leave_out,
-                    "Diagnose each case of one effect once more with that effect taken from the list");
+                    "Diagnose each case of one effect again with that effect taken off the list");
   add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");
   command->callback([options, &chosen] { chosen = [options] { blind(*options); }; });
 }

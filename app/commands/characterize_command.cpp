@@ -47,7 +47,7 @@ void characterize(const CharacterizeOptions& options) {
   say(options.common, fmt::format("camera file: {}", (out / "camera.toml").string()));
   if (!camera.gain_dn_per_e.value) {
     say(options.common,
-        "The camera file is not complete: these pictures do not tell the gain, and nothing in electrons.");
+        "The camera file is incomplete: these images do not determine the gain, so nothing is known in electrons.");
   }
 }
 
@@ -56,13 +56,13 @@ void characterize(const CharacterizeOptions& options) {
 void add_characterize(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CharacterizeOptions>();
   CLI::App* command = app.add_subcommand(
-      "characterize", "Measure a camera by its own flat fields and dark frames, and write its camera file");
+      "characterize", "Measure a camera from its flat fields and dark frames, and write its camera file");
   command
       ->add_option("FOLDER", options->folder,
                    "A folder with characterize.toml, dark/ and flat-…/ (docs/characterize.md is the recipe)")
       ->required();
   add_common_options(*command, options->common, "glidelab-out/characterize-<name of the folder>",
-                     "Accepted as by every command; nothing here draws random numbers");
+                     "Accepted by every command; nothing here draws random numbers");
   command->callback([options, &chosen] { chosen = [options] { characterize(*options); }; });
 }
 

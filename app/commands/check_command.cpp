@@ -71,13 +71,13 @@ void check(const CheckOptions& options) {
 void add_check(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand(
-      "check", "Look at a recording before any analysis: pattern, marker, exposure, blur, frame times, with advice");
+      "check", "Check a recording before any analysis: pattern, marker, exposure, blur, frame times; with advice");
   command->add_option("FOLDER", options->folder, "A folder that holds an experiment.toml")
       ->type_name("DIR")
       ->required();
   add_allow_outside(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/check-<name of the folder>",
-                     "Accepted as by every command; nothing here draws random numbers");
+                     "Accepted by every command; nothing here draws random numbers");
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/check.md).");
   command->callback([options, &chosen] { chosen = [options] { check(*options); }; });
 }

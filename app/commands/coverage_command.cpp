@@ -36,7 +36,7 @@ struct CoverageCommand {
 std::string check_level(const std::string& text) {
   double value = 0.0;
   if (CLI::detail::lexical_cast(text, value) && value > 0.0 && value < 100.0) return {};
-  return fmt::format("\"{}\" is no number of per cent above 0 and below 100", text);
+  return fmt::format("\"{}\" is not a percentage above 0 and below 100", text);
 }
 
 void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool noise_given) {
@@ -68,11 +68,11 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (std::all_of(coverage.rows.begin(), coverage.rows.end(),
                   [](const validate::CoverageRow& row) { return row.determined == 0; })) {
-    throw base::NotMet(fmt::format(
-        "{}: nothing to count: no estimator found a value of what is known of these motions. K/m and mu are true "
-        "of viscous and Coulomb friction only; under another law the inclination and the limit velocity are, where the "
-        "motions determine them",
-        options.scenario));
+    throw base::NotMet(
+        fmt::format("{}: nothing to count: no estimator found a value whose truth is known. K/m and mu have a true "
+                    "value only for viscous drag with Coulomb friction; under another law only the inclination and the "
+                    "limit velocity have one, and only where the motions determine them",
+                    options.scenario));
   }
   if (bandwidth_given && std::all_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
         return row.determined == 0 || row.estimator != "phase-diagram";
@@ -88,7 +88,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
   if (!failing.empty()) {
     throw base::NotMet(
         fmt::format("{} of the stated intervals hold the truth less often than they say (exact binomial test at 1 %, "
-                    "corrected for the number of intervals and levels); {} has the table",
+                    "corrected for the number of intervals and levels); the table is in {}",
                     failing.size(), (out / "report.html").string()));
   }
 }
@@ -105,8 +105,8 @@ void add_coverage(CLI::App& app, Command& chosen) {
   CLI::Option* noise =
       command
           ->add_option("--noise-m", options->noise_m,
-                       "Standard deviation of the noise of every position, in metres (no pictures are made); default: "
-                       "the least that the scenario's camera, light and marker allow, clip by clip")
+                       "Standard deviation of the position noise in metres (no images are rendered); default: the "
+                       "smallest that the scenario's camera, light and marker allow, clip by clip")
           ->type_name("METRES")
           ->check(check_noise_m);
   command->add_option("--replicates", options->coverage.replicates, "How many")
@@ -115,7 +115,7 @@ void add_coverage(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command
       ->add_option("--level", options->levels,
-                   "Levels of the intervals to count, in per cent, each above 0 and below 100; may be several")
+                   "Confidence levels of the intervals to count, in per cent, each above 0 and below 100")
       ->type_name("PERCENT...")
       ->check(check_level)
       ->default_str("50 68 90 95 99");

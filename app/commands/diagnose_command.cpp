@@ -56,7 +56,7 @@ void check_plan(const DiagnoseCommand& options) {
   if (of_recordings(options)) {
     if (!options.noise_m) return;
     throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "a noise beside a recording",
-                                           "none: the recorded positions tell their own"}));
+                                           "none: recorded positions show their own noise"}));
   }
   if (options.experiments.size() > 1) {
     throw CommandLineError(
@@ -65,7 +65,7 @@ void check_plan(const DiagnoseCommand& options) {
   }
   if (!options.noise_m) {
     throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "nothing",
-                                           "the noise of a position in metres: a scenario alone has none"}));
+                                           "the position noise in metres, which a scenario alone does not have"}));
   }
 }
 
@@ -78,8 +78,9 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
     for (const fs::path& folder : folders) {
       const core::Experiment experiment = diagnose::read_recording(folder, options.outside);
       if (experiment.lines) {
-        throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
-                                           "clips or tracks: --plan says what motions will show, and lines hold none"});
+        throw base::InputError(
+            base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
+                        "clips or tracks: --plan says what motions will show, and a table of lines holds no motions"});
       }
       setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     }
@@ -171,8 +172,7 @@ void diagnose(const DiagnoseCommand& options) {
 void add_diagnose(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<DiagnoseCommand>();
   CLI::App* command = app.add_subcommand(
-      "diagnose",
-      "Say which unmodelled effect makes the gap between measured motions and the model, or that none does");
+      "diagnose", "Find which unmodelled effect, if any, explains the gap between the measured motions and the model");
   command
       ->add_option(
           "EXPERIMENT", options->experiments,
@@ -180,15 +180,15 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->type_name("DIR|FILE")
       ->required();
   CLI::Option* without =
-      command->add_option("--without", options->without, "Effects that are not considered (ids as in docs/diagnose.md)")
+      command->add_option("--without", options->without, "Effects to leave out (ids as in docs/diagnose.md)")
           ->type_name("EFFECT")
           ->check(one_of(diagnose::effect_words()));
   CLI::Option* twin =
       command
-          ->add_option("--twin", options->twin,
-                       "Write the fitted motions, with the effect that is named and the camera as far as it is known, "
-                       "as a scenario "
-                       "for simulate, render, validate; status 4 where the scenario cannot say all of it")
+          ->add_option(
+              "--twin", options->twin,
+              "Write the fitted motions, with the diagnosed effect and the camera as far as it is known, as a scenario "
+              "for simulate, render and validate; exit status 4 if a scenario cannot express all of it")
           ->type_name("SCENARIO.toml")
           ->check([](const std::string& text) {
             return text.ends_with(".toml") ? std::string()
@@ -197,15 +197,14 @@ void add_diagnose(CLI::App& app, Command& chosen) {
                                                  "NAME.toml",
                                                  text);
           });
-  CLI::Option* plan =
-      command
-          ->add_flag("--plan", options->plan,
-                     "Record nothing and judge nothing: say which effects these motions could show and tell apart; "
-                     "EXPERIMENT may be a scenario file")
-          ->excludes(without, twin);
+  CLI::Option* plan = command
+                          ->add_flag("--plan", options->plan,
+                                     "Before any recording: say which effects these motions could show and tell apart; "
+                                     "EXPERIMENT may be a scenario file")
+                          ->excludes(without, twin);
   command
       ->add_option("--noise-m", options->noise_m,
-                   "With --plan and a scenario: standard deviation of a position's noise in metres")
+                   "With --plan and a scenario: standard deviation of the position noise in metres")
       ->type_name("METRES")
       ->check(check_noise_m)
       ->needs(plan);

@@ -75,13 +75,13 @@ void laws(const LawsOptions& options) {
 
 void add_laws(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<LawsOptions>();
-  CLI::App* command =
-      app.add_subcommand("laws", "Make one page of laws of friction: a film, x(t) and a(v) with its equilibrium");
+  CLI::App* command = app.add_subcommand(
+      "laws", "Make one page of friction laws: for each a film, x(t), and a(v) with its equilibrium");
   command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders with some (scenarios/laws)")
       ->type_name("PATH")
       ->required();
   add_common_options(*command, options->common, "glidelab-out/laws-<name of the first>",
-                     "Accepted as by every command; nothing here is random");
+                     "Accepted by every command; nothing here is random");
   command->callback([options, &chosen] { chosen = [options] { laws(*options); }; });
 }
 

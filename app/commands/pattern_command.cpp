@@ -93,25 +93,25 @@ void add_pattern(CLI::App& app, Command& chosen) {
       app.add_subcommand("pattern", "Draw a chessboard and a sheet of markers, PDF and SVG, to print to scale");
   std::vector<std::string> names;
   for (const report::Paper& paper : report::papers()) names.push_back(paper.name);
-  command->add_option("--paper", options->paper, "Size of the paper, which lies with its long side across")
+  command->add_option("--paper", options->paper, "Paper size, in landscape format")
       ->type_name("NAME")
       ->check(CLI::IsMember(names))
       ->capture_default_str();
   command
       ->add_option("--corners", options->corners,
-                   "Inner corners, where four squares meet: the longer row odd, the shorter one even")
+                   "Number of inner corners, where four squares meet: odd in the longer row, even in the shorter")
       ->type_name("NxM")
       ->capture_default_str();
   command->add_option("--square-mm", options->square_mm, "Side of a square; default: the largest whole one that fits")
       ->type_name("MM")
       ->check(check_above_0);
-  command->add_option("--marker-mm", options->markers_mm, "Diameters of the markers, a row each")
+  command->add_option("--marker-mm", options->markers_mm, "Diameters of the markers, one row each")
       ->type_name("MM")
       ->check(check_above_0)
       ->delimiter(',')
       ->default_str("8,12,16,24");
   add_common_options(*command, options->common, "glidelab-out/pattern-<paper>",
-                     "Accepted as by every command; nothing here is random");
+                     "Accepted by every command; nothing here is random");
   command->callback([options, &chosen] { chosen = [options] { pattern(*options); }; });
 }
 

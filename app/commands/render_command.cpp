@@ -68,13 +68,14 @@ void add_render(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "render", "Film a scenario: write an experiment folder as a camera would, and the truth beside it (DIR.truth)");
   command->footer(
-      "DIR and DIR.truth are replaced as a whole where they hold nothing but what render made there; with anything of "
-      "your own in them, or anything changed, nothing is touched and the exit status is 1.");
+      "DIR and DIR.truth are replaced as a whole if they hold only what render wrote there. If they hold anything "
+      "else, or anything was changed, nothing is touched and the exit status is 1.");
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
-  command->add_flag("--ideal", options->ideal,
-                    "Write sharp, noise-free, distortion-free frames and the marker's centre in them beside the truth");
+  command->add_flag(
+      "--ideal", options->ideal,
+      "Render sharp frames without noise and distortion, and write the marker's centre in each beside the truth");
   add_common_options(*command, options->common, "glidelab-out/render-<name of the scenario file>",
                      "Seed of the camera's noise; default: the scenario's");
   command->callback([options, &chosen] { chosen = [options] { render_command(*options); }; });

@@ -49,8 +49,8 @@ void require_command(const RequireOptions& options) {
   how.before_rendering = [&](const validate::ConfirmationSize& size) {
     display.clear();
     say(options.common,
-        fmt::format("{} of {} are close to the target: {} recordings to render, about {:.2g} min on {} "
-                    "threads, and more for what keeps those that miss it",
+        fmt::format("{} of {} are close to the target: {} recordings to render, about {:.2g} min on {} threads, and "
+                    "longer to find what limits those that miss it",
                     size.close, size.points, size.recordings, size.seconds / 60.0, options.common.jobs));
   };
   how.watch = throw_if_interrupted;
@@ -74,7 +74,7 @@ void add_require(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<RequireOptions>();
   CLI::App* command = app.add_subcommand(
       "require",
-      "Which cameras and settings of a sweep reach a target, the cheapest first, and what limits the others");
+      "Find which cameras and settings of a sweep reach a target, cheapest first, and what limits the others");
   command->add_option("SWEEP", options->sweep, "A sweep over cameras or settings (docs/sweep.md)")
       ->type_name("FILE")
       ->required();
@@ -88,18 +88,16 @@ void add_require(CLI::App& app, Command& chosen) {
       ->required();
   command
       ->add_option("--confirm", options->confirm,
-                   "How what the bound allows is confirmed: \"tracks\" with the predicted noise, rendered \"clips\" "
-                   "besides where these "
-                   "come close to the target, or \"none\"")
+                   "How to confirm what the bound allows: by \"tracks\" with the predicted noise, by rendered "
+                   "\"clips\" as well where these come close to the target, or by \"none\"")
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}))
       ->capture_default_str();
-  CLI::Option* runs =
-      command->add_option("--runs", options->runs, "Rendered runs that confirm one camera, with --confirm clips")
-          ->type_name("N")
-          ->check(CLI::Range(2, 100000))
-          ->capture_default_str();
-  command->add_option("--track-runs", options->track_runs, "Runs as tracks that judge one camera")
+  CLI::Option* runs = command->add_option("--runs", options->runs, "Rendered runs per camera, with --confirm clips")
+                          ->type_name("N")
+                          ->check(CLI::Range(2, 100000))
+                          ->capture_default_str();
+  command->add_option("--track-runs", options->track_runs, "Runs as tracks per camera")
       ->type_name("N")
       ->check(CLI::Range(2, 1000000))
       ->capture_default_str();

@@ -151,7 +151,8 @@ std::string check_rate(const std::string& text) {
 
 void add_simulate(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand("simulate", "Move the gliders of a scenario: write their true trajectories");
+  CLI::App* command =
+      app.add_subcommand("simulate", "Simulate the gliders of a scenario and write their true trajectories");
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
@@ -159,7 +160,7 @@ void add_simulate(CLI::App& app, Command& chosen) {
       ->type_name("HZ")
       ->check(check_rate);
   add_common_options(*command, options->common, "glidelab-out/simulate-<name of the scenario file>",
-                     "Accepted as by every command; a motion draws no random numbers");
+                     "Accepted by every command; a motion draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { simulate_command(*options); }; });
 }
 

@@ -181,7 +181,7 @@ void fill(const SweepOptions& options, const validate::Sweep& sweep, const valid
         validate::estimate_sweep(sweep, database, shard, options.common.jobs, out, only_interrupts);
     say_size(options, estimate);
     if (estimate.missing > 0 && estimate.bytes_to_come > estimate.free_bytes) {
-      throw base::EnvironmentError(fmt::format("{}: what is missing of the sweep needs about {}, and {} are free",
+      throw base::EnvironmentError(fmt::format("{}: the rest of the sweep needs about {}, and {} are free",
                                                out.string(), bytes_text(estimate.bytes_to_come),
                                                bytes_text(estimate.free_bytes)));
     }
@@ -194,7 +194,7 @@ void fill(const SweepOptions& options, const validate::Sweep& sweep, const valid
     }
   } else if (database.runs() < validate::run_count(sweep)) {
     display.clear();
-    say(options.common, fmt::format("not complete: {} of {} runs are missing; the sweep without --merge does them",
+    say(options.common, fmt::format("incomplete: {} of {} runs are missing; run the sweep without --merge to do them",
                                     validate::run_count(sweep) - database.runs(), validate::run_count(sweep)));
   }
   finish(options, sweep, database, out, progress, display);
@@ -236,22 +236,24 @@ void add_sweep(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Run a scenario many times with varied values, and see how errors depend on them (docs/sweep.md)");
   command->add_option("SWEEP", options->sweep, "A sweep file (docs/sweep.md)")->type_name("FILE")->required();
-  command->add_option("--shard", options->shard, "Only part i of n of the runs, into a database of its own; no page")
+  command
+      ->add_option("--shard", options->shard,
+                   "Do only part I of N of the runs, into a database of its own, and write no page")
       ->type_name("I/N")
       ->check(check_shard);
   command
       ->add_option("--merge", options->merge,
-                   "Put databases of shards together into sweep.sqlite, all or none; runs nothing")
+                   "Merge the databases of shards into sweep.sqlite, all or none; runs nothing")
       ->type_name("FILE")
       ->excludes("--shard");
-  command
-      ->add_option("--show", options->show,
-                   "Print the whole scenario of one run, its camera written in, and do nothing else")
+  command->add_option("--show", options->show, "Print the complete scenario of one run, camera included, and stop")
       ->type_name("RUN")
       ->check(check_whole_number)
       ->excludes("--shard", "--merge");
   command->add_flag("--many-runs", options->many, fmt::format("Allow more than {} runs", kManyRuns));
-  command->add_flag("--dry-run", options->dry_run, "Say how many runs, how long and how much disk, and stop")
+  command
+      ->add_flag("--dry-run", options->dry_run,
+                 "Print the number of runs, the time and the disk space needed, and stop")
       ->excludes("--merge", "--show");
   add_common_options(*command, options->common, "glidelab-out/sweep-<name of the sweep file>",
                      "Seed of the sweep; default: the file's");

@@ -77,32 +77,30 @@ void validate_command(const ValidateOptions& options) {
 
 void add_validate(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<ValidateOptions>();
-  CLI::App* command = app.add_subcommand(
-      "validate", "Film a scenario, analyse the pictures, and compare what comes out with the truth");
+  CLI::App* command =
+      app.add_subcommand("validate", "Film a scenario, analyse the images, and compare the result with the truth");
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/scenario.md)")
       ->type_name("FILE")
       ->required();
   command
-      ->add_option(
-          "--baseline", options->gate.compare,
-          "In place of filming: analyse replicated tracks of the scenario, and fail with status 4 where errors "
-          "are worse than in this file by a statistical test")
+      ->add_option("--baseline", options->gate.compare,
+                   "Instead of filming, analyse replicated tracks of the scenario; exit status 4 if errors are "
+                   "significantly worse than in this file")
       ->type_name("FILE");
-  command->add_option("--write-baseline", options->gate.write, "Store such errors, for --baseline")->type_name("FILE");
+  command->add_option("--write-baseline", options->gate.write, "Store these errors, for --baseline")->type_name("FILE");
   CLI::Option* runs = command->add_option("--runs", options->gate.runs, "Replicates for a baseline")
                           ->type_name("N")
                           ->check(CLI::Range(10, 1000000))
                           ->capture_default_str();
-  CLI::Option* noise =
-      command
-          ->add_option("--noise-m", options->gate.noise_m,
-                       "Standard deviation of a position for --write-baseline, else 2e-5; --baseline takes the stored "
-                       "one and refuses another")
-          ->type_name("METRES")
-          ->check(check_noise_m);
-  add_common_options(*command, options->common, "glidelab-out/validate-<name of the scenario file>",
-                     "Seed of the noise; default: the scenario's, for a baseline 1, beside --baseline another than "
-                     "the file's");
+  CLI::Option* noise = command
+                           ->add_option("--noise-m", options->gate.noise_m,
+                                        "Standard deviation of a position for --write-baseline, default 2e-5; "
+                                        "--baseline takes the stored one and refuses another")
+                           ->type_name("METRES")
+                           ->check(check_noise_m);
+  add_common_options(
+      *command, options->common, "glidelab-out/validate-<name of the scenario file>",
+      "Seed of the noise; default: the scenario's; with --write-baseline 1, with --baseline one other than the file's");
   command->callback([options, runs, noise, &chosen] {
     for (const CLI::Option* option : {runs, noise}) {
       if (option->count() > 0 && !options->gate.wanted()) {

@@ -44,7 +44,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
   }
   std::string text = text_table(rows, 3);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
-  rows = {{"configuration", "quantity", "of the lines as they are", "taken off for smoothing"}};
+  rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
   std::string notes;
   for (const core::ConfigurationResult& c : results.configurations) {
     for (const auto& [name, quantity] : quantities_of(c)) {

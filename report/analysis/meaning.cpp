@@ -32,7 +32,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     } else if (rate < -kBelowZero * sd) {
       text += fmt::format("K/m comes out as {} 1/s, below zero", base::value_and_sd_text(rate, sd));
     } else {
-      text += fmt::format("no drag that grows with speed can be told from zero ({} 1/s)",
+      text += fmt::format("drag that grows with speed cannot be distinguished from zero ({} 1/s)",
                           base::value_and_sd_text(rate, sd));
     }
   }
@@ -45,7 +45,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     } else if (mu < -kBelowZero * sd) {
       text += fmt::format("µ comes out as {}, below zero", size);
     } else {
-      text += fmt::format("no Coulomb friction can be told from zero (µ = {})", size);
+      text += fmt::format("Coulomb friction cannot be distinguished from zero (µ = {})", size);
     }
   }
   if (c.v_lim_m_s.estimate) {
@@ -94,7 +94,7 @@ std::string damping_sentence(const core::AnalysisResults& results) {
   }
   const boost::math::chi_squared of_chance(static_cast<double>(all.size() - 1));
   if (chi2 <= quantile(complement(of_chance, kChance))) {
-    return fmt::format("<p>Over all masses the damping constant is K = {} N s/m, the same within its errors.</p>\n",
+    return fmt::format("<p>The damping constant is the same for all masses within its errors: K = {} N s/m.</p>\n",
                        base::value_and_sd_text(mean, 1.0 / std::sqrt(weight)));
   }
   return fmt::format(
@@ -116,8 +116,8 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
       doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c), name,
                                    base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), reason));
     };
-    doubt(c.k_over_m_1_s, "K/m", "no drag makes");
-    doubt(c.mu, "µ", "no friction makes");
+    doubt(c.k_over_m_1_s, "K/m", "no drag can cause");
+    doubt(c.mu, "µ", "no friction can cause");
   }
   const core::ClipResult* farthest = nullptr;
   const core::LineFit* line = nullptr;
@@ -158,7 +158,7 @@ std::string meaning_of(const core::AnalysisResults& results) {
     text += "</ul>\n";
     if (!numbers.empty()) {
       text +=
-          "<p>What a fit of that law gives all the same, which need not be a property of the track or the glider:</p>"
+          "<p>A fit of that law still gives these numbers, which need not be properties of the track or the glider:</p>"
           "\n<ul class=\"soft\">\n" +
           numbers + "</ul>\n";
     }

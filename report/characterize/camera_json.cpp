@@ -97,7 +97,7 @@ std::string camera_text(const core::CameraMeasurement& camera) {
   std::string text = fmt::format("{}, {} bits, {} x {} pixels, {} frames\n\n", camera.folder.name,
                                  camera.folder.bit_depth, camera.picture.width, camera.picture.height, camera.frames);
   text += text_table(rows, 1);
-  text += fmt::format("\nPixels that stand out: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
+  text += fmt::format("\nOutlying pixels: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
                       camera.outlying_pixels);
   if (!below.empty()) text += "\n" + below;
   for (const std::string& note : camera.notes) text += "note: " + note + "\n";

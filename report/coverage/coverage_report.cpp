@@ -66,7 +66,8 @@ std::string level_table(const validate::Coverage& coverage) {
     table.row(cells);
   }
   return "<h2 id=\"levels\">Every level</h2>\n" + table.str() +
-         "<p class=\"soft\">Part of the intervals of each level that hold the truth, and the probability of a count as "
+         "<p class=\"soft\">Fraction of the intervals of each level that hold the truth, and the probability of a "
+         "count as "
          "far from it by chance (exact binomial test, two-sided). Marked: below 1 % over the number of all intervals "
          "and levels but the naive ones (Bonferroni). An interval of another level than 95 % is the stated one with "
          "its arms in proportion to the quantiles of Student's t.</p>\n";
@@ -137,9 +138,9 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
   });
   if (!any) {
     return meaning_section(
-        "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m and µ "
-        "are true of viscous and Coulomb friction only; under another law the inclination α has a true value, and "
-        "the limit velocity where the forces balance, and these motions do not determine them.</p>\n");
+        "<p>There is nothing to count: no estimator found a value whose truth is known. K/m and µ have a true value "
+        "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the limit "
+        "velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
   std::string text;
   if (narrow.empty()) {
@@ -157,12 +158,12 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
   if (!astray.empty()) {
     text += fmt::format(
         "<p>The values scatter more than {} times as far as stated for {}. A few replicates lie far off, too few to "
-        "show in how many of 95 % intervals hold the truth: record such a motion more than once.</p>\n",
+        "affect the coverage of 95 % intervals: record such a motion more than once.</p>\n",
         base::number_text(kAstray, 2), astray_list(astray));
   }
   text +=
-      "<p>The naive lines treat smoothed points as if they were independent. They are shown so that one sees what "
-      "that does to an interval.</p>\n";
+      "<p>The naive lines treat smoothed points as if they were independent. They are shown to demonstrate what that "
+      "does to an interval.</p>\n";
   return meaning_section(text);
 }
 
@@ -266,8 +267,8 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
   body += "<h2 id=\"table\">Every quantity</h2>\n" + table.str();
   body +=
       "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
-      "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the part "
-      "of the intervals of 95 % that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
+      "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the fraction "
+      "of 95 % intervals that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
   return page(title, body);
 }
 

@@ -211,8 +211,8 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   for (const validate::LineComparison& line : comparison.lines) lowest_r2 = std::min(lowest_r2, line.r2);
   const validate::RestitutionComparison& restitution = comparison.restitution;
   Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the pictures alone "
-      "by the lines of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n",
+      "<h1>{}</h1>\n<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the images alone by the "
+      "lines of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n",
       escape(title));
   body += "<div class=\"tiles\">" +
           tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +
@@ -223,10 +223,9 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   body += meaning_of(comparison);
   body += "<h2 id=\"comparison\">Truth and recovered values</h2>\n" + comparison_table(comparison);
   body +=
-      "<p class=\"soft\">sd is the standard deviation that the analysis itself states, camera and scale included; "
-      "least sd is what "
-      "the noise of the positions alone allows at all (Cramér-Rao bound), and efficiency (least sd / noise's part of "
-      "sd)².</p>\n";
+      "<p class=\"soft\">sd is the standard deviation that the analysis states, camera and scale included; least sd is "
+      "the smallest that the position noise allows (Cramér-Rao bound); efficiency is (least sd / sd due to position "
+      "noise)².</p>\n";
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);
   body += recovered_section(results);

@@ -23,7 +23,7 @@ namespace glidelab::validate {
 class FilmStudio {
  public:
   /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio before the same scene
-  /// may be given. `progress` is called with every picture and, in film(), every few frames, from any thread.
+  /// may be given. `progress` is called with every image and, in film(), every few frames, from any thread.
   FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
              std::shared_ptr<const render::Stage> stage = nullptr, base::Progress progress = base::no_progress);
 

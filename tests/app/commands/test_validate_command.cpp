@@ -110,11 +110,11 @@ TEST_CASE("a gate of few runs says how little it finds, and takes no other noise
         std::string::npos);
   const tests::ProcessResult same = validate({"--baseline", file, "--noise-m", "3e-5"});
   INFO(same.err);
-  CHECK(same.err.find("the smallest worsening that is found with probability 0.9") != std::string::npos);
+  CHECK(same.err.find("smallest worsening that is detected with probability 0.9") != std::string::npos);
   // Of normal errors 10 runs find no factor at all: 4.7 (the level's z and that of 0.9) times 0.603 / sqrt(10) is more
   // than 0.798, the mean of |z|.
   CHECK(same.err.find("none is found") != std::string::npos);
-  CHECK(same.err.find("warning: a weak gate: of ") != std::string::npos);
+  CHECK(same.err.find("warning: a weak gate: for ") != std::string::npos);
   const tests::ProcessResult alone = tests::glidelab({"validate", scenario, "--noise-m", "3e-5"}, dir.path());
   CHECK(alone.status == 2);
   CHECK(alone.err.find("--noise-m requires --baseline or --write-baseline") != std::string::npos);
@@ -188,7 +188,7 @@ TEST_CASE("coverage with a noise that is given asks no camera, and counts at the
   const tests::ProcessResult wrong =
       tests::glidelab({"coverage", "s.toml", "--noise-m", "2e-5", "--replicates", "5", "--level", "100"}, dir.path());
   CHECK(wrong.status == 2);
-  CHECK(wrong.err.find("\"100\" is no number of per cent above 0 and below 100") != std::string::npos);
+  CHECK(wrong.err.find("\"100\" is not a percentage above 0 and below 100") != std::string::npos);
 }
 
 TEST_CASE("coverage refuses numbers that mean nothing before it begins, and says where a bandwidth leaves no value") {

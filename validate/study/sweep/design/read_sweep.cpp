@@ -162,7 +162,7 @@ Sweep read_sweep(const std::filesystem::path& path) {
   if (root.has("calibration")) {
     sweep.calibrate_once = root.word("calibration", {"each", "once"}) == "once";
     if (sweep.level == Level::tracks) {
-      root.reject("calibration", "a calibration", "no such key with level = \"tracks\", which has no pictures");
+      root.reject("calibration", "a calibration", "no such key with level = \"tracks\", which has no images");
     }
   }
   sweep.field_m = root.maybe_number("field_m", base::above(0.0));

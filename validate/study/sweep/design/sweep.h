@@ -16,7 +16,7 @@
 namespace glidelab::validate {
 
 enum class Level {
-  tracks,  ///< true positions at the frames' times and white noise, no pictures
+  tracks,  ///< true positions at the frames' times and white noise, no images
   clips,   ///< rendered in memory, calibrated and tracked
 };
 
@@ -93,7 +93,7 @@ struct Sweep {
   /// With rendered clips: the replicates of a point share the calibration of the first one, as recordings before one
   /// camera do; else each has stills and a calibration of its own.
   bool calibrate_once = false;
-  std::optional<double> field_m;  ///< width of the plane that the picture shall show: sets the camera's distance
+  std::optional<double> field_m;  ///< width of the plane that the image shall show: sets the camera's distance
   std::vector<Axis> axes;
   std::vector<Analysis> analyses;
   std::vector<PublishedFall> published_falls = {};  ///< to lay beside (validate/mass_study.h)
