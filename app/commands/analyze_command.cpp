@@ -39,7 +39,7 @@ struct AnalyzeOptions {
   core::BareTrackOptions bare;
 };
 
-constexpr const char* kLines = "lines";  // the default: what serves the lines best (core/bandwidth.h)
+constexpr const char* kLines = "lines";  // the default: what serves the lines best (core/motion/bandwidth/rule_lines.h)
 
 /// A checked text: a number of seconds or the name of a rule.
 void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {

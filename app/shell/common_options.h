@@ -57,7 +57,7 @@ std::filesystem::path output_folder(const CommonOptions& options, std::string_vi
 std::filesystem::path truth_beside(const std::filesystem::path& experiment);
 
 /// InputError where the experiment folder or its truth hold anything that `render` did not make or that was changed
-/// since (base/made_files.h): those two are replaced as a whole, and nobody's own files may go with them.
+/// since (base/files/made_files.h): those two are replaced as a whole, and nobody's own files may go with them.
 void check_replaceable(const std::filesystem::path& experiment, const std::filesystem::path& truth);
 
 /// InputError where the file `option` names exists and does not begin with `head`, as what is written there would:

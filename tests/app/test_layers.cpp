@@ -67,7 +67,7 @@ std::vector<Source> sources_of_rooms() {
   return tests::sources_below(rooms);
 }
 
-/// "core/analyze.h" belongs to the room core; a header without a room's name, or of a library, to none.
+/// "core/analysis/analyze.h" belongs to the room core; a header without a room's name, or of a library, to none.
 std::string room_of(const std::string& include) {
   const std::string first = include.substr(0, include.find('/'));
   return include.find('/') != std::string::npos && (kAllowed.contains(first) || first == "tests" || first == "bench")
@@ -176,7 +176,7 @@ TEST_CASE("an include that the table does not allow is found") {
   CHECK(one("core/pictures/a.h", "#include \"core/motion/free/motion.h\"\n").size() == 1);
   CHECK(one("core/motion/free/a.cpp", "#include \"core/pictures/marker/marker.h\"\n").size() == 1);
   CHECK(one("core/analysis/a.cpp", "#include \"core/pictures/marker/marker.h\"\n").empty());
-  CHECK(one("core/a.cpp", "// no #include of \"sim/simulate.h\" here\n").empty());
+  CHECK(one("core/a.cpp", "// no #include of \"sim/motion/simulate.h\" here\n").empty());
 }
 
 TEST_CASE("a C library that is included from two files is found, from a header and its source it is not") {

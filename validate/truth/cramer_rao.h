@@ -7,8 +7,8 @@
 ///     F = sum over clips of J'(1 - P)J / s^2,   J = dx/d(k, d, f),   P projects on dx/d(x0, v0);
 ///     least variance of q(k, d, f) = grad q' F^-1 grad q.
 ///
-/// The derivatives are those of the true motion (sim/sensitivity.h), through its reversals. Frames in which the glider
-/// has stopped for good are not counted: no estimator here looks at them.
+/// The derivatives are those of the true motion (sim/sensitivity/sensitivity.h), through its reversals. Frames in which
+/// the glider has stopped for good are not counted: no estimator here looks at them.
 #pragma once
 
 #include <optional>
