@@ -88,16 +88,14 @@ std::string list_of(const std::vector<validate::CoverageFailure>& failures) {
     const validate::CoverageRow& row = failures[i].row;
     const bool again = i > 0 && failures[i - 1].row.configuration == row.configuration &&
                        failures[i - 1].row.estimator == row.estimator && failures[i - 1].row.quantity == row.quantity;
-    if (again) {
-      text.pop_back();
-    } else {
-      text += fmt::format("{}{} of {} by the {} (", i == 0 ? "" : ", ", escape(symbol_of(row.quantity)),
+    if (!again) {
+      text += fmt::format("{}<li>{} of {} by the {}: ", i == 0 ? "" : "</li>\n", escape(symbol_of(row.quantity)),
                           escape(row.configuration), escape(estimator_name(row.estimator)));
     }
-    text += fmt::format("{}{:.1f} % where they say {})", again ? ", " : "", 100.0 * failures[i].at.coverage,
+    text += fmt::format("{}{:.1f} % at {}", again ? ", " : "", 100.0 * failures[i].at.coverage,
                         level_text(failures[i].at.level));
   }
-  return text;
+  return "<ul>\n" + text + "</li>\n</ul>\n";
 }
 
 /// Rows of which single values lie so far off that all of them scatter much farther than stated. An interval may hold
@@ -149,10 +147,11 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
         "many "
         "replicates can tell.</p>\n";
   } else {
-    text += fmt::format("<p>These intervals hold the truth less often than they say: {}.</p>\n", list_of(narrow));
+    text += "<p>These intervals hold the truth less often than they say (how often, at each stated level):</p>\n" +
+            list_of(narrow);
   }
   if (!wide.empty()) {
-    text += fmt::format("<p>These are wider than they need be: {}.</p>\n", list_of(wide));
+    text += "<p>These are wider than they need to be, and hold the truth more often:</p>\n" + list_of(wide);
   }
   const std::vector<validate::CoverageRow> astray = scattered(coverage);
   if (!astray.empty()) {
