@@ -81,7 +81,7 @@ std::string noise_text(const validate::Coverage& coverage) {
   return from == to ? base::number_text(*least * 1e6, 3) + " µm" : fmt::format("{} to {} µm", from, to);
 }
 
-/// "µ of m1 by the generalised lines (41.0 % of 50 %, 88.0 % of 95 %)": the levels of a row stand together.
+/// "µ of m1 by the generalised lines: 41.0 % at 50 %, 88.0 % at 95 %": an item for each row, its levels together.
 std::string list_of(const std::vector<validate::CoverageFailure>& failures) {
   std::string text;
   for (std::size_t i = 0; i < failures.size(); ++i) {
