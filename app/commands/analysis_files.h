@@ -1,4 +1,4 @@
-/// What `analyze` and `validate` both write and show of an analysis.
+/// The files and previews of an analysis that `analyze` and `validate` both write.
 #pragma once
 
 #include <filesystem>

@@ -48,12 +48,12 @@ void say_power(const CommonOptions& common, const validate::Baseline& then, cons
     ++weak;
     runs = std::max(runs, of.runs_for_weak);
   }
-  say(common, fmt::format("smallest worsening that is detected with probability {}:\n{}", validate::kFound,
-                          report::text_table(rows, 3)));
+  say(common, fmt::format("smallest worsening that is detected with probability {}:\n{}",
+                          validate::kDetectionProbability, report::text_table(rows, 3)));
   if (weak == 0) return;
   say(common, fmt::format("warning: a weak gate: for {} of {} quantities it detects with probability {} only errors "
                           "more than {} times as large; about {} runs would suffice, in the baseline and now (--runs)",
-                          weak, rows.size() - 1, validate::kFound, validate::kWeak, runs));
+                          weak, rows.size() - 1, validate::kDetectionProbability, validate::kWeakFactor, runs));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// The commands, one file each. add_…() declares a command's options; where the user chose it, `chosen` becomes the
+/// The commands, one file each. add_…() declares a command's options; if the user chose it, `chosen` becomes its
 /// work.
 #pragma once
 

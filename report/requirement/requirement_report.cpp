@@ -22,7 +22,7 @@ using validate::Requirement;
 using validate::Target;
 using validate::Verdict;
 
-constexpr double kSomeGain = 1.05;  // times smaller with one limitation less: below it nothing is worth a name
+constexpr double kLeastNamedGain = 1.05;  // times smaller with one limitation less: below it nothing is worth a name
 
 /// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
 struct Scale {
@@ -99,7 +99,7 @@ std::string cost_text(const Requirement& requirement, const Candidate& candidate
 std::string limit_text(const Candidate& candidate) {
   std::string text;
   for (const validate::Limit& limit : candidate.limits) {
-    if (limit.gain < kSomeGain) break;
+    if (limit.gain < kLeastNamedGain) break;
     text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limit.name, limit.gain, limit.gain < 10.0 ? 1 : 0);
   }
   return text;
@@ -176,7 +176,7 @@ std::string meaning(const Requirement& requirement) {
   if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
     const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
     text +=
-        limit.gain < kSomeGain
+        limit.gain < kLeastNamedGain
             ? fmt::format(" No single limitation keeps {} from it.", numbered(requirement, missed.front()))
             : fmt::format(" What most keeps {} from it: {}; without that its error would be {} times smaller.",
                           numbered(requirement, missed.front()), escape(limit.name), base::number_text(limit.gain, 2));

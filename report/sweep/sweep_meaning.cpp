@@ -43,7 +43,7 @@ const Series* best_of(const std::vector<Series>& all, std::string_view quantity,
   for (const Series& series : all) {
     const ErrorStatistics& of = series.groups.front().statistics;
     if (series.quantity != quantity || !asked(series.estimator) || of.answered == 0) continue;
-    if (static_cast<double>(of.answered) < kAnswers * static_cast<double>(most)) continue;
+    if (static_cast<double>(of.answered) < kLeastAnsweredShare * static_cast<double>(most)) continue;
     if (best == nullptr || of.rms < best->groups.front().statistics.rms) best = &series;
   }
   return best;

@@ -11,7 +11,7 @@ namespace glidelab::report {
 std::string printable(std::string text);
 
 /// Columns set under their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
-/// characters, not bytes. Cells are printable() without the caller's doing.
+/// characters, not bytes. printable() is applied to every cell.
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number);
 
 }  // namespace glidelab::report

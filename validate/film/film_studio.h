@@ -16,7 +16,7 @@
 
 namespace glidelab::validate {
 
-/// A camera with its calibration, for as many recordings as one likes: of scenarios whose stills are those of the first
+/// A camera with its calibration, for any number of recordings: of scenarios whose stills are those of the first
 /// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills and
 /// experiment.toml lie in a folder of its own under the system's folder for temporary files, which goes with it. One
 /// thread at a time.

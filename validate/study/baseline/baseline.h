@@ -62,7 +62,7 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
                           const BaselineOptions& options, const AnalyzeTracks& analyze = analyze_both,
                           const base::Progress& progress = base::no_progress);
 
-/// Of other noise than the baseline's; of one that does not know its seed than that of the default, 1.
+/// A seed whose noise differs from the baseline's; for a baseline without a seed, from that of the default, 1.
 std::uint64_t other_seed(const Baseline& then);
 
 }  // namespace glidelab::validate

@@ -9,7 +9,7 @@
 namespace glidelab::validate {
 
 std::string baseline_json(const Baseline& baseline);
-/// InputError for what --write-baseline has not made, with the first key that is wrong.
+/// InputError for a file that --write-baseline did not write, with the first key that is wrong.
 Baseline read_baseline(const std::filesystem::path& file);
 
 }  // namespace glidelab::validate

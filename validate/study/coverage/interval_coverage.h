@@ -84,7 +84,7 @@ struct CoverageFailure {
 };
 
 /// Intervals of estimators other than kNaiveLines that hold the truth less often than they say, or more often (they
-/// are wider than they need be), at the 1 % level corrected for the number of rows and levels (Bonferroni).
+/// are wider than they need to be), at the 1 % level corrected for the number of rows and levels (Bonferroni).
 std::vector<CoverageFailure> too_narrow(const Coverage& coverage);
 std::vector<CoverageFailure> too_wide(const Coverage& coverage);
 

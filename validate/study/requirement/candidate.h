@@ -18,7 +18,7 @@ enum class Confirm { none, tracks, clips };
 struct ConfirmationSize {
   std::uint64_t close = 0, points = 0;  ///< to be rendered, of all
   std::uint64_t recordings = 0;
-  double seconds = 0.0;  ///< on the threads asked for, from one recording; what keeps a miss from it takes more
+  double seconds = 0.0;  ///< on the threads asked for, from one recording; finding what limits a miss takes longer
 };
 
 struct RequirementOptions {
@@ -43,7 +43,7 @@ struct TargetResult {
   std::string estimator;
 };
 
-/// A limitation thought away: how many times smaller the bound of the hardest target then is.
+/// A limitation removed in thought: how many times smaller the bound of the hardest target then is.
 struct Limit {
   std::string name;
   double gain = 1.0;
@@ -51,7 +51,7 @@ struct Limit {
 
 enum class Verdict {
   reached,      ///< by runs
-  by_bound,     ///< the bound has room of kClear
+  by_bound,     ///< the bound has room of kClearMargin
   unconfirmed,  ///< the bound allows it, and nothing was run
   undecided,    ///< by runs: found - found_sd is within the target, found + found_sd is not
   missed,       ///< by runs

@@ -78,7 +78,7 @@ void judge_by_runs(const Sweep& sweep, std::uint64_t point, RequirementOptions o
   candidate.verdict = runs.judge(candidate.results);
   candidate.judged_by = confirm;
   const double found = hardest_found(candidate.results, options.targets);
-  if (confirm == Confirm::tracks) trial.close = found < kClear && found > 1.0 / kClearOfClips;
+  if (confirm == Confirm::tracks) trial.close = found < kClearMargin && found > 1.0 / kClearMarginOfClips;
   if (candidate.verdict == Verdict::reached || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
   for (Limit& limit : runs.limits(candidate.results)) candidate.limits.push_back(std::move(limit));
@@ -126,7 +126,7 @@ Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions
       if (std::isfinite(candidate.need)) candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
     } else if (options.confirm != Confirm::none) {
       judge_by_runs(sweep, point, options, Confirm::tracks, trial);
-    } else if (candidate.need < 1.0 / kClear && !any_bias) {
+    } else if (candidate.need < 1.0 / kClearMargin && !any_bias) {
       candidate.verdict = Verdict::by_bound;
     }
   });

@@ -6,9 +6,9 @@
 /// (tracks/camera_noise.h), and is that of the standard deviation, times 1.96 for "error95". A point whose bound is
 /// above the target cannot reach it. Any other is run as tracks with that noise and judged by its errors (of the better
 /// estimator), for a bound knows nothing of dropped frames. Where rendered clips are to confirm, those that miss the
-/// target by less than kClear or reach it by less than kClearOfClips are rendered as well, with lens, shutter, codec
-/// and calibration, and these judge. Where the errors' uncertainty spans the target, nothing is decided. Where nothing
-/// is run, a bound below the target by kClear is said to have room.
+/// target by less than kClearMargin or reach it by less than kClearMarginOfClips are rendered as well, with lens,
+/// shutter, codec and calibration, and these judge. Where the errors' uncertainty spans the target, nothing is decided.
+/// Where nothing is run, a bound below the target by kClearMargin is said to have room.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@
 
 namespace glidelab::validate {
 
-inline constexpr double kClear = 4.0;
+inline constexpr double kClearMargin = 4.0;
 /// Clips of a cheap camera with a compressing codec were seen to err 13 times as much as tracks (docs/sweep.md).
-inline constexpr double kClearOfClips = 20.0;
+inline constexpr double kClearMarginOfClips = 20.0;
 
 struct Requirement {
   std::string name;

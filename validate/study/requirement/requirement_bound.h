@@ -27,7 +27,7 @@ std::vector<TargetResult> bounds(const MadeTracks& made, const std::vector<doubl
 /// Bound over target, of the hardest target; infinite where the motion does not determine it.
 double hardest(const std::vector<TargetResult>& results, const std::vector<Target>& targets);
 
-/// How many times smaller `need` were with one limitation thought away, the largest gain first.
+/// How many times smaller `need` were without one limitation, the largest gain first.
 std::vector<Limit> limits_of(const Setting& setting, double need, const std::vector<Target>& targets);
 
 }  // namespace glidelab::validate
