@@ -54,6 +54,5 @@ skipped_in() {
 build() {
   local preset=$1
   shift
-  say "Building ($preset)"
-  (cd "$root" && cmake --preset "$preset" >&2 && cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} >&2)
+  (cd "$root" && cmake --preset "$preset" --log-level=NOTICE >&2 && cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} >&2)
 }

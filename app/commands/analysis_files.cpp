@@ -2,10 +2,9 @@
 
 #include "base/files/staged_output.h"
 #include "core/experiment/experiment.h"
-#include "report/analysis/motion_csv.h"
-#include "report/analysis/phase_csv.h"
+#include "report/analysis/clip_csv.h"
 #include "report/analysis/results_json.h"
-#include "report/text/output_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::app {
 namespace {
@@ -33,8 +32,7 @@ std::vector<core::Preview> previews_of(const std::vector<std::filesystem::path>&
     const core::Experiment experiment = core::read_input(folder, bare);
     for (const core::ClipSetup& setup : experiment.clips) {
       if (!setup.file.empty())
-        progress("preparing pictures",
-                 static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));
+        progress("preparing images", static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));
       core::PreviewOptions options;
       options.video = !setup.file.empty() && videos < kVideos;
       if (options.video) ++videos;

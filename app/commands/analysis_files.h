@@ -1,4 +1,4 @@
-/// What `analyze` and `validate` both write and show of an analysis.
+/// The files and previews of an analysis that `analyze` and `validate` both write.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace glidelab::app {
 void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir);
 
 /// One preview for each clip of the results, which come from these folders in this order. The first two clips with
-/// pictures get a video, the others one frame.
+/// images get a video, the others one frame.
 std::vector<core::Preview> previews_of(const std::vector<std::filesystem::path>& folders,
                                        const core::AnalysisResults& results, const base::Progress& progress,
                                        const core::BareTrackOptions& bare = {});

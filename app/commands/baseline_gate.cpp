@@ -10,8 +10,10 @@
 #include "base/files/staged_output.h"
 #include "base/text/number_text.h"
 #include "render/scenario/scenario.h"
-#include "report/analysis/text_table.h"
+#include "report/text/text_table.h"
 #include "validate/study/baseline/baseline.h"
+#include "validate/study/baseline/baseline_comparison.h"
+#include "validate/study/baseline/baseline_file.h"
 #include "validate/study/baseline/baseline_power.h"
 
 namespace glidelab::app {
@@ -35,23 +37,23 @@ std::string table(const validate::Baseline& baseline) {
 void say_power(const CommonOptions& common, const validate::Baseline& then, const validate::Baseline& now,
                const validate::BaselineComparison& comparison) {
   std::vector<std::vector<std::string>> rows = {
-      {"configuration", "estimator", "quantity", "errors times", "or mean farther off by"}};
+      {"configuration", "estimator", "quantity", "errors larger by a factor of", "or mean error larger by"}};
   std::size_t weak = 0;
   std::uint64_t runs = 0;
   for (const validate::Detectable& of : validate::detectable(then, now, comparison)) {
     rows.push_back({of.configuration, of.estimator, of.quantity,
-                    of.factor ? base::number_text(*of.factor, 3) : "none is found",
+                    of.factor ? base::number_text(*of.factor, 3) : "not detected",
                     of.bias ? base::number_text(*of.bias, 2) : "–"});
     if (!of.weak()) continue;
     ++weak;
     runs = std::max(runs, of.runs_for_weak);
   }
-  say(common, fmt::format("the smallest worsening that is found with probability {}:\n{}", validate::kFound,
-                          report::text_table(rows, 3)));
+  say(common, fmt::format("smallest worsening that is detected with probability {}:\n{}",
+                          validate::kDetectionProbability, report::text_table(rows, 3)));
   if (weak == 0) return;
-  say(common, fmt::format("warning: a weak gate: of {} of {} quantities it finds with probability {} only what is more "
-                          "than {} times as large; about {} runs would do, of the baseline and now (--runs)",
-                          weak, rows.size() - 1, validate::kFound, validate::kWeak, runs));
+  say(common, fmt::format("warning: a weak gate: for {} of {} quantities it detects with probability {} only errors "
+                          "more than {} times as large; about {} runs would suffice, in the baseline and now (--runs)",
+                          weak, rows.size() - 1, validate::kDetectionProbability, validate::kWeakFactor, runs));
 }
 
 }  // namespace
@@ -63,7 +65,7 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
     std::error_code error;  // of a file that is not there
     if (!gate.compare.empty() && fs::equivalent(gate.compare, gate.write, error)) {
       throw base::InputError(base::Issue{gate.write, 0, "--write-baseline", "the file of --baseline",
-                                         "another one: what is compared with is kept"});
+                                         "another file: a baseline that is compared with is kept"});
     }
   }
   const std::string text = base::read_file(scenario_file);
@@ -98,11 +100,10 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
   if (!gate.write.empty()) write_whole(gate.write, validate::baseline_json(now));
   if (!then) return;
   const validate::BaselineComparison comparison = validate::compare_baselines(*then, now);
-  say(common,
-      fmt::format("{} tests at {} together; errors 1.5 times as large are found with probability {:.2f}, a bias "
-                  "of half a standard deviation with {:.2f}, a doubled bandwidth with {:.2f}",
-                  comparison.tests, comparison.significance, comparison.power_spread, comparison.power_bias,
-                  comparison.power_doubled));
+  say(common, fmt::format("{} tests with an overall significance of {}; probability of detecting errors 1.5 times as "
+                          "large: {:.2f}, a bias of half a standard deviation: {:.2f}, a doubled bandwidth: {:.2f}",
+                          comparison.tests, comparison.significance, comparison.power_spread, comparison.power_bias,
+                          comparison.power_doubled));
   say_power(common, *then, now, comparison);
   if (comparison.worse.empty()) {
     say(common, "nothing is worse than the baseline");

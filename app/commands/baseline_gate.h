@@ -17,7 +17,7 @@ struct BaselineGate {
   bool wanted() const { return !compare.empty() || !write.empty(); }
 };
 
-/// NotMet where something is worse.
+/// NotMet if something is worse.
 void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file);
 
 }  // namespace glidelab::app

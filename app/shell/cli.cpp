@@ -97,9 +97,9 @@ int run_command(const Command& command) {
     } catch (const std::bad_alloc&) {
       return fail(kEnvironmentFailed, "out of memory");
     } catch (const cv::Exception& error) {
-      // OpenCV refuses pictures that no check before it has caught.
+      // OpenCV refuses images that no check before it has caught.
       return fail(error.code == cv::Error::StsNoMem ? kEnvironmentFailed : kWrongInput,
-                  fmt::format("a picture cannot be processed: {}", error.what()));
+                  fmt::format("an image cannot be processed: {}", error.what()));
     } catch (const std::exception& error) {
       return fail(kEnvironmentFailed, fmt::format("unexpected failure: {}", error.what()));
     }
@@ -195,7 +195,7 @@ int run(int argc, char** argv) {
   hush_libraries();
   CLI::App app(
       "Glidelab rehearses video experiments on friction: it simulates a glider on a track, films it, analyses the film "
-      "as one analyses a real one, and compares the result with the truth.",
+      "as it would a real one, and compares the result with the truth.",
       "glidelab");
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Show this help");
@@ -209,7 +209,7 @@ int run(int argc, char** argv) {
       "--man", [&] { print_and_leave(man_page(app)); }, "Print the manual page (roff)");
   app.add_option_function<std::string>(
          "--completion", [&](const std::string& shell) { print_and_leave(completion_script(app, shell)); },
-         "Print what completes commands and options in a shell: bash or zsh")
+         "Print the completion script for a shell: bash or zsh")
       ->type_name("SHELL")
       ->check(CLI::IsMember({"bash", "zsh"}));
   app.require_subcommand(1);

@@ -1,6 +1,6 @@
 /// The program: reads the command line, runs the command, and turns what it throws into an exit status.
 ///
-///     0 done, 1 wrong input, 2 wrong command line, 3 the environment failed, 4 what was asked to hold does not,
+///     0 done, 1 wrong input, 2 wrong command line, 3 the environment failed, 4 a requirement is not met,
 ///     130 interrupted
 #pragma once
 

@@ -1,9 +1,12 @@
-/// The commands, one file each. add_…() declares a command's options; where the user chose it, `chosen` becomes the
+/// The commands, one file each. add_…() declares a command's options; if the user chose it, `chosen` becomes its
 /// work.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <functional>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace glidelab::app {
 

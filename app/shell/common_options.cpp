@@ -55,12 +55,13 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
   command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_whole_number);
   command
       .add_option("--jobs", options.jobs,
-                  fmt::format("Threads to use; default: the number of cores ({})", options.jobs))
+                  fmt::format("Number of threads; default: the number of cores ({})", options.jobs))
       ->type_name("N")
       ->check(CLI::Range(1, kMostJobs));
   command.add_flag("--json", options.json, "Print the result on standard output as one JSON object");
-  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet, "No progress and no messages but errors");
-  command.add_flag("-v,--verbose", options.verbose, "Say how long each stage took")->excludes(quiet);
+  CLI::Option* quiet =
+      command.add_flag("-q,--quiet", options.quiet, "Print no progress, and no messages except errors");
+  command.add_flag("-v,--verbose", options.verbose, "Print how long each stage took")->excludes(quiet);
 }
 
 fs::path named_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
@@ -122,7 +123,7 @@ void check_writable(const fs::path& folder) {
   if (::stat(folder.c_str(), &own) == 0 && ::stat(folder.parent_path().c_str(), &parent) == 0 &&
       own.st_dev != parent.st_dev) {
     throw base::EnvironmentError(fmt::format(
-        "{}: is a file system of its own, where results cannot be put in place at once; give a folder inside it",
+        "{}: is a file system of its own, into which results cannot be moved at once; give a folder inside it",
         folder.string()));
   }
 }
@@ -159,14 +160,14 @@ void write_whole(const fs::path& file, std::string_view text) {
 std::string check_above_0(const std::string& text) {
   double value = 0.0;
   if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
-  return fmt::format("\"{}\" is no number above 0", text);
+  return fmt::format("\"{}\" is not a number above 0", text);
 }
 
 std::string check_noise_m(const std::string& text) {
   constexpr double kLeast_m = 1e-9, kMost_m = 1.0;
   double value = 0.0;
   if (CLI::detail::lexical_cast(text, value) && value >= kLeast_m && value <= kMost_m) return {};  // NaN is neither
-  return fmt::format("\"{}\" is no number of metres from {} to {}", text, kLeast_m, kMost_m);
+  return fmt::format("\"{}\" is not a number of metres from {} to {}", text, kLeast_m, kMost_m);
 }
 
 void print_result(std::string_view text) {

@@ -1,7 +1,6 @@
-/// What every command takes, and how a command speaks: files, tables and JSON.
+/// The options that every command takes, and how a command writes: files, tables and JSON.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,14 +10,18 @@
 
 #include "base/errors.h"
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace glidelab::app {
 
-/// Wrong words on the command line that show only after it was read (exit status 2).
+/// A mistake on the command line that shows only after it was parsed (exit status 2).
 class CommandLineError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Does `work`, which looks at nothing but words of the command line: its InputError is a CommandLineError.
+/// Runs `work`, which depends on the command line alone, and turns its InputError into a CommandLineError.
 template <class Work>
 auto of_command_line(const Work& work) {
   try {
@@ -45,42 +48,42 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
 std::filesystem::path named_folder(const CommonOptions& options, std::string_view command,
                                    const std::filesystem::path& input);
 
-/// The same, for results. CommandLineError where it holds a recording (experiment.toml, characterize.toml): results do
-/// not go among what they are made of. A folder inside it may take them.
+/// The same, for results. CommandLineError if it holds a recording (experiment.toml, characterize.toml): results
+/// are not mixed with their input. A folder inside it is allowed.
 std::filesystem::path output_folder(const CommonOptions& options, std::string_view command,
                                     const std::filesystem::path& input);
 
 /// "name.truth" beside "name".
 std::filesystem::path truth_beside(const std::filesystem::path& experiment);
 
-/// InputError where the experiment folder or its truth hold anything that `render` did not make or that was changed
-/// since (base/made_files.h): those two are replaced as a whole, and nobody's own files may go with them.
+/// InputError if the experiment folder or its truth hold anything that `render` did not write or that was changed since
+/// (base/files/made_files.h): the two are replaced as a whole, and no file of the user's own may be lost.
 void check_replaceable(const std::filesystem::path& experiment, const std::filesystem::path& truth);
 
-/// InputError where the file `option` names exists and does not begin with `head`, as what is written there would:
-/// somebody else's file is not replaced.
+/// InputError if the file that `option` names exists and does not begin with `head`, as this program's file would:
+/// a foreign file is not replaced.
 void check_own_file(const std::filesystem::path& file, const std::string& option, std::string_view head);
 
-/// EnvironmentError where the folder exists and nothing can be written into it, or where it is a mount point: results
-/// are made beside it and renamed, which works within one file system only.
+/// EnvironmentError if the folder exists and cannot be written into, or if it is a mount point: results are written
+/// beside it and renamed, which works within one file system only.
 void check_writable(const std::filesystem::path& folder);
 
-/// The same of a file that is written beside its final name: its folder is there, and can be written into.
+/// The same for a file that is written beside its final name: its folder must exist and be writable.
 void check_file_writable(const std::filesystem::path& file);
 
-/// For CLI11, which takes -1 for the largest unsigned number: why the text is none; empty where it is one.
+/// For CLI11, which reads -1 as the largest unsigned number: why the text is not a whole number; empty if it is one.
 std::string check_whole_number(const std::string& text);
 
-/// Writes a file beside its final name and renames it: what stood there stays where that fails.
+/// Writes a file beside its final name and renames it: if that fails, the old file stays.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
-/// For CLI11, whose own checks take "nan": why the text is no finite number above 0; empty where it is one.
+/// For CLI11, whose own checks accept "nan": why the text is not a finite number above 0; empty if it is one.
 std::string check_above_0(const std::string& text);
 
-/// For CLI11: why the text is no finite number of metres above 0 that a position's noise can be; empty where it is one.
+/// For CLI11: why the text is not a plausible position noise in metres; empty if it is one.
 std::string check_noise_m(const std::string& text);
 
-/// Writes to standard output and flushes it; EnvironmentError where that fails.
+/// Writes to standard output and flushes it; EnvironmentError if that fails.
 void print_result(std::string_view text);
 
 /// One line on standard error, unless --quiet.

@@ -1,20 +1,24 @@
 /// Completion for shells, from the commands and options as CLI11 holds them.
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Validators.hpp>
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
+
 namespace glidelab::app {
 
-/// The words of which the option takes one; none where it takes something else.
+/// The words that the option accepts; none if it takes something else.
 std::vector<std::string> words_of(const CLI::Option& option);
 
-/// A check of an option that takes one of these words: what it was instead, and which was meant.
+/// A check that an option is one of these words; otherwise it says what was found and which word may have been meant.
 CLI::Validator one_of(const std::vector<std::string>& words);
 
-/// The option's type as help and manual show it: its words where they are few.
+/// The option's type as help and manual show it: its words if they are few.
 std::string shown_type(const CLI::Option& option);
 
 /// A script that completes commands, options, their words and files: for "bash" (to be sourced, or put among

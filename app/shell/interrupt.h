@@ -1,5 +1,5 @@
-/// SIGINT, SIGTERM and SIGHUP set a flag; the work looks at it and ends by itself, cleaning up behind it. Another one,
-/// two seconds later or more, ends the process at once, and what it had begun stays.
+/// SIGINT, SIGTERM and SIGHUP set a flag; the work checks it, ends by itself and cleans up. A second
+/// signal, two seconds later or more, ends the process at once and leaves what it had begun.
 #pragma once
 
 #include <functional>

@@ -56,7 +56,7 @@ std::string examples() {
        {"glidelab explore -o class", "glidelab laws scenarios/laws -o laws",
         "glidelab simulate scenarios/laws/6-stribeck.toml -o stribeck"}}};
   std::string text =
-      ".SH EXAMPLES\nThe scenarios lie in the source's folder, and of what is installed in share/glidelab/scenarios.\n";
+      ".SH EXAMPLES\nThe scenarios are in the source folder, and once installed in share/glidelab/scenarios.\n";
   for (const Example& example : kExamples) {
     text += fmt::format(".PP\n{}\n.PP\n.nf\n.RS 4\n", example.reader);
     for (const std::string_view command : example.commands) text += roff(std::string(command)) + "\n";
@@ -96,7 +96,7 @@ std::string man_page(const CLI::App& app) {
       ".SH EXIT STATUS\n"
       ".TP\n.B 0\ndone\n.TP\n.B 1\nthe input is wrong\n.TP\n.B 2\na wrong command line\n"
       ".TP\n.B 3\nthe environment failed: disk full, codec missing\n"
-      ".TP\n.B 4\nwhat was asked to hold does not: a baseline, a target\n.TP\n.B 130\ninterrupted\n";
+      ".TP\n.B 4\na requirement is not met: a baseline, a target\n.TP\n.B 130\ninterrupted\n";
   return text;
 }
 

@@ -2,8 +2,11 @@
 /// here is written by hand twice.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace glidelab::app {
 

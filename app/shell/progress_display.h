@@ -1,7 +1,7 @@
-/// How far the work is, on standard error: a bar on a terminal, a line now and then elsewhere, nothing with --quiet;
-/// with --verbose also how long each stage took, in a line of its own.
+/// Progress on standard error: a bar on a terminal, an occasional line elsewhere, nothing with --quiet; with --verbose
+/// also how long each stage took, on a line of its own.
 ///
-/// Also the place where an interrupt ends the work: every call looks at the flag first.
+/// Also the place where an interrupt ends the work: every call checks the flag first.
 #pragma once
 
 #include <chrono>

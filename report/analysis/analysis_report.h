@@ -16,4 +16,7 @@ namespace glidelab::report {
 Page analysis_report(const std::string& title, const core::AnalysisResults& results,
                      const std::vector<core::Preview>& previews, const base::Progress& progress = base::no_progress);
 
+/// Of each configuration: K/m, mu, alpha, v_lim with sd, R² of its lines; below, why something is missing.
+std::string analysis_text(const core::AnalysisResults& results);
+
 }  // namespace glidelab::report

@@ -12,7 +12,7 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kArrow = 0.08;  // of the picture's width, for the largest
+constexpr double kArrow = 0.08;  // of the image's width, for the largest
 constexpr int kMostTics = 7;     // that leave room for numbers of pixels side by side
 
 /// 1, 2 or 5 times a power of ten, at most `value`.
@@ -41,20 +41,21 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
           "set size ratio -1\nset offsets 0,0,0,0\nset xrange [-0.5:{0}]\nset yrange [{1}:-0.5]\nset xtics {2}\nset "
           "ytics {2}\n"
           "set xlabel 'u (px)'\nset ylabel 'v (px)'\n"
-          "plot $noise using 1:2:3 with circles fillcolor rgb '{3}' fillstyle solid noborder title 'what noise makes', "
-          "$arrows using 1:2:3:4 with vectors filled head size graph 0.012,20 lw 1.5 lc rgb '{4}' title 'mean rest, "
+          "plot $noise using 1:2:3 with circles fillcolor rgb '{3}' fillstyle solid noborder title 'expected from "
+          "noise', "
+          "$arrows using 1:2:3:4 with vectors filled head size graph 0.012,20 lw 1.5 lc rgb '{4}' title 'mean "
+          "residual, "
           "{5:g} "
           "times enlarged'\n",
           rests.width_px - 0.5, rests.height_px - 0.5, step, kShade, kColors[0], enlarged);
-  return {
-      {Drawing{script, std::vector{noise, arrows}},
-       fmt::format("{}Where the pattern's corners lie off what the camera's model makes of them, mean over all views "
-                   "in each part of the picture (the largest is {} px). They are {} times what errors independent "
-                   "of each other would leave; arrows that turn or grow smoothly over the picture are a lens that "
-                   "the model does not follow, or a pattern that is not flat",
-                   experiment.empty() ? "" : experiment + ": ", base::number_text(largest, 2),
-                   base::number_text(rests.excess, 2)),
-       (experiment.empty() ? "" : experiment + ", ") + "Rests of the calibration over the picture"}};
+  return {{Drawing{script, std::vector{noise, arrows}},
+           fmt::format(
+               "{}Residuals of the pattern's corners, averaged over all views in each part of the image (the largest "
+               "is {} px). They are {} times what independent errors would leave; arrows that turn or grow smoothly "
+               "across the image point to a lens that the model does not follow, or to a pattern that is not flat",
+               experiment.empty() ? "" : experiment + ": ", base::number_text(largest, 2),
+               base::number_text(rests.excess, 2)),
+           (experiment.empty() ? "" : experiment + ", ") + "Residuals of the calibration over the image"}};
 }
 
 double curve_excess(const diagnose::PictureCurve& curve) {
@@ -79,9 +80,9 @@ Plot noise_plot(const diagnose::PictureCurve& curve) {
           "title 'seen', $noise using 1:4 with lines lw 2 lc rgb '{0}' title 'of light and a linear sensor'\n",
           kColors[0]);
   return {Drawing{script, std::vector{data}},
-          fmt::format("How much a pixel at rest changes from frame to frame, the brighter it is. The light's own noise "
-                      "makes a straight line; a tone curve, a codec or a camera that smooths bends it. The points lie "
-                      "{} times as far off it as they are known",
+          fmt::format("How much resting pixels change from frame to frame, against their brightness. Shot noise gives "
+                      "a straight line; a tone curve, a codec or a camera that smooths bends it. The points lie off it "
+                      "by {} times their standard deviation",
                       base::number_text(curve_excess(curve), 2)),
           "Noise of pixels over their brightness"};
 }

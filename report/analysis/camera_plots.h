@@ -1,4 +1,4 @@
-/// What a camera's pictures leave that its model does not have: the calibration's rests over the picture, and pixels'
+/// What a camera's images leave that its model does not have: the calibration's residuals over the image, and pixels'
 /// noise over their brightness.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace glidelab::report {
 
-/// Mean rests of the pattern's corners in cells of the picture, as arrows; nothing where there are none. `experiment`
+/// Mean residuals of the pattern's corners in cells of the image, as arrows; nothing where there are none. `experiment`
 /// is named where there are several.
 std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::string& experiment);
 

@@ -9,8 +9,8 @@
 
 #include "base/text/number_text.h"
 #include "report/html/html.h"
-#include "report/text/configuration_name.h"
 #include "report/text/quantity_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::report {
 namespace {
@@ -18,7 +18,6 @@ namespace {
 constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
 constexpr double kBelowZero = 2.0;  // standard deviations: what chance does in one of forty
 constexpr double kOffLine = 2.0;    // times the noise: more than a wrong idea of the noise makes
-constexpr double kWithin = 2.0;     // standard deviations from the truth: 95 of 100 values
 
 std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
@@ -33,7 +32,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     } else if (rate < -kBelowZero * sd) {
       text += fmt::format("K/m comes out as {} 1/s, below zero", base::value_and_sd_text(rate, sd));
     } else {
-      text += fmt::format("no drag that grows with speed can be told from zero ({} 1/s)",
+      text += fmt::format("drag that grows with speed cannot be distinguished from zero ({} 1/s)",
                           base::value_and_sd_text(rate, sd));
     }
   }
@@ -46,7 +45,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     } else if (mu < -kBelowZero * sd) {
       text += fmt::format("µ comes out as {}, below zero", size);
     } else {
-      text += fmt::format("no Coulomb friction can be told from zero (µ = {})", size);
+      text += fmt::format("Coulomb friction cannot be distinguished from zero (µ = {})", size);
     }
   }
   if (c.v_lim_m_s.estimate) {
@@ -95,7 +94,7 @@ std::string damping_sentence(const core::AnalysisResults& results) {
   }
   const boost::math::chi_squared of_chance(static_cast<double>(all.size() - 1));
   if (chi2 <= quantile(complement(of_chance, kChance))) {
-    return fmt::format("<p>Over all masses the damping constant is K = {} N s/m, the same within its errors.</p>\n",
+    return fmt::format("<p>The damping constant is the same for all masses within its errors: K = {} N s/m.</p>\n",
                        base::value_and_sd_text(mean, 1.0 / std::sqrt(weight)));
   }
   return fmt::format(
@@ -117,8 +116,8 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
       doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c), name,
                                    base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), reason));
     };
-    doubt(c.k_over_m_1_s, "K/m", "no drag makes");
-    doubt(c.mu, "µ", "no friction makes");
+    doubt(c.k_over_m_1_s, "K/m", "no drag can cause");
+    doubt(c.mu, "µ", "no friction can cause");
   }
   const core::ClipResult* farthest = nullptr;
   const core::LineFit* line = nullptr;
@@ -159,7 +158,7 @@ std::string meaning_of(const core::AnalysisResults& results) {
     text += "</ul>\n";
     if (!numbers.empty()) {
       text +=
-          "<p>What a fit of that law gives all the same, which need not be a property of the track or the glider:</p>"
+          "<p>A fit of that law still gives these numbers, which need not be properties of the track or the glider:</p>"
           "\n<ul class=\"soft\">\n" +
           numbers + "</ul>\n";
     }
@@ -173,49 +172,6 @@ std::string meaning_of(const core::AnalysisResults& results) {
         "<p>Not every a(v) is a straight line or stands clear of its noise: the lowest R² is {}. Where the residuals "
         "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
         base::r2_text(worst));
-  }
-  return meaning_section(text);
-}
-
-std::string meaning_of(const validate::Comparison& comparison) {
-  std::size_t compared = 0;
-  std::size_t within = 0;
-  double worst = 0.0;
-  const validate::QuantityComparison* worst_quantity = nullptr;
-  for (const validate::QuantityComparison& quantity : comparison.quantities) {
-    if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
-    ++compared;
-    const double in_sd = std::abs(*quantity.error) / *quantity.sd;
-    if (in_sd <= kWithin) ++within;
-    if (in_sd > worst) {
-      worst = in_sd;
-      worst_quantity = &quantity;
-    }
-  }
-  std::string text;
-  if (compared > 0) {
-    text += fmt::format("<p>{} of {} recovered values lie within two of their standard deviations of the truth", within,
-                        compared);
-    if (worst_quantity != nullptr) {
-      text += fmt::format("; the farthest off is {} of {} by {}, by {} standard deviations",
-                          escape(symbol_of(worst_quantity->quantity)), escape(worst_quantity->configuration),
-                          worst_quantity->estimator == "trajectory" ? "the fit of the whole motion" : "the lines",
-                          base::number_text(worst, 2));
-    }
-    text += ".</p>\n";
-  } else {
-    text += "<p>No recovered value could be compared with a truth.</p>\n";
-  }
-  const validate::RestitutionComparison& restitution = comparison.restitution;
-  if (!restitution.points.empty() && restitution.field_m > 0.0) {
-    text += fmt::format(
-        "<p>The marker was found in {} of {} frames; its measured position is off by {} mm (rms), at most {} mm, which "
-        "is {} % and {} % of the {} m that the motion covers.</p>\n",
-        comparison.detected, comparison.frames, base::number_text(restitution.rms_m * 1e3, 2),
-        base::number_text(restitution.max_m * 1e3, 2),
-        base::number_text(100.0 * restitution.rms_m / restitution.field_m, 2),
-        base::number_text(100.0 * restitution.max_m / restitution.field_m, 2),
-        base::number_text(restitution.field_m, 3));
   }
   return meaning_section(text);
 }

@@ -5,19 +5,15 @@
 #include <vector>
 
 #include "core/result/results.h"
-#include "validate/truth/comparison.h"
 
 namespace glidelab::report {
 
-/// On the friction that was found: how large, how well a straight line describes it, what is not determined. Where the
-/// law is in doubt that comes first, and the numbers are called no more than what a fit gives. HTML.
+/// The friction that was found: how large it is, how well a straight line describes it, what is not determined. If the
+/// law is in doubt, that comes first and the numbers are presented only as the result of a fit. HTML.
 std::string meaning_of(const core::AnalysisResults& results);
 
-/// What of the numbers the assumed law cannot mean, and what to do next: drag or friction below zero, points that lie
-/// far off their line. One sentence each, plain text; none where the law serves.
+/// Results that the assumed law cannot explain (drag or friction below zero, points far off their line), and what to do
+/// next. One sentence each, plain text; none if the law fits.
 std::vector<std::string> doubts_about(const core::AnalysisResults& results);
-
-/// On how well the truth was recovered. HTML.
-std::string meaning_of(const validate::Comparison& comparison);
 
 }  // namespace glidelab::report

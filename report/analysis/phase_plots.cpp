@@ -191,11 +191,10 @@ std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
 Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all) {
   const Diagram of = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, true);
   const std::string script = std::string(kFrame) + axes("residual  (m/s²)") + ranges_of(of.data, true) + of.plot;
-  return {
-      Drawing{script, of.data},
-      "Residuals of the lines: what a(v) leaves unexplained. Bands: 95 % of each line; bars: 95 % of some points by "
-      "their noise",
-      "Residuals of the fitted lines over v"};
+  return {Drawing{script, of.data},
+          "Residuals: what the lines leave unexplained in a(v). Bands: 95 % of each line; bars: 95 % intervals of some "
+          "points",
+          "Residuals of the fitted lines over v"};
 }
 
 }  // namespace
@@ -244,8 +243,8 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
   const Diagram whole = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, false);
   std::string script = std::string(kFrame) + axes(y) + ranges_of(whole.data, false) + whole.plot;
   std::vector<Plot> plots = {{Drawing{script, whole.data},
-                              "Phase diagram: points as measured and smoothed, lines fitted for v < 0 and v > 0, with "
-                              "their 95 % bands; bars: 95 % of some points by their noise",
+                              "Phase diagram: measured and smoothed points, and the lines fitted for v < 0 and v > 0 "
+                              "with their 95 % bands; bars: 95 % intervals of some points",
                               "Acceleration over velocity with fitted lines"}};
   const Window window = detail_window(results, group, v_max);
   const Diagram detail = diagram(results, group, all, window.from_v, window.to_v, false);

@@ -22,7 +22,7 @@ double place_of(const core::MarkerSighting& sighting, bool across) {
   return across ? sighting.v_px : sighting.u_px;
 }
 
-/// Along which of the picture's axes the marker moves, and its pixels a metre of x (signed).
+/// Along which of the image's axes the marker moves, and its pixels a metre of x (signed).
 struct Course {
   bool vertical = false;
   double px_per_m = 0.0;
@@ -177,8 +177,8 @@ std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool f
                                 -reach, reach, from_truth ? "measured − true" : "measured − smoothed", kGrey,
                                 harmonic.mean, harmonic.cosine, harmonic.sine, color(1), color(0));
   return {{Drawing{script, data},
-           fmt::format("Error of the marker's centre over its place within a pixel ({}), with means; a finder that is "
-                       "drawn to pixels shows a wave. First harmonic: {} px",
+           fmt::format("Error of the marker's centre against its position within a pixel ({}), with means; a finder "
+                       "that is drawn towards whole pixels shows a wave. First harmonic: {} px",
                        from_truth ? "against the truth" : "against the smoothed motion",
                        base::value_and_sd_text(locking->amplitude_px, locking->sd_px)),
            "Error of the centre over the sub-pixel phase"}};

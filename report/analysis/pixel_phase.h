@@ -1,9 +1,9 @@
 /// Pixel locking: does the error of a centre follow where in its pixel the centre lies?
 ///
-/// For every marker centre, along the picture's axis in which it moves most: its phase (distance from the pixel's
+/// For every marker centre, along the image's axis in which it moves most: its phase (distance from the pixel's
 /// middle, -0.5 to 0.5 px) and its error in pixels, that is the measured position minus the smoothed one (or, in a
-/// rehearsal, minus the true one) times the pixels a metre of its clip. A finder that is drawn to pixels shows a wave;
-/// its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
+/// rehearsal, minus the true one) times the pixels a metre of its clip. A finder that is drawn towards whole pixels
+/// shows a wave; its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
 #pragma once
 
 #include <optional>

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "report/text/json_numbers.h"
-#include "report/text/output_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::report {
 namespace {

@@ -9,16 +9,15 @@
 
 #include "base/text/number_text.h"
 #include "report/analysis/camera_plots.h"
+#include "report/analysis/clip_csv.h"
 #include "report/analysis/fitted_lines.h"
-#include "report/analysis/motion_csv.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/phase_plots.h"
 #include "report/analysis/pixel_phase.h"
 #include "report/analysis/results_json.h"
 #include "report/html/html.h"
-#include "report/text/configuration_name.h"
-#include "report/text/output_names.h"
 #include "report/text/quantity_names.h"
+#include "report/text/result_names.h"
 
 namespace glidelab::report {
 namespace {
@@ -162,8 +161,8 @@ Html camera_section(const core::AnalysisResults& results) {
         escape(calibration.experiment), calibration.views_used, base::number_text(calibration.rms_px, 2),
         base::number_text(calibration.restitution_rms_m * 1e3, 2));
     text += fmt::format(
-        "<p>In the picture the plane's corners are {} px (rms) from where the camera puts them; their noise explains "
-        "{} px. {}.</p>\n",
+        "<p>In the image the corners of the plane view are {} px (rms) from where the camera model puts them; their "
+        "noise explains {} px. {}.</p>\n",
         base::number_text(calibration.plane_rms_px, 2), base::number_text(calibration.plane_expected_px, 2),
         as_sentence(calibration.model));
     HtmlTable table({"parameter", "value"});
@@ -209,7 +208,7 @@ Html camera_section(const core::AnalysisResults& results) {
 }
 
 std::string method_section() {
-  return "<h2 id=\"method\">How these numbers come about</h2>\n"
+  return "<h2 id=\"method\">How these numbers are found</h2>\n"
          "<p>The marker's positions x(t) are smoothed by a cubic that is fitted around every instant with a Gaussian "
          "weight (its width is the bandwidth); the cubic's coefficients are x, v and a there. For a glider under "
          "gravity, a linear viscous drag K v and Coulomb friction, a(v) is one line for v &lt; 0 and another for "
@@ -220,7 +219,7 @@ std::string method_section() {
 
 /// What the lines give as they are, and what the kernel's bias adds to it; nothing where none was taken off.
 std::string corrections_html(const core::AnalysisResults& results) {
-  HtmlTable table({"configuration", "quantity", "of the lines as they are", "correction", "recovered"}, 2);
+  HtmlTable table({"configuration", "quantity", "uncorrected", "correction", "recovered"}, 2);
   for (const core::ConfigurationResult& c : results.configurations) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
@@ -231,11 +230,10 @@ std::string corrections_html(const core::AnalysisResults& results) {
     }
   }
   if (table.empty()) return {};
-  return "<details><summary>What the smoothing bends, and what is taken off for it</summary>\n" + table.str() +
-         "<p class=\"soft\">Smoothing bends the law of a line. The law that was found is put through the same "
-         "smoothing and "
-         "the same fit without noise; what comes out too much is taken off. The lines themselves, their slopes and R² "
-         "stay as they are.</p></details>\n";
+  return "<details><summary>Bias of the smoothing, and what is subtracted for it</summary>\n" + table.str() +
+         "<p class=\"soft\">Smoothing biases the line that it is fitted to. The law that was found is put through the "
+         "same smoothing and the same fit without noise, and the excess is subtracted. The lines themselves, their "
+         "slopes and R² are not corrected.</p></details>\n";
 }
 
 }  // namespace
@@ -261,7 +259,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
       notes.push_back(fmt::format("{}: {}", configuration_name(results, c), note));
   }
   text += notes_html(notes) + corrections_html(results);
-  text += "<p class=\"soft\">± is one standard deviation. α is the inclination that the motion itself shows.</p>\n";
+  text += "<p class=\"soft\">± is one standard deviation. α is the inclination as the motion itself shows it.</p>\n";
   if (!reasons.empty()) text += "<ul class=\"soft\">\n" + reasons + "</ul>\n";
   return text;
 }

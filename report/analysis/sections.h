@@ -17,8 +17,8 @@ std::string recovered_section(const core::AnalysisResults& results);
 /// The phase diagrams of every set-up.
 Html phase_section(const core::AnalysisResults& results);
 
-/// What stands behind the values: the fitted lines (as the paper's tables 1 and 3), calibration and plumb line where
-/// there are any, every clip (facts, plots, pictures, what was left out and why, notes), and the method in a few
+/// The details behind the values: the fitted lines (as the paper's tables 1 and 3), calibration and plumb line where
+/// there are any, every clip (facts, plots, images, what was left out and why, notes), and the method in a few
 /// sentences. `previews` is empty or has one for each clip.
 Html details_sections(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
                       const base::Progress& progress);

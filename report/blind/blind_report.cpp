@@ -6,12 +6,12 @@
 #include <array>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/blind/blind_targets.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot_style.h"
 #include "report/text/json_numbers.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

@@ -2,12 +2,24 @@
 
 #include <fmt/format.h>
 
-#include "report/analysis/text_table.h"
-#include "report/characterize/camera_rows.h"
+#include "base/text/number_text.h"
 #include "report/text/json_numbers.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {
+
+CameraRow row(const char* key, const char* name, const char* unit, const core::Measured& measured, double factor = 1.0,
+              const char* limit_sign = "< ") {
+  CameraRow result{key, name, "–", "", unit, &measured};
+  if (measured.value) {
+    result.value = base::value_text(factor * *measured.value, factor * measured.sd);
+    result.sd = base::sd_text(factor * measured.sd);
+  } else if (measured.limit) {
+    result.value = limit_sign + base::number_text(factor * *measured.limit, 3);
+  }
+  return result;
+}
 
 void put_measured(Json& object, const std::string& key, const core::Measured& measured) {
   if (!measured.value) {
@@ -41,6 +53,19 @@ Json curve_json(const core::CameraMeasurement& camera) {
 
 }  // namespace
 
+std::vector<CameraRow> camera_rows(const core::CameraMeasurement& camera) {
+  constexpr double kPercent = 100.0;
+  return {row("gain_dn_per_e", "gain K", "DN/e⁻", camera.gain_dn_per_e),
+          row("read_noise_e", "read noise", "e⁻", camera.read_noise_e),
+          row("offset_dn", "offset", "DN", camera.offset_dn),
+          row("full_well_e", "full well", "e⁻", camera.full_well_e, 1.0, "> "),
+          row("saturation_capacity_e", "saturation capacity", "e⁻", camera.saturation_capacity_e),
+          row("dark_signal_e_s", "dark signal", "e⁻/s", camera.dark_signal_e_s),
+          row("prnu", "PRNU", "%", camera.prnu, kPercent),
+          row("dsnu_e", "DSNU", "e⁻", camera.dsnu_e),
+          row("linearity_error", "linearity error", "%", camera.linearity_error, kPercent)};
+}
+
 std::string camera_json(const core::CameraMeasurement& camera) {
   Json document;
   document["format"] = 1;
@@ -72,7 +97,7 @@ std::string camera_text(const core::CameraMeasurement& camera) {
   std::string text = fmt::format("{}, {} bits, {} x {} pixels, {} frames\n\n", camera.folder.name,
                                  camera.folder.bit_depth, camera.picture.width, camera.picture.height, camera.frames);
   text += text_table(rows, 1);
-  text += fmt::format("\nPixels that stand out: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
+  text += fmt::format("\nOutlying pixels: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
                       camera.outlying_pixels);
   if (!below.empty()) text += "\n" + below;
   for (const std::string& note : camera.notes) text += "note: " + note + "\n";

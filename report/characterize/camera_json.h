@@ -1,11 +1,25 @@
-/// characterize.json, and the table of a measured camera.
+/// A measured camera as characterize.json, as a table, and as the rows that table, page and JSON share.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/characterize/camera_measurement.h"
 
 namespace glidelab::report {
+
+/// One number as a person reads it.
+struct CameraRow {
+  std::string key;   ///< in JSON, and in camera.toml
+  std::string name;  ///< "read noise"
+  std::string value;
+  std::string sd;
+  std::string unit;
+  const core::Measured* measured = nullptr;  ///< in the CameraMeasurement that was given
+};
+
+/// In one order for all; PRNU and linearity in per cent, as texts. A limit reads "< 3.2" or "> 5400".
+std::vector<CameraRow> camera_rows(const core::CameraMeasurement& camera);
 
 /// Each number as {"value", "sd", "how"}, or null with the reason in "why" beside it (and its limit in "limit").
 std::string camera_json(const core::CameraMeasurement& camera);

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
-#include "report/characterize/camera_rows.h"
+#include "report/characterize/camera_json.h"
 #include "report/html/html.h"
 #include "report/html/plot_axis.h"
 #include "report/html/plot_style.h"
@@ -91,17 +91,17 @@ std::string numbers_table(const core::CameraMeasurement& camera) {
 std::string camera_meaning(const core::CameraMeasurement& camera) {
   std::string text;
   if (camera.gain_dn_per_e.value && camera.read_noise_e.value) {
-    text = fmt::format("In the dark a pixel wavers by {} electrons ({} codes)",
+    text = fmt::format("In the dark a pixel fluctuates by {} electrons ({} codes)",
                        base::number_text(*camera.read_noise_e.value, 3),
                        base::number_text(*camera.read_noise_e.value * *camera.gain_dn_per_e.value, 3));
     if (camera.full_well_e.value) {
       const double full = *camera.full_well_e.value;
-      text += fmt::format("; it is full at {} electrons, where it wavers by {} %", base::number_text(full, 3),
+      text += fmt::format("; it is full at {} electrons, where it fluctuates by {} %", base::number_text(full, 3),
                           base::number_text(100.0 / std::sqrt(full), 2));
     }
     text += ". ";
   } else {
-    text = "What these frames do not tell is “–” below, with the reason. ";
+    text = "What these frames do not determine is “–” below, with the reason. ";
   }
   return meaning_section(
       "<p>" + text +
@@ -119,11 +119,9 @@ Page camera_report(const core::CameraMeasurement& camera) {
   body += camera_meaning(camera);
   body += "<h2>Numbers</h2>\n" + numbers_table(camera);
   body += camera.outlying_pixels == 0
-              ? std::string("<p>No pixel stands out of the pattern as hot or dead.</p>\n")
-              : fmt::format(
-                    "<p>Pixels that stand out of the pattern: {} hot, {} dead, {} in all; they are not in the "
-                    "numbers.</p>\n",
-                    camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
+              ? std::string("<p>No pixel is hot or dead.</p>\n")
+              : fmt::format("<p>Outlying pixels: {} hot, {} dead, {} in all; they are excluded from the numbers.</p>\n",
+                            camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
   if (!camera.notes.empty()) {
     body += "<div class=\"note\"><ul>";
     for (const std::string& note : camera.notes) body += fmt::format("<li>{}</li>", escape(note));

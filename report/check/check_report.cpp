@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/html/html.h"
 #include "report/html/plot_style.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {
@@ -49,7 +49,7 @@ std::string word_of(core::Severity severity) {
 
 std::string findings_section(const core::RecordingCheck& check) {
   std::string text = "<h2>What was found, and what to do</h2>\n";
-  if (check.findings.empty()) return text + "<p>Nothing that wants a change.</p>\n";
+  if (check.findings.empty()) return text + "<p>Nothing needs to change.</p>\n";
   HtmlTable table({"", "about", "found", "advice"}, 4);
   for (const core::Finding& finding : check.findings) {
     const char* mark = finding.severity == core::Severity::unusable ? "bad" : "soft";
@@ -102,7 +102,7 @@ PlotData places(const std::string& name, const std::vector<core::PixelPlace>& fr
   return data;
 }
 
-/// Where in the picture the pattern was seen, and where the marker runs.
+/// Where in the image the pattern was seen, and where the marker runs.
 Plot coverage_plot(const core::RecordingCheck& check) {
   const core::PatternCheck& pattern = *check.pattern;
   std::vector<core::PixelPlace> corners, plane, path;
@@ -126,27 +126,27 @@ Plot coverage_plot(const core::RecordingCheck& check) {
   add("plane", plane, fmt::format("with points pt 7 ps 0.5 lc rgb '{}' title 'plane view'", color(0)));
   add("path", path, fmt::format("with points pt 7 ps 0.4 lc rgb '{}' title 'marker'", color(1)));
   return {Drawing{script, data, {520, 420}},
-          "The picture: where the pattern was seen, and where the marker runs. The lens is known where corners are.",
-          "Corners of the pattern and path of the marker in the picture"};
+          "The image: where the pattern was seen, and where the marker runs. The lens is known only where there are "
+          "corners.",
+          "Corners of the pattern and path of the marker in the image"};
 }
 
 Html pattern_section(const core::RecordingCheck& check) {
   if (!check.pattern) return {};
   const core::PatternCheck& pattern = *check.pattern;
   Html text = "<h2>Pattern and camera</h2>\n";
-  text += fmt::format("<p>Found in {} of {} pictures. ", pattern.views.size(),
-                      pattern.views.size() + pattern.without.size());
+  text +=
+      fmt::format("<p>Found in {} of {} images. ", pattern.views.size(), pattern.views.size() + pattern.without.size());
   if (pattern.calibration) {
     text += fmt::format(
         "The camera's model fits the corners to {} px (rms), those of the plane view to {} px. The views cover {} of "
-        "the "
-        "picture.",
+        "the image.",
         base::number_text(pattern.calibration->rms_px, 2), base::number_text(pattern.calibration->plane_rms_px, 2),
         percent(pattern.covered));
   }
   text += "</p>\n";
   if (!pattern.views.empty()) text += figures({coverage_plot(check)});
-  HtmlTable table({"picture", "pattern", "off by (px, rms)", "tilt (°)"}, 2);
+  HtmlTable table({"image", "pattern", "residual (px, rms)", "tilt (°)"}, 2);
   for (const core::PatternView& view : pattern.views) {
     table.row({escape(view.file), view.plane ? "found; plane of motion" : "found",
                pattern.calibration ? base::digits_text(view.rms_px, 2) : "–",
@@ -217,7 +217,7 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
       "<h2>Clips</h2>\n" + table.str() +
       "<p class=\"soft\">Seen in: frames in which the marker was found. In the file: the rate that the file states. "
       "Lost, "
-      "twice: frames that are missing or repeated, as far as the marker's motion and the pictures show. Speed: the "
+      "twice: frames that are missing or repeated, as far as the marker's motion and the images show. Speed: the "
       "highest, "
       "and the blur that the exposure makes of it. Marker: its diameter; contrast: how far it stands out of its "
       "surroundings, as a share of the camera's range, and over the noise of a pixel. White, black: pixels at the ends "
@@ -240,7 +240,7 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
 }  // namespace
 
 Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">A look at the recording before any analysis.</p>\n",
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">The recording, checked before any analysis.</p>\n",
                           escape(check.name));
   body += check_meaning(check);
   body += findings_section(check) + pattern_section(check) + clips_section(check, previews);

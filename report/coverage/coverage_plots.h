@@ -1,4 +1,4 @@
-/// Plots of how often intervals hold the truth (validate/coverage.h).
+/// Plots of how often intervals hold the truth (validate/study/coverage/interval_coverage.h).
 #pragma once
 
 #include <string>

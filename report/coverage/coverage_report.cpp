@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/coverage/coverage_plots.h"
 #include "report/html/html.h"
 #include "report/text/json_numbers.h"
 #include "report/text/quantity_names.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {
@@ -66,7 +66,8 @@ std::string level_table(const validate::Coverage& coverage) {
     table.row(cells);
   }
   return "<h2 id=\"levels\">Every level</h2>\n" + table.str() +
-         "<p class=\"soft\">Part of the intervals of each level that hold the truth, and the probability of a count as "
+         "<p class=\"soft\">Fraction of the intervals of each level that hold the truth, and the probability of a "
+         "count as "
          "far from it by chance (exact binomial test, two-sided). Marked: below 1 % over the number of all intervals "
          "and levels but the naive ones (Bonferroni). An interval of another level than 95 % is the stated one with "
          "its arms in proportion to the quantiles of Student's t.</p>\n";
@@ -80,23 +81,21 @@ std::string noise_text(const validate::Coverage& coverage) {
   return from == to ? base::number_text(*least * 1e6, 3) + " µm" : fmt::format("{} to {} µm", from, to);
 }
 
-/// "µ of m1 by the generalised lines (41.0 % of 50 %, 88.0 % of 95 %)": the levels of a row stand together.
+/// "µ of m1 by the generalised lines: 41.0 % at 50 %, 88.0 % at 95 %": an item for each row, its levels together.
 std::string list_of(const std::vector<validate::CoverageFailure>& failures) {
   std::string text;
   for (std::size_t i = 0; i < failures.size(); ++i) {
     const validate::CoverageRow& row = failures[i].row;
     const bool again = i > 0 && failures[i - 1].row.configuration == row.configuration &&
                        failures[i - 1].row.estimator == row.estimator && failures[i - 1].row.quantity == row.quantity;
-    if (again) {
-      text.pop_back();
-    } else {
-      text += fmt::format("{}{} of {} by the {} (", i == 0 ? "" : ", ", escape(symbol_of(row.quantity)),
+    if (!again) {
+      text += fmt::format("{}<li>{} of {} by the {}: ", i == 0 ? "" : "</li>\n", escape(symbol_of(row.quantity)),
                           escape(row.configuration), escape(estimator_name(row.estimator)));
     }
-    text += fmt::format("{}{:.1f} % where they say {})", again ? ", " : "", 100.0 * failures[i].at.coverage,
+    text += fmt::format("{}{:.1f} % at {}", again ? ", " : "", 100.0 * failures[i].at.coverage,
                         level_text(failures[i].at.level));
   }
-  return text;
+  return "<ul>\n" + text + "</li>\n</ul>\n";
 }
 
 /// Rows of which single values lie so far off that all of them scatter much farther than stated. An interval may hold
@@ -137,9 +136,9 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
   });
   if (!any) {
     return meaning_section(
-        "<p>There is nothing to count: no estimator found a value of what is known of these motions. K/m and µ "
-        "are true of viscous and Coulomb friction only; under another law the inclination α has a true value, and "
-        "the limit velocity where the forces balance, and these motions do not determine them.</p>\n");
+        "<p>There is nothing to count: no estimator found a value whose truth is known. K/m and µ have a true value "
+        "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the limit "
+        "velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
   std::string text;
   if (narrow.empty()) {
@@ -148,21 +147,22 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
         "many "
         "replicates can tell.</p>\n";
   } else {
-    text += fmt::format("<p>These intervals hold the truth less often than they say: {}.</p>\n", list_of(narrow));
+    text += "<p>These intervals hold the truth less often than they say (how often, at each stated level):</p>\n" +
+            list_of(narrow);
   }
   if (!wide.empty()) {
-    text += fmt::format("<p>These are wider than they need be: {}.</p>\n", list_of(wide));
+    text += "<p>These are wider than they need to be, and hold the truth more often:</p>\n" + list_of(wide);
   }
   const std::vector<validate::CoverageRow> astray = scattered(coverage);
   if (!astray.empty()) {
     text += fmt::format(
         "<p>The values scatter more than {} times as far as stated for {}. A few replicates lie far off, too few to "
-        "show in how many of 95 % intervals hold the truth: record such a motion more than once.</p>\n",
+        "affect the coverage of 95 % intervals: record such a motion more than once.</p>\n",
         base::number_text(kAstray, 2), astray_list(astray));
   }
   text +=
-      "<p>The naive lines treat smoothed points as if they were independent. They are shown so that one sees what "
-      "that does to an interval.</p>\n";
+      "<p>The naive lines treat smoothed points as if they were independent. They are shown to demonstrate what that "
+      "does to an interval.</p>\n";
   return meaning_section(text);
 }
 
@@ -203,7 +203,8 @@ std::string coverage_json(const validate::Coverage& coverage) {
                                     {"p_value", at.p_value}});
       }
     }
-    put(object, "cramer_rao_sd", row.cramer_rao_sd, "the motion does not determine it, or the law is not equation (8)");
+    put(object, "cramer_rao_sd", row.cramer_rao_sd,
+        "the motion does not determine it, or the law is not viscous drag with Coulomb friction");
     put(object, "efficiency", row.efficiency, "no bound, or no value");
     document["quantities"].push_back(std::move(object));
   }
@@ -265,8 +266,8 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
   body += "<h2 id=\"table\">Every quantity</h2>\n" + table.str();
   body +=
       "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
-      "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the part "
-      "of the intervals of 95 % that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
+      "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the fraction "
+      "of 95 % intervals that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
   return page(title, body);
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/diagnosis/line_report.h"
 #include "report/text/gap_text.h"
 #include "report/text/handy_units.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

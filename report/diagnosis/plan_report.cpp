@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/html/html.h"
 #include "report/text/effect_names.h"
 #include "report/text/handy_units.h"
 #include "report/text/json_numbers.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/files/staged_output.h"
 #include "report/html/gnuplot.h"
-#include "report/text/typeset_numbers.h"
+#include "report/html/typeset_numbers.h"
 
 namespace glidelab::report {
 namespace {
@@ -56,7 +56,7 @@ td.why { white-space: normal; color: var(--soft); }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(340px, 100%), 1fr)); gap: 0.8rem;
            align-items: start; margin: 0.8rem 0; }
 .figures.large { grid-template-columns: repeat(auto-fit, minmax(min(480px, 100%), 1fr)); }
-@media (min-width: 700px) {  /* four pictures: no row with one of them */
+@media (min-width: 700px) {  /* four figures: no row with one of them */
   .figures:has(> :nth-child(4):last-child) { grid-template-columns: repeat(2, 1fr); }
 }
 @media (min-width: 1150px) { .figures:not(.large):has(> :nth-child(4):last-child) { grid-template-columns: repeat(4, 1fr); } }
@@ -239,7 +239,7 @@ Page page(std::string_view title, const Html& body) {
   }
   if (!drawn.empty()) {
     text +=
-        "<p class=\"soft\">Each plot also lies in the folder <code>plots</code> beside this page: SVG, PDF, its "
+        "<p class=\"soft\">Each plot is also in the folder <code>plots</code> beside this page: SVG, PDF, its "
         "numbers (CSV), and the "
         "script that draws it (<code>gnuplot NAME.gp</code>).</p>\n";
   }

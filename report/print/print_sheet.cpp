@@ -98,7 +98,7 @@ void draw(SheetCanvas& canvas, const MarkerSheet& sheet) {
     top += side + kGap;
   }
   draw_foot(canvas, sheet.paper,
-            "diameter_m is that of the disc. Choose what contrasts with all that is near its path;",
+            "diameter_m is that of the disc. Choose one that contrasts with everything near its path;",
             "for a black disc say color = \"#101010\" in [marker].");
 }
 
@@ -138,8 +138,8 @@ double largest_square_m(const Paper& paper, int columns, int rows) {
 void validate(const BoardSheet& sheet) {
   if (sheet.columns <= sheet.rows || sheet.columns % 2 == 0 || sheet.rows % 2 == 1 || sheet.rows < 2) {
     fail("--corners", fmt::format("{}x{}", sheet.columns, sheet.rows),
-         "the longer row odd, the shorter one even, as 9x6: else the board's two ends look alike, and a picture does "
-         "not tell which way it lies");
+         "the longer row odd, the shorter one even, as 9x6: else the board's two ends look alike, and an image does "
+         "not show its orientation");
   }
   const double largest = room_for_square(sheet.paper, sheet.columns, sheet.rows);
   if (!(sheet.square_m >= kFinest - kRounding) || sheet.square_m > largest + kRounding) {

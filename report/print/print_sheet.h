@@ -1,9 +1,9 @@
 /// Sheets to print to scale: the chessboard for the calibration, and markers to cut out.
 ///
 /// The board's long row of squares lies along the paper's long side. Its left corner squares are black, its right ones
-/// white, so that a picture tells which way it lies (the order of core/chessboard.h): the longer row of inner corners
-/// is odd, the shorter one even. Around it stays white paper, and below it a line of known length that shows whether
-/// the printer kept the scale. Metres.
+/// white, so that an image tells which way it lies (the order of core/pictures/board/chessboard.h): the longer row of
+/// inner corners is odd, the shorter one even. Around it stays white paper, and below it a line of known length that
+/// shows whether the printer kept the scale. Metres.
 #pragma once
 
 #include <span>

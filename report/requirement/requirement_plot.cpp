@@ -159,11 +159,10 @@ Plot requirement_plot(const Requirement& requirement) {
   add(front, fmt::format("1:2 with lines lw 1.5 lc rgb '{}' title 'Pareto front'", kColors[4]));
   add(met, fmt::format("1:2:4:5 with yerrorbars pt 7 ps 0.8 lc rgb '{}' title 'reaches all targets'", kColors[2]));
   add(missed, fmt::format("1:2:4:5 with yerrorbars pt 6 ps 0.8 lc rgb '{}' title 'does not'", kColors[1]));
-  return {
-      Drawing{script, data, {620, 420}},
-      "What each camera, by its number in the tables, reaches over what it costs, with one standard deviation where "
-      "runs were made; the line joins those that no cheaper one beats",
-      "Reached accuracy over cost"};
+  return {Drawing{script, data, {620, 420}},
+          "Error of each camera (numbered as in the tables) against its price, with one standard deviation where runs "
+          "were made; the line joins those that no cheaper one beats",
+          "Reached accuracy over cost"};
 }
 
 }  // namespace glidelab::report

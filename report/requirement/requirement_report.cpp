@@ -8,11 +8,11 @@
 #include <limits>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/html/html.h"
 #include "report/requirement/requirement_plot.h"
 #include "report/text/json_numbers.h"
 #include "report/text/quantity_names.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {
@@ -22,7 +22,7 @@ using validate::Requirement;
 using validate::Target;
 using validate::Verdict;
 
-constexpr double kSomeGain = 1.05;  // times smaller with one limitation less: below it nothing is worth a name
+constexpr double kLeastNamedGain = 1.05;  // times smaller with one limitation less: below it nothing is worth a name
 
 /// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
 struct Scale {
@@ -72,7 +72,7 @@ std::string beyond_text(const validate::TargetResult& result) {
 }
 
 /// What no track knows is said where tracks or the bound judged, and what rendering is for where it could change
-/// something: pictures only add to what the bound forbids.
+/// something: images only add to what the bound forbids.
 std::string next_step(const Requirement& requirement) {
   if (requirement.confirm == validate::Confirm::clips) return {};
   const bool ran = std::ranges::any_of(requirement.candidates, [](const Candidate& candidate) {
@@ -82,7 +82,7 @@ std::string next_step(const Requirement& requirement) {
     return candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::refused;
   });
   return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not in it.{}",
-                     ran ? "Tracks judged, no pictures" : "Nothing was run, the bound alone judged",
+                     ran ? "Judged by tracks, not by images" : "Judged by the bound alone, without a run",
                      forbidden ? "" : " With --confirm clips those that are near the target are rendered as well.");
 }
 
@@ -99,7 +99,7 @@ std::string cost_text(const Requirement& requirement, const Candidate& candidate
 std::string limit_text(const Candidate& candidate) {
   std::string text;
   for (const validate::Limit& limit : candidate.limits) {
-    if (limit.gain < kSomeGain) break;
+    if (limit.gain < kLeastNamedGain) break;
     text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limit.name, limit.gain, limit.gain < 10.0 ? 1 : 0);
   }
   return text;
@@ -160,14 +160,15 @@ std::string meaning(const Requirement& requirement) {
     if (!first.price_class.empty()) text += fmt::format(" ({})", escape(first.price_class));
     if (!first.results.empty() && first.results.front().found && std::isfinite(*first.results.front().found)) {
       const validate::TargetResult& result = first.results.front();
-      text += fmt::format(": its {}, {} times within the target", found_words(requirement.targets.front(), result),
+      text += fmt::format(": its {}, {} times below the target", found_words(requirement.targets.front(), result),
                           base::number_text(requirement.targets.front().value / *result.found, 2));
     }
     text += ".";
   }
   if (!undecided.empty()) {
-    text += fmt::format(" For {} more the error spans the target within its standard deviation: more runs decide.",
-                        undecided.size());
+    text +=
+        fmt::format(" For {} more, the target lies within one standard deviation of the error: more runs will decide.",
+                    undecided.size());
   }
   if (!possible.empty()) {
     text += fmt::format(" Of {} the bound allows it, and nothing was run.", possible.size());
@@ -175,9 +176,9 @@ std::string meaning(const Requirement& requirement) {
   if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
     const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
     text +=
-        limit.gain < kSomeGain
-            ? fmt::format(" What keeps {} from it is no single limitation.", numbered(requirement, missed.front()))
-            : fmt::format(" What keeps {} from it most: {}, without which it would err {} times less.",
+        limit.gain < kLeastNamedGain
+            ? fmt::format(" No single limitation keeps {} from it.", numbered(requirement, missed.front()))
+            : fmt::format(" What most keeps {} from it: {}; without that its error would be {} times smaller.",
                           numbered(requirement, missed.front()), escape(limit.name), base::number_text(limit.gain, 2));
   }
   return meaning_section(text + "</p>\n");
@@ -220,11 +221,10 @@ CandidateTables candidate_tables(const Requirement& requirement) {
 /// What the tables' numbers are, below them.
 std::string how_judged(const Requirement& requirement) {
   std::string text = fmt::format(
-      "<p class=\"soft\">The bound is that of Cramér and Rao for the motion seen at this rate with this noise of a "
-      "position, which is itself the bound of the marker's centre for the camera's light and noise. {} \"What limits "
-      "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) is with one "
-      "limitation "
-      "thought away. A lens, a codec, a rolling shutter and the calibration are in rendered runs only (--confirm "
+      "<p class=\"soft\">The bound is the Cramér-Rao bound for the motion at this frame rate and position noise; the "
+      "noise itself is the bound on the marker's centre for the camera's light and noise. {} \"What limits "
+      "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) would be without one "
+      "limitation. A lens, a codec, a rolling shutter and the calibration are in rendered runs only (--confirm "
       "clips).</p>\n",
       requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
       : requirement.confirm == validate::Confirm::clips
@@ -234,10 +234,10 @@ std::string how_judged(const Requirement& requirement) {
           : fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
                         requirement.track_runs));
   text += fmt::format(
-      "<p class=\"soft\">An rms error has the bias in it; a 95 % error is what 95 % of the runs stay within. ± is one "
-      "standard deviation, found by drawing the runs anew {} times (bias: that of the errors over the root of their "
+      "<p class=\"soft\">An rms error includes the bias; 95 % of the runs stay within the 95 % error. ± is one "
+      "standard deviation, from {} bootstrap resamples of the runs (bias: that of the errors over the root of their "
       "number); where it spans the target, nothing is decided. \"Runs beyond the target\" err by more than its value: "
-      "few and far ones are frames lost without a trace, not noise.</p>\n",
+      "a few that are far off come from frames lost without a trace, not from noise.</p>\n",
       validate::kResamples);
   return text;
 }

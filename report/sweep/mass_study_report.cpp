@@ -34,24 +34,25 @@ std::string answer_text(const FallAnswer& answer) {
   const MassRow& widest = answer.widest;
   const auto [from, to] = with_equal_decimals(answer.published.mu_lightest, answer.published.mu_heaviest);
   std::string text =
-      fmt::format("<p><b>{}{}:</b> {} has a fall of µ from {} to {}, by {}. ", escape(answer.published.configuration),
+      fmt::format("<p><b>{}{}:</b> {} has µ fall from {} to {}, by {}. ", escape(answer.published.configuration),
                   answer.others.empty() ? "" : ", " + escape(answer.others), escape(answer.published.source), from, to,
                   base::digits_text(published, 2));
   if (answer.whole) {
-    text += fmt::format("Smoothing alone makes all of it with h = {} s, and its lines then have R² = {}. ",
+    text += fmt::format("Smoothing alone produces all of it at h = {} s, where the lines have R² = {}. ",
                         base::number_text(answer.whole->bandwidth_s, 2), base::r2_text(answer.whole->r2));
   } else {
-    text += fmt::format("No bandwidth that was run makes that: h = {} s makes {}, with R² = {}. ",
+    text += fmt::format("No bandwidth in this sweep produces that: h = {} s gives {}, with R² = {}. ",
                         base::number_text(widest.bandwidth_s, 2), fall_text(widest.fall(), widest.fall_se()),
                         base::r2_text(widest.r2()));
   }
   if (answer.at_r2) {
-    text += fmt::format("With the published R² of {} it can make {}, {:.0f} % of the fall, at h = {} s.",
+    text += fmt::format("At the published R² of {} smoothing can produce {}, {:.0f} % of the fall, with h = {} s.",
                         base::r2_text(answer.published.r2), fall_text(answer.at_r2->fall, answer.at_r2->fall_se),
                         100.0 * answer.at_r2->fall / published, base::number_text(answer.at_r2->bandwidth_s, 2));
   } else {
-    text += fmt::format("No bandwidth that was run has the published R² of {}: {}.", base::r2_text(answer.published.r2),
-                        widest.r2() < answer.published.r2 ? "all of these lines are worse" : "all are better");
+    text +=
+        fmt::format("No bandwidth in this sweep has the published R² of {}: {}.", base::r2_text(answer.published.r2),
+                    widest.r2() < answer.published.r2 ? "all of these lines are less straight" : "all are straighter");
   }
   return text + "</p>\n";
 }
@@ -60,13 +61,13 @@ std::string answer_text(const FallAnswer& answer) {
 
 std::string mass_study_section(const validate::MassStudy& study) {
   if (study.rows.empty()) return {};
-  std::string html = "<h2 id=\"masses\">Does µ fall with mass, or does smoothing make it?</h2>\n";
+  std::string html = "<h2 id=\"masses\">Does µ fall with mass, or does smoothing produce the fall?</h2>\n";
   for (const FallAnswer& answer : study.answers) html += answer_text(answer);
   std::vector<std::string> header = {"bandwidth h (s)"};
   for (const validate::MassPoint& point : study.rows.front().masses) {
     header.push_back(fmt::format("µ of {} kg", base::number_text(point.mass_kg, 4)));
   }
-  header.insert(header.end(), {"its fall", "least R²"});
+  header.insert(header.end(), {"fall of µ", "least R²"});
   HtmlTable table(header, 1);
   std::string before;
   for (const MassRow& row : study.rows) {

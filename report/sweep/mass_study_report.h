@@ -1,4 +1,5 @@
-/// The section of a sweep's page on whether mu falls with mass (validate/mass_study.h, as part of the summary).
+/// The section of a sweep's page on whether mu falls with mass (validate/study/sweep/mass_study.h, as part of the
+/// summary).
 #pragma once
 
 #include <string>

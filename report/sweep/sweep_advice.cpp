@@ -40,9 +40,10 @@ const GroupStatistics* group_at(const Series& series, double position) {
   return found == series.groups.end() ? nullptr : &*found;
 }
 
-/// By what factor an rms error must be larger: kBetter, and two standard errors of a ratio of two (normal errors).
+/// By what factor an rms error must be larger: kClearlyBetterFactor, and two standard errors of a ratio of two (normal
+/// errors).
 double clearly(const validate::ErrorStatistics& of) {
-  return kBetter * (1.0 + 2.0 / std::sqrt(static_cast<double>(of.answered)));
+  return kClearlyBetterFactor * (1.0 + 2.0 / std::sqrt(static_cast<double>(of.answered)));
 }
 
 struct Winner {
@@ -63,7 +64,7 @@ std::optional<Winner> winner(const std::vector<Series>& all, std::string_view qu
   each_rule([&](const Series&, const validate::ErrorStatistics& of) { most = std::max(most, of.answered); });
   std::optional<Winner> best;
   each_rule([&](const Series& series, const validate::ErrorStatistics& of) {
-    if (static_cast<double>(of.answered) < kAnswers * static_cast<double>(most)) return;
+    if (static_cast<double>(of.answered) < kLeastAnsweredShare * static_cast<double>(most)) return;
     if (!best || of.rms < best->rms) best = Winner{series.estimator, of.rms};
   });
   return best;
@@ -155,9 +156,10 @@ std::string sweep_advice(const SweepSummary& summary) {
       if (!found.empty()) elsewhere += (elsewhere.empty() ? "" : "; ") + found;
     }
   }
-  text += elsewhere.empty()
-              ? fmt::format(" No rule beats it by more than {:.0f} % anywhere along an axis.", 100.0 * (kBetter - 1.0))
-              : fmt::format(" By more than {:.0f} % it is beaten by {}.", 100.0 * (kBetter - 1.0), elsewhere);
+  text += elsewhere.empty() ? fmt::format(" No rule beats it by more than {:.0f} % anywhere along an axis.",
+                                          100.0 * (kClearlyBetterFactor - 1.0))
+                            : fmt::format(" By more than {:.0f} % it is beaten by {}.",
+                                          100.0 * (kClearlyBetterFactor - 1.0), elsewhere);
   return text + "</p>\n";
 }
 

@@ -9,9 +9,9 @@
 namespace glidelab::report {
 
 /// A rule counts only where it answers in this part of the most often answered runs.
-inline constexpr double kAnswers = 0.98;
+inline constexpr double kLeastAnsweredShare = 0.98;
 /// "Better" is by more than this factor in rms error, and than two standard errors of it.
-inline constexpr double kBetter = 1.1;
+inline constexpr double kClearlyBetterFactor = 1.1;
 
 /// HTML; empty where the sweep has no lines by more than one rule.
 std::string sweep_advice(const validate::SweepSummary& summary);

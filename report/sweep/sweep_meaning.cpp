@@ -43,7 +43,7 @@ const Series* best_of(const std::vector<Series>& all, std::string_view quantity,
   for (const Series& series : all) {
     const ErrorStatistics& of = series.groups.front().statistics;
     if (series.quantity != quantity || !asked(series.estimator) || of.answered == 0) continue;
-    if (static_cast<double>(of.answered) < kAnswers * static_cast<double>(most)) continue;
+    if (static_cast<double>(of.answered) < kLeastAnsweredShare * static_cast<double>(most)) continue;
     if (best == nullptr || of.rms < best->groups.front().statistics.rms) best = &series;
   }
   return best;
@@ -230,8 +230,8 @@ std::string intervals(const SweepSummary& summary) {
   if (narrow.empty() && wide.empty()) {
     return " All stated 95 % intervals hold the truth as often as they say, within three standard errors.";
   }
-  return two_lists("Intervals of 95 % that hold the truth", list_of(narrow, 2, " %"), list_of(wide, 2, " %"),
-                   "less often", "more often");
+  return two_lists("95 % intervals that hold the truth", list_of(narrow, 2, " %"), list_of(wide, 2, " %"), "less often",
+                   "more often");
 }
 
 /// Stated standard deviations that are far from the errors: a few values that lie far off do not show in coverage.
@@ -266,8 +266,10 @@ std::string sweep_meaning(const SweepSummary& summary) {
   if (summary.failed > 0) text += fmt::format("{} runs failed and are not in it. ", summary.failed);
   text += "The least rms error over all runs is that of " +
           winners_of(summary, honest, [](const std::string& estimator) { return estimator; }) + ".";
+  const std::string sds = stated_sds(summary);
   return meaning_section("<p>" + text + "</p>\n" + bandwidths_of(summary) + changes_of(summary, *first) + "<p>" +
-                         (intervals(summary) + stated_sds(summary)).substr(1) + "</p>\n");
+                         intervals(summary).substr(1) + "</p>\n" +
+                         (sds.empty() ? std::string() : "<p>" + sds.substr(1) + "</p>\n"));
 }
 
 }  // namespace glidelab::report

@@ -201,7 +201,7 @@ Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::str
   const int columns = std::max(1, static_cast<int>((kWidth - 20) / (7.5 * static_cast<double>(longest) + 50.0)));
   const int rows = (static_cast<int>(frame.titles.size()) + 2 + columns - 1) / columns;
   frame.size = {kWidth, (axis.words ? 400 : 290) + kRow * rows + kEdge};
-  // Around the middle of the picture: around that of the axes it would be cut off at the right.
+  // Around the middle of the plot: around that of the axes it would be cut off at the right.
   frame.script = std::string(kFrame) +
                  fmt::format("set key at screen 0.5, screen {:.4f} center top font ',11' maxcols {} samplen 1\n",
                              1.0 - 4.0 / static_cast<double>(frame.size.height), columns) +

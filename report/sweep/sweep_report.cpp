@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/text/number_text.h"
-#include "report/analysis/text_table.h"
 #include "report/html/html.h"
 #include "report/sweep/mass_study_report.h"
 #include "report/sweep/sweep_advice.h"
@@ -13,6 +12,7 @@
 #include "report/sweep/sweep_plots.h"
 #include "report/text/json_numbers.h"
 #include "report/text/quantity_names.h"
+#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {
@@ -92,10 +92,9 @@ std::string acceleration_table(const SweepSummary& summary) {
     add(of.accelerations);
   }
   return "<h2>Accelerations</h2>\n" + table.str() +
-         "<p class=\"soft\">Of each clip's a(t) against the truth, over the points that count. " +
-         (compared
-              ? "The best possible bandwidth knows the truth.</p>\n"
-              : "A sweep that names the rule best-possible also lays the best possible bandwidth beside it.</p>\n");
+         "<p class=\"soft\">Error of each clip's a(t) against the truth, over the points that count. " +
+         (compared ? "The best possible bandwidth knows the truth.</p>\n"
+                   : "A sweep with the rule best-possible also shows the best possible bandwidth.</p>\n");
 }
 
 Json statistics_json(const ErrorStatistics& of) {
@@ -130,7 +129,7 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       escape(summary.name));
   body += fmt::format(
       "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>runs</span></div><div class=\"tile\"><b{}>{}</b>"
-      "<span>failed</span></div><div class=\"tile\"><b>{} s</b><span>taken by the runs, added over the "
+      "<span>failed</span></div><div class=\"tile\"><b>{} s</b><span>run time, summed over the "
       "threads</span></div></div>\n",
       summary.runs, summary.planned, summary.failed > 0 ? " class=\"bad\"" : "", summary.failed,
       base::number_text(summary.cpu_s, 3));
@@ -142,7 +141,7 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       "<p class=\"soft\">Stated sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares "
       "over "
       "the "
-      "runs; coverage is the part of the stated 95 % intervals that hold the truth.</p>\n";
+      "runs; coverage is the fraction of the stated 95 % intervals that hold the truth.</p>\n";
   body += sweep_advice(summary) + configuration_table(summary);
   body += acceleration_table(summary);
   double done = 0.0;

@@ -1,4 +1,4 @@
-/// A file's keys as a person reads them, with sizes in the units that people use (base/size_text.h).
+/// A file's keys as a person reads them, with sizes in the units that people use (base/text/size_text.h).
 #pragma once
 
 #include <string>

@@ -19,7 +19,8 @@ std::string comparison_json(const validate::Comparison& comparison) {
     put(object, "value", quantity.value, quantity.why);
     put(object, "sd", quantity.sd, quantity.why);
     put(object, "error", quantity.error, quantity.truth ? quantity.why : "there is no truth to compare with");
-    const char* const unbounded = "the motion does not determine it, or the law is not equation (8)";
+    const char* const unbounded =
+        "the motion does not determine it, or the law is not viscous drag with Coulomb friction";
     put(object, "cramer_rao_sd", quantity.cramer_rao_sd, unbounded);
     put(object, "noise_sd", quantity.noise_sd, quantity.why);
     put(object, "efficiency", quantity.efficiency, quantity.cramer_rao_sd ? quantity.why : unbounded);

@@ -66,8 +66,8 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
   }
   const int height = std::max(330, 80 + static_cast<int>(row_of.size()) * 22);
   return {{Drawing{script, data, {480, height}},
-           "Error of each recovered value in units of its own standard deviation; about 95 % belong within the band. "
-           "Filled: from the lines; open: from the whole motion",
+           "Error of each recovered value in units of its own standard deviation; about 95 % should lie within the "
+           "band. Filled: lines of the phase diagram; open: fit of the whole motion",
            "Errors in units of their standard deviation"}};
 }
 
@@ -101,9 +101,10 @@ std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
     }
     data.push_back(std::move(block));
   }
-  return {{Drawing{script, data},
-           fmt::format("Error of the measured position over the field, one colour a clip{}", named ? "" : ", in turn"),
-           "Restitution error over the true position"}};
+  return {
+      {Drawing{script, data},
+       fmt::format("Error of the measured position over the field, one colour per clip{}", named ? "" : ", in turn"),
+       "Restitution error over the true position"}};
 }
 
 }  // namespace

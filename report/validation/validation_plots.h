@@ -1,4 +1,4 @@
-/// Truth against estimate as pictures: errors in units of their standard deviation, and restitution over the field.
+/// Truth against estimate as plots: errors in units of their standard deviation, and restitution over the field.
 #pragma once
 
 #include <vector>

@@ -17,4 +17,12 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
                        const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
                        const base::Progress& progress = base::no_progress);
 
+/// First, of each configuration, K/m, mu and alpha by the better estimator beside their truth, and how many values
+/// agree with it; then, below a line "In full:", every quantity, R² of each clip's lines, position error, frames and
+/// time.
+std::string comparison_text(const validate::Comparison& comparison);
+
+/// On how well the truth was recovered. HTML.
+std::string meaning_of(const validate::Comparison& comparison);
+
 }  // namespace glidelab::report

@@ -1,28 +1,28 @@
-/// CONVENTIONS.md's table of rooms, held against the includes of every source; and core/ builds without the others.
+/// Who may include whom: CONVENTIONS.md's table of rooms, and no circles of folders or files, held against the includes
+/// of every source; and core/ builds without the other rooms. test_house_rules.cpp has what holds of single files.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
-#include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "base/files/staged_output.h"
 #include "test_paths.h"
 #include "tests/app/run_process.h"
+#include "tests/app/source_tree.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
+using tests::includes_of;
+using tests::Source;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Source {
-  fs::path path;  ///< relative to the root: "core/analyze.cpp"
-  std::string text;
-};
 
 /// What each room may include besides itself: rooms, or single headers of a room.
 const std::map<std::string, std::set<std::string>> kAllowed = {
@@ -52,35 +52,35 @@ const std::map<std::string, std::vector<std::string>> kBehindOneFile = {
     {"Cairo", {"cairo"}},
 };
 
+/// Suites of one room that do not include each other.
+const std::vector<std::pair<std::string, std::string>> kApart = {{"core/pictures/", "core/motion/"}};
+
+/// Circles between folders that still stand; the list only shrinks.
+const std::vector<std::string> kStandingCircles = {"diagnose/lines, diagnose/next, diagnose/verdict"};
+
+/// Circles within a folder, of headers and sources, a header with its source being one: fewer than 10 are wanted.
+constexpr std::size_t kMostUnitCircles = 21;
+
 std::vector<Source> sources_of_rooms() {
-  const fs::path root = tests::kSourceDir;
-  std::vector<Source> sources;
-  for (const auto& [room, allowed] : kAllowed) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / room)) {
-      const std::string ending = entry.path().extension();
-      if (ending != ".h" && ending != ".cpp") continue;
-      sources.push_back({fs::relative(entry.path(), root), base::read_file(entry.path())});
-    }
-  }
-  return sources;
+  std::vector<std::string> rooms;
+  for (const auto& [room, allowed] : kAllowed) rooms.push_back(room);
+  return tests::sources_below(rooms);
 }
 
-std::vector<std::string> includes_of(const Source& source) {
-  static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])", std::regex::multiline);
-  std::vector<std::string> includes;
-  for (auto match = std::sregex_iterator(source.text.begin(), source.text.end(), kInclude);
-       match != std::sregex_iterator(); ++match) {
-    includes.push_back((*match)[1]);
-  }
-  return includes;
-}
-
-/// "core/analyze.h" belongs to the room core; a header without a room's name, or of a library, to none.
+/// "core/analysis/analyze.h" belongs to the room core; a header without a room's name, or of a library, to none.
 std::string room_of(const std::string& include) {
   const std::string first = include.substr(0, include.find('/'));
   return include.find('/') != std::string::npos && (kAllowed.contains(first) || first == "tests" || first == "bench")
              ? first
              : std::string();
+}
+
+/// Whether the file lies in one suite and includes the other, of two that stay apart.
+bool joins_suites(const std::string& path, const std::string& include) {
+  return std::any_of(kApart.begin(), kApart.end(), [&](const auto& apart) {
+    const auto& [a, b] = apart;
+    return (path.starts_with(a) && include.starts_with(b)) || (path.starts_with(b) && include.starts_with(a));
+  });
 }
 
 std::vector<std::string> violations(const std::vector<Source>& sources) {
@@ -95,6 +95,8 @@ std::vector<std::string> violations(const std::vector<Source>& sources) {
         found.push_back(fmt::format("{} includes {} by a way round", source.path.string(), include));
       } else if (!other.empty() && other != room && !allowed.contains(other) && !allowed.contains(include)) {
         found.push_back(fmt::format("{} includes {}", source.path.string(), include));
+      } else if (joins_suites(source.path.string(), include)) {
+        found.push_back(fmt::format("{} includes {} of a suite it stays apart from", source.path.string(), include));
       }
       for (const auto& [library, starts] : kBehindOneFile) {
         for (const std::string& start : starts) {
@@ -109,6 +111,12 @@ std::vector<std::string> violations(const std::vector<Source>& sources) {
   return found;
 }
 
+std::vector<std::string> one_line_each(const std::vector<std::vector<std::string>>& circles) {
+  std::vector<std::string> lines;
+  for (const std::vector<std::string>& circle : circles) lines.push_back(fmt::format("{}", fmt::join(circle, ", ")));
+  return lines;
+}
+
 }  // namespace
 
 TEST_CASE("no file includes what the table of rooms does not allow") {
@@ -117,57 +125,40 @@ TEST_CASE("no file includes what the table of rooms does not allow") {
   CHECK(violations(sources) == std::vector<std::string>{});
 }
 
-TEST_CASE("no test's name holds a semicolon, at which CMake would cut it in two that match nothing") {
-  static const std::regex kName(R"re(TEST_CASE\("([^"]*)")re");
-  std::size_t names = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(tests::kSourceDir) / "tests")) {
-    if (entry.path().extension() != ".cpp") continue;
-    const std::string text = base::read_file(entry.path());
-    for (auto match = std::sregex_iterator(text.begin(), text.end(), kName); match != std::sregex_iterator(); ++match) {
-      INFO(entry.path().string() << ": " << (*match)[1]);
-      CHECK((*match)[1].str().find(';') == std::string::npos);
-      ++names;
-    }
-  }
-  CHECK(names > 100);
+TEST_CASE("no folders include each other in a circle") {
+  CHECK(one_line_each(tests::circles_of(tests::folder_graph(sources_of_rooms()))) == kStandingCircles);
 }
 
-TEST_CASE("every program that a test is skipped without is in a package that tools/test installs") {
-  // Debian's package of each; script is of bsdutils, which every Debian has.
-  const std::map<std::string, std::string> package_of = {{"chromium", "chromium"},
-                                                         {"doxygen", "doxygen"},
-                                                         {"ffmpeg", "ffmpeg"},
-                                                         {"zsh", "zsh"},
-                                                         {"script", ""},
-                                                         {"pdftoppm", "poppler-utils"},
-                                                         {"pdftotext", "poppler-utils"},
-                                                         {"dpkg-deb", ""},
-                                                         {"cpack", "cmake"},
-                                                         {"dpkg-shlibdeps", "dpkg-dev"},
-                                                         {"file", "file"}};
-  std::string lists = "\n";
-  for (const char* list : {"packages.txt", "packages-test.txt", "packages-optional.txt"}) {
-    lists += base::read_file(fs::path(tests::kSourceDir) / "tools" / list) + "\n";
-  }
-  static const std::regex kSkipped(R"re(skipped: no ([^ "']+) program)re");
-  std::set<std::string> seen;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(tests::kSourceDir) / "tests")) {
-    const std::string extension = entry.path().extension();
-    if (extension != ".cpp" && extension != ".txt" && extension != ".sh") continue;
-    const std::string text = base::read_file(entry.path());
-    for (auto match = std::sregex_iterator(text.begin(), text.end(), kSkipped); match != std::sregex_iterator();
-         ++match) {
-      const std::string program = (*match)[1];
-      if (program == "([^") continue;  // this very expression
-      INFO(entry.path().string() << ": " << program);
-      REQUIRE(package_of.contains(program));
-      const std::string& package = package_of.at(program);
-      CHECK((package.empty() || lists.find("\n" + package + "\n") != std::string::npos));
-      seen.insert(program);
-    }
-  }
-  CHECK(seen.contains("chromium"));
-  CHECK(seen.contains("doxygen"));
+TEST_CASE("few files of a folder include each other in a circle") {
+  const std::vector<std::string> circles = one_line_each(tests::circles_of(tests::unit_graph(sources_of_rooms())));
+  INFO(fmt::format("{}", fmt::join(circles, "\n")));
+  CHECK(circles.size() <= kMostUnitCircles);
+}
+
+TEST_CASE("a circle of folders is found, of two and of three, and a folder inside another is one of its own") {
+  const auto circles = [](const std::vector<Source>& sources) {
+    return one_line_each(tests::circles_of(tests::folder_graph(sources)));
+  };
+  CHECK(circles({{"core/a/x.h", "#include \"core/b/y.h\"\n"}, {"core/b/y.cpp", "#include \"core/a/x.h\"\n"}}) ==
+        std::vector<std::string>{"core/a, core/b"});
+  CHECK(circles({{"core/a/x.h", "#include \"core/b/y.h\"\n"},
+                 {"core/b/z.h", "#include \"sim/c/u.h\"\n"},
+                 {"sim/c/v.h", "#include \"core/a/w.h\"\n"},
+                 {"sim/d/v.h", "#include \"core/a/w.h\"\n"}}) == std::vector<std::string>{"core/a, core/b, sim/c"});
+  CHECK(circles({{"core/a/x.h", "#include \"core/a/in/y.h\"\n"}, {"core/a/in/y.h", "#include \"core/a/z.h\"\n"}}) ==
+        std::vector<std::string>{"core/a, core/a/in"});
+  CHECK(circles({{"core/a/x.h", "#include \"core/b/y.h\"\n#include <vector>\n"}, {"core/b/y.h", ""}}).empty());
+}
+
+TEST_CASE("a circle of files within a folder is found, and a header with its source is none") {
+  const auto circles = [](const std::vector<Source>& sources) {
+    return one_line_each(tests::circles_of(tests::unit_graph(sources)));
+  };
+  CHECK(circles({{"core/a/x.cpp", "#include \"core/a/y.h\"\n"},
+                 {"core/a/x.h", ""},
+                 {"core/a/y.h", "#include \"core/a/x.h\"\n"}}) == std::vector<std::string>{"core/a/x, core/a/y"});
+  CHECK(circles({{"core/a/x.cpp", "#include \"core/a/x.h\"\n"}, {"core/a/x.h", ""}}).empty());
+  CHECK(circles({{"core/a/x.h", "#include \"core/b/y.h\"\n"}, {"core/b/y.h", "#include \"core/a/x.h\"\n"}}).empty());
 }
 
 TEST_CASE("an include that the table does not allow is found") {
@@ -182,7 +173,10 @@ TEST_CASE("an include that the table does not allow is found") {
   CHECK(one("core/a.cpp", "#include \"tests/made_results.h\"\n").size() == 1);
   CHECK(one("report/a.h", "#include \"core/result/results.h\"\n#include <vector>\n").empty());
   CHECK(one("validate/a.h", "#include \"render/scenario.h\"\n").empty());
-  CHECK(one("core/a.cpp", "// no #include of \"sim/simulate.h\" here\n").empty());
+  CHECK(one("core/pictures/a.h", "#include \"core/motion/free/motion.h\"\n").size() == 1);
+  CHECK(one("core/motion/free/a.cpp", "#include \"core/pictures/marker/marker.h\"\n").size() == 1);
+  CHECK(one("core/analysis/a.cpp", "#include \"core/pictures/marker/marker.h\"\n").empty());
+  CHECK(one("core/a.cpp", "// no #include of \"sim/motion/simulate.h\" here\n").empty());
 }
 
 TEST_CASE("a C library that is included from two files is found, from a header and its source it is not") {

@@ -8,7 +8,7 @@
 #include "base/files/staged_output.h"
 #include "tests/one_glider.h"
 #include "tests/temp_dir.h"
-#include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/design/read_sweep.h"
 
 namespace glidelab::tests {
 

@@ -1,5 +1,5 @@
-/// Pictures that frames are drawn on in memory, used again by later frames and clips: a new one costs as much as the
-/// drawing.
+/// Images in memory that frames are drawn on, reused by later frames and clips: allocating a new one costs as much as
+/// the drawing.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -19,16 +19,16 @@ struct Canvas {
   void clear();
 };
 
-/// Whether nobody but the caller, who holds this pointer, looks at the canvas or its pixels.
+/// Whether the caller, who holds this pointer, is the only one that refers to the canvas or its pixels.
 bool is_free(const std::shared_ptr<Canvas>& canvas);
 
-/// Between clips, also of different threads. Canvases are of one size and depth; of another none is kept.
+/// Shared between clips, also on different threads. All canvases have one size and depth; no others are kept.
 class CanvasPool {
  public:
   /// A clear canvas.
   std::shared_ptr<Canvas> take(cv::Size size, int type);
 
-  /// Takes back what is looked at by nobody but the caller, who gives it away.
+  /// Takes back a canvas that only the caller refers to.
   void give(std::shared_ptr<Canvas> canvas);
 
  private:

@@ -16,14 +16,14 @@
 
 namespace glidelab::validate {
 
-/// A camera with its calibration, for as many recordings as one likes: of scenarios whose stills are those of the first
+/// A camera with its calibration, for any number of recordings: of scenarios whose stills are those of the first
 /// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills and
 /// experiment.toml lie in a folder of its own under the system's folder for temporary files, which goes with it. One
 /// thread at a time.
 class FilmStudio {
  public:
   /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio before the same scene
-  /// may be given. `progress` is called with every picture and, in film(), every few frames, from any thread.
+  /// may be given. `progress` is called with every image and, in film(), every few frames, from any thread.
   FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
              std::shared_ptr<const render::Stage> stage = nullptr, base::Progress progress = base::no_progress);
 

@@ -118,8 +118,7 @@ std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render:
                                                    std::uint64_t seed, bool with_color,
                                                    std::shared_ptr<CanvasPool> pool) {
   if (render::lossy(set->scenario().codec)) {
-    throw base::InputError(base::Issue{set->motion(clip).name, 0, "codec.name",
-                                       "a codec that loses some of the picture",
+    throw base::InputError(base::Issue{set->motion(clip).name, 0, "codec.name", "a codec that loses part of the image",
                                        "one without loss, or the clip's file: in memory frames are as the sensor gives "
                                        "them"});
   }

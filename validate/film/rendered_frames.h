@@ -16,7 +16,8 @@ std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render:
                                                    std::uint64_t seed, bool with_color = false,
                                                    std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());
 
-/// The same for an analysis (core/analyze.h): a clip's frames by the name of its file in the experiment folder.
+/// The same for an analysis (core/analysis/analyze.h): a clip's frames by the name of its file in the experiment
+/// folder.
 core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, std::uint64_t seed,
                                   std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());
 

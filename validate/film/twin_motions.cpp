@@ -13,10 +13,10 @@ namespace {
 
 /// By the cubic through the four nearest of the track's own times; nothing outside them.
 std::optional<double> at_time(const core::TrackData& track, double t_s) {
-  constexpr double kSame = 1e-9;  // s: rounding of times
+  constexpr double kSameTime_s = 1e-9;  // s: rounding of times
   const auto& times = track.t_s;
-  if (times.size() < 4 || t_s < times.front() - kSame || t_s > times.back() + kSame) return {};
-  const auto after = std::lower_bound(times.begin(), times.end(), t_s - kSame) - times.begin();
+  if (times.size() < 4 || t_s < times.front() - kSameTime_s || t_s > times.back() + kSameTime_s) return {};
+  const auto after = std::lower_bound(times.begin(), times.end(), t_s - kSameTime_s) - times.begin();
   const auto from = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - 2, 0, std::ssize(times) - 4));
   double x = 0.0;
   for (std::size_t i = from; i < from + 4; ++i) {

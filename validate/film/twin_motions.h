@@ -1,5 +1,5 @@
-/// A twin beside the data that it was made from: its motions, exact, and what the data's analysis makes of them with as
-/// much noise as the data have.
+/// A twin beside the data that it was made from: its exact motions, and the result of the data's analysis applied to
+/// them with as much noise as the data have.
 ///
 /// Exact positions: the scenario's clock but for lost frames and uneven times, which fall elsewhere in every recording;
 /// of the camera a wrong scale and a wrong perspective, no more. Smoothed with each clip's own bandwidth. SI units.
@@ -21,8 +21,8 @@ struct TwinMotion {
   std::vector<double> twin_v_m_s, twin_a_m_s2;  ///< of the twin with that noise, analysed alike
 };
 
-/// `seed` draws the noise. InputError where no scenario can be read from the twin; NumericalError where a motion
-/// cannot be moved.
+/// `seed` draws the noise. InputError if no scenario can be read from the twin; NumericalError if a motion cannot be
+/// simulated.
 std::vector<TwinMotion> twin_motions(const diagnose::Diagnosis& diagnosis, std::uint64_t seed);
 
 }  // namespace glidelab::validate

@@ -60,9 +60,9 @@ double centre_sd_px(core::DiscPicture disc) {
 std::vector<double> predicted_noise_m(const render::Scenario& scenario, const Truth& truth,
                                       const WithoutLimit& without) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  constexpr double kSharp_px = 0.1;     // a lens is not sharper; the bound needs an edge
-  constexpr double kSmallest_px = 1.0;  // radius: below it a disc is a dot without an edge of its own
-  constexpr double kLittle_e2 = 1e-6;   // where all noise is thought away
+  constexpr double kSharp_px = 0.1;        // a lens is not sharper; the bound needs an edge
+  constexpr double kSmallest_px = 1.0;     // radius: below it a disc is a dot without an edge of its own
+  constexpr double kNegligible_e2 = 1e-6;  // where all noise is thought away
   const Pixel pixel = pixel_of(scenario, without);
   std::vector<double> noise_m;
   for (const TrueClip& clip : truth.clips) {
@@ -83,7 +83,7 @@ std::vector<double> predicted_noise_m(const render::Scenario& scenario, const Tr
     const double smear_px = without.motion_blur ? 0.0 : rms(clip.v_m_s) * scenario.recording.exposure_s * px_per_m;
     disc.blur_px = std::sqrt(kSharp_px * kSharp_px + smear_px * smear_px / 12.0);
     disc.amplitude = pixel.amplitude_e;
-    disc.noise_sd = std::sqrt(std::max(pixel.variance_e2, kLittle_e2));
+    disc.noise_sd = std::sqrt(std::max(pixel.variance_e2, kNegligible_e2));
     noise_m.push_back(centre_sd_px(disc) / px_per_m);
   }
   return noise_m;

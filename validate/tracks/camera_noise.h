@@ -1,5 +1,6 @@
 /// How well a camera can locate the marker, before anything is rendered: the bound of the marker's centre
-/// (core/marker_bound.h) for the scenario's light, sensor, distance and speed, as metres in the plane of motion.
+/// (core/pictures/marker/marker_bound.h) for the scenario's light, sensor, distance and speed, as metres in the plane
+/// of motion.
 ///
 ///     variance of a pixel = shot + dark + read^2 + quantisation^2 + (PRNU signal)^2 + DSNU^2,
 ///

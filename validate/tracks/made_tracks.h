@@ -1,4 +1,4 @@
-/// The motions of a scenario as tracks: x at the times of the frames, with white noise, and no pictures.
+/// The motions of a scenario as tracks: x at the times of the frames, with white noise, and no images.
 ///
 /// What a study of estimators needs that runs them thousands of times. The frames come when the scenario's clock says
 /// (dropped, duplicated, late ones too), and their times are what the file would say: frame j at j / rate, or its stamp

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "validate/truth/least_sd_of.h"
+#include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
 namespace {

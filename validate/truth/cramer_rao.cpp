@@ -116,4 +116,12 @@ std::vector<LeastSd> least_sds(const Truth& truth, const std::vector<double>& no
   return all;
 }
 
+std::optional<double> least_sd_of(const LeastSd& least, std::string_view quantity) {
+  if (quantity == "k_over_m_1_s") return least.k_over_m_1_s;
+  if (quantity == "mu") return least.mu;
+  if (quantity == "alpha_deg") return least.alpha_deg;
+  if (quantity == "v_lim_m_s") return least.v_lim_m_s;
+  throw std::logic_error("no quantity: " + std::string(quantity));
+}
+
 }  // namespace glidelab::validate

@@ -7,12 +7,13 @@
 ///     F = sum over clips of J'(1 - P)J / s^2,   J = dx/d(k, d, f),   P projects on dx/d(x0, v0);
 ///     least variance of q(k, d, f) = grad q' F^-1 grad q.
 ///
-/// The derivatives are those of the true motion (sim/sensitivity.h), through its reversals. Frames in which the glider
-/// has stopped for good are not counted: no estimator here looks at them.
+/// The derivatives are those of the true motion (sim/sensitivity/sensitivity.h), through its reversals. Frames in which
+/// the glider has stopped for good are not counted: no estimator here looks at them.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "validate/truth/truth_folder.h"
@@ -30,5 +31,9 @@ struct LeastSd {
 
 /// `noise_sd_m` of each clip of the truth, above 0. Where all motion goes one way only k and v_lim have a bound.
 std::vector<LeastSd> least_sds(const Truth& truth, const std::vector<double>& noise_sd_m, double gravity_m_s2);
+
+/// The bound of k_over_m_1_s, mu, alpha_deg or v_lim_m_s, in the quantity's unit; none where the motions do not
+/// determine it. std::logic_error of any other name.
+std::optional<double> least_sd_of(const LeastSd& least, std::string_view quantity);
 
 }  // namespace glidelab::validate

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "report/analysis/analysis_report.h"
-#include "report/analysis/text_table.h"
 #include "report/blind/blind_targets.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"
@@ -86,7 +85,7 @@ TEST_CASE("where the law is in doubt the doubt comes first and the numbers are c
   CHECK(page.find("does not fit") < page.find("id=\"recovered\""));
   CHECK(report::meaning_of(one_clip()).find("Coulomb friction is µ = 0.0071") != std::string::npos);
   results.configurations[0].mu = tests::known(-0.002, 0.002);
-  CHECK(report::meaning_of(results).find("no Coulomb friction can be told from zero") != std::string::npos);
+  CHECK(report::meaning_of(results).find("Coulomb friction cannot be distinguished from zero") != std::string::npos);
 }
 
 TEST_CASE("what blind cases mean is told of what was there, with intervals, and what is missed is named") {
@@ -188,8 +187,8 @@ TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and 
   camera.read_noise_e.value = 7.0;
   camera.full_well_e.value = 10000.0;
   CHECK(tells(report::camera_report(camera), "by 7 electrons (3.5 codes)"));
-  CHECK(
-      tells(report::camera_report(camera), "full at 10000 electrons, where it wavers by 1\u00a0%"));  // 1 / sqrt(10^4)
+  CHECK(tells(report::camera_report(camera),
+              "full at 10000 electrons, where it fluctuates by 1\u00a0%"));  // 1 / sqrt(10^4)
 }
 
 TEST_CASE("an analysis leaves an effect out, but puts lost frames right") {

@@ -1,9 +1,9 @@
-#include "report/analysis/motion_csv.h"
+#include "report/analysis/clip_csv.h"
 
 #include <limits>
 
 #include "base/errors.h"
-#include "report/text/output_names.h"
+#include "report/text/result_names.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
 

@@ -1,9 +1,9 @@
-#include "report/analysis/phase_csv.h"
+#include "report/analysis/clip_csv.h"
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
 #include "base/text/csv.h"
-#include "report/text/output_names.h"
+#include "report/text/result_names.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
 #include "tests/temp_dir.h"

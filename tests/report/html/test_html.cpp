@@ -1,7 +1,7 @@
 #include "report/html/html.h"
 
 #include "report/analysis/analysis_report.h"
-#include "report/text/typeset_numbers.h"
+#include "report/html/typeset_numbers.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
 

@@ -217,10 +217,10 @@ TEST_CASE("the question of mu and mass is answered in words, with its standard e
   std::string text = report::mass_study_section(study);
   CHECK(has(text, "Table 2 has a fall of µ from 0.0075 to 0.0051, by 0.0024"));
   CHECK(has(text, "h = 0.1 s makes 0.001530 ± 0.000050, with R² = 0.9986"));
-  CHECK(has(text, "all of these lines are worse"));
+  CHECK(has(text, "all of these lines are less straight"));
   study.answers[0].whole = validate::FallAt{0.126, 0.0024, 0.0, 0.9971};
   study.answers[0].at_r2 = validate::FallAt{0.07, 0.0007, 0.0, 0.9996};
   text = report::mass_study_section(study);
-  CHECK(has(text, "makes all of it with h = 0.13 s, and its lines then have R² = 0.9971"));
-  CHECK(has(text, "R² of 0.99960 it can make 0.00070, 29 % of the fall, at h = 0.07 s"));
+  CHECK(has(text, "produces all of it at h = 0.13 s, where the lines have R² = 0.9971"));
+  CHECK(has(text, "R² of 0.99960 smoothing can produce 0.00070, 29 % of the fall, with h = 0.07 s"));
 }

@@ -38,7 +38,7 @@ TEST_CASE("made tracks follow the closed form of their motion at the times of th
         CHECK(std::abs(data.t_s[j] - t_s) < 1e-12);
         const sim::State state =
             sim::viscous_coulomb_motion(track, *truth.k_over_m_1_s, motion.x0_m, motion.v0_m_s, t_s);
-        CHECK(std::abs(data.x_m[j] - state.x_m) < 1e-9);  // what sim/simulate.h promises
+        CHECK(std::abs(data.x_m[j] - state.x_m) < 1e-9);  // what sim/motion/simulate.h promises
       }
       ++c;
     }

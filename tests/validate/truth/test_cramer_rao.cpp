@@ -7,7 +7,6 @@
 
 #include "sim/oracle/closed_forms.h"
 #include "tests/catch.h"
-#include "validate/truth/least_sd_of.h"
 
 using namespace glidelab;
 using namespace glidelab::validate;

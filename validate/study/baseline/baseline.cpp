@@ -126,4 +126,8 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
   return baseline;
 }
 
+std::uint64_t other_seed(const Baseline& then) {
+  return then.seed.value_or(1) + 1;
+}
+
 }  // namespace glidelab::validate

@@ -1,4 +1,5 @@
-// A baseline as a JSON file.
+#include "validate/study/baseline/baseline_file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +7,6 @@
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
-#include "validate/study/baseline/baseline.h"
 
 namespace glidelab::validate {
 

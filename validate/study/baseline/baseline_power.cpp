@@ -27,7 +27,8 @@ std::uint64_t rounded_up(double runs) {
 std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, const BaselineComparison& comparison) {
   std::vector<Detectable> all;
   const double level = comparison.significance / static_cast<double>(comparison.tests);
-  const double z = z_above(level) + z_above(1.0 - kFound), z_two_sided = z_above(0.5 * level) + z_above(1.0 - kFound);
+  const double z = z_above(level) + z_above(1.0 - kDetectionProbability),
+               z_two_sided = z_above(0.5 * level) + z_above(1.0 - kDetectionProbability);
   for (const ErrorRecord& before : then.records) {
     const auto found = std::find_if(now.records.begin(), now.records.end(), [&](const ErrorRecord& record) {
       return record.configuration == before.configuration && record.estimator == before.estimator &&
@@ -38,8 +39,8 @@ std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, co
     Detectable of{before.configuration, before.estimator, before.quantity, {}, {}, 0};
     of.factor = factor_of(before.deviation, before.deviation_sd, z, n, m);
     of.bias = z * before.sd * std::sqrt(1.0 / n + 1.0 / m);
-    const double needed = z * before.deviation_sd / ((kWeak - 1.0) * before.deviation);
-    of.runs_for_weak = rounded_up(needed * needed * (kWeak * kWeak + 1.0));
+    const double needed = z * before.deviation_sd / ((kWeakFactor - 1.0) * before.deviation);
+    of.runs_for_weak = rounded_up(needed * needed * (kWeakFactor * kWeakFactor + 1.0));
     all.push_back(std::move(of));
   }
   for (const SmoothingRecord& before : then.smoothing) {
@@ -48,7 +49,7 @@ std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, co
     if (found == now.smoothing.end() || before.runs < 2 || found->runs < 2) continue;
     const double root = std::sqrt(1.0 / static_cast<double>(found->runs) + 1.0 / static_cast<double>(before.runs));
     const auto add = [&](const char* quantity, double sd, double z_of) {
-      const double needed = z_of * sd / std::log(kWeak);
+      const double needed = z_of * sd / std::log(kWeakFactor);
       all.push_back({before.clip, "phase-diagram", quantity, std::exp(z_of * sd * root), std::nullopt,
                      rounded_up(2.0 * needed * needed)});
     };

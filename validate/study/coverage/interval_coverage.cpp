@@ -16,11 +16,10 @@
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
 #include "fit/trajectory/trajectory_results.h"
-#include "validate/study/coverage/naive_lines.h"
 #include "validate/tracks/camera_noise.h"
 #include "validate/tracks/made_tracks.h"
 #include "validate/truth/binomial.h"
-#include "validate/truth/least_sd_of.h"
+#include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
 namespace {
@@ -156,7 +155,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
                                              : predicted_noise_m(scenario, clean.truth);
   for (const double sd : noise_sd_m) {
     if (std::isfinite(sd) && sd > 0.0) continue;
-    throw base::InputError(base::Issue{"", 0, "camera", "a picture in which the marker has no edge of its own",
+    throw base::InputError(base::Issue{"", 0, "camera", "an image in which the marker has no edge of its own",
                                        "a marker of two pixels or more that is brighter than the wall, or --noise-m"});
   }
   const std::vector<LeastSd> bounds = least_sds(clean.truth, noise_sd_m, clean.gravity_m_s2);

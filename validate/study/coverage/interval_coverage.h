@@ -16,6 +16,7 @@
 
 #include "base/progress.h"
 #include "render/scenario/scenario.h"
+#include "validate/study/coverage/naive_lines.h"
 
 namespace glidelab::validate {
 
@@ -38,9 +39,6 @@ struct LevelCount {
   double low95 = 0.0, high95 = 0.0;  ///< exact binomial interval of the coverage (Clopper and Pearson 1934)
   double p_value = 1.0;              ///< of a count as far from the level, two-sided
 };
-
-/// Lines as textbooks fit them (naive_lines.h): for contrast, and not asked to keep what they say.
-inline constexpr const char* kNaiveLines = "naive-lines";
 
 /// All that are counted, in the order of their rows.
 inline constexpr std::array<const char*, 4> kCoverageEstimators = {"phase-diagram", "phase-diagram-gls", "trajectory",
@@ -86,7 +84,7 @@ struct CoverageFailure {
 };
 
 /// Intervals of estimators other than kNaiveLines that hold the truth less often than they say, or more often (they
-/// are wider than they need be), at the 1 % level corrected for the number of rows and levels (Bonferroni).
+/// are wider than they need to be), at the 1 % level corrected for the number of rows and levels (Bonferroni).
 std::vector<CoverageFailure> too_narrow(const Coverage& coverage);
 std::vector<CoverageFailure> too_wide(const Coverage& coverage);
 

@@ -1,6 +1,6 @@
 /// The lines of the phase diagram with textbook intervals: ordinary least squares through the smoothed points as if
-/// they were independent. Shown beside the estimators so that it is seen to fail: neighbours share the noise under one
-/// kernel, so that n points are worth n times (step / kernel width) at most.
+/// they were independent. Shown beside the estimators to demonstrate the failure: neighbours share the noise under one
+/// kernel, so that n points are worth at most n times (step / kernel width).
 #pragma once
 
 #include "core/result/results.h"
@@ -8,12 +8,15 @@
 
 namespace glidelab::validate {
 
+/// Their name among the estimators. They are there for contrast; their intervals are not expected to be right.
+inline constexpr const char* kNaiveLines = "naive-lines";
+
 /// The same results with K/m, mu, alpha and v_lim by the naive lines, and estimator = "naive-lines".
 core::AnalysisResults with_naive_lines(core::AnalysisResults results);
 
 /// The same lines through every point of every clip: one kernel of that bandwidth (above 0) over the whole motion, so
-/// that it reaches over ends and reversals, and nothing is left out. What a(v) shows to somebody who does not mind
-/// these; a clip's `segments` hold its own lines with R². NumericalError where a kernel holds too few points.
+/// that it reaches over ends and reversals, and nothing is left out. This is what a(v) shows if these are
+/// ignored; a clip's `segments` hold its own lines with R². NumericalError where a kernel holds too few points.
 core::AnalysisResults lines_through_all_points(const MadeTracks& made, double bandwidth_s);
 
 }  // namespace glidelab::validate

@@ -12,7 +12,6 @@
 
 #include "base/errors.h"
 #include "base/parallel.h"
-#include "base/text/nearest_word.h"
 #include "render/film/clip_set.h"
 #include "render/scenario/camera_catalogue.h"
 #include "validate/film/film_studio.h"
@@ -79,7 +78,7 @@ void judge_by_runs(const Sweep& sweep, std::uint64_t point, RequirementOptions o
   candidate.verdict = runs.judge(candidate.results);
   candidate.judged_by = confirm;
   const double found = hardest_found(candidate.results, options.targets);
-  if (confirm == Confirm::tracks) trial.close = found < kClear && found > 1.0 / kClearOfClips;
+  if (confirm == Confirm::tracks) trial.close = found < kClearMargin && found > 1.0 / kClearMarginOfClips;
   if (candidate.verdict == Verdict::reached || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
   for (Limit& limit : runs.limits(candidate.results)) candidate.limits.push_back(std::move(limit));
@@ -127,7 +126,7 @@ Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions
       if (std::isfinite(candidate.need)) candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
     } else if (options.confirm != Confirm::none) {
       judge_by_runs(sweep, point, options, Confirm::tracks, trial);
-    } else if (candidate.need < 1.0 / kClear && !any_bias) {
+    } else if (candidate.need < 1.0 / kClearMargin && !any_bias) {
       candidate.verdict = Verdict::by_bound;
     }
   });
@@ -189,58 +188,6 @@ void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, con
 }
 
 }  // namespace
-
-std::string Target::name() const {
-  const char* measures[] = {"sd", "95 % error", "bias"};
-  return fmt::format("{} {} {}", quantity, measures[static_cast<int>(measure)], value);
-}
-
-Target parse_target(const std::string& text) {
-  Target target;
-  const std::size_t equals = text.find('='), colon = text.find(':');
-  target.quantity = text.substr(0, std::min(colon, equals));
-  const std::string measure =
-      colon < equals && equals != std::string::npos ? text.substr(colon + 1, equals - colon - 1) : "sd";
-  const std::vector<std::string> quantities = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"};
-  std::istringstream number(equals == std::string::npos ? "" : text.substr(equals + 1));
-  const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
-  const bool known = std::find(quantities.begin(), quantities.end(), target.quantity) != quantities.end();
-  const std::vector<std::string> measures = {"sd", "error95", "bias"};
-  const bool known_measure = std::find(measures.begin(), measures.end(), measure) != measures.end();
-  if (!read || !known || !(target.value > 0.0) || !known_measure) {
-    throw base::InputError(base::Issue{
-        "", 0, "--target", fmt::format("\"{}\"", text),
-        fmt::format("QUANTITY=VALUE, or QUANTITY:sd|error95|bias=VALUE, with one of {} "
-                    "and a number above 0{}{}",
-                    fmt::join(quantities, ", "), known ? "" : base::did_you_mean(target.quantity, quantities),
-                    known_measure ? "" : base::did_you_mean(measure, measures))});
-  }
-  target.measure = measure == "sd"     ? Target::Measure::sd
-                   : measure == "bias" ? Target::Measure::bias
-                                       : Target::Measure::error95;
-  return target;
-}
-
-std::string describe(const Candidate& candidate) {
-  const char* by = candidate.judged_by == Confirm::clips ? "clips" : "tracks";
-  switch (candidate.verdict) {
-    case Verdict::reached:
-      return fmt::format("reached, by {}", by);
-    case Verdict::by_bound:
-      return "reached, the bound has room";
-    case Verdict::unconfirmed:
-      return "possible, not run";
-    case Verdict::undecided:
-      return fmt::format("undecided, by {}", by);
-    case Verdict::missed:
-      return fmt::format("missed, by {}", by);
-    case Verdict::impossible:
-      return "impossible";
-    case Verdict::refused:
-      break;
-  }
-  return "refused";
-}
 
 bool Requirement::any_reached() const {
   return std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) {

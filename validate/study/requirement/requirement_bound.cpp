@@ -6,7 +6,7 @@
 
 #include "core/math/quantile.h"
 #include "validate/tracks/camera_noise.h"
-#include "validate/truth/least_sd_of.h"
+#include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
 namespace {

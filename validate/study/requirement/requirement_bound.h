@@ -1,11 +1,11 @@
-/// What the Cramér-Rao bound says of one point of a requirement (validate/requirement.h), and what limits it.
+/// What the Cramér-Rao bound says of one point of a requirement (requirement.h), and what limits it.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "render/scenario/scenario.h"
-#include "validate/study/requirement/requirement.h"
+#include "validate/study/requirement/candidate.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
@@ -27,7 +27,7 @@ std::vector<TargetResult> bounds(const MadeTracks& made, const std::vector<doubl
 /// Bound over target, of the hardest target; infinite where the motion does not determine it.
 double hardest(const std::vector<TargetResult>& results, const std::vector<Target>& targets);
 
-/// How many times smaller `need` were with one limitation thought away, the largest gain first.
+/// How many times smaller `need` were without one limitation, the largest gain first.
 std::vector<Limit> limits_of(const Setting& setting, double need, const std::vector<Target>& targets);
 
 }  // namespace glidelab::validate

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "fit/trajectory/trajectory_results.h"
 #include "validate/film/film_studio.h"
-#include "validate/study/requirement/error_measure.h"
+#include "validate/study/requirement/target.h"
 #include "validate/study/sweep/design/sweep_design.h"
 #include "validate/study/sweep/sweep_run.h"
 #include "validate/tracks/made_tracks.h"

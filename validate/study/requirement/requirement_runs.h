@@ -1,5 +1,5 @@
-/// Whether one point of a requirement (validate/requirement.h) reaches its targets, by runs; and what keeps it from
-/// that.
+/// Whether one point of a requirement (requirement.h) reaches its targets, by runs; and what limits
+/// it.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "validate/film/film_studio.h"
-#include "validate/study/requirement/requirement.h"
+#include "validate/study/requirement/candidate.h"
 #include "validate/study/requirement/requirement_bound.h"
 #include "validate/study/sweep/design/sweep.h"
 
 namespace glidelab::validate {
 
 /// The runs of one point, on options.jobs threads. Rendered ones share what stands still, and each run's calibration
-/// with what is thought away.
+/// when limitations are removed.
 class RecordedRuns {
  public:
   /// As RequirementOptions::confirm says, tracks or clips: options.runs of them. All outlive this.
@@ -25,10 +25,10 @@ class RecordedRuns {
   /// them), or undecided.
   Verdict judge(std::vector<TargetResult>& results) { return judge(setting_, options_.confirm, results); }
 
-  /// What is in no bound, thought away one by one, by the same runs: how many times smaller the errors in `results` are
-  /// with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec, with the true
-  /// camera in place of the calibrated one (not of a rational lens, which the analysis cannot write), and with the true
-  /// positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
+  /// Limitations that no bound contains, removed one by one, by the same runs: how many times smaller the errors in
+  /// `results` are with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec,
+  /// with the true camera in place of the calibrated one (not of a rational lens, which the analysis cannot write), and
+  /// with the true positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
   std::vector<Limit> limits(const std::vector<TargetResult>& results);
 
  private:

@@ -1,12 +1,36 @@
 #include "validate/study/sweep/sweep_database.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <cerrno>
+
+#include "base/errors.h"
 #include "validate/study/sweep/sweep_merge.h"
 
 namespace glidelab::validate {
 
 namespace fs = std::filesystem;
+
+WriterLock::WriterLock(const fs::path& database) {
+  const std::string name = database.string() + "-lock";
+  file_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0) base::throw_system_error(name, "cannot be made", errno);
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+  const int error = errno;
+  ::close(file_);
+  if (error == EWOULDBLOCK) {
+    throw base::EnvironmentError(
+        fmt::format("{}: another process is filling it; wait for it, or give another --out", database.string()));
+  }
+  base::throw_system_error(name, "cannot be locked", error);
+}
+
+WriterLock::~WriterLock() {
+  ::close(file_);  // the file stays: to remove it would let two processes lock two files of one name
+}
 
 SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std::string& version, const Shard& shard)
     : lock_(file), database_(file, Database::Mode::create), entries_(entries_of(sweep, version)), sweep_(sweep) {

@@ -18,9 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "validate/study/database/sqlite.h"
-#include "validate/study/database/writer_lock.h"
 #include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/sqlite.h"
 #include "validate/study/sweep/sweep_run.h"
 #include "validate/study/sweep/sweep_tables.h"
 
@@ -30,6 +29,19 @@ namespace glidelab::validate {
 struct Shard {
   std::uint64_t index = 1, count = 1;
   bool has(std::uint64_t run) const { return run % count == index - 1; }
+};
+
+/// What is held for as long as a process writes a database: flock(2) on "<file>-lock" beside it, let go when the
+/// process ends, however it ends. EnvironmentError where another one does, or where the lock's file cannot be made.
+class WriterLock {
+ public:
+  explicit WriterLock(const std::filesystem::path& database);
+  ~WriterLock();
+  WriterLock(const WriterLock&) = delete;
+  WriterLock& operator=(const WriterLock&) = delete;
+
+ private:
+  int file_ = -1;
 };
 
 class SweepDatabase {

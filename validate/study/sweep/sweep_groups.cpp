@@ -212,6 +212,11 @@ void take_alike(Database& database, const Grouping& grouping, const std::string&
 
 }  // namespace
 
+const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group) {
+  if (series.likeness.whole) return &group.statistics;
+  return group.alike ? &*group.alike : nullptr;
+}
+
 Grouping grouping_of(const Sweep& sweep, const Axis& axis, Database& database) {
   using Kind = AxisSource::Kind;
   Grouping grouping;

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "validate/study/database/sqlite.h"
 #include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/sqlite.h"
 #include "validate/study/sweep/sweep_tables.h"
 
 namespace glidelab::validate {

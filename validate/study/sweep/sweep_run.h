@@ -36,7 +36,7 @@ struct ClipRow {
   double bandwidth_s = 0.0;
   double position_noise_m = 0.0;
   std::optional<double> r2_up, r2_down;    ///< of the line for v < 0, v > 0
-  std::optional<double> a_rms_error_m_s2;  ///< of the points that count (validate/oracle_bandwidth.h)
+  std::optional<double> a_rms_error_m_s2;  ///< of the points that count (validate/tracks/oracle_bandwidth.h)
 };
 
 struct RunRecord {

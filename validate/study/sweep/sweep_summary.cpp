@@ -6,7 +6,6 @@
 
 #include "validate/study/sweep/design/sweep_design.h"
 #include "validate/study/sweep/failure_kinds.h"
-#include "validate/study/sweep/sweep_groups.h"
 
 namespace glidelab::validate {
 namespace {
@@ -111,11 +110,6 @@ std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Databa
 }
 
 }  // namespace
-
-const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group) {
-  if (series.likeness.whole) return &group.statistics;
-  return group.alike ? &*group.alike : nullptr;
-}
 
 SweepSummary summarize(const Sweep& sweep, Database& database) {
   SweepSummary summary;

@@ -9,47 +9,9 @@
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/mass_study.h"
 #include "validate/study/sweep/sweep_database.h"
+#include "validate/study/sweep/sweep_groups.h"
 
 namespace glidelab::validate {
-
-/// Over the runs of one group. Standard deviations and bounds are root mean squares.
-struct ErrorStatistics {
-  std::uint64_t runs = 0;      ///< with a truth
-  std::uint64_t answered = 0;  ///< of these, with a value
-  double bias = 0.0;           ///< mean error
-  double bias_sd = 0.0;        ///< standard error of it
-  double rms = 0.0;            ///< root mean square error
-  double sd = 0.0;             ///< as stated
-  std::optional<double> least_sd;
-  double coverage = 0.0;  ///< part of the 95 % intervals that hold the truth
-};
-
-struct GroupStatistics {
-  std::string label;      ///< of the value or the bin, for a table
-  double position = 0.0;  ///< on a plot's axis: the value, the middle of the bin, or a number for a word
-  ErrorStatistics statistics;
-  /// Over the combinations of all else that are answered in every group (validate/sweep_groups.h); nothing where all
-  /// runs have an answer, and where there are none.
-  std::optional<ErrorStatistics> alike = {};
-};
-
-/// Whether what is in one group is like what is in the others.
-struct Likeness {
-  bool whole = true;               ///< all runs of the sweep have an answer
-  std::uint64_t combinations = 0;  ///< else: of all but the axis (0 where the design has none)
-  std::uint64_t alike = 0;         ///< of these, answered in every group
-};
-
-/// One estimator's answers to one quantity, over all configurations.
-struct Series {
-  std::string quantity;
-  std::string estimator;
-  std::vector<GroupStatistics> groups;
-  Likeness likeness = {};
-};
-
-/// Errors that may be compared from group to group; null where those of unlike runs are all there is.
-const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group);
 
 /// Configurations of which plots apart are readable.
 inline constexpr std::size_t kMostSplit = 4;

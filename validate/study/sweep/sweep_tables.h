@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "validate/study/database/sqlite.h"
 #include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/sqlite.h"
 
 namespace glidelab::validate {
 

@@ -1,4 +1,6 @@
 #include "validate/study/baseline/baseline.h"
+#include "validate/study/baseline/baseline_comparison.h"
+#include "validate/study/baseline/baseline_file.h"
 
 #include <algorithm>
 #include <cmath>

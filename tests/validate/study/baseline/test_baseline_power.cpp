@@ -87,6 +87,6 @@ TEST_CASE("A gate of few runs is weak, and says with how many it would not be") 
   CHECK(few.runs_for_weak > 30);
   const Detectable enough = of(few.runs_for_weak);
   CHECK_FALSE(enough.weak());
-  CHECK(*enough.factor == Approx(kWeak).epsilon(0.01));  // the next whole number of runs
-  CHECK_FALSE(of(4).factor);                             // no factor is large enough
+  CHECK(*enough.factor == Approx(kWeakFactor).epsilon(0.01));  // the next whole number of runs
+  CHECK_FALSE(of(4).factor);                                   // no factor is large enough
 }

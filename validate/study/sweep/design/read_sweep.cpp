@@ -1,3 +1,5 @@
+#include "validate/study/sweep/design/read_sweep.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "base/files/staged_output.h"
 #include "base/toml/strict_toml.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_axes.h"
 #include "validate/study/sweep/design/sweep_design.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
@@ -138,11 +139,6 @@ void refuse_scenario(const std::string& text, const std::filesystem::path& path)
 
 }  // namespace
 
-std::string Analysis::name() const {
-  if (bandwidth_s) return fmt::format("{} h={} s", estimator, *bandwidth_s);
-  return bandwidth_rule.empty() ? estimator : fmt::format("{} {}", estimator, bandwidth_rule);
-}
-
 Sweep read_sweep(const std::filesystem::path& path) {
   Sweep sweep;
   sweep.file = path;
@@ -166,7 +162,7 @@ Sweep read_sweep(const std::filesystem::path& path) {
   if (root.has("calibration")) {
     sweep.calibrate_once = root.word("calibration", {"each", "once"}) == "once";
     if (sweep.level == Level::tracks) {
-      root.reject("calibration", "a calibration", "no such key with level = \"tracks\", which has no pictures");
+      root.reject("calibration", "a calibration", "no such key with level = \"tracks\", which has no images");
     }
   }
   sweep.field_m = root.maybe_number("field_m", base::above(0.0));

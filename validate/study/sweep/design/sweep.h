@@ -16,7 +16,7 @@
 namespace glidelab::validate {
 
 enum class Level {
-  tracks,  ///< true positions at the frames' times and white noise, no pictures
+  tracks,  ///< true positions at the frames' times and white noise, no images
   clips,   ///< rendered in memory, calibrated and tracked
 };
 
@@ -58,15 +58,16 @@ struct Axis {
   int line = 0;                      ///< of the sweep's file, where the keys stand
 };
 
-/// The rule that knows the truth (validate/oracle_bandwidth.h).
+/// The rule that knows the truth (validate/tracks/oracle_bandwidth.h).
 inline constexpr const char* kBestPossible = "best-possible";
 
 /// One way to analyse a run's clips.
 struct Analysis {
   std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory", "all-points"
   std::optional<double> bandwidth_s;        ///< given; else chosen
-  std::string bandwidth_rule = {};          ///< of core/bandwidth_rule.h, or kBestPossible; empty: the default one
-  std::string name() const;                 ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
+  std::string bandwidth_rule =
+      {};                    ///< of core/motion/bandwidth/bandwidth_rule.h, or kBestPossible; empty: the default one
+  std::string name() const;  ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
 };
 
 /// What was published of a quantity that falls with mass: mu of the lightest and the heaviest glider on one track, and
@@ -93,17 +94,12 @@ struct Sweep {
   /// With rendered clips: the replicates of a point share the calibration of the first one, as recordings before one
   /// camera do; else each has stills and a calibration of its own.
   bool calibrate_once = false;
-  std::optional<double> field_m;  ///< width of the plane that the picture shall show: sets the camera's distance
+  std::optional<double> field_m;  ///< width of the plane that the image shall show: sets the camera's distance
   std::vector<Axis> axes;
   std::vector<Analysis> analyses;
-  std::vector<PublishedFall> published_falls = {};  ///< to lay beside (validate/mass_study.h)
+  std::vector<PublishedFall> published_falls = {};  ///< to lay beside (validate/study/sweep/mass_study.h)
   /// Texts of the cameras that occur (the scenario's own, or those of an axis), as part of what the sweep is.
   std::vector<std::string> camera_files;
 };
-
-/// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,
-/// a value that the scenario refuses (each value of each axis is tried, the others at their first ones), with the line
-/// of the sweep's file that the key stands on.
-Sweep read_sweep(const std::filesystem::path& path);
 
 }  // namespace glidelab::validate

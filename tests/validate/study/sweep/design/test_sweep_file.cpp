@@ -6,7 +6,7 @@
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
-#include "validate/study/database/sqlite.h"
+#include "validate/study/sweep/sqlite.h"
 
 using namespace glidelab;
 using Catch::Matchers::Contains;

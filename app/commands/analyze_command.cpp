@@ -1,0 +1,180 @@
+/// glidelab analyze EXPERIMENT…: experiment folders or files of tracks in; results.json, report.html, phase-<clip>.csv
+/// and motion-<clip>.csv out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "app/commands/analysis_files.h"
+#include "app/shell/commands.h"
+#include "app/shell/common_options.h"
+#include "app/shell/experiment_arguments.h"
+#include "app/shell/interrupt.h"
+#include "app/shell/progress_display.h"
+#include "base/errors.h"
+#include "base/files/staged_output.h"
+#include "base/text/nearest_word.h"
+#include "core/analysis/analyze.h"
+#include "core/experiment/bare_track.h"
+#include "core/experiment/experiment.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
+#include "fit/trajectory/trajectory_results.h"
+#include "report/analysis/analysis_report.h"
+#include "report/analysis/results_json.h"
+#include "report/html/gnuplot.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AnalyzeOptions {
+  CommonOptions common;
+  std::vector<std::string> experiments;
+  std::string bandwidth = "lines";
+  std::string estimator = "phase-diagram";
+  bool robust = false;
+  core::BareTrackOptions bare;
+};
+
+constexpr const char* kLines = "lines";  // the default: what serves the lines best (core/motion/bandwidth/rule_lines.h)
+
+/// A checked text: a number of seconds or the name of a rule.
+void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
+  double value = 0.0;
+  if (text == kLines) return;
+  if (CLI::detail::lexical_cast(text, value)) {
+    how.bandwidth_s = value;
+  } else {
+    how.bandwidth_rule = text;
+  }
+}
+
+std::string title_of(const std::vector<fs::path>& folders, const core::BareTrackOptions& bare) {
+  std::string title = core::read_input(folders.front(), bare).name;
+  if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+  return title;
+}
+
+/// Options for files have no meaning for folders, whose experiment.toml says the same.
+void check_file_options(const AnalyzeOptions& options, const std::vector<fs::path>& inputs) {
+  const core::BareTrackOptions& bare = options.bare;
+  if (bare.column.empty() && !bare.mass_kg && !bare.incline_deg) return;
+  for (const fs::path& input : inputs) {
+    if (core::is_bare_track(input)) continue;
+    throw base::InputError(base::Issue{input.string(), 0, "--column, --mass, --incline", "not a file with a track",
+                                       "a file; for a folder, experiment.toml states column, mass_kg and incline_deg"});
+  }
+}
+
+void analyze(const AnalyzeOptions& options) {
+  if (options.robust && options.estimator != "trajectory") {
+    throw CommandLineError(
+        base::describe({"", 0, "--robust", options.estimator,
+                        "the estimator trajectory (lines leave positions off the motion out anyway)"}));
+  }
+  const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
+  const fs::path out = output_folder(options.common, "analyze", folders.front());
+  refuse_scenarios(options.experiments);
+  check_file_options(options, folders);
+  const std::string title = title_of(folders, options.bare);
+  report::check_gnuplot();
+  check_writable(out);
+  base::StagedOutput staged(out);
+
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
+  const base::Progress progress = display.callback();
+  core::AnalysisOptions how;
+  how.jobs = options.common.jobs;
+  how.bare = options.bare;
+  read_bandwidth(options.bandwidth, how);
+  if (options.estimator == "phase-diagram-gls") how.lines = core::LineMethod::generalised;
+  core::AnalysisResults results = core::analyze(folders, how, progress);
+  if (options.estimator == "trajectory") {
+    results = fit::with_trajectory_fits(std::move(results), {.robust = options.robust});
+  }
+  write_analysis_files(results, staged.dir());
+  const std::vector<core::Preview> previews = previews_of(folders, results, progress, options.bare);
+  report::write_page(staged.dir(), "report.html", report::analysis_report(title, results, previews, progress));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+
+  print_result(options.common.json ? report::results_json(results) : report::analysis_text(results));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+}
+
+std::vector<std::string> rule_names() {
+  std::vector<std::string> names = core::bandwidth_rule_names();
+  names.insert(names.begin(), kLines);
+  return names;
+}
+
+std::string check_bandwidth(const std::string& text) {
+  const std::vector<std::string> rules = rule_names();
+  if (std::find(rules.begin(), rules.end(), text) != rules.end()) return {};
+  if (check_above_0(text).empty()) return {};
+  return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}{}", text, fmt::join(rules, ", "),
+                     base::did_you_mean(text, rules));
+}
+
+std::string check_incline(const std::string& text) {
+  constexpr double kSteepest_deg = 89.9;
+  double value_deg = 0.0;
+  if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
+  return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}", text, kSteepest_deg);
+}
+
+}  // namespace
+
+void add_analyze(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<AnalyzeOptions>();
+  CLI::App* command = app.add_subcommand(
+      "analyze", "Analyse experiment folders: find the glider, smooth its motion, recover K/m, mu, alpha and v_lim");
+  command
+      ->add_option(
+          "EXPERIMENT", options->experiments,
+          "Folders that hold an experiment.toml; several share the glider and the track. Or files with a track: "
+          "t_s,x_m, or what Tracker, Logger Pro, Capstone or phyphox export")
+      ->type_name("DIR|FILE")
+      ->required();
+  command
+      ->add_option("--bandwidth", options->bandwidth,
+                   fmt::format("Width of the smoothing kernel in seconds, or the rule that chooses it for each clip: "
+                               "{} (docs/guide/bandwidth.md)",
+                               fmt::join(rule_names(), ", ")))
+      ->type_name("SECONDS|RULE")
+      ->check(CLI::Validator([](std::string& text) { return check_bandwidth(text); },
+                             fmt::format("{{{}}}", fmt::join(rule_names(), ","))))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--estimator", options->estimator,
+          "Method; \"phase-diagram\" fits lines in a(v) as the paper does, \"phase-diagram-gls\" with the points' "
+          "covariance, errors in v and a, and no bias by the kernel, \"trajectory\" the whole motion to the "
+          "positions")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"phase-diagram", "phase-diagram-gls", "trajectory"}))
+      ->capture_default_str();
+  command->add_flag("--robust", options->robust,
+                    "With \"trajectory\": leave out positions more than four scaled median absolute deviations off the "
+                    "motion, found with Huber's weights");
+  command
+      ->add_option("--column", options->bare.column,
+                   "For a file: the column that holds x, by header or number; default: found by its header")
+      ->type_name("NAME|NUMBER");
+  command->add_option("--mass", options->bare.mass_kg, "For a file: mass of the glider in kilograms")
+      ->type_name("KG")
+      ->check(check_above_0);
+  command->add_option("--incline", options->bare.incline_deg, "For a file: stated inclination in degrees")
+      ->type_name("DEG")
+      ->check(check_incline);
+  add_allow_outside(*command, options->bare.outside);
+  add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
+                     "Accepted by every command; an analysis draws no random numbers");
+  command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });
+}
+
+}  // namespace glidelab::app

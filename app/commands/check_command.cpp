@@ -1,0 +1,85 @@
+/// glidelab check FOLDER: a look at a recording before any analysis; check.json and report.html out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/shell/commands.h"
+#include "app/shell/common_options.h"
+#include "app/shell/experiment_arguments.h"
+#include "app/shell/interrupt.h"
+#include "app/shell/progress_display.h"
+#include "base/errors.h"
+#include "base/files/staged_output.h"
+#include "core/analysis/preview.h"
+#include "core/check/check_recording.h"
+#include "report/check/check_json.h"
+#include "report/check/check_report.h"
+#include "report/html/gnuplot.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CheckOptions {
+  CommonOptions common;
+  std::string folder;
+  core::OutsideFiles outside = core::OutsideFiles::refused;
+};
+
+/// One frame of every clip in which the marker was seen.
+std::vector<core::Preview> previews_of(const core::Experiment& experiment, const core::RecordingCheck& check) {
+  std::vector<core::Preview> previews;
+  for (std::size_t i = 0; i < check.clips.size(); ++i) {
+    core::ClipResult seen;
+    seen.frames = check.clips[i].frames;
+    seen.sightings = check.clips[i].sightings;
+    core::PreviewOptions one;
+    one.frames = 1;
+    one.video = false;
+    previews.push_back(core::make_preview(experiment, experiment.clips[i], seen, one));
+  }
+  return previews;
+}
+
+void check(const CheckOptions& options) {
+  const fs::path out = output_folder(options.common, "check", options.folder);
+  refuse_scenarios({options.folder});
+  const core::Experiment experiment = core::read_experiment(options.folder, options.outside);
+  report::check_gnuplot();
+  check_writable(out);
+  base::StagedOutput staged(out);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
+  const core::RecordingCheck found = core::check_recording(experiment, options.common.jobs, display.callback());
+  const std::string json = report::check_json(found);
+  base::write_file(staged.dir() / "check.json", json);
+  report::write_page(staged.dir(), "report.html", report::check_report(found, previews_of(experiment, found)));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+  print_result(options.common.json ? json : report::check_text(found));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+  if (!found.usable) {
+    const core::Finding& worst = found.findings.front();
+    throw base::NotMet(fmt::format("{}: not usable as it is: {}: {}", options.folder, worst.about, worst.found));
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* command = app.add_subcommand(
+      "check", "Check a recording before any analysis: pattern, marker, exposure, blur, frame times; with advice");
+  command->add_option("FOLDER", options->folder, "A folder that holds an experiment.toml")
+      ->type_name("DIR")
+      ->required();
+  add_allow_outside(*command, options->outside);
+  add_common_options(*command, options->common, "glidelab-out/check-<name of the folder>",
+                     "Accepted by every command; nothing here draws random numbers");
+  command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/reference/check.md).");
+  command->callback([options, &chosen] { chosen = [options] { check(*options); }; });
+}
+
+}  // namespace glidelab::app

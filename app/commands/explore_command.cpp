@@ -1,0 +1,39 @@
+/// glidelab explore: the page on which friction's parameters are chosen by hand, for class.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/shell/commands.h"
+#include "app/shell/common_options.h"
+#include "base/files/staged_output.h"
+#include "report/text/json_numbers.h"
+#include "teach/page/explorer_page.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+void explore(const CommonOptions& options) {
+  const fs::path out = output_folder(options, "explore", "page");
+  check_writable(out);
+  base::StagedOutput staged(out);
+  report::write_page(staged.dir(), "explore.html", teach::explorer_page(teach::explore_phases()));
+  staged.publish_files();
+  const std::string page = (out / "explore.html").string();
+  print_result(options.json ? report::json_text({{"page", page}}) : page + "\n");
+}
+
+}  // namespace
+
+void add_explore(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<CommonOptions>();
+  CLI::App* command = app.add_subcommand(
+      "explore", "Make a page for class: sliders for the law, K/m, mu, alpha and v0; x(t), v(t) and a(v) together");
+  add_common_options(*command, *options, "glidelab-out/explore-page",
+                     "Accepted by every command; what is drawn has a fixed seed");
+  command->callback([options, &chosen] { chosen = [options] { explore(*options); }; });
+}
+
+}  // namespace glidelab::app

@@ -1,0 +1,88 @@
+/// glidelab laws scenarios/laws: one page of the laws of friction, to be shown in a lecture.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "app/shell/commands.h"
+#include "app/shell/common_options.h"
+#include "app/shell/interrupt.h"
+#include "app/shell/progress_display.h"
+#include "base/errors.h"
+#include "base/files/staged_output.h"
+#include "report/html/gnuplot.h"
+#include "report/text/json_numbers.h"
+#include "teach/page/laws_report.h"
+#include "teach/study/law_film.h"
+#include "teach/study/law_study.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LawsOptions {
+  CommonOptions common;
+  std::vector<std::string> scenarios;
+};
+
+std::vector<fs::path> files_of(const std::vector<std::string>& names) {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) {
+    std::error_code ignored;
+    if (!fs::is_directory(name, ignored)) {
+      files.emplace_back(name);
+      continue;
+    }
+    std::set<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(name)) {
+      if (entry.path().extension() == ".toml") found.insert(entry.path());
+    }
+    if (found.empty()) throw base::InputError(base::Issue{name, 0, "", "no scenario", "a folder with scenario files"});
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+void laws(const LawsOptions& options) {
+  const std::vector<fs::path> files = files_of(options.scenarios);
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "laws", options.scenarios.front());
+  check_writable(out);
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
+  std::vector<teach::LawStudy> studies;
+  for (const fs::path& file : files) studies.push_back(teach::study_law(file));
+  teach::LawFilmOptions filming;
+  filming.jobs = options.common.jobs;
+  std::vector<teach::LawFilm> films;
+  for (const fs::path& file : files) {
+    display.callback()("filming", static_cast<double>(films.size()) / static_cast<double>(files.size()));
+    films.push_back(teach::film_law(file, filming));
+    throw_if_interrupted();
+  }
+  base::StagedOutput staged(out);
+  report::write_page(staged.dir(), "laws.html", teach::laws_report(studies, films, display.callback()));
+  throw_if_interrupted();
+  staged.publish_files();
+  display.clear();
+  const std::string page = (out / "laws.html").string();
+  print_result(options.common.json ? report::json_text({{"laws", studies.size()}, {"page", page}}) : page + "\n");
+}
+
+}  // namespace
+
+void add_laws(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<LawsOptions>();
+  CLI::App* command = app.add_subcommand(
+      "laws", "Make one page of friction laws: for each a film, x(t), and a(v) with its equilibrium");
+  command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders with some (scenarios/laws)")
+      ->type_name("PATH")
+      ->required();
+  add_common_options(*command, options->common, "glidelab-out/laws-<name of the first>",
+                     "Accepted by every command; nothing here is random");
+  command->callback([options, &chosen] { chosen = [options] { laws(*options); }; });
+}
+
+}  // namespace glidelab::app

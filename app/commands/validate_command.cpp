@@ -1,0 +1,114 @@
+/// glidelab validate SCENARIO.toml: the closed loop, from a scenario to recovered values beside their truth.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "app/commands/analysis_files.h"
+#include "app/commands/baseline_gate.h"
+#include "app/shell/commands.h"
+#include "app/shell/common_options.h"
+#include "app/shell/interrupt.h"
+#include "app/shell/progress_display.h"
+#include "base/files/staged_output.h"
+#include "render/scenario/scenario.h"
+#include "report/html/gnuplot.h"
+#include "report/validation/comparison_json.h"
+#include "report/validation/validation_report.h"
+#include "validate/film/run_validation.h"
+
+namespace glidelab::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ValidateOptions {
+  CommonOptions common;
+  std::string scenario;
+  BaselineGate gate;
+};
+
+/// The trajectories also stand beside the other results, as `simulate` writes them.
+void copy_trajectories(const fs::path& truth, const fs::path& dir) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(truth)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("trajectory-")) base::write_file(dir / name, base::read_file(entry.path()));
+  }
+}
+
+void validate_command(const ValidateOptions& options) {
+  if (options.gate.wanted()) return run_baseline_gate(options.gate, options.common, options.scenario);
+  const render::Scenario scenario = render::read_scenario(options.scenario);
+  report::check_gnuplot();
+  const fs::path out = output_folder(options.common, "validate", options.scenario);
+  check_writable(out);
+  check_replaceable(out / "experiment", out / "experiment.truth");
+  base::StagedOutput staged(out);
+  const fs::path experiment = staged.dir() / "experiment";
+  const fs::path truth = staged.dir() / "experiment.truth";
+  fs::create_directory(experiment);
+  fs::create_directory(truth);
+
+  ProgressDisplay display(options.common.quiet, options.common.verbose);
+  const base::Progress progress = display.callback();
+  validate::ValidationOptions run;
+  run.render = {.seed = options.common.seed.value_or(scenario.seed), .jobs = options.common.jobs};
+  run.analysis.jobs = options.common.jobs;
+  const validate::ValidationResult result = validate::run_validation(scenario, experiment, truth, run, progress);
+
+  write_analysis_files(result.results, staged.dir());
+  copy_trajectories(truth, staged.dir());
+  const std::string comparison = report::comparison_json(result.comparison);
+  base::write_file(staged.dir() / "comparison.json", comparison);
+  const std::vector<core::Preview> previews = previews_of({experiment}, result.results, progress);
+  report::write_page(
+      staged.dir(), "report.html",
+      report::validation_report(scenario.motion.name, result.results, result.comparison, previews, progress));
+  throw_if_interrupted();
+  check_replaceable(out / "experiment", out / "experiment.truth");  // what came there meanwhile
+  staged.publish_files();
+  display.clear();
+
+  print_result(options.common.json ? comparison : report::comparison_text(result.comparison));
+  say(options.common, fmt::format("report: {}", (out / "report.html").string()));
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, Command& chosen) {
+  auto options = std::make_shared<ValidateOptions>();
+  CLI::App* command =
+      app.add_subcommand("validate", "Film a scenario, analyse the images, and compare the result with the truth");
+  command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
+      ->type_name("FILE")
+      ->required();
+  command
+      ->add_option("--baseline", options->gate.compare,
+                   "Instead of filming, analyse replicated tracks of the scenario; exit status 4 if errors are "
+                   "significantly worse than in this file")
+      ->type_name("FILE");
+  command->add_option("--write-baseline", options->gate.write, "Store these errors, for --baseline")->type_name("FILE");
+  CLI::Option* runs = command->add_option("--runs", options->gate.runs, "Replicates for a baseline")
+                          ->type_name("N")
+                          ->check(CLI::Range(10, 1000000))
+                          ->capture_default_str();
+  CLI::Option* noise = command
+                           ->add_option("--noise-m", options->gate.noise_m,
+                                        "Standard deviation of a position for --write-baseline, default 2e-5; "
+                                        "--baseline takes the stored one and refuses another")
+                           ->type_name("METRES")
+                           ->check(check_noise_m);
+  add_common_options(
+      *command, options->common, "glidelab-out/validate-<name of the scenario file>",
+      "Seed of the noise; default: the scenario's; with --write-baseline 1, with --baseline one other than the file's");
+  command->callback([options, runs, noise, &chosen] {
+    for (const CLI::Option* option : {runs, noise}) {
+      if (option->count() > 0 && !options->gate.wanted()) {
+        throw CLI::RequiresError(option->get_name(), "--baseline or --write-baseline");
+      }
+    }
+    chosen = [options] { validate_command(*options); };
+  });
+}
+
+}  // namespace glidelab::app

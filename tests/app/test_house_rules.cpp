@@ -1,0 +1,194 @@
+/// What holds of every file of the tree: its length, its name, its header; and of every test, its name and what it
+/// needs.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/files/staged_output.h"
+#include "test_paths.h"
+#include "tests/app/source_tree.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+using tests::Source;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::string> kRooms = {"base",     "core",  "sim",    "render", "fit",
+                                         "diagnose", "teach", "report", "app",    "validate"};
+constexpr int kMostLines = 500;
+constexpr int kMostSources = 25;  // of a folder
+
+/// Where a file is one item of a list that a header elsewhere declares: it has no header of its own.
+const std::vector<std::string> kItems = {"app/commands/", "app/shell/main.cpp", "diagnose/effects/", "sim/force/laws/",
+                                         "core/motion/bandwidth/rule_"};
+
+/// Sources without a header of their name that still stand elsewhere; the list only shrinks.
+const std::set<std::string> kStandingWithoutHeader = {
+    "base/toml/toml_table.cpp",
+    "core/analysis/join_configurations.cpp",
+    "core/check/recording_findings.cpp",
+    "core/motion/lines/free_pieces.cpp",
+    "core/motion/smoothing/noise_covariance.cpp",
+    "core/pictures/frames/folder_frames.cpp",
+    "core/pictures/frames/video_frames.cpp",
+    "core/pictures/marker/marker_centroid.cpp",
+    "core/pictures/marker/marker_track_choice.cpp",
+    "core/pictures/scene/scene_watch_compare.cpp",
+    "core/result/left_out.cpp",
+    "render/camera/lens_fold.cpp",
+    "render/film/calibration_boards.cpp",
+    "teach/page/explorer_body.cpp",
+    "teach/page/explorer_motion.cpp",
+    "teach/page/explorer_view.cpp",
+    "teach/page/explorer_words.cpp",
+};
+
+std::vector<std::string> too_long(const std::vector<Source>& sources) {
+  std::vector<std::string> found;
+  for (const Source& source : sources) {
+    const auto lines = std::count(source.text.begin(), source.text.end(), '\n');
+    if (lines > kMostLines) found.push_back(fmt::format("{}: {} lines", source.path.string(), lines));
+  }
+  return found;
+}
+
+std::vector<std::string> too_full(const std::vector<Source>& sources) {
+  std::map<std::string, int> count;
+  for (const Source& source : sources) {
+    if (source.path.extension() == ".cpp") ++count[source.path.parent_path().string()];
+  }
+  std::vector<std::string> found;
+  for (const auto& [folder, sources_in_it] : count) {
+    if (sources_in_it > kMostSources) found.push_back(fmt::format("{}: {} sources", folder, sources_in_it));
+  }
+  return found;
+}
+
+/// Files of one base name, whose stem another folder has as well: "coverage.h" beside somebody else's "coverage.cpp".
+std::vector<std::string> named_twice(const std::vector<Source>& sources) {
+  std::map<std::string, std::set<std::string>> folders;
+  for (const Source& source : sources) folders[source.path.stem().string()].insert(source.path.parent_path().string());
+  std::vector<std::string> found;
+  for (const auto& [stem, in] : folders) {
+    if (in.size() > 1) found.push_back(fmt::format("{} in {}", stem, fmt::join(in, ", ")));
+  }
+  return found;
+}
+
+std::set<std::string> without_header(const std::vector<Source>& sources) {
+  std::set<std::string> headers, found;
+  for (const Source& source : sources) {
+    if (source.path.extension() == ".h") headers.insert(fs::path(source.path).replace_extension().string());
+  }
+  for (const Source& source : sources) {
+    const std::string path = source.path.string();
+    const bool item =
+        std::any_of(kItems.begin(), kItems.end(), [&](const std::string& start) { return path.starts_with(start); });
+    if (source.path.extension() != ".cpp" || item) continue;
+    if (!headers.contains(fs::path(source.path).replace_extension().string())) found.insert(path);
+  }
+  return found;
+}
+
+/// Rooms and tests; the examples are programs of their own.
+std::vector<Source> all_sources() {
+  std::vector<std::string> folders = kRooms;
+  folders.insert(folders.end(), {"tests", "bench"});
+  return tests::sources_below(folders);
+}
+
+}  // namespace
+
+TEST_CASE("no file is longer than a person reads at a sitting") {
+  CHECK(too_long(all_sources()) == std::vector<std::string>{});
+  CHECK(too_long({{"core/a.cpp", std::string(500, '\n')}, {"core/b.cpp", std::string(501, '\n')}}) ==
+        std::vector<std::string>{"core/b.cpp: 501 lines"});
+}
+
+TEST_CASE("no folder holds more sources than one takes in at a glance") {
+  CHECK(too_full(tests::sources_below(kRooms)) == std::vector<std::string>{});
+  std::vector<Source> many;
+  for (int i = 0; i < 25; ++i) many.push_back({fmt::format("core/a/x{}.cpp", i), ""});
+  many.push_back({"core/a/x.h", ""});
+  many.push_back({"core/a/b/x.cpp", ""});
+  CHECK(too_full(many).empty());
+  many.push_back({"core/a/y.cpp", ""});
+  CHECK(too_full(many) == std::vector<std::string>{"core/a: 26 sources"});
+}
+
+TEST_CASE("no two files have one name") {
+  CHECK(named_twice(all_sources()) == std::vector<std::string>{});
+  CHECK(named_twice({{"core/a/x.h", ""}, {"core/a/x.cpp", ""}, {"core/b/y.h", ""}}).empty());
+  CHECK(named_twice({{"core/a/x.h", ""}, {"core/b/x.h", ""}}) == std::vector<std::string>{"x in core/a, core/b"});
+  CHECK(named_twice({{"core/a/x.h", ""}, {"report/x.cpp", ""}}).size() == 1);
+}
+
+TEST_CASE("every source has the header of its name, unless it is an item of a list") {
+  CHECK(without_header(tests::sources_below(kRooms)) == kStandingWithoutHeader);
+  CHECK(without_header({{"core/a/x.h", ""}, {"core/a/x.cpp", ""}, {"core/a/y.h", ""}}).empty());
+  CHECK(without_header({{"core/a/x.h", ""}, {"core/b/x.cpp", ""}, {"core/a/x_more.cpp", ""}}) ==
+        std::set<std::string>{"core/a/x_more.cpp", "core/b/x.cpp"});
+  CHECK(without_header({{"app/commands/x_command.cpp", ""}, {"core/motion/bandwidth/rule_x.cpp", ""}}).empty());
+}
+
+TEST_CASE("no test's name holds a semicolon, at which CMake would cut it in two that match nothing") {
+  static const std::regex kName(R"re(TEST_CASE\("([^"]*)")re");
+  std::size_t names = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(tests::kSourceDir) / "tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = base::read_file(entry.path());
+    for (auto match = std::sregex_iterator(text.begin(), text.end(), kName); match != std::sregex_iterator(); ++match) {
+      INFO(entry.path().string() << ": " << (*match)[1]);
+      CHECK((*match)[1].str().find(';') == std::string::npos);
+      ++names;
+    }
+  }
+  CHECK(names > 100);
+}
+
+TEST_CASE("every program that a test is skipped without is in a package that tools/test installs") {
+  // Debian's package of each; script is of bsdutils, which every Debian has.
+  const std::map<std::string, std::string> package_of = {{"chromium", "chromium"},
+                                                         {"doxygen", "doxygen"},
+                                                         {"ffmpeg", "ffmpeg"},
+                                                         {"zsh", "zsh"},
+                                                         {"script", ""},
+                                                         {"pdftoppm", "poppler-utils"},
+                                                         {"pdftotext", "poppler-utils"},
+                                                         {"dpkg-deb", ""},
+                                                         {"cpack", "cmake"},
+                                                         {"dpkg-shlibdeps", "dpkg-dev"},
+                                                         {"file", "file"}};
+  std::string lists = "\n";
+  for (const char* list : {"packages.txt", "packages-test.txt", "packages-optional.txt"}) {
+    lists += base::read_file(fs::path(tests::kSourceDir) / "tools" / list) + "\n";
+  }
+  static const std::regex kSkipped(R"re(skipped: no ([^ "']+) program)re");
+  std::set<std::string> seen;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(tests::kSourceDir) / "tests")) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".cpp" && extension != ".txt" && extension != ".sh") continue;
+    const std::string text = base::read_file(entry.path());
+    for (auto match = std::sregex_iterator(text.begin(), text.end(), kSkipped); match != std::sregex_iterator();
+         ++match) {
+      const std::string program = (*match)[1];
+      if (program == "([^") continue;  // this very expression
+      INFO(entry.path().string() << ": " << program);
+      REQUIRE(package_of.contains(program));
+      const std::string& package = package_of.at(program);
+      CHECK((package.empty() || lists.find("\n" + package + "\n") != std::string::npos));
+      seen.insert(program);
+    }
+  }
+  CHECK(seen.contains("chromium"));
+  CHECK(seen.contains("doxygen"));
+}

@@ -1,0 +1,71 @@
+#include "report/validation/validation_report.h"
+
+#include <optional>
+#include <string>
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+validate::QuantityComparison quantity(const char* configuration, const char* estimator, const char* key,
+                                      std::optional<double> truth, std::optional<double> value, double sd) {
+  const std::optional<double> error = truth && value ? std::optional(*value - *truth) : std::nullopt;
+  return {configuration, 0.335, 4.0, estimator, key, truth, value, value ? std::optional(sd) : std::nullopt, error, ""};
+}
+
+/// One configuration on a slope by both estimators; of the four values one is three standard deviations off.
+validate::Comparison made_comparison() {
+  validate::Comparison comparison;
+  comparison.quantities = {quantity("m1", "phase-diagram", "k_over_m_1_s", 2.768, 2.780, 0.004),
+                           quantity("m1", "phase-diagram", "mu", 0.0071, 0.0072, 0.0002),
+                           quantity("m1", "trajectory", "k_over_m_1_s", 2.768, 2.7681, 0.0004),
+                           quantity("m1", "trajectory", "mu", 0.0071, 0.00712, 0.00002)};
+  comparison.lines = {{"m1-up", -1, 0.9999}};
+  comparison.frames = 40;
+  comparison.detected = 39;
+  return comparison;
+}
+
+std::string before_full(const std::string& text) {
+  return text.substr(0, text.find("\nIn full:\n"));
+}
+
+}  // namespace
+
+TEST_CASE("the few numbers that matter come before the table: the better estimator's, beside their truth") {
+  const std::string text = report::comparison_text(made_comparison());
+  REQUIRE(text.find("\nIn full:\n") != std::string::npos);
+  const std::string first = before_full(text);
+  INFO(first);
+  CHECK(first.find("fit of the whole motion") != std::string::npos);
+  CHECK(first.find("K/m (1/s)") != std::string::npos);
+  CHECK(first.find("m1 (0.335 kg, 4°)") != std::string::npos);
+  CHECK(first.find("2.76810 ± 0.00040 (2.76800)") != std::string::npos);
+  CHECK(first.find("0.007120 ± 0.000020 (0.007100)") != std::string::npos);
+  CHECK(first.find("2.780") == std::string::npos);  // the lines' value is below
+  CHECK(first.find("α (°)") == std::string::npos);  // of which nothing is known here
+  CHECK(first.find("3 of 4 recovered values lie within two of their standard deviations of the truth; the farthest off "
+                   "is K/m of m1 by the lines of the phase diagram: 3.0 standard deviations.") != std::string::npos);
+  CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
+}
+
+TEST_CASE("without a fit of the whole motion the lines' numbers come first, and a truth that is none is explained") {
+  validate::Comparison comparison = made_comparison();
+  comparison.quantities = {quantity("m1", "phase-diagram", "k_over_m_1_s", std::nullopt, 2.780, 0.004),
+                           quantity("m1", "trajectory", "k_over_m_1_s", std::nullopt, std::nullopt, 0.0)};
+  const std::string first = before_full(report::comparison_text(comparison));
+  INFO(first);
+  CHECK(first.find("lines of the phase diagram") != std::string::npos);
+  CHECK(first.find("2.7800 ± 0.0040 (–)") != std::string::npos);
+  CHECK(first.find("A truth \"–\"") != std::string::npos);
+  CHECK(first.find("No recovered value could be compared with a true one.") != std::string::npos);
+}
+
+TEST_CASE("a configuration's name cannot steer the terminal, and is text on the page") {
+  validate::Comparison comparison = made_comparison();
+  for (validate::QuantityComparison& q : comparison.quantities) q.configuration = "\x1b[2J<b>";
+  CHECK(report::comparison_text(comparison).find('\x1b') == std::string::npos);
+  CHECK(report::meaning_of(comparison).find("<b>") == std::string::npos);
+}

@@ -1,0 +1,88 @@
+#include "validate/study/requirement/target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+using validate::Target;
+
+namespace {
+
+validate::ErrorMeasure measured(const std::vector<double>& errors, Target::Measure measure, double target = 0.0005) {
+  return validate::measure_errors(errors, {"mu", measure, target});
+}
+
+std::vector<double> normal(int n, double mean, double sd, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> draw(mean, sd);
+  std::vector<double> errors(static_cast<std::size_t>(n));
+  for (double& error : errors) error = draw(random);
+  return errors;
+}
+
+}  // namespace
+
+TEST_CASE("the +- of a root mean square error is right where one run in a hundred is far off") {
+  // k of n errors are a, the others 0: rms = a sqrt(k/n), and of a resample a sqrt(K/n) with K binomial (n, k/n).
+  constexpr int kRuns = 200, kFar = 3;
+  constexpr double kSize = 0.001;
+  std::vector<double> errors(kRuns, 0.0);
+  for (const std::size_t run : {17u, 60u, 141u}) errors[run] = kSize;
+  const validate::ErrorMeasure found = measured(errors, Target::Measure::sd);
+  const double p = static_cast<double>(kFar) / kRuns;
+  double mean = 0.0, square = 0.0, part = std::pow(1.0 - p, kRuns);
+  for (int k = 0; k <= kRuns; ++k) {
+    mean += part * kSize * std::sqrt(static_cast<double>(k) / kRuns);
+    square += part * kSize * kSize * k / kRuns;
+    part *= p / (1.0 - p) * (kRuns - k) / (k + 1.0);
+  }
+  const double sd = std::sqrt((square - mean * mean) * kRuns / (kRuns - 1.0));
+  CHECK(found.value == Approx(kSize * std::sqrt(p)).epsilon(1e-12));
+  // 1000 resamples: the sd of a sd is 1/sqrt(2000) = 2.2 % of a normal one; four of it.
+  CHECK(std::abs(found.sd / sd - 1.0) < 4.0 / std::sqrt(2.0 * validate::kResamples));
+  CHECK(found.sd > 4.0 * found.value / std::sqrt(2.0 * kRuns));  // what normal errors would have
+  CHECK(found.runs == 200);
+  CHECK(found.beyond == 3);
+}
+
+TEST_CASE("the +- of normal errors is that of the normal distribution") {
+  // rms / sqrt(2 n); from n errors it is known to about sqrt(10.7 / n) / 2 = 12 %: three of it.
+  const std::vector<double> errors = normal(200, 0.0, 1e-4, 5);
+  const validate::ErrorMeasure rms = measured(errors, Target::Measure::sd);
+  CHECK(std::abs(rms.sd / (rms.value / std::sqrt(400.0)) - 1.0) < 0.36);
+  const validate::ErrorMeasure bias = measured(errors, Target::Measure::bias);
+  CHECK(bias.sd == Approx(1e-4 / std::sqrt(200.0)).epsilon(0.15));  // sd of 200: 5 %, three of it
+  CHECK(bias.value < 4.0 * bias.sd);
+}
+
+TEST_CASE("sd has the bias in it, bias has not the scatter") {
+  const std::vector<double> errors = {3.0, 5.0, 3.0, 5.0};
+  CHECK(measured(errors, Target::Measure::sd).value == Approx(std::sqrt(17.0)).epsilon(1e-14));
+  CHECK(measured(errors, Target::Measure::bias).value == 4.0);
+  CHECK(measured(errors, Target::Measure::bias).sd == Approx(std::sqrt(4.0 / 3.0) / 2.0).epsilon(1e-14));
+}
+
+TEST_CASE("the 95 % error is what 95 % of the runs stay within, however far the others are") {
+  std::vector<double> errors;
+  for (int i = 1; i <= 200; ++i) errors.push_back(i % 2 == 0 ? i : -i);
+  CHECK(measured(errors, Target::Measure::error95).value == 190.0);
+  for (double& error : errors) error *= std::abs(error) > 190.0 ? 1e9 : 1.0;
+  CHECK(measured(errors, Target::Measure::error95, 150.5).value == 190.0);
+  CHECK(measured(errors, Target::Measure::error95, 150.5).beyond == 50);
+  CHECK(measured({1.0, -7.0, 2.0, 3.0}, Target::Measure::error95).value == 7.0);  // four do not know a quantile
+}
+
+TEST_CASE("a run without an answer is beyond any target") {
+  std::vector<double> errors = normal(200, 0.0, 1e-6, 7);
+  errors[100] = std::numeric_limits<double>::infinity();
+  CHECK(std::isinf(measured(errors, Target::Measure::sd).value));
+  CHECK(std::isinf(measured(errors, Target::Measure::bias).value));
+  const validate::ErrorMeasure within = measured(errors, Target::Measure::error95);
+  CHECK(within.value == Approx(1.96e-6).epsilon(0.3));
+  CHECK(std::isfinite(within.sd));  // 11 of them in a resample: never seen
+  CHECK(within.beyond == 1);
+}

@@ -1,0 +1,165 @@
+#include "validate/study/baseline/baseline_comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+#include "base/errors.h"
+
+namespace glidelab::validate {
+namespace {
+
+using boost::math::cdf;
+using boost::math::complement;
+using boost::math::quantile;
+
+bool same(const ErrorRecord& a, const ErrorRecord& b) {
+  return a.configuration == b.configuration && a.estimator == b.estimator && a.quantity == b.quantity;
+}
+
+bool same_clip(const SmoothingRecord& a, const SmoothingRecord& b) {
+  return a.clip == b.clip;
+}
+
+std::string name_of(const ErrorRecord& record) {
+  return fmt::format("{} {} {}", record.configuration, record.estimator, record.quantity);
+}
+
+/// One-sided p that the mean now is no larger, by Welch's t test. Each side: mean, standard deviation, number.
+struct Side {
+  double mean, sd, count;
+};
+double p_of_mean(const Side& then, const Side& now) {
+  const double a = then.sd * then.sd / then.count, b = now.sd * now.sd / now.count;
+  const double more = now.mean - then.mean;
+  if (a + b == 0.0) return more > 0.0 ? 0.0 : 1.0;
+  const double degrees = (a + b) * (a + b) / (a * a / (then.count - 1.0) + b * b / (now.count - 1.0));
+  return cdf(complement(boost::math::students_t(degrees), more / std::sqrt(a + b)));
+}
+
+double p_of_spread(const ErrorRecord& then, const ErrorRecord& now) {
+  return p_of_mean({then.deviation, then.deviation_sd, static_cast<double>(then.answers)},
+                   {now.deviation, now.deviation_sd, static_cast<double>(now.answers)});
+}
+
+/// That the mean error now is no farther from zero.
+double p_of_bias(const ErrorRecord& then, const ErrorRecord& now) {
+  return p_of_mean({std::abs(then.mean), then.sd, static_cast<double>(then.answers)},
+                   {std::abs(now.mean), now.sd, static_cast<double>(now.answers)});
+}
+
+/// One-sided p that the proportion now is no smaller.
+double p_of_proportion(std::uint64_t then, std::uint64_t of_then, std::uint64_t now, std::uint64_t of_now) {
+  const double n = static_cast<double>(of_then), m = static_cast<double>(of_now);
+  const double pooled = static_cast<double>(then + now) / (n + m);
+  const double variance = pooled * (1.0 - pooled) * (1.0 / n + 1.0 / m);
+  if (variance == 0.0) return 1.0;
+  const double fewer = static_cast<double>(then) / n - static_cast<double>(now) / m;
+  return cdf(complement(boost::math::normal(), fewer / std::sqrt(variance)));
+}
+
+[[noreturn]] void reject(const std::string& key, const std::string& found, const std::string& expected) {
+  throw base::InputError(base::Issue{"baseline", 0, key, found, expected});
+}
+
+/// That both are of the same scenario, noise, quantities and clips.
+void check_alike(const Baseline& then, const Baseline& now) {
+  if (then.scenario != now.scenario) reject("scenario", "another scenario", "the scenario that it was made with");
+  if (then.noise_m != now.noise_m) {
+    reject("noise_m", fmt::format("{}", now.noise_m), fmt::format("{} as in the baseline", then.noise_m));
+  }
+  const auto check = [](const auto& some, const auto& others, const auto& is_same, const char* found, const char* what,
+                        const auto& name) {
+    for (const auto& one : some) {
+      if (std::any_of(others.begin(), others.end(), [&](const auto& other) { return is_same(one, other); })) continue;
+      reject(name(one), found, what);
+    }
+  };
+  const auto clip_of = [](const SmoothingRecord& record) { return record.clip; };
+  check(now.records, then.records, same, "nothing in the baseline", "a quantity of both", name_of);
+  check(now.smoothing, then.smoothing, same_clip, "nothing in the baseline", "a clip of both", clip_of);
+  check(then.records, now.records, same, "nothing now", "a quantity of both", name_of);
+  check(then.smoothing, now.smoothing, same_clip, "nothing now", "a clip of both", clip_of);
+}
+
+/// The comparison's level for each of its tests, so that all together have that of the comparison.
+double level_of(const BaselineComparison& comparison) {
+  return comparison.significance / static_cast<double>(comparison.tests);
+}
+
+constexpr std::size_t kTestsOfQuantity = 4, kTestsOfClip = 2;
+
+void compare_quantity(const ErrorRecord& then, const ErrorRecord& now, BaselineComparison& comparison) {
+  const auto judge = [&](const char* what, double p, double value_then, double value_now) {
+    if (p >= level_of(comparison)) return;
+    comparison.worse.push_back({then.configuration, then.estimator, then.quantity, what, value_then, value_now, p});
+  };
+  const auto part = [](std::uint64_t some, std::uint64_t all) {
+    return static_cast<double>(some) / static_cast<double>(all);
+  };
+  judge("answers", p_of_proportion(then.answers, then.runs, now.answers, now.runs), part(then.answers, then.runs),
+        part(now.answers, now.runs));
+  if (then.answers < 2 || now.answers < 2) return;
+  judge("spread", p_of_spread(then, now), then.deviation, now.deviation);
+  judge("bias", p_of_bias(then, now), then.mean, now.mean);
+  judge("coverage", p_of_proportion(then.covered, then.answers, now.covered, now.answers),
+        part(then.covered, then.answers), part(now.covered, now.answers));
+}
+
+/// Errors of a(t) may not grow; the bandwidth may change neither way.
+void compare_smoothing(const SmoothingRecord& then, const SmoothingRecord& now, BaselineComparison& comparison) {
+  if (then.runs < 2 || now.runs < 2) return;
+  const auto judge = [&](const char* quantity, const char* what, double p, double log_then, double log_now) {
+    if (p >= level_of(comparison)) return;
+    comparison.worse.push_back({then.clip, "phase-diagram", quantity, what, std::exp(log_then), std::exp(log_now), p});
+  };
+  const auto n = static_cast<double>(then.runs), m = static_cast<double>(now.runs);
+  judge("a", "rms error",
+        p_of_mean({then.log_a_error, then.log_a_error_sd, n}, {now.log_a_error, now.log_a_error_sd, m}),
+        then.log_a_error, now.log_a_error);
+  const Side h_then{then.log_bandwidth, then.log_bandwidth_sd, n}, h_now{now.log_bandwidth, now.log_bandwidth_sd, m};
+  judge("bandwidth", "mean", std::min(1.0, 2.0 * std::min(p_of_mean(h_then, h_now), p_of_mean(h_now, h_then))),
+        then.log_bandwidth, now.log_bandwidth);
+  const double sd = then.log_bandwidth_sd * std::sqrt(1.0 / n + 1.0 / m);
+  if (!(sd > 0.0)) return;
+  const boost::math::normal normal;
+  const double power = cdf(normal, std::log(2.0) / sd - quantile(complement(normal, 0.5 * level_of(comparison))));
+  comparison.power_doubled = std::min(comparison.power_doubled, power);
+}
+
+/// What a spread half as large again, and a bias of half a standard deviation, would be found with.
+void tell_power(double runs_then, double runs_now, BaselineComparison& comparison) {
+  if (!(runs_now > 2.0 && runs_then > 2.0)) return;
+  constexpr double kLarger = 1.5, kBias = 0.5;
+  const boost::math::normal normal;
+  const double needed = quantile(complement(normal, level_of(comparison)));
+  // Of |z|, z standard normal: mean sqrt(2/pi), standard deviation sqrt(1 - 2/pi).
+  constexpr double kMean = 0.7978845608, kSd = 0.6028102750;
+  comparison.power_spread =
+      cdf(normal, (kLarger - 1.0) * kMean / (kSd * std::sqrt(kLarger * kLarger / runs_now + 1.0 / runs_then)) - needed);
+  comparison.power_bias = cdf(normal, kBias / std::sqrt(1.0 / runs_now + 1.0 / runs_then) - needed);
+}
+
+}  // namespace
+
+BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) {
+  check_alike(then, now);
+  BaselineComparison comparison;
+  comparison.tests = kTestsOfQuantity * then.records.size() + kTestsOfClip * then.smoothing.size();
+  for (const ErrorRecord& before : then.records) {
+    const auto is_same = [&](const ErrorRecord& record) { return same(record, before); };
+    compare_quantity(before, *std::find_if(now.records.begin(), now.records.end(), is_same), comparison);
+  }
+  comparison.power_doubled = then.smoothing.empty() ? 0.0 : 1.0;
+  for (const SmoothingRecord& before : then.smoothing) {
+    const auto is_same = [&](const SmoothingRecord& record) { return same_clip(record, before); };
+    compare_smoothing(before, *std::find_if(now.smoothing.begin(), now.smoothing.end(), is_same), comparison);
+  }
+  tell_power(static_cast<double>(then.runs), static_cast<double>(now.runs), comparison);
+  return comparison;
+}
+
+}  // namespace glidelab::validate

@@ -1,0 +1,116 @@
+#include "validate/study/requirement/target.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/text/nearest_word.h"
+
+namespace glidelab::validate {
+namespace {
+
+using Measure = Target::Measure;
+
+double mean_of(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double variance_of(std::span<const double> values) {
+  const double mean = mean_of(values);
+  double square = 0.0;
+  for (const double value : values) square += (value - mean) * (value - mean);
+  return square / static_cast<double>(values.size() - 1);
+}
+
+/// `sizes` are the errors without their signs; their order is lost.
+double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
+  const std::size_t n = sizes.size();
+  if (measure == Measure::error95) {
+    const std::size_t within = (95 * n + 99) / 100;  // ceil(0.95 n), in whole numbers
+    const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(within - 1);
+    std::nth_element(sizes.begin(), at, sizes.end());
+    return *at;
+  }
+  double square = 0.0;
+  for (const double size : sizes) square += size * size;
+  return std::sqrt(square / static_cast<double>(n));
+}
+
+double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
+  constexpr std::uint64_t kSeed = 0xb007;
+  std::mt19937_64 random(kSeed);
+  std::vector<double> resample(sizes.size()), found(kResamples);
+  for (double& value : found) {
+    for (double& size : resample) size = sizes[random() % sizes.size()];
+    value = rms_or_quantile(resample, measure);
+    if (!std::isfinite(value)) return std::numeric_limits<double>::infinity();
+  }
+  const double n = static_cast<double>(sizes.size());
+  return std::sqrt(variance_of(found) * n / (n - 1.0));
+}
+
+}  // namespace
+
+std::string Target::name() const {
+  const char* measures[] = {"sd", "95 % error", "bias"};
+  return fmt::format("{} {} {}", quantity, measures[static_cast<int>(measure)], value);
+}
+
+Target parse_target(const std::string& text) {
+  Target target;
+  const std::size_t equals = text.find('='), colon = text.find(':');
+  target.quantity = text.substr(0, std::min(colon, equals));
+  const std::string measure =
+      colon < equals && equals != std::string::npos ? text.substr(colon + 1, equals - colon - 1) : "sd";
+  const std::vector<std::string> quantities = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"};
+  std::istringstream number(equals == std::string::npos ? "" : text.substr(equals + 1));
+  const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
+  const bool known = std::find(quantities.begin(), quantities.end(), target.quantity) != quantities.end();
+  const std::vector<std::string> measures = {"sd", "error95", "bias"};
+  const bool known_measure = std::find(measures.begin(), measures.end(), measure) != measures.end();
+  if (!read || !known || !(target.value > 0.0) || !known_measure) {
+    throw base::InputError(base::Issue{
+        "", 0, "--target", fmt::format("\"{}\"", text),
+        fmt::format("QUANTITY=VALUE, or QUANTITY:sd|error95|bias=VALUE, with one of {} "
+                    "and a number above 0{}{}",
+                    fmt::join(quantities, ", "), known ? "" : base::did_you_mean(target.quantity, quantities),
+                    known_measure ? "" : base::did_you_mean(measure, measures))});
+  }
+  target.measure = measure == "sd"     ? Target::Measure::sd
+                   : measure == "bias" ? Target::Measure::bias
+                                       : Target::Measure::error95;
+  return target;
+}
+
+ErrorMeasure measure_errors(std::span<const double> errors, const Target& target) {
+  assert(errors.size() >= 2);
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  ErrorMeasure result;
+  result.runs = errors.size();
+  std::vector<double> sizes(errors.size());
+  std::transform(errors.begin(), errors.end(), sizes.begin(), [](double error) { return std::abs(error); });
+  result.beyond = static_cast<std::size_t>(
+      std::count_if(sizes.begin(), sizes.end(), [&](double size) { return size > target.value; }));
+  if (target.measure == Measure::bias) {
+    const bool answered = std::all_of(sizes.begin(), sizes.end(), [](double size) { return std::isfinite(size); });
+    result.value = answered ? std::abs(mean_of(errors)) : kNever;
+    result.sd = answered ? std::sqrt(variance_of(errors) / static_cast<double>(errors.size())) : kNever;
+    return result;
+  }
+  std::vector<double> sorted = sizes;
+  result.value = rms_or_quantile(sorted, target.measure);
+  result.sd = std::isfinite(result.value) ? bootstrap_sd(sizes, target.measure) : kNever;
+  return result;
+}
+
+}  // namespace glidelab::validate
