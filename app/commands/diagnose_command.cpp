@@ -180,7 +180,7 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->type_name("DIR|FILE")
       ->required();
   CLI::Option* without =
-      command->add_option("--without", options->without, "Effects to leave out (ids as in docs/guide/diagnosis.md)")
+      command->add_option("--without", options->without, "Effects to leave out (ids as in docs/reference/effects.md)")
           ->type_name("EFFECT")
           ->check(one_of(diagnose::effect_words()));
   CLI::Option* twin =
