@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "core/analysis/analyze_motion.h"
 #include "core/analysis/clip_to_track.h"
-#include "core/experiment/require_clips.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 
 namespace glidelab::core {

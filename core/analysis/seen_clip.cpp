@@ -138,7 +138,7 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
     no_bright = nothing;
   }
   MarkerSetup dark = *experiment.marker;
-  dark.color_bgr = cv::Vec3b(0, 0, 0);
+  dark.color_bgr = {0, 0, 0};
   try {
     SeenClip seen = look(dark);
     const double others = bright && moves(bright->marker) ? static_cast<double>(bright->marker.sightings.size()) : 0.0;

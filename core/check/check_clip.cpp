@@ -105,7 +105,7 @@ void check_pictures(const Experiment& experiment, const ClipAttempt& attempt, co
                     ClipCheck& clip) {
   const TrackData& track = attempt.track;
   MarkerSetup marker = *experiment.marker;
-  if (track.dark_marker) marker.color_bgr = cv::Vec3b(0, 0, 0);
+  if (track.dark_marker) marker.color_bgr = {0, 0, 0};
   take_look(watch.look(marker, track.sightings, attempt.fits), clip);
   std::vector<double> radii, sds;
   for (const MarkerSighting& sighting : track.sightings) {

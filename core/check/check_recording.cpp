@@ -9,7 +9,6 @@
 #include "core/analysis/clip_to_track.h"
 #include "core/check/check_clip.h"
 #include "core/check/check_pattern.h"
-#include "core/experiment/require_clips.h"
 #include "core/pictures/scene/clip_look.h"
 #include "core/track/track_csv.h"
 

@@ -12,7 +12,6 @@ namespace glidelab::core {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kContradiction = 5.0;  // standard deviations between two readings of one angle
 
 std::string reading(const ClipSetup& clip) {
   return fmt::format("{:.6g} \xC2\xB1 {:.3g}", clip.incline_rad * kDegrees + 0.0,  // + 0.0: no "-0"
@@ -20,12 +19,6 @@ std::string reading(const ClipSetup& clip) {
 }
 
 }  // namespace
-
-bool contradicts(const ClipSetup& one, const ClipSetup& other) {
-  if (!one.incline_sd_rad || !other.incline_sd_rad) return false;
-  const double apart = std::abs(one.incline_rad - other.incline_rad);
-  return apart > kSameIncline_rad + kContradiction * std::hypot(*one.incline_sd_rad, *other.incline_sd_rad);
-}
 
 void name_groups(std::vector<ClipSetup>& clips) {
   std::set<double> inclinations;

@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "base/toml/strict_toml.h"
-#include "core/experiment/experiment.h"
+#include "core/experiment/clip_setup.h"
 
 namespace glidelab::core {
-
-enum class OutsideFiles { refused, allowed };
 
 struct FolderFiles {
   std::filesystem::path folder;
@@ -25,8 +23,5 @@ struct FolderFiles {
   /// The one file that a key names, or where `or_folder` the folder of frames; that it exists is checked.
   std::filesystem::path file(const base::TomlTable& table, std::string_view key, bool or_folder = false) const;
 };
-
-/// read_experiment() of experiment.h, of which files outside the folder are a choice.
-Experiment read_experiment(const std::filesystem::path& folder, OutsideFiles outside);
 
 }  // namespace glidelab::core

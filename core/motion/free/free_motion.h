@@ -23,7 +23,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/experiment/experiment.h"
+#include "core/experiment/clip_setup.h"
 #include "core/motion/free/motion.h"
 #include "core/result/results.h"
 
