@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/check/marker_smear.h"
-#include "core/math/median.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 #include "core/track/track_csv.h"

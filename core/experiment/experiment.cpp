@@ -18,7 +18,7 @@ using base::TomlTable;
 namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-constexpr long kLargestPicturePx = 100000;  // larger than any sensor; keeps rectangles within int
+constexpr long kLargestImagePx = 100000;  // larger than any sensor; keeps rectangles within int
 
 CameraSettings read_camera(const TomlTable& table) {
   CameraSettings camera;
@@ -81,7 +81,7 @@ ScaleSetup read_scale(const TomlTable& table) {
   const double length_px = std::hypot(to[0] - from[0], to[1] - from[1]);
   if (length_px == 0.0) table.reject("to_px", "the same point as from_px", "another point");
   setup.px_per_m = length_px / length_m;
-  // Both ends are read off the picture to one pixel; a value that is given counts instead.
+  // Both ends are read off the image to one pixel; a value that is given counts instead.
   setup.px_per_m_sd = table.has("px_per_m_sd") ? sd : std::numbers::sqrt2 / length_m;
   return setup;
 }
@@ -89,7 +89,7 @@ ScaleSetup read_scale(const TomlTable& table) {
 PlumbSetup read_plumb(const TomlTable& table, const FolderFiles& folder) {
   PlumbSetup setup;
   setup.view = folder.file(table, "view");
-  const std::vector<double> region = table.numbers("region", 4, base::between(0, kLargestPicturePx));
+  const std::vector<double> region = table.numbers("region", 4, base::between(0, kLargestImagePx));
   if (!std::isfinite(region[0])) return setup;
   if (region[2] < 3.0 || region[3] < 3.0) {
     table.reject("region", fmt::format("{} x {} pixels", region[2], region[3]),
@@ -180,15 +180,15 @@ GroupSetup read_group(const TomlTable& table, const FolderFiles& folder) {
   return group;
 }
 
-bool stated_by_all_groups(const Experiment& experiment, bool only_pictures, bool (*states)(const GroupSetup&)) {
+bool stated_by_all_groups(const Experiment& experiment, bool only_images, bool (*states)(const GroupSetup&)) {
   return std::all_of(experiment.clips.begin(), experiment.clips.end(), [&](const ClipSetup& clip) {
-    if (only_pictures && clip.file.empty()) return true;
+    if (only_images && clip.file.empty()) return true;
     return std::any_of(experiment.groups.begin(), experiment.groups.end(),
                        [&](const GroupSetup& group) { return group.name == clip.group && states(group); });
   });
 }
 
-/// The sections that clips made of pictures cannot do without.
+/// The sections that clips of images cannot do without.
 void check_sections(const Experiment& experiment, const TomlTable& root) {
   if (experiment.calibration && experiment.scale) {
     root.reject("scale", "a table [scale] beside [calibration]", "one of the two");
@@ -282,7 +282,7 @@ void require_clips(const Experiment& experiment) {
   if (!experiment.clips.empty()) return;
   if (experiment.lines) {
     throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
-                                       "clips or tracks here; glidelab diagnose is what weighs such a table"});
+                                       "clips or tracks here; glidelab diagnose takes such a table"});
   }
   throw base::InputError(base::Issue{experiment.file.string(), 0, "clip", "none", "one or more clips or tracks"});
 }

@@ -53,7 +53,7 @@ void check_names(const std::vector<ClipSetup>& clips, const std::vector<base::To
     if (!names.insert(groups[i].name).second) {
       group_tables[i].reject("name", fmt::format("text \"{}\" a second time", groups[i].name), "a name of its own");
     } else if (!known_groups.contains(groups[i].name)) {
-      group_tables[i].reject("name", fmt::format("text \"{}\", of which there is no clip", groups[i].name),
+      group_tables[i].reject("name", fmt::format("text \"{}\", a group without a clip", groups[i].name),
                              fmt::format("one of {}", fmt::join(known_groups, ", ")));
     }
   }
@@ -66,7 +66,7 @@ void check_readings(const std::vector<ClipSetup>& clips, const std::vector<base:
     });
     if (other == clips.begin() + static_cast<long>(i)) continue;
     clip_tables[i].reject("incline_deg", reading(clips[i]),
-                          fmt::format("the inclination of group \"{}\", of which clip \"{}\" states {}; or a group "
+                          fmt::format("the inclination of group \"{}\", for which clip \"{}\" states {}; or a group "
                                       "of its own",
                                       clips[i].group, other->name, reading(*other)));
   }

@@ -24,4 +24,8 @@ struct FolderFiles {
   std::filesystem::path file(const base::TomlTable& table, std::string_view key, bool or_folder = false) const;
 };
 
+/// The regular files below `folder` whose relative path matches `pattern`, sorted by name (byte by byte). `*` and `?`
+/// match within one part of the path, `[…]` as in a shell; a name that exists as it stands is taken literally.
+std::vector<std::filesystem::path> files_matching(const std::filesystem::path& folder, std::string_view pattern);
+
 }  // namespace glidelab::core

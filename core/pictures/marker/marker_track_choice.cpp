@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/marker/marker_method.h"
 #include "core/pictures/marker/marker_track.h"
 

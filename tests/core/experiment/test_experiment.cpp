@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
-#include "core/experiment/file_glob.h"
+#include "core/experiment/folder_files.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 

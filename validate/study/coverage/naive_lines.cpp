@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/local_cubic.h"
+#include "validate/study/sweep/design/sweep.h"
 
 namespace glidelab::validate {
 namespace {
@@ -157,7 +158,7 @@ core::AnalysisResults lines_through_all_points(const MadeTracks& made, double ba
     results.configurations.push_back(std::move(result));
   }
   results = with_naive_lines(std::move(results));
-  results.estimator = "all-points";
+  results.estimator = kAllPoints;
   return results;
 }
 

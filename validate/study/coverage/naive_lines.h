@@ -11,7 +11,7 @@ namespace glidelab::validate {
 /// Their name among the estimators. They are there for contrast; their intervals are not expected to be right.
 inline constexpr const char* kNaiveLines = "naive-lines";
 
-/// The same results with K/m, mu, alpha and v_lim by the naive lines, and estimator = "naive-lines".
+/// The same results with K/m, mu, alpha and v_lim by the naive lines, and estimator = kNaiveLines.
 core::AnalysisResults with_naive_lines(core::AnalysisResults results);
 
 /// The same lines through every point of every clip: one kernel of that bandwidth (above 0) over the whole motion, so

@@ -61,13 +61,16 @@ struct Axis {
 /// The rule that knows the truth (validate/tracks/oracle_bandwidth.h).
 inline constexpr const char* kBestPossible = "best-possible";
 
+/// The estimator of lines_through_all_points() (naive_lines.h), which a sweep of the masses asks for.
+inline constexpr const char* kAllPoints = "all-points";
+
 /// One way to analyse a run's clips.
 struct Analysis {
-  std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory", "all-points"
-  std::optional<double> bandwidth_s;        ///< given; else chosen
+  std::string estimator;              ///< a name of fit/estimators.h, or kAllPoints
+  std::optional<double> bandwidth_s;  ///< given; else chosen
   std::string bandwidth_rule =
       {};                    ///< of core/motion/bandwidth/bandwidth_rule.h, or kBestPossible; empty: the default one
-  std::string name() const;  ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
+  std::string name() const;  ///< the estimator's, with " h=0.04 s" or " gcv" where the bandwidth is not the default
 };
 
 /// What was published of a quantity that falls with mass: mu of the lightest and the heaviest glider on one track, and
