@@ -12,7 +12,6 @@
 #include "base/errors.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/local_cubic.h"
-#include "validate/study/sweep/design/sweep.h"
 
 namespace glidelab::validate {
 namespace {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/text/number_text.h"
+#include "validate/study/coverage/naive_lines.h"
 #include "validate/study/sweep/sweep_groups.h"
 
 namespace glidelab::validate {

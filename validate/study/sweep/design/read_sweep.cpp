@@ -12,6 +12,7 @@
 #include "base/toml/strict_toml.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "fit/estimators.h"
+#include "validate/study/coverage/naive_lines.h"
 #include "validate/study/sweep/design/sweep_axes.h"
 #include "validate/study/sweep/design/sweep_design.h"
 #include "validate/study/sweep/design/sweep_scenario.h"

@@ -61,12 +61,9 @@ struct Axis {
 /// The rule that knows the truth (validate/tracks/oracle_bandwidth.h).
 inline constexpr const char* kBestPossible = "best-possible";
 
-/// The estimator of lines_through_all_points() (naive_lines.h), which a sweep of the masses asks for.
-inline constexpr const char* kAllPoints = "all-points";
-
 /// One way to analyse a run's clips.
 struct Analysis {
-  std::string estimator;              ///< a name of fit/estimators.h, or kAllPoints
+  std::string estimator;              ///< a name of fit/estimators.h, or kAllPoints (naive_lines.h)
   std::optional<double> bandwidth_s;  ///< given; else chosen
   std::string bandwidth_rule =
       {};                    ///< of core/motion/bandwidth/bandwidth_rule.h, or kBestPossible; empty: the default one
