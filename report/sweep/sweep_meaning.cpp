@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "fit/estimators.h"
 #include "report/html/html.h"
 #include "report/sweep/sweep_advice.h"
 #include "report/text/quantity_names.h"
@@ -28,8 +29,8 @@ bool knows_truth(const std::string& estimator) {
 
 /// "h=0.04 s" of the lines with that bandwidth; empty for all others.
 std::string given_bandwidth(const std::string& estimator) {
-  constexpr std::string_view kLines = "phase-diagram h=";
-  return estimator.starts_with(kLines) ? estimator.substr(kLines.size() - 2) : std::string();
+  const std::string lines = std::string(fit::default_estimator().name) + " h=";
+  return estimator.starts_with(lines) ? estimator.substr(lines.size() - 2) : std::string();
 }
 
 /// Of one group each: the least rms error among those that answer and are asked for.

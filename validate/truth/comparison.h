@@ -18,7 +18,7 @@ struct QuantityComparison {
   double mass_kg = 0.0;
   double incline_deg = 0.0;  ///< as stated
   std::string estimator;
-  std::string quantity;  ///< "k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"
+  std::string quantity;  ///< a key of core::kQuantities
   std::optional<double> truth;
   std::optional<double> value;
   std::optional<double> sd;
