@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_gap.h"
 #include "diagnose/lines/line_isolability.h"
 #include "diagnose/lines/line_regions.h"
@@ -96,7 +96,7 @@ std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::
     const auto at = static_cast<Eigen::Index>(k);
     DiagnosedEffect effect{term.id, term.stage, term.words,
                            0.0,     {},         {{term.key, best.solution.size[at], best.solution.sd[at]}}};
-    if (term.id == "smoothing_bias") {
+    if (term.id == ids::smoothing_bias) {
       constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
       effect.parameters.push_back(
           {"bandwidth_s", kNan, kNan,
@@ -106,10 +106,10 @@ std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::
       const bool holds = std::find(e.named.begin(), e.named.end(), best.named[k]) != e.named.end();
       if (holds && !e.family) effect.probability += e.probability;
     }
-    bool force = term.id == "load_independent_friction";
+    bool force = term.id == ids::load_independent_friction;
     for (std::size_t t = 1; t < equals.size(); ++t) {
       effect.equivalent_to.push_back(terms[equals[t]].id);
-      force = force || terms[equals[t]].id == "load_independent_friction";
+      force = force || terms[equals[t]].id == ids::load_independent_friction;
     }
     if (force) {
       for (const std::string& id : alike_friction_force(without)) effect.equivalent_to.push_back(id);
@@ -209,8 +209,8 @@ std::string next_of(const std::vector<TableLine>& lines, const LineData& data) {
     return "Record a second mass: with one, a friction force is simply mu.";
   }
   const std::vector<LineTerm> every = named_terms(lines, {});
-  return next_for_lines(lines, size_by_itself(data, every, "load_independent_friction"),
-                        size_by_itself(data, every, "smoothing_bias"));
+  return next_for_lines(lines, size_by_itself(data, every, ids::load_independent_friction),
+                        size_by_itself(data, every, ids::smoothing_bias));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "base/text/number_text.h"
 #include "base/text/size_text.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/result/verdict_words.h"
 
 namespace glidelab::diagnose {
@@ -40,8 +41,8 @@ std::string words_of(const Diagnosis& diagnosis, const std::string& id) {
   for (const DiagnosedEffect& effect : diagnosis.effects) {
     if (effect.id == id) return effect.words;
   }
-  if (id == "load_independent_friction") return "a dry friction that does not depend on the load";
-  if (id == "smoothing_bias") return "the smoothing's own bias";
+  if (id == ids::load_independent_friction) return "a dry friction that does not depend on the load";
+  if (id == ids::smoothing_bias) return "the smoothing's own bias";
   return "inertia that is not in the weighed mass";
 }
 
@@ -62,7 +63,7 @@ std::string alike_words(const Diagnosis& diagnosis) {
   std::string text;
   for (const DiagnosedEffect& effect : diagnosis.effects) {
     for (const std::string& id : effect.equivalent_to) {
-      if (id == "eddy_rolloff" || id == "power_law_drag") text += (text.empty() ? "" : " or ") + id;
+      if (id == ids::eddy_rolloff || id == ids::power_law_drag) text += (text.empty() ? "" : " or ") + id;
     }
   }
   if (text.empty()) return text;

@@ -181,7 +181,7 @@ std::vector<Weak> named_parameters(const MotionFit& fit) {
     if (!std::isfinite(value.value)) continue;  // a v_c that fits best where it is absent
     const base::NamedUnit of = base::name_and_unit(globals[g].parameter->key);
     named.push_back({fmt::format("{} of {}", of.name, effect_list()[globals[g].effect].id), of.unit, at, value.value,
-                     value.by_member});
+                     value.by_fitted});
   }
   if (named.empty()) named = {{"K", "N s/m", 0, fit.at.global[0], 1.0}, {"mu", "", 1, fit.at.global[1], 1.0}};
   return named;
@@ -222,8 +222,8 @@ std::string sharpen(const TrackSet& set, const Comparison& comparison, const Mot
 /// The first of these effects that only pictures or single frames show: its sentence.
 std::string for_pictures(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
-    const std::string words = next_for_pictures(id);
-    if (!words.empty()) return words;
+    const std::string_view words = effect_of(id).next;
+    if (!words.empty()) return std::string(words);
   }
   return {};
 }

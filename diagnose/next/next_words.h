@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/result/diagnosis.h"
@@ -10,11 +9,8 @@
 
 namespace glidelab::diagnose {
 
-/// Of an effect that shows in pictures or single frames; empty for one that shows in the motion.
-std::string next_for_pictures(std::string_view id);
-
 /// Of something without a name: the change that covers best the variable in which it lies (the first region).
-/// `nominal` is the fit of the usual model.
+/// `nominal` is the fit of the nominal model.
 std::string next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text/number_text.h"
+#include "diagnose/effects/effect_list.h"
 #include "report/html/html.h"
 
 namespace glidelab::report {
@@ -12,7 +13,8 @@ namespace {
 /// taken as they are, or where it is open.
 std::string consequence(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == "effect") {
-    const bool lost_only = diagnosis.effects.size() == 1 && diagnosis.effects.front().id == "dropped_frames" &&
+    const bool lost_only = diagnosis.effects.size() == 1 &&
+                           diagnosis.effects.front().id == diagnose::ids::dropped_frames &&
                            diagnosis.effects.front().equivalent_to.empty();
     if (lost_only)
       return " An analysis of these data says which losses it finds, and puts the times behind them right.";
