@@ -110,7 +110,7 @@ void add_coverage(CLI::App& app, Command& chosen) {
                        "smallest that the scenario's camera, light and marker allow, clip by clip")
           ->type_name("METRES")
           ->check(check_noise_m);
-  command->add_option("--replicates", options->coverage.replicates, "How many")
+  command->add_option("--replicates", options->coverage.replicates, "Number of replicates")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

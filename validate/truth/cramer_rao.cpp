@@ -45,7 +45,7 @@ void add_clip(const TrueClip& clip, const sim::TrackLaw& law, double noise_sd_m,
   information.of_three += base::transposed_product(own, own) / (noise_sd_m * noise_sd_m);
 }
 
-/// Nothing where it does not determine all its parameters.
+/// Nothing if it does not determine all its parameters.
 std::optional<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& information) {
   if (!(information.diagonal().minCoeff() > 0.0)) return std::nullopt;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();

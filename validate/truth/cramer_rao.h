@@ -32,7 +32,7 @@ struct LeastSd {
 /// `noise_sd_m` of each clip of the truth, above 0. Where all motion goes one way only k and v_lim have a bound.
 std::vector<LeastSd> least_sds(const Truth& truth, const std::vector<double>& noise_sd_m, double gravity_m_s2);
 
-/// Of one of core::kQuantities, by its key and in its unit; none where the motions do not determine it.
+/// Of one of core::kQuantities, by its key and in its unit; none if the motions do not determine it.
 /// std::logic_error of any other key.
 std::optional<double> least_sd_of(const LeastSd& least, std::string_view quantity);
 

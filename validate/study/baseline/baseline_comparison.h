@@ -42,7 +42,7 @@ struct BaselineComparison {
   std::vector<Worse> worse;
 };
 
-/// InputError where the two are not of one scenario, noise and set of quantities.
+/// InputError if the two are not of one scenario, noise and set of quantities.
 BaselineComparison compare_baselines(const Baseline& then, const Baseline& now);
 
 }  // namespace glidelab::validate

@@ -12,7 +12,7 @@ double z_above(double part) {
   return boost::math::quantile(boost::math::complement(boost::math::normal(), part));
 }
 
-/// The factor f of the header, the larger root of its square; nothing where no factor is large enough.
+/// The factor f of the header, the larger root of its square; nothing if no factor is large enough.
 std::optional<double> factor_of(double mean, double sd, double z, double n, double m) {
   const double d2 = mean * mean, now = z * z * sd * sd / n, then = z * z * sd * sd / m;
   if (!(d2 > now)) return std::nullopt;

@@ -19,7 +19,7 @@ inline constexpr const char* kAllPoints = "all-points";
 
 /// The same lines through every point of every clip: one kernel of that bandwidth (above 0) over the whole motion, so
 /// that it reaches over ends and reversals, and nothing is left out. This is what a(v) shows if these are
-/// ignored; a clip's `segments` hold its own lines with R². NumericalError where a kernel holds too few points.
+/// ignored; a clip's `segments` hold its own lines with R². NumericalError if a kernel holds too few points.
 core::AnalysisResults lines_through_all_points(const MadeTracks& made, double bandwidth_s);
 
 }  // namespace glidelab::validate

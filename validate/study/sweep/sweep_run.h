@@ -25,7 +25,7 @@ struct QuantityRow {
   std::optional<double> truth, value, sd, low95, high95;
   std::optional<double> least_sd;  ///< Cramér-Rao bound; only of tracks, whose noise is known
   std::string why;                 ///< why there is no value
-  /// The value with the smoothing's bias in it; nothing where none was taken off.
+  /// The value with the smoothing's bias in it; nothing if none was taken off.
   std::optional<double> uncorrected = {};
 };
 

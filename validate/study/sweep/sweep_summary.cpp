@@ -88,7 +88,7 @@ std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std
   return failures;
 }
 
-/// Empty where the scenario has one.
+/// Empty if the scenario has one.
 std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Database& database,
                                                       const ConfigurationCounts& counts) {
   const Grouping grouping = by_configuration(sweep);
