@@ -197,7 +197,7 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
     if (best.converged && best.cost < 4.0 * static_cast<double>(points)) break;  // other starts find nothing better
   }
   if (!std::isfinite(best.cost)) {
-    throw base::NumericalError("the usual model cannot be fitted to these positions: no start of three moves at all");
+    throw base::NumericalError("the nominal model cannot be fitted to these positions: no start of three moves at all");
   }
   return best;
 }

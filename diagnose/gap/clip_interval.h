@@ -11,7 +11,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
 
 #include "diagnose/result/diagnosis.h"
 
@@ -19,8 +18,8 @@ namespace glidelab::diagnose {
 
 inline constexpr std::size_t kFewestClips = 3;
 
-/// Why so many clips have no interval; empty where they may have one.
-std::string why_no_interval(std::size_t clips);
+/// So many clips, where they are too few for an interval.
+std::optional<std::size_t> too_few_clips(std::size_t clips);
 
 /// What a clip adds to a mean square: a sum of squares, and of how many.
 struct ClipSquares {

@@ -10,11 +10,11 @@
 
 namespace glidelab::diagnose {
 
-/// Of clips held out, by the usual model's fit and by the best one's, with intervals over clips (clip_interval.h):
+/// Of clips held out, by the nominal model's fit and by the best one's, with intervals over clips (clip_interval.h):
 /// `best` has a named effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut
 /// into stretches that are fitted anew; a note says so. Without the domains.
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
-                std::vector<std::string>& notes);
+                std::vector<Note>& notes);
 
 /// Each domain that the data have: of positions the gap of held-out clips, of the phase plane and the parameters the
 /// root mean square of the differences over their standard deviations, of the picture sqrt(2 log evidence) of what

@@ -4,7 +4,7 @@
 ///
 /// m/s². v[] and a[] are core's local cubic of measured positions x and of modelled ones x^ at the same times, with the
 /// bandwidth that the analysis took, so that its own bias cancels; the last term takes the modelled acceleration from
-/// the modelled speed to the measured one (the usual model's a falls by K/m with v). A force f that the model lacks
+/// the modelled speed to the measured one (the nominal model's a falls by K/m with v). A force f that the model lacks
 /// makes d = f/m. v on the axis is v[x].
 ///
 /// The modelled motion is that of the clip held out: its common parameters come from the other clips, as in held_out.h.

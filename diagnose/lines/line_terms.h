@@ -1,4 +1,4 @@
-/// What may act beside equation (8) on a table of lines: effects with a name, and friction or drag without one.
+/// What may act beside the nominal law on a table of lines: effects with a name, and friction or drag without one.
 ///
 /// With the line's mass m, direction s and K/m, to the intercept a0 and to ln(K/m):
 ///
@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "diagnose/lines/line_table.h"
+#include "diagnose/result/line_comparison.h"
 
 namespace glidelab::diagnose {
 
@@ -31,8 +32,7 @@ struct LineTerm {
 
 /// Terms without a name that come together.
 struct LineFamily {
-  std::string variable;  ///< mass_kg, group, direction, or "mass_kg and group"
-  std::string words;
+  UnnamedInLines of;
   double share = 0.0;  ///< of the odds of something without a name: each variable alike, and of it friction and drag
   std::vector<LineTerm> terms;
 };

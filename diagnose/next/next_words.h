@@ -1,20 +1,12 @@
-/// What to record next where no launch decides by its motion: a sentence with the physical reason.
+/// What to record next where an effect shows in images or single frames: a sentence with the physical reason.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "diagnose/fit/motion_fit.h"
-#include "diagnose/result/diagnosis.h"
-#include "diagnose/tracks/track_set.h"
-
 namespace glidelab::diagnose {
 
-/// Of an effect that shows in pictures or single frames; empty for one that shows in the motion.
+/// Of an effect that shows in images or single frames; empty for one that shows in the motion.
 std::string next_for_pictures(std::string_view id);
-
-/// Of something without a name: the change that covers best the variable in which it lies (the first region).
-/// `nominal` is the fit of the usual model.
-std::string next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

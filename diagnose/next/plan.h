@@ -28,11 +28,8 @@ struct Plan {
   Isolability isolability;  ///< of those that can be seen
   double noise_m = 0.0;     ///< mean over the motions
   std::size_t clips = 0, points = 0;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
-
-/// Two effects are called alike from here on: the second one then explains 90 % of what the first one gains.
-inline constexpr double kAlike = 0.95;
 
 /// From motions that were analysed: planned ones (a simulation) or recorded ones. InputError where nothing moves
 /// freely.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/math/median.h"
-#include "diagnose/unnamed/unnamed_shape.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
 namespace {

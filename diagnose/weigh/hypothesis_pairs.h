@@ -4,7 +4,7 @@
 #include <set>
 
 #include "diagnose/fit/score_space.h"
-#include "diagnose/weigh/hypothesis_fits.h"
+#include "diagnose/weigh/hypothesis.h"
 
 namespace glidelab::diagnose {
 

@@ -38,8 +38,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
      {"base", "core/result/results.h", "core/analysis/preview.h", "core/characterize/camera_measurement.h",
       "core/check/recording_check.h", "validate/truth/comparison.h", "validate/study/sweep/sweep_summary.h",
       "validate/study/requirement/requirement.h", "validate/study/coverage/interval_coverage.h",
-      "validate/blind/blind_score.h", "diagnose/result/diagnosis.h", "validate/film/twin_motions.h",
-      "diagnose/next/plan.h"}},  // the result types
+      "validate/blind/blind_score.h", "diagnose/result/diagnosis.h", "diagnose/result/next_step.h",
+      "diagnose/result/note.h", "validate/film/twin_motions.h", "diagnose/next/plan.h"}},  // the result types
     {"app", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
 };
 

@@ -1,4 +1,4 @@
-#include "diagnose/unnamed/unnamed_shape.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 #include <algorithm>
 #include <cmath>
