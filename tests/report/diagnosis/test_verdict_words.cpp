@@ -102,7 +102,7 @@ TEST_CASE("a table of lines that does not tell two effects apart names both with
   of.none = 0.01;
   of.unknown = 0.24;
   of.effects = {{"load_independent_friction", "dynamics", "a dry friction", 0.37, {}, {}, 0.37, {}}};
-  of.ranking = {{{{"load_independent_friction"}}, 0.37, 1.0, 1.0, 1}};
+  of.ranking = {{{{"load_independent_friction"}}, 0.37, 1.0, 1.0, 1, {}}};
   diagnose::LineComparison lines;
   lines.lines = 12;
   lines.either_of = {"load_independent_friction", "smoothing_bias"};
