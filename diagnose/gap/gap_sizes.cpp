@@ -13,7 +13,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kPlotted = 250;
+constexpr std::size_t kPlotted = 250;  // residuals of a motion
 
 /// A single clip in quarters, and both fits to them.
 struct SplitFits {

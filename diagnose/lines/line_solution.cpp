@@ -14,8 +14,9 @@ constexpr double kLeastLeft = 1e-6;                     // of lines with very ma
 constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
 constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
 constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
-constexpr int kMostTurns = 50;
-constexpr double kLeastUnseen = 0.05;  // part of a line that its own prediction must not see
+constexpr int kMostTurns = 50;                          // of fitting sizes and scatters in turn
+constexpr double kLeastUnseen =
+    0.05;  // of a line that the others leave undetermined; its held-out residual is divided by no less
 
 std::optional<ImpossibleSize> impossible(const LineTerm& term, double size) {
   if (!term.both_signs && !(size > 0.0)) return ImpossibleSize{term.key, size, {}};

@@ -8,7 +8,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kUnlimited = 1e9;
+constexpr double kUnlimited = 1e9;  // a size that no table reaches
 
 Eigen::Index count(const std::vector<TableLine>& lines) {
   return static_cast<Eigen::Index>(lines.size());

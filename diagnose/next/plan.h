@@ -1,7 +1,7 @@
 /// What an experiment will be able to tell apart, before anybody has recorded it.
 ///
-/// Of every effect that displaces positions in one direction (in the space of all positions, over their noise, with all
-/// that a fit may change projected out): the size that makes one standard deviation, and the cosine between any two.
+/// Every effect that displaces positions in one direction (in the space of all positions, over their noise, with all
+/// that a fit may change projected out) has a size that makes one standard deviation, and a cosine with any other.
 /// Nothing but the planned motions and their noise goes in; measured residuals do not.
 #pragma once
 

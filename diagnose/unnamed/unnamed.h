@@ -1,10 +1,10 @@
-/// Explanations without a name: smooth forces and displacements in each variable, and sizes that differ from clip to
-/// clip, mass to mass or set-up to set-up for no stated reason. They answer for what is not in the list of effects.
+/// Explanations without a name: smooth forces and displacements in each variable, and sizes that differ between clips,
+/// masses or set-ups for no stated reason. They stand for what is not in the list of effects.
 ///
 /// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), tau unknown over four decades;
-/// or one bump of them at an unknown place; or one step there; its evidence is exact in the linear neighbourhood of a
-/// fit. Forces lie over v, x and t, displacements over x and t (also such as swing with x), lateness over t;
-/// displacements of each clip, and a lateness, may settle from the clip's start on.
+/// or one of these bumps at an unknown position; or one step there. Its evidence is exact in the linear neighbourhood
+/// of a fit. Forces are functions of v, x or t, displacements of x or t (also waves in x), lateness of t. Displacements
+/// of each clip, and a lateness, may settle from the clip's start on.
 #pragma once
 
 #include <vector>

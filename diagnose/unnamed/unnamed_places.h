@@ -1,4 +1,4 @@
-/// Families of unnamed.h over the place, the speed and the time.
+/// Families of unnamed.h over position, speed and time.
 #pragma once
 
 #include <vector>

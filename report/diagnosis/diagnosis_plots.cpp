@@ -61,7 +61,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
 /// `of_lines`: what was held out are published lines, whose own scatter stands for the noise. `one`: of one model
 /// alone.
 Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
-  constexpr double kWide = 8.0, kLeft = 0.5;  // times the noise: from where on the axis is logarithmic, where it begins
+  constexpr double kLogAbove = 8.0, kLeft = 0.5;  // times the noise: above it the axis is logarithmic; its left end
   PlotData data{"gaps", {}, {"row", "gap before / noise", "gap after / noise"}};
   double most = 2.0, least = kLeft;
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
@@ -77,8 +77,8 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
       of_lines ? "off the prediction by the other lines / own scatter" : "residuals of the held-out clip / noise");
   script += chart_labels(gap.held_out) +
             fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
-  script += most > kWide ? fmt::format("set logscale x\nset xrange [{}:{}]\n", least, 1.5 * most)
-                         : fmt::format("set xrange [0:{}]\n", 1.1 * most);
+  script += most > kLogAbove ? fmt::format("set logscale x\nset xrange [{}:{}]\n", least, 1.5 * most)
+                             : fmt::format("set xrange [0:{}]\n", 1.1 * most);
   script += fmt::format(
       "set arrow from 1, graph 0 to 1, graph 1 nohead lw 1.5 lc rgb '{}'\n"
       "plot $gaps using 2:1 with points pt 6 ps 1.1 lw 2 lc rgb '{}' title '{}'",

@@ -22,7 +22,7 @@
 namespace glidelab::report {
 namespace {
 
-constexpr std::size_t kRanked = 12;
+constexpr std::size_t kRankedRows = 12;
 
 /// The number on a tile is of the effect however it acts; the chart has each explanation by itself.
 std::string beside_others(const diagnose::Diagnosis& diagnosis, const diagnose::DiagnosedEffect& effect) {
@@ -75,7 +75,7 @@ std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
   }
   table.row({effect_html("none"), probability_text(diagnosis.none), "0", base::gain_text(0.0 - likeliest)});
   table.row({effect_html("unknown"), probability_text(diagnosis.unknown), "–", "–"});
-  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
+  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRankedRows; ++i) {
     const auto& ranked = diagnosis.ranking[i];
     const bool weighed = !ranked.left_out;
     table.row({explanation_html(ranked.explanation), probability_text(ranked.probability),

@@ -15,10 +15,10 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWide = 8.0;     // times the noise: from here on a logarithmic axis
-constexpr double kLogFrom = 0.5;  // where that begins
-constexpr std::size_t kCells = 60;
+constexpr double kEmptyCell = std::numeric_limits<double>::quiet_NaN();
+constexpr double kWide = 8.0;           // times the noise: from here on a logarithmic axis
+constexpr double kLogFrom = 0.5;        // where that begins
+constexpr std::size_t kCells = 60;      // of a row of the map
 constexpr double kDeepest = 5.0;        // standard deviations at which the colours end
 constexpr std::size_t kMostNamed = 40;  // rows with names that can be read
 
@@ -140,7 +140,7 @@ std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis) {
     const double middle = -static_cast<double>(d);
     before.rows.push_back(bar(left, domains[d].before, middle + (one ? 0.0 : 0.19), one ? 0.3 : 0.17));
     after.rows.push_back(domains[d].after ? bar(left, *domains[d].after, middle - 0.19, 0.17)
-                                          : std::vector<double>(6, kNan));
+                                          : std::vector<double>(6, kEmptyCell));
   }
   std::string script(kFrame);
   script += "set offsets 0,0,0,0\nset xlabel 'gap / noise'\n" + chart_labels(names);
@@ -198,7 +198,7 @@ ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, con
   }
   for (std::size_t r = 0; r < map.clips.size(); ++r) {
     for (std::size_t c = 0; c < cells; ++c) {
-      const double over = count[r][c] > 0.0 ? std::sqrt(count[r][c]) : kNan;
+      const double over = count[r][c] > 0.0 ? std::sqrt(count[r][c]) : kEmptyCell;
       map.before[r][c] /= over;
       map.after[r][c] /= over;
     }

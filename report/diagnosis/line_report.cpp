@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kUnnamedRows = 3;
 
-std::string tiles(const diagnose::Diagnosis& diagnosis) {
+std::string line_tiles(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   std::string text = "<div class=\"tiles\">";
   if (diagnosis.verdict != diagnose::Verdict::effect) {
@@ -48,7 +48,7 @@ std::string sizes_text(const diagnose::LineCandidate& candidate) {
   return text.empty() ? "–" : text;
 }
 
-std::string region_table(const diagnose::Diagnosis& diagnosis) {
+std::string line_region_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"lines", "direction", "what", "off the nominal model", "off / sd"}, 3);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
     const std::string which = region.variable == "group" ? fmt::format("all at {:.3g}°", region.from)
@@ -184,12 +184,12 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   const diagnose::LineComparison& lines = *diagnosis.lines;
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n",
                           escape(title), lines.lines);
-  body += tiles(diagnosis);
+  body += line_tiles(diagnosis);
   body += diagnosis_meaning(diagnosis);
   body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));
   const std::vector<Plot> left = line_plots(lines);
   if (!left.empty() || !diagnosis.regions.empty()) {
-    body += "<h2>Where the gap lies</h2>\n" + figures(left) + region_table(diagnosis);
+    body += "<h2>Where the gap lies</h2>\n" + figures(left) + line_region_table(diagnosis);
   }
   std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
   if (!alike.empty()) {

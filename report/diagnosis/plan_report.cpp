@@ -42,7 +42,7 @@ std::string lead(const diagnose::Plan& plan) {
 }
 
 /// What follows from what can be seen; plain text.
-std::string consequence(const diagnose::Plan& plan) {
+std::string what_follows(const diagnose::Plan& plan) {
   if (plan.effects.empty()) return {};
   const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
   if (!any) return "Recorded like this, a diagnosis could find none of them: its “none” would say nothing.";
@@ -104,7 +104,7 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">What this experiment will be able to tell apart.</p>\n"
       "{}",
-      escape(title), meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), consequence(plan))));
+      escape(title), meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), what_follows(plan))));
   if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
   for (const std::string& note : notes_words(plan.notes))
     body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));

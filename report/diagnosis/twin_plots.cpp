@@ -11,7 +11,7 @@
 namespace glidelab::report {
 namespace {
 
-constexpr std::size_t kPoints = 4000;  // of all clips
+constexpr std::size_t kTwinPoints = 4000;  // of all clips
 
 /// Two sets of points, the second one over the first.
 std::string points(const char* below, const char* above) {
@@ -35,7 +35,7 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
   PlotData data{"data", {}, {"v (m/s)", "a of the data (m/s²)"}}, twin{"twin", {}, {"v (m/s)", "a of the twin (m/s²)"}};
   std::size_t count = 0;
   for (const validate::TwinMotion& motion : motions) count += motion.t_s.size();
-  const std::size_t step = 1 + count / kPoints;
+  const std::size_t step = 1 + count / kTwinPoints;
   double largest_m = 0.0;
   for (const validate::TwinMotion& motion : motions) {
     for (const double x : motion.rest_m) largest_m = std::max(largest_m, std::abs(x));
