@@ -15,7 +15,7 @@
 #include "base/files/staged_output.h"
 #include "core/analysis/analyze.h"
 #include "core/experiment/experiment.h"
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_table.h"
 #include "diagnose/next/plan.h"
 #include "diagnose/twin/twin.h"

@@ -4,22 +4,22 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/math/dense.h"
 #include "diagnose/fit/common_limits.h"
-#include "diagnose/fit/fit_step.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr int kMostIterations = 40;
-constexpr double kConverged = 1e-3;  // change of chi², small beside what evidence turns on
+constexpr double kConvergedChange = 1e-3;  // change of chi², small beside what evidence turns on
 // What the data hardly know (a frame rate beside K, mu and the inclination) lies along a bent valley whose walls are
 // steep: a step along it ends far up a wall, from where undamped steps lead back down; it has failed where so many do
 // not.
-constexpr int kStepsBack = 4;
-constexpr int kVainWaysBack = 2;  // then there is no valley
+constexpr int kMostStepsBack = 4;
+constexpr int kMostVainReturns = 2;  // then there is no valley
 using Global = ParameterLayout::Global;
 
 bool inside(const ParameterLayout& layout, const FitPoint& at) {
@@ -123,6 +123,92 @@ Eigen::VectorXd start_of(const TrackedMotion& motion) {
   return fit.head(2);
 }
 
+/// The least of y'Ay/2 - b'y, with the effects' parameters within their ranges: what would leave its range stops at the
+/// edge, and the others make the best of that. `scale` times y is the change of the parameters.
+Eigen::VectorXd step_within(const MotionFit& fit, Eigen::MatrixXd a, Eigen::VectorXd b, const Eigen::VectorXd& scale) {
+  const auto& globals = fit.layout->globals();
+  std::vector<bool> held(globals.size(), false);
+  Eigen::VectorXd y = base::solve_positive(a, b);
+  for (bool stopped = true; stopped;) {
+    stopped = false;
+    for (Eigen::Index g = 0; g < y.size(); ++g) {
+      const Global& global = globals[static_cast<std::size_t>(g)];
+      if (global.kind != Global::Kind::effect || held[static_cast<std::size_t>(g)]) continue;
+      const double at = fit.at.global[g], next = at + scale[g] * y[g];
+      if (!(next < global.range.low || next > global.range.high)) continue;
+      const double to_edge = ((next < global.range.low ? global.range.low : global.range.high) - at) / scale[g];
+      b -= to_edge * a.col(g);
+      a.col(g).setZero();
+      a.row(g).setZero();
+      a(g, g) = 1.0;
+      b[g] = to_edge;
+      held[static_cast<std::size_t>(g)] = stopped = true;
+    }
+    if (stopped) y = base::solve_positive(a, b);
+  }
+  return y;
+}
+
+/// What stopped at an edge lies there but for rounding.
+void round_to_edges(const ParameterLayout& layout, Eigen::VectorXd& global) {
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& of = layout.globals()[g];
+    double& value = global[static_cast<Eigen::Index>(g)];
+    if (of.kind == Global::Kind::effect) value = std::clamp(value, of.range.low, of.range.high);
+  }
+}
+
+/// One step of Gauss and Newton, held back by Levenberg and Marquardt: the point that it leads to.
+///
+/// With J and r a motion's derivatives and residuals over the noise, O its own part, G the common one, and damping l,
+///
+///     (N + l I) y = g,   N = sum of G'G - G'O (O'O (1 + l))^-1 O'G + statements,   g alike with r,
+///
+/// scaled to a unit diagonal of G'G and the statements. `fit` has residuals and derivatives where it stands.
+FitPoint step_from(const MotionFit& fit, double damping) {
+  const auto globals = fit.at.global.size();
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(globals, globals);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(globals), diagonal = right;
+  std::vector<Eigen::MatrixXd> own_inverse, cross;
+  std::vector<Eigen::VectorXd> own_right;
+  for (const FitMotion& motion : fit.motions) {
+    Eigen::MatrixXd own = base::transposed_product(motion.own, motion.own);
+    for (Eigen::Index o = 0; o < own.rows(); ++o) own(o, o) = own(o, o) * (1.0 + damping) + 1e-12;
+    const Eigen::MatrixXd inverse = base::inverse_positive(own);
+    const Eigen::MatrixXd x = base::transposed_product(motion.global, motion.own);
+    const Eigen::VectorXd r = base::transposed_product(motion.own, motion.residual);
+    const Eigen::MatrixXd a = base::transposed_product(motion.global, motion.global);
+    const Eigen::MatrixXd gain = base::product(x, inverse);
+    diagonal += a.diagonal();
+    normal += a - base::product(gain, x.transpose());
+    right += base::transposed_product(motion.global, motion.residual);
+    right -= base::product(gain, r);
+    own_inverse.push_back(inverse);
+    cross.push_back(x);
+    own_right.push_back(r);
+  }
+  for (const FitStatement& s : fit.statements) {
+    const auto g = static_cast<Eigen::Index>(s.global);
+    const double weight = 1.0 / (s.sd * s.sd);
+    normal(g, g) += weight;
+    diagonal[g] += weight;
+    right[g] += weight * (s.value - fit.at.global[g]);
+  }
+  // Scaled, so that a parameter that the data hardly see does no harm to the others.
+  const Eigen::VectorXd scale = (diagonal.array() + 1e-30).sqrt().inverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  scaled.diagonal().array() += damping + 1e-13;
+  const Eigen::VectorXd change = scale.cwiseProduct(step_within(fit, scaled, scale.cwiseProduct(right), scale));
+  FitPoint next = fit.at;
+  next.global += change;
+  round_to_edges(*fit.layout, next.global);
+  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
+    const Eigen::VectorXd rest = own_right[i] - base::transposed_product(cross[i], change);
+    next.own[i] += base::product(own_inverse[i], rest);
+  }
+  return next;
+}
+
 }  // namespace
 
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
@@ -138,19 +224,19 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
   linearise_all(set, fit, Derivatives::forward);
   fit.cost = cost_of(fit);
   Damping damping;
-  int vain_ways_back = 0;
+  int vain_returns = 0;
   while (std::isfinite(fit.cost) && !fit.converged && fit.iterations < kMostIterations) {
     ++fit.iterations;
     MotionFit next = moved_to(set, fit, step_from(fit, damping.value));
-    if (!(next.cost <= fit.cost) && vain_ways_back < kVainWaysBack) {
-      for (int back = 0; back < kStepsBack && std::isfinite(next.cost) && !(next.cost <= fit.cost); ++back) {
+    if (!(next.cost <= fit.cost) && vain_returns < kMostVainReturns) {
+      for (int back = 0; back < kMostStepsBack && std::isfinite(next.cost) && !(next.cost <= fit.cost); ++back) {
         linearise_all(set, next, Derivatives::forward);
         next = moved_to(set, next, step_from(next, 0.0));
       }
-      vain_ways_back += next.cost <= fit.cost ? -1 : 1;
+      vain_returns += next.cost <= fit.cost ? -1 : 1;
     }
     if (next.cost <= fit.cost) {
-      next.converged = fit.cost - next.cost <= kConverged * (1.0 + 1e-5 * fit.cost) && damping.value <= 1e-2;
+      next.converged = fit.cost - next.cost <= kConvergedChange * (1.0 + 1e-5 * fit.cost) && damping.value <= 1e-2;
       linearise_all(set, next, Derivatives::forward);
       fit = std::move(next);
       damping.lower();

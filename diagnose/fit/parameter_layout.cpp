@@ -8,10 +8,6 @@ namespace {
 
 using Global = ParameterLayout::Global;
 
-double& member_of(EffectValues& effects, const EffectParameter& parameter) {
-  return effects.*(parameter.member);
-}
-
 }  // namespace
 
 bool touches(const TrackSet& set, const Global& global, std::size_t motion) {
@@ -37,9 +33,7 @@ ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> e
   if (scale) globals_.push_back({Kind::scale});
   for (const std::size_t effect : effects_) {
     for (const EffectParameter& parameter : effect_list()[effect].parameters) {
-      const bool turning =
-          parameter.member == &EffectValues::camera_slope_1_m || parameter.member == &EffectValues::camera_bend_1_m2;
-      if (turning && !set.pictures) continue;  // positions of nobody knows which camera: one size everywhere
+      if (parameter.only_filmed && !set.pictures) continue;
       if (parameter.own) {
         own_.push_back(&parameter);
       } else {
@@ -83,12 +77,12 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
     if (global.kind == Global::Kind::mu) model.mu = value;
     if (global.kind == Global::Kind::alpha) model.alpha_rad = value;
     if (global.kind == Global::Kind::mass) model.mass_kg += value * set.masses[global.index].sd_kg;
-    if (global.kind == Global::Kind::effect) member_of(model.effects, *global.parameter) = value;
+    if (global.kind == Global::Kind::effect) model.effects[global.parameter->slot] = value;
   }
   model.x0_m = at.own[motion][0];
   model.v0_m_s = at.own[motion][1];
   for (std::size_t o = 0; o < layout.own().size(); ++o) {
-    member_of(model.effects, *layout.own()[o]) = at.own[motion][static_cast<Eigen::Index>(2 + o)];
+    model.effects[layout.own()[o]->slot] = at.own[motion][static_cast<Eigen::Index>(2 + o)];
   }
   return model;
 }

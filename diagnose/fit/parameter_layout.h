@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "diagnose/effects/effect.h"
-#include "diagnose/effects/effect_ranges.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/effect_ranges.h"
 #include "diagnose/model/track_model.h"
 #include "diagnose/tracks/track_set.h"
 

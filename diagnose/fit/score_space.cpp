@@ -136,8 +136,8 @@ ScoreColumn ScoreSpace::of_effect(std::size_t effect, const std::vector<double>&
   std::vector<Eigen::VectorXd> changes(set_.motions.size());
   for (std::size_t i = 0; i < changes.size(); ++i) {
     TrackModel model = model_of(set_, *fit_.layout, fit_.at, i);
-    for (std::size_t s = 0; s < shape.size(); ++s) model.effects.*(parameters[s + 1].member) = shape[s];
-    double& size = model.effects.*(parameters[0].member);
+    for (std::size_t s = 0; s < shape.size(); ++s) model.effects[parameters[s + 1].slot] = shape[s];
+    double& size = model.effects[parameters[0].slot];
     const double kept = size, step = parameters[0].step;
     size = kept + step;
     const Moved above = moved_by(i, model);
@@ -147,12 +147,12 @@ ScoreColumn ScoreSpace::of_effect(std::size_t effect, const std::vector<double>&
   return project(changes);
 }
 
-ScoreColumn ScoreSpace::of_own(std::size_t i, double EffectValues::*member, double step,
-                               const EffectValues& others) const {
+ScoreColumn ScoreSpace::of_own(std::size_t i, EffectSlot size, double step, EffectSlot shape,
+                               double shape_value) const {
   std::vector<Eigen::VectorXd> changes(set_.motions.size());
   TrackModel model = model_of(set_, *fit_.layout, fit_.at, i);
-  model.effects.release_s = others.release_s;
-  model.effects.*member += step;
+  model.effects[shape] = shape_value;
+  model.effects[size] += step;
   changes[i] = difference(moved_by(i, model).x_m, base_[i], step);
   return project(changes);
 }

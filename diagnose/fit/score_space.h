@@ -34,8 +34,8 @@ class ScoreSpace {
   ScoreColumn of_force(const std::vector<UnnamedForce>& forces, double size_n) const;
   /// By the first parameter of an effect whose other ones have these values.
   ScoreColumn of_effect(std::size_t effect, const std::vector<double>& shape) const;
-  /// By one motion's own size of an effect.
-  ScoreColumn of_own(std::size_t motion, double EffectValues::*member, double step, const EffectValues& others) const;
+  /// By one motion's own size of an effect, another parameter of which has this value.
+  ScoreColumn of_own(std::size_t motion, EffectSlot size, double step, EffectSlot shape, double shape_value) const;
 
   double dot(const ScoreColumn& a, const ScoreColumn& b) const;
   const ScoreColumn& residual() const { return residual_; }

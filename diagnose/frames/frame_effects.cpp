@@ -7,6 +7,7 @@
 
 #include "core/math/median.h"
 #include "core/math/quantile.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/common_limits.h"
 #include "diagnose/frames/smooth_residual.h"
 #include "diagnose/frames/timing_noise.h"
@@ -22,7 +23,7 @@ constexpr double kMostAside = 0.2;    // of a motion's points
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
   if (set.position_noise) {
     const PositionNoise& noise = *set.position_noise;
-    return {effect_index("timestamp_jitter"), noise.jitter_gain, noise.jitter_log_evidence, noise.jitter_s,
+    return {effect_index(ids::timestamp_jitter), noise.jitter_gain, noise.jitter_log_evidence, noise.jitter_s,
             noise.jitter_sd_s};
   }
   SpeedScatter scatter;
@@ -34,7 +35,7 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
     }
   }
   const SpeedNoise noise = find_speed_noise(set, scatter, 1.0);
-  return {effect_index("timestamp_jitter"), noise.gain, noise.log_evidence, noise.jitter_s, noise.sd_s};
+  return {effect_index(ids::timestamp_jitter), noise.gain, noise.log_evidence, noise.jitter_s, noise.sd_s};
 }
 
 namespace {
@@ -122,7 +123,7 @@ double uneven_log_likelihood(const std::vector<double>& e, double freedom) {
   return sum + n * (std::lgamma(0.5 * (freedom + 1.0)) - std::lgamma(0.5 * freedom) - 0.5 * std::log(0.5 * freedom));
 }
 
-/// In pictures a marker is found better at some places and in some frames (a codec's) than in others, by a factor of
+/// In images a marker is found better at some places and in some frames (a codec's) than in others, by a factor of
 /// two or three: that is no tail. The usual scatter is therefore one of a size that varies, by how much is not known.
 Tails find_tails(const std::vector<double>& e, bool filmed) {
   Tails tails;
@@ -216,7 +217,7 @@ TailsTogether tails_together(const TrackSet& set, const TailResiduals& residuals
   return {std::max(in_row, in_first), in_first >= in_row ? at_first : one_by_one};
 }
 
-/// In pictures, what lies off by less than any lost marker does is as good as none: an edge that the marker passes does
+/// In images, what lies off by less than any lost marker does is as good as none: an edge that the marker passes does
 /// so much.
 void spare_small(const TrackSet& set, std::vector<double>& e) {
   std::size_t at = 0;
@@ -233,7 +234,7 @@ void spare_small(const TrackSet& set, std::vector<double>& e) {
 
 FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
   FrameEffect found;
-  found.effect = effect_index("heavy_tailed_noise");
+  found.effect = effect_index(ids::heavy_tailed_noise);
   TailResiduals residuals = tail_residuals(set, fit);
   std::vector<double>& e = residuals.over_scatter;
   if (e.size() < kFewestScatter) return found;

@@ -8,6 +8,7 @@
 
 #include "base/math/dense.h"
 #include "core/math/median.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/obvious_losses.h"
 
 namespace glidelab::diagnose {
@@ -231,7 +232,7 @@ std::size_t missing_in(const TrackSet& set, const MotionFit& fit) {
 
 MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
   MissingFrames found;
-  found.effect.effect = effect_index("dropped_frames");
+  found.effect.effect = effect_index(ids::dropped_frames);
   found.fit = fit;
   found.fit.late.clear();
   const double points = points_of(set);
@@ -262,7 +263,7 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
 
 MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& with_losses) {
   MissingFrames known;
-  known.effect.effect = effect_index("dropped_frames");
+  known.effect.effect = effect_index(ids::dropped_frames);
   known.fit = with_losses;
   known.count = missing_in(set, with_losses);
   const double points = points_of(set);

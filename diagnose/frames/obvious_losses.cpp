@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t kAround = 5;  // points on each side that show a loss by themselves
 constexpr Eigen::Index kFewestAround = 7;
-constexpr double kPlain = 14.0;             // log likelihood that such a loss gains
+constexpr double kPlainLossGain = 14.0;     // log likelihood that such a loss gains
 constexpr double kFits = 4.0, kMuch = 0.3;  // what it may leave: of the noise's squares, or of what was left before
-constexpr int kMostTogether = 5;            // frames lost at one place
-constexpr int kMostMissing = 60;            // in one motion
+constexpr int kMostLostTogether = 5;        // frames lost at one place
+constexpr int kMostMissingInMotion = 60;    // in one motion
 
 struct ParabolaRest {
   double square_m2 = 0.0;
@@ -54,15 +54,15 @@ LostBefore plain_losses(const TrackSet& set) {
   for (const TrackedMotion& motion : set.motions) {
     const double step_s = 1.0 / set.clips[motion.clip].frame_rate_hz;
     std::vector<double> late_s(motion.x_m.size(), 0.0);
-    for (int found = 0; found < kMostMissing; ++found) {
-      double clearest = kPlain;
+    for (int found = 0; found < kMostMissingInMotion; ++found) {
+      double clearest = kPlainLossGain;
       std::size_t place = 0;
       int lost = 0;
       for (std::size_t f = 2; f + 2 <= motion.x_m.size(); ++f) {
         if (motion.t_s[f] - motion.t_s[f - 1] > 1.5 * step_s) continue;  // the stamps tell of it
         const double square = motion.sd_of(f) * motion.sd_of(f);
         const double without = parabola_rest(motion, late_s, f, 0.0).square_m2 / square;
-        for (int k = 1; k <= kMostTogether; ++k) {
+        for (int k = 1; k <= kMostLostTogether; ++k) {
           const ParabolaRest rest = parabola_rest(motion, late_s, f, k * step_s);
           const double with = rest.square_m2 / square;
           const bool fits = with < std::max(kFits * rest.points, kMuch * without);

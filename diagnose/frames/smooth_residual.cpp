@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::array kPointsABump = {14.0, 10.0, 7.0, 5.0};  // of the smooth curve
 constexpr double kFewestBumps = 4.0;
-constexpr double kOff = 5.0;    // standard deviations
-constexpr double kTwoSd = 2.0;  // of the sum of neighbours' products, where they err by chance
+constexpr double kMostOffCurve = 5.0;  // standard deviations
+constexpr double kTwoSd = 2.0;         // of the sum of neighbours' products, where they err by chance
 
 struct UnderCurve {
   Eigen::VectorXd rest;  // of all points
@@ -50,7 +50,7 @@ UnderCurve left_by_curve(const TrackedMotion& data, const Eigen::VectorXd& r, do
     rest = r - base::product(basis, base::solve_positive(normal, base::transposed_product(kept, of)));
     for (Eigen::Index p = 0; p < n; ++p) {
       const auto q = static_cast<std::size_t>(p);
-      out[q] = std::abs(rest[p]) * data.sd_m > kOff * data.sd_of(q) ? 1 : 0;
+      out[q] = std::abs(rest[p]) * data.sd_m > kMostOffCurve * data.sd_of(q) ? 1 : 0;
     }
   }
   return {std::move(rest), bumps};
@@ -61,7 +61,7 @@ bool lasts(const TrackedMotion& data, const Eigen::VectorXd& rest) {
   double products = 0.0, squares = 0.0, pairs = 0.0;
   const auto clipped = [&](Eigen::Index p) {
     const double wider = data.sd_of(static_cast<std::size_t>(p)) / data.sd_m;
-    return std::clamp(rest[p] / wider, -kOff, kOff);
+    return std::clamp(rest[p] / wider, -kMostOffCurve, kMostOffCurve);
   };
   for (Eigen::Index p = 0; p + 1 < rest.size(); ++p) {
     if (data.outlier[static_cast<std::size_t>(p)] || data.outlier[static_cast<std::size_t>(p) + 1]) continue;

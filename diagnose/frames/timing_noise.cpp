@@ -12,11 +12,11 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kMostScatter = 8.0;    // standard deviations
-constexpr int kRounds = 3;              // the jitter is found against the noise of all speeds first
-constexpr double kOwn = 0.5;            // motions differ by so much, in the logarithm
-constexpr double kLeastAtRest = 0.003;  // of the noise of all speeds
-constexpr double kIndependent = 0.38;   // squares of neighbouring fourth differences: 1 / (1 + 2 sum of rho²)
+constexpr double kMostJitterScatter = 8.0;  // standard deviations
+constexpr int kJitterRounds = 3;            // the jitter is found against the noise of all speeds first
+constexpr double kOwn = 0.5;                // motions differ by so much, in the logarithm
+constexpr double kLeastAtRest = 0.003;      // of the noise of all speeds
+constexpr double kIndependent = 0.38;       // squares of neighbouring fourth differences: 1 / (1 + 2 sum of rho²)
 
 /// Scatter of a motion's positions about their four neighbours.
 void add_neighbours(const TrackedMotion& motion, const std::vector<double>& t_s, SpeedScatter& scatter) {
@@ -26,7 +26,7 @@ void add_neighbours(const TrackedMotion& motion, const std::vector<double>& t_s,
       continue;
     const double v = (motion.x_m[p + 2] - motion.x_m[p - 2]) / (t_s[p + 2] - t_s[p - 2]);
     const double over_sd = neighbour_residual(t_s, motion.x_m, p) / motion.sd_of(p);
-    if (std::abs(over_sd) < kMostScatter) scatter.add(motion, p, over_sd, v);
+    if (std::abs(over_sd) < kMostJitterScatter) scatter.add(motion, p, over_sd, v);
   }
 }
 
@@ -110,7 +110,7 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
   const double none = log_likelihood(0.0);
   std::vector<double> logs;
   // From what begins to show among n points, in units of what one standard deviation of position makes at top speed; in
-  // pictures from what cannot be the marker's blur, which makes its noise grow with the speed as well.
+  // images from what cannot be the marker's blur, which makes its noise grow with the speed as well.
   const double unit = sd / scatter.top_m_s;
   const double least = 2.0 * std::pow(2.0 / (independent * n), 0.25) * unit;
   const double least_s = set.pictures ? kLeastFilmedJitter_s : 0.0;
@@ -138,7 +138,7 @@ bool give_fast_positions_their_noise(TrackSet& set, const Lateness& late) {
     if (core::rounding_step(motion.x_m) > motion.sd_m) return false;  // what rounding makes goes with the place
   }
   bool any = false;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kJitterRounds; ++round) {
     SpeedScatter all;
     std::vector<SpeedScatter> own(set.motions.size());
     for (std::size_t i = 0; i < set.motions.size(); ++i) {

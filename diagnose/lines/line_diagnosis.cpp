@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_gap.h"
 #include "diagnose/lines/line_weighing.h"
 #include "diagnose/result/alike_effects.h"
@@ -92,7 +92,7 @@ std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::
     const auto at = static_cast<Eigen::Index>(k);
     DiagnosedEffect effect{term.id, term.stage, term.words,
                            0.0,     {},         {{term.key, best.solution.size[at], best.solution.sd[at]}}};
-    if (term.id == "smoothing_bias") {
+    if (term.id == ids::smoothing_bias) {
       constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
       effect.parameters.push_back(
           {"bandwidth_s", kNan, kNan,
@@ -102,10 +102,10 @@ std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::
       const bool holds = std::find(e.named.begin(), e.named.end(), best.named[k]) != e.named.end();
       if (holds && !e.family) effect.probability += e.probability;
     }
-    bool force = term.id == "load_independent_friction";
+    bool force = term.id == ids::load_independent_friction;
     for (std::size_t t = 1; t < equals.size(); ++t) {
       effect.equivalent_to.push_back(terms[equals[t]].id);
-      force = force || terms[equals[t]].id == "load_independent_friction";
+      force = force || terms[equals[t]].id == ids::load_independent_friction;
     }
     if (force) {
       for (const std::string& id : alike_friction_force(without)) effect.equivalent_to.push_back(id);
@@ -204,8 +204,8 @@ NextStep next_of(const std::vector<TableLine>& lines, const LineData& data) {
   const std::vector<double> masses = different(lines, &TableLine::mass_kg);
   if (masses.size() < 2) return Routine::second_mass;
   const std::vector<LineTerm> every = named_terms(lines, {});
-  const double force_n = size_by_itself(data, every, "load_independent_friction");
-  const double bias_s2_m_s2 = size_by_itself(data, every, "smoothing_bias");
+  const double force_n = size_by_itself(data, every, ids::load_independent_friction);
+  const double bias_s2_m_s2 = size_by_itself(data, every, ids::smoothing_bias);
   double drag = 0.0;
   for (const TableLine& line : lines) drag += line.k_over_m_1_s * line.mass_kg / static_cast<double>(lines.size());
   const double heavy = 3.0 * masses.back();

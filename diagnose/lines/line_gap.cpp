@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/math/dense.h"
+#include "diagnose/effects/effect_list.h"
 #include "diagnose/gap/clip_interval.h"
 
 namespace glidelab::diagnose {
@@ -151,8 +152,8 @@ std::vector<LineOff> lines_off(const std::vector<TableLine>& lines, const LineSo
 LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineTerm& term,
                      const LineSolution& with) {
   LineCurve curve{term.id, {}, {}, {}};
-  const bool force = term.id == "load_independent_friction";
-  if (!force && term.id != "smoothing_bias") return curve;
+  const bool force = term.id == ids::load_independent_friction;
+  if (!force && term.id != ids::smoothing_bias) return curve;
   // What the term takes from mu goes with it: the part of its column that the nominal model would have fitted.
   const Eigen::VectorXd fitted = base::least_squares(data.base_a0, term.of_a0).col(0);
   const double taken = fitted[fitted.size() - 1] * -data.base_a0.col(data.base_a0.cols() - 1).cwiseAbs().mean();

@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "diagnose/effects/effect_library.h"
+
 namespace glidelab::diagnose {
 namespace {
 
@@ -47,23 +49,23 @@ std::vector<LineTerm> of_each(const std::vector<TableLine>& lines, const std::ve
 
 std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std::vector<std::string>& without) {
   if (different(lines, &TableLine::mass_kg).size() < 2) return {};
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(count(lines));
-  Eigen::VectorXd per_mass = zero, square = zero, inertia_k = zero, inertia_a = zero;
-  for (Eigen::Index i = 0; i < count(lines); ++i) {
-    const TableLine& line = at(lines, i);
-    per_mass[i] = -line.direction / line.mass_kg;
-    square[i] = -line.direction * line.k_over_m_1_s * line.k_over_m_1_s;
-    inertia_k[i] = -1.0 / line.mass_kg;
-    inertia_a[i] = -line.a0_m_s2 / line.mass_kg;
+  std::vector<LineTerm> terms;
+  for (const EffectInfo& effect : all_effects()) {
+    if (effect.lines.change == nullptr || contains(without, std::string(effect.id))) continue;
+    LineTerm term{std::string(effect.id),    std::string(effect.lines.key), std::string(to_text(effect.stage)),
+                  std::string(effect.words), Eigen::VectorXd(count(lines)), Eigen::VectorXd(count(lines)),
+                  effect.both_signs,         effect.lines.largest};
+    for (Eigen::Index i = 0; i < count(lines); ++i) {
+      const TableLine& line = at(lines, i);
+      const LineChange change =
+          effect.lines.change({line.mass_kg, static_cast<double>(line.direction), line.a0_m_s2, line.k_over_m_1_s});
+      term.of_log_k[i] = change.of_log_k;
+      term.of_a0[i] = change.of_a0_m_s2;
+    }
+    terms.push_back(std::move(term));
   }
-  std::vector<LineTerm> terms = {
-      {"load_independent_friction", "force_n", "dynamics", "a dry friction that does not depend on the load", zero,
-       per_mass, false, 1.0},
-      {"smoothing_bias", "intercept_s2_m_s2", "analysis",
-       "the smoothing's own bias, which bends a(v) near v = 0 as (K/m)²", zero, square, false, 1.0},
-      {"rotational_inertia", "mass_kg", "dynamics", "inertia that is not in the weighed mass, such as wheels'",
-       inertia_k, inertia_a, false, 0.3}};
-  std::erase_if(terms, [&](const LineTerm& term) { return contains(without, term.id); });
+  // What moves intercepts alone comes first.
+  std::stable_partition(terms.begin(), terms.end(), [](const LineTerm& term) { return term.of_log_k.isZero(0.0); });
   return terms;
 }
 
@@ -96,9 +98,12 @@ std::vector<LineFamily> unnamed_families(const std::vector<TableLine>& lines) {
 }
 
 std::vector<std::string> alike_friction_force(const std::vector<std::string>& without) {
-  std::vector<std::string> ids = {"eddy_rolloff", "power_law_drag"};
-  std::erase_if(ids, [&](const std::string& id) { return contains(without, id); });
-  return ids;
+  std::vector<std::string> alike;
+  for (const EffectInfo& effect : all_effects()) {
+    if (effect.lines.same_as == ids::load_independent_friction) alike.emplace_back(effect.id);
+  }
+  std::erase_if(alike, [&](const std::string& id) { return contains(without, id); });
+  return alike;
 }
 
 }  // namespace glidelab::diagnose

@@ -1,15 +1,8 @@
-/// What may act beside the nominal law on a table of lines: effects with a name, and friction or drag without one.
+/// What may act beside the nominal model on a table of lines: effects with a name, and friction or drag without one.
 ///
-/// With the line's mass m, direction s and K/m, to the intercept a0 and to ln(K/m):
-///
-///     load_independent_friction  a0 - s F/m
-///     smoothing_bias             a0 - s c (K/m)²                             c in s² m/s² = m
-///     rotational_inertia         a0 (1 - m_w/m),  ln(K/m) - m_w/m            to first order in m_w/m
-///     without a name             a0 - s f  or  ln(K/m) + d, f or d of each mass, of each set-up, of each mass in each
-///                                set-up; ln(K/m) + s d
-///
-/// A drag that rolls off, K v / (1 + (v/v_c)²), or grows as v^n with n < 1 is, about the typical speed V of the lines,
-/// a line with the intercept - s (2 K V³/v_c²)/m or - s (1 - n) K V^n/m: the same column as a friction force.
+/// What a named effect does to a line stands in its file (effects/effect.h, OnLines). Without a name, with the line's
+/// mass m, direction s and K/m: a0 - s f or ln(K/m) + d, f or d of each mass, of each set-up, of each mass in each
+/// set-up; ln(K/m) + s d.
 #pragma once
 
 #include <Eigen/Core>

@@ -6,59 +6,117 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/model/track_stride.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kLongestStep = 0.0126;  // s: 80 frames a second need one step a frame
-constexpr double kLongestTurn = 0.3;     // of k h, and of omega h of what the cable makes
-constexpr double kLongestWave = 0.9;     // of a shaking's omega h: Simpson's rule errs by (omega h)^4 / 2880 of it
+constexpr double kLongestTurn = 0.3;     // of its inverse rate: of k h, and of what effects ask for
 constexpr int kMostTurns = 20;           // reversals within one step; more is chatter about rest
-constexpr double kBarely = 1e-300;       // m/s: which way, and no faster
+constexpr double kNoSpeed_m_s = 1e-300;  // has a direction, and moves nothing
 constexpr int kMostLeaving = 40;         // steps to the instant at which friction gives way,
-constexpr double kSameTime_s = 1e-13;    // to this
-constexpr double kStiff = 0.1;           // of the longest step: from there on a motion takes no more
-constexpr double kMostSteps = 1e5;       // than these
+constexpr double kSameTime_s = 1e-13;    // to within this
+constexpr double kStiffStep = 0.1;       // of the longest step: a motion with shorter ones takes at most
+constexpr double kMostSteps = 1e5;       // of them
+
+// What the integrator itself has to know of effects of the time: where a wave stands, and where a hand lets go.
+constexpr EffectSlot kShake = slot_of(ids::base_vibration, 0), kShakeHz = slot_of(ids::base_vibration, 1),
+                     kShakePhase = slot_of(ids::base_vibration, 2);
+constexpr EffectSlot kRelease = slot_of(ids::late_release, 0), kPush = slot_of(ids::late_release, 1);
+
+/// An effect that acts in one motion, with its parameters.
+struct Acting {
+  const EffectLaw* law;
+  const double* p;
+};
+
+class ActingEffects {
+ public:
+  void add(const EffectLaw& law, const double* p) { effects_[count_++] = {&law, p}; }
+  std::span<const Acting> all() const { return {effects_.data(), count_}; }
+  std::span<Acting> all() { return {effects_.data(), count_}; }
+  bool any() const { return count_ > 0; }
+
+ private:
+  std::array<Acting, kEffects> effects_;
+  std::size_t count_ = 0;
+};
+
+/// The laws of the effects that act, each of whose functions is called where it changes something.
+struct ActingLaws {
+  explicit ActingLaws(const EffectValues& values) {
+    const std::vector<EffectInfo>& list = effect_list();
+    for (std::size_t e = 0; e < list.size(); ++e) {
+      const EffectLaw& law = list[e].law;
+      const double* p = values.of(e);
+      if (p[law.size] == 0.0) continue;
+      if (law.resistance != nullptr) resistance.add(law, p);
+      if (law.force_n != nullptr) force.add(law, p);
+      if (law.friction != nullptr) friction.add(law, p);
+      if (law.seen_m != nullptr) seen.add(law, p);
+      if (law.inertia_kg != nullptr) inertia_kg += law.inertia_kg(p);
+      if (law.stretch != nullptr) stretch *= law.stretch(p);
+      if (law.row_s != nullptr) row_s += law.row_s(p);
+      if (law.rate_1_s != nullptr) rates.add(law, p);
+    }
+    const std::span<Acting> by_camera = seen.all();
+    if (by_camera.size() < 2) return;
+    std::stable_sort(by_camera.begin(), by_camera.end(),
+                     [](const Acting& a, const Acting& b) { return a.law->seen_by < b.law->seen_by; });
+  }
+
+  ActingEffects resistance, force, friction, seen, rates;
+  double inertia_kg = 0.0;
+  double stretch = 1.0;  // true over stated time
+  double row_s = 0.0;
+};
+
+GliderConstants constants_of(const TrackModel& model) {
+  return {model.mass_kg,    model.mass_kg * model.gravity_m_s2, std::cos(model.alpha_rad), model.mu, model.x_mid_m,
+          model.x_mid_all_m};
+}
 
 class Mover {
  public:
-  explicit Mover(const TrackModel& model)
+  Mover(const TrackModel& model, const ActingLaws& laws)
       : m_(model),
+        laws_(laws),
+        glider_(constants_of(model)),
         sin_(std::sin(model.alpha_rad)),
-        weight_(model.mass_kg * model.gravity_m_s2),
-        cos_(std::cos(model.alpha_rad)),
-        by_inertia_(1.0 / (model.mass_kg + model.effects.wheels_kg)),
-        wave_(model.effects.shake_hz, model.effects.shake_phase) {
-    const double shake = model.effects.shake_m_s2 != 0.0 ? 2.0 * std::numbers::pi * model.effects.shake_hz : 0.0;
-    const double rate = std::max({std::abs(model.k_n_s_m) / model.mass_kg, kLongestTurn / kLongestWave * shake,
-                                  std::sqrt(std::max(0.0, model.effects.tether_n_m) / model.mass_kg)});
+        by_inertia_(1.0 / (model.mass_kg + laws.inertia_kg)),
+        shaken_(model.effects[kShake] != 0.0),
+        wave_(model.effects[kShakeHz], model.effects[kShakePhase]) {
+    double rate = std::abs(model.k_n_s_m) / model.mass_kg;
+    for (const Acting& effect : laws.rates.all()) {
+      rate = std::max(rate, effect.law->rate_1_s(effect.p, model.mass_kg));
+    }
     step_ = rate > 0.0 ? std::min(kLongestStep, kLongestTurn / rate) : kLongestStep;
   }
 
   /// What acts whichever way it moves.
   double driving(double x, double v, double t) const {
     const EffectValues& e = m_.effects;
-    return driving(x, v, t,
-                   e.shake_m_s2 == 0.0 ? 0.0 : std::sin(2.0 * std::numbers::pi * e.shake_hz * t + e.shake_phase));
+    return driving(x, v, t, shaken_ ? std::sin(2.0 * std::numbers::pi * e[kShakeHz] * t + e[kShakePhase]) : 0.0);
   }
 
   /// `wave`: the shaking's sine at t.
   double driving(double x, double v, double t, double wave) const {
-    const EffectValues& e = m_.effects;
-    double viscous = m_.k_n_s_m * v;
-    if (e.power != 0.0) viscous *= v == 0.0 ? 0.0 : std::pow(std::abs(v), e.power);
-    if (e.rolloff_s2_m2 != 0.0) viscous /= 1.0 + e.rolloff_s2_m2 * v * v;
-    const double off = x - m_.x_mid_m;
-    if (e.gradient_1_m != 0.0) {
-      viscous *= 1.0 + e.gradient_1_m * (off - e.gradient_about * (m_.x_mid_all_m - m_.x_mid_m));
+    const GliderState at{x, v, t, wave, pushed_};
+    double viscous = m_.k_n_s_m * v, slope = sin_, against = 0.0;
+    if (laws_.resistance.any()) {
+      Resistance of{.slope = sin_};
+      for (const Acting& effect : laws_.resistance.all()) effect.law->resistance(effect.p, glider_, at, of);
+      viscous = viscous * of.drag_factor / of.drag_divisor * of.drag_along;
+      slope = of.slope;
+      against = of.against_n;
     }
-    double force = weight_ * (sin_ + e.bow_1_m * off) - viscous;
-    force -= e.c_kg_m * v * std::abs(v) + e.asymmetry * m_.mu * weight_ * cos_;
-    if (x > e.tether_x_m) force -= e.tether_n_m * (x - e.tether_x_m);
-    force += m_.mass_kg * e.shake_m_s2 * wave;
-    if (pushed_) force += m_.mass_kg * e.push_m_s2;
+    double force = glider_.weight_n * slope - viscous;
+    force -= against;
+    for (const Acting& effect : laws_.force.all()) force += effect.law->force_n(effect.p, glider_, at);
     if (m_.known != nullptr) force += known_n_ + known_n_s_ * (t - known_t_);
     if (m_.unnamed != nullptr) force += (*m_.unnamed)(x, v, t);
     return force;
@@ -66,10 +124,9 @@ class Mover {
 
   /// Against the motion.
   double friction(double v) const {
-    const EffectValues& e = m_.effects;
-    double mu = m_.mu;
-    if (e.stribeck != 0.0) mu *= 1.0 + e.stribeck * std::exp(-(v * v) / (e.stribeck_m_s * e.stribeck_m_s));
-    return mu * weight_ * cos_ + e.force_n;
+    DryFriction of{.mu = m_.mu};
+    for (const Acting& effect : laws_.friction.all()) effect.law->friction(effect.p, v, of);
+    return of.mu * glider_.weight_n * glider_.cos_alpha + of.force_n;
   }
 
   double slide(double x, double v, double t, double wave) const {
@@ -78,9 +135,9 @@ class Mover {
 
   /// To t_end by one step, where that is short enough and nothing happens on the way: no turn, no hand that lets go.
   std::optional<Stride> stride(const PlaceAndSpeed& s, double t, double t_end) {
-    const EffectValues& e = m_.effects;
-    const bool pushed = e.push_m_s2 != 0.0 && t < e.release_s;
-    if (m_.known != nullptr || direction_ == 0 || (pushed && e.release_s < t_end)) return {};
+    const double release_s = m_.effects[kRelease];
+    const bool pushed = m_.effects[kPush] != 0.0 && t < release_s;
+    if (m_.known != nullptr || direction_ == 0 || (pushed && release_s < t_end)) return {};
     pushed_ = pushed;
     const Step step = rk4(s, t, t_end - t);
     if (!(step.end.v * direction_ > 0.0)) return {};
@@ -115,8 +172,8 @@ class Mover {
   }
 
   PlaceAndSpeed advance_forced(PlaceAndSpeed s, double t, double t_end) {
-    const double release = m_.effects.release_s;
-    if (m_.effects.push_m_s2 != 0.0 && t < release && release < t_end) {
+    const double release = m_.effects[kRelease];
+    if (m_.effects[kPush] != 0.0 && t < release && release < t_end) {
       s = advance_smooth(s, t, release, true);
       return advance_smooth(s, release, t_end, false);
     }
@@ -124,7 +181,7 @@ class Mover {
   }
 
   PlaceAndSpeed advance_smooth(PlaceAndSpeed s, double t, double t_end, bool pushed) {
-    pushed_ = pushed && m_.effects.push_m_s2 != 0.0;
+    pushed_ = pushed && m_.effects[kPush] != 0.0;
     const int parts = std::max(1, static_cast<int>(std::ceil((t_end - t) / step_ - 1e-9)));
     const double h = (t_end - t) / parts;
     for (int i = 0; i < parts; ++i) s = advance_part(s, t + i * h, h);
@@ -137,7 +194,7 @@ class Mover {
   };
 
   Step rk4(const PlaceAndSpeed& s, double t, double h) {
-    const std::array<double, 3> wave = m_.effects.shake_m_s2 == 0.0 ? std::array<double, 3>{} : wave_.over(t, h);
+    const std::array<double, 3> wave = shaken_ ? wave_.over(t, h) : std::array<double, 3>{};
     const double a1 = slide(s.x, s.v, t, wave[0]);
     const double v2 = s.v + 0.5 * h * a1;
     const double a2 = slide(s.x + 0.5 * h * s.v, v2, t + 0.5 * h, wave[1]);
@@ -177,8 +234,8 @@ class Mover {
   /// At rest friction takes up what acts, up to its limit either way. False: it holds for all of h. Else t and h go on
   /// to where it gives way, and the direction is that in which the glider leaves.
   bool leave(const PlaceAndSpeed& s, double& t, double& h) {
-    const auto up = [&](double at) { return driving(s.x, kBarely, at) - friction(0.0); };
-    const auto down = [&](double at) { return -driving(s.x, -kBarely, at) - friction(0.0); };
+    const auto up = [&](double at) { return driving(s.x, kNoSpeed_m_s, at) - friction(0.0); };
+    const auto down = [&](double at) { return -driving(s.x, -kNoSpeed_m_s, at) - friction(0.0); };
     const auto beyond = [&](double at) { return std::max(up(at), down(at)); };
     double before = beyond(t);
     if (!(before > 0.0)) {
@@ -208,7 +265,10 @@ class Mover {
   }
 
   const TrackModel& m_;
-  double sin_, weight_, cos_, by_inertia_;
+  const ActingLaws& laws_;
+  GliderConstants glider_;
+  double sin_, by_inertia_;
+  bool shaken_;
   SineSteps wave_;
   double step_ = kLongestStep;
   int direction_ = 0;
@@ -217,17 +277,10 @@ class Mover {
   double known_t_ = 0.0, known_n_ = 0.0, known_n_s_ = 0.0;
 };
 
-double seen(const TrackModel& model, double x, double t) {
-  const EffectValues& e = model.effects;
-  const double off = x - model.x_mid_all_m;
-  if (e.lens_1_m2 != 0.0) x *= 1.0 + e.lens_1_m2 * (x - e.lens_x_m) * (x - e.lens_x_m);
-  if (e.perspective_1_m != 0.0) x /= 1.0 + e.perspective_1_m * x;
-  x *= 1.0 + e.scale_error;
-  if (e.camera_m != 0.0) {
-    const double size = e.camera_m * (1.0 + e.camera_slope_1_m * off + e.camera_bend_1_m2 * off * off);
-    x += size * std::sin(2.0 * std::numbers::pi * e.camera_hz * t + e.camera_phase);
-  }
-  return x;
+double seen(const ActingLaws& laws, const GliderConstants& glider, double x, double t) {
+  double measured = x;
+  for (const Acting& effect : laws.seen.all()) measured = effect.law->seen_m(effect.p, glider, x, t, measured);
+  return measured;
 }
 
 }  // namespace
@@ -237,23 +290,25 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   moved.x_m.reserve(times_s.size());
   moved.v_m_s.reserve(times_s.size());
   if (times_s.empty()) return moved;
-  Mover mover(model);
+  const ActingLaws laws(model.effects);
+  Mover mover(model, laws);
   PlaceAndSpeed s{model.x0_m, model.v0_m_s};
   mover.start(s.v);
-  const double stretch = 1.0 + model.effects.rate_error;
+  const double stretch = laws.stretch;
+  const GliderConstants glider = constants_of(model);
   double t = stretch * times_s.front();
   std::vector<double> at(times_s.size());  // true times, never before the one before
   for (std::size_t i = 0; i < at.size(); ++i) {
     const double rows = model.row_px.empty() ? 0.0 : model.row_px[i] - model.row_px.front();
-    at[i] = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + model.effects.line_s * rows;
+    at[i] = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + laws.row_s * rows;
     at[i] = std::max(at[i], i > 0 ? at[i - 1] : t);
   }
   const auto add = [&](const PlaceAndSpeed& state) {
-    moved.x_m.push_back(seen(model, state.x, times_s[moved.x_m.size()]));
+    moved.x_m.push_back(seen(laws, glider, state.x, times_s[moved.x_m.size()]));
     moved.v_m_s.push_back(state.v);
   };
-  if (mover.longest_step() < kStiff * kLongestStep && !(at.back() - t <= kMostSteps * mover.longest_step())) {
-    // A fit that has lost its way asks for millions of steps; nothing that was filmed is as stiff as that.
+  if (mover.longest_step() < kStiffStep * kLongestStep && !(at.back() - t <= kMostSteps * mover.longest_step())) {
+    // A fit that diverges asks for millions of steps; nothing that was filmed is as stiff as that.
     moved.x_m.assign(at.size(), std::numeric_limits<double>::quiet_NaN());
     moved.v_m_s = moved.x_m;
     return moved;

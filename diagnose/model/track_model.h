@@ -1,20 +1,19 @@
-/// The motion of a glider with any of the effects of effect_values.h, as the measured x(t) shows it.
+/// The motion of a glider with any effects, as the measured x(t) shows it.
 ///
-///     (m + m_w) dv/dt = m g (sin(alpha) + c (x - x_mid)) - K (1 + b (x - x_mid)) v |v|^(n-1) / (1 + v²/v_c²)
-///                       - sign(v) [mu m g cos(alpha) (1 + (s-1) exp(-(v/v_s)²)) + F_0] - d mu m g cos(alpha) - C v |v|
-///                       - k (x - x_t)+ + m A sin(2 pi f t + phi) + m push [t < t_r] + a known force + an unnamed one
+///     m dv/dt = m g sin(alpha) - K v - sign(v) mu m g cos(alpha) + a known force + an unnamed one
 ///
-/// sliding; at v = 0 the glider stays while friction of up to its limit, whichever way, can hold it. Runge and Kutta's
-/// fourth order in equal parts of every frame interval, or over several frames, with a polynomial of fifth order
-/// between (steps of at most 12.6 ms; k h at most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and
-/// at t_r: a smooth function of all parameters, so that its derivatives follow by finite differences. SI units.
+/// sliding, changed by the laws of the effects that act (effects/effect_law.h); at v = 0 the glider stays while
+/// friction of up to its limit, whichever way, can hold it. Runge and Kutta's fourth order in equal parts of every
+/// frame interval, or over several frames, with a polynomial of fifth order between (steps of at most 12.6 ms; k h at
+/// most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and at t_r: a smooth function of all
+/// parameters, so that its derivatives follow by finite differences. SI units.
 #pragma once
 
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "diagnose/model/effect_values.h"
+#include "diagnose/effects/effect_values.h"
 
 namespace glidelab::diagnose {
 

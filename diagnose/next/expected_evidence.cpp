@@ -41,8 +41,8 @@ double stated_by(const TrackSet& set, const MotionFit& fit, const FitPoint& at, 
     return at.global[static_cast<Eigen::Index>(2 + statement.group)];
   }
   TrackModel model = model_of(set, *fit.layout, at, 0);
-  if (statement.of == NextStatement::Of::clock) return model.effects.rate_error;
-  model.effects.camera_m = 0.0;
+  if (statement.of == NextStatement::Of::clock) return model.effects[slot_of(ids::frame_rate_error)];
+  model.effects[slot_of(ids::camera_motion)] = 0.0;
   model.row_px = {};
   model.v0_m_s = 0.0;
   const std::array<double, 1> now = {0.0};

@@ -9,7 +9,6 @@
 #include "diagnose/next/expected_evidence.h"
 #include "diagnose/next/next_changes.h"
 #include "diagnose/next/next_unnamed.h"
-#include "diagnose/next/next_words.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -148,7 +147,7 @@ std::vector<Weak> named_parameters(const MotionFit& fit) {
     const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
     if (!std::isfinite(value.value)) continue;  // a v_c that fits best where it is absent
     named.push_back({std::string(globals[g].parameter->key), std::string(effect_list()[globals[g].effect].id), at,
-                     value.value, value.by_member});
+                     value.value, value.by_fitted});
   }
   if (named.empty()) named = {{"K", "", 0, fit.at.global[0], 1.0}, {"mu", "", 1, fit.at.global[1], 1.0}};
   return named;
@@ -182,8 +181,8 @@ SharpenParameter sharpen(const TrackSet& set, const Comparison& comparison, cons
 /// The first of these effects that only images or single frames show: its sentence.
 std::string for_pictures(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
-    const std::string words = next_for_pictures(id);
-    if (!words.empty()) return words;
+    const std::string_view words = effect_of(id).next;
+    if (!words.empty()) return std::string(words);
   }
   return {};
 }

@@ -10,8 +10,8 @@ namespace glidelab::diagnose {
 /// rivals (expected_evidence.h). Up to three rivals count: those that are equivalent to it or have a twentieth of the
 /// probability or more; the best change is the one after which their odds together fall most. Without a rival, the
 /// change after which the weakest parameter (largest standard deviation over its size; of the named effects, or else of
-/// K and mu) would be known best. What only images or single frames show (next_words.h) and what has no name
-/// (next_unnamed.h) have steps of their own. `diagnosis` has all but its next step.
+/// K and mu) would be known best. What only images or single frames show (their own step, effect.h) and what has no
+/// name (next_unnamed.h) have steps of their own. `diagnosis` has all but its next step.
 NextStep next_experiment(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

@@ -17,11 +17,11 @@ constexpr double kAlike = 1e-6;   // a slow wave is a sum of bumps but for less 
 constexpr double kMostOff = 8.0;  // standard deviations off the neighbours
 
 // Sine and cosine, with time and its square: a frequency between two that are tried is half a radian off at the ends of
-// such points at most, of which these leave half a percent; a size that grows across the picture is in them.
+// such points at most, of which these leave half a percent; a size that grows across the image is in them.
 constexpr Eigen::Index kWaveColumns = 6;
 
-/// Points that are taken together, and frames from bump to bump of what is set aside as slow. A codec that makes
-/// pictures out of those before hands its errors on: what lasts for up to a dozen frames must be left to be seen.
+/// Points that are taken together, and frames from bump to bump of what is set aside as slow. A codec that predicts
+/// images from those before hands its errors on: what lasts for up to a dozen frames must be left to be seen.
 struct Slow {
   std::size_t chunk = 80;
   double knot = 10.0;

@@ -1,6 +1,6 @@
 /// Stretches of positions from which the noise is measured, and what of them is set aside as slow.
 ///
-/// A stretch's residuals are r = B b + noise, b anything: B has bumps ten frames apart (30 where a codec makes pictures
+/// A stretch's residuals are r = B b + noise, b anything: B has bumps ten frames apart (30 where a codec makes images
 /// out of those before, whose errors last for up to a dozen frames), and, beside a wave, its sine and cosine and what
 /// the fit made of it. Pixels (whitening.h: unit_m).
 #pragma once

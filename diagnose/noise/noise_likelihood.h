@@ -4,7 +4,7 @@
 ///
 /// V a stretch's covariance over s², B what is set aside as slow (noise_chunks.h), q_i the squares that are left under
 /// V^-1, f their number less the columns of B; each motion's white noise s_i at its likeliest, some 30 % about s, their
-/// mean. Of a codec that makes pictures out of those before, what is known of its errors is added.
+/// mean. Of a codec that predicts images from those before, what is known of its errors is added.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct Likelihood {
 class NoiseLikelihood {
  public:
   /// `pilot_px`: about s, for the part of the covariance that has a size of its own. `handed_on`: the file's codec
-  /// makes pictures out of those before.
+  /// predicts images from those before.
   NoiseLikelihood(std::vector<NoiseChunk> chunks, std::size_t motions, double pilot_px, bool handed_on);
 
   /// What is known beforehand of such a file's noise, as a log likelihood.

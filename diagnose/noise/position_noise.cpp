@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/math/median.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/common_limits.h"
 #include "diagnose/fit/score_space.h"
 #include "diagnose/noise/noise_likelihood.h"
@@ -14,9 +15,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestPoints = 80;  // of all motions
-constexpr double kWaveShows = 5.0;         // log evidence
-constexpr double kWorth = 1.0;             // log likelihood that one more part of the noise must gain
+constexpr std::size_t kFewestPoints = 80;   // of all motions
+constexpr double kWaveShownEvidence = 5.0;  // log evidence
+constexpr double kLeastNoiseGain = 1.0;     // log likelihood that one more part of the noise must gain
 
 // It also codes anew what moves and leaves what rests as it was: its errors grow with the speed as those of uneven
 // times do. Measured on clips with nothing wrong by two renderers (H.264 of crf 14 to 23, 60 to 240 frames a second, 25
@@ -31,7 +32,7 @@ struct Dial {
 };
 
 /// One after the other, each part of the noise gets what makes the positions most likely, until nothing changes. A part
-/// that gains less than kWorth is left out.
+/// that gains less than kLeastNoiseGain is left out.
 void climb(const NoiseLikelihood& likelihood, const std::vector<Dial>& dials, NoiseShape& shape, Likelihood& best) {
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
@@ -41,7 +42,7 @@ void climb(const NoiseLikelihood& likelihood, const std::vector<Dial>& dials, No
       without.*dial.member = 0.0;
       NoiseShape chosen = without;
       Likelihood most = likelihood.of(without);
-      const double bar = most.value + kWorth;
+      const double bar = most.value + kLeastNoiseGain;
       for (const double length : dial.lengths) {
         double last = -std::numeric_limits<double>::infinity();
         for (const double value : dial.values) {
@@ -123,8 +124,8 @@ const OfSpeed* weigh_speed(const std::vector<OfSpeed>& sizes, bool handed_on, Po
 
 double wave_frequency(const TrackSet& set, const MotionFit& fit) {
   const ScoreSpace space(set, fit);
-  const EffectScan wave = scan_effect(space, effect_index("camera_motion"));
-  return wave.log_evidence > kWaveShows && wave.values.size() > 1 ? wave.values[1] : 0.0;
+  const EffectScan wave = scan_effect(space, effect_index(ids::camera_motion));
+  return wave.log_evidence > kWaveShownEvidence && wave.values.size() > 1 ? wave.values[1] : 0.0;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "base/text/number_text.h"
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/score_space.h"
 #include "diagnose/pictures/picture_file.h"
 #include "diagnose/pictures/picture_light.h"
@@ -60,7 +60,7 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   const core::CameraSettings& camera = clips.front().camera;
   evidence.fastest_px_s = std::max(evidence.fastest_px_s, fit.fastest_px_s);
   for (PictureCurve& curve : fit.curves) evidence.curves.push_back(std::move(curve));
-  PictureFinding blur = finding_of("exposure_blur");
+  PictureFinding blur = finding_of(ids::exposure_blur);
   const double least_s = kLeastSmear_px / fit.fastest_px_s;
   blur.parameters = {{"exposure_s", fit.exposure_s, std::hypot(fit.exposure_sd_s, 0.1 * fit.exposure_s)}};
   if (camera.exposure_s) {
@@ -76,7 +76,7 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   }
   add_clearest(std::move(blur), evidence);
 
-  PictureFinding shutter = finding_of("rolling_shutter");
+  PictureFinding shutter = finding_of(ids::rolling_shutter);
   const double stated = stated_line_s(camera);
   // Of the height of the marker's image: a hundredth of a pixel is as far as its outline can be trusted.
   const double least_line_s = 0.01 / (2.0 * fit.radius_px * fit.fastest_px_s);
@@ -91,23 +91,6 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
 }
 
 }  // namespace
-
-PictureFinding finding_of(std::string_view id) {
-  PictureFinding finding;
-  finding.id = id;
-  return finding;
-}
-
-double stated_line_s(const core::CameraSettings& camera) {
-  if (camera.shutter == core::Shutter::global) return 0.0;
-  return camera.bottom_row_first ? -camera.line_readout_s : camera.line_readout_s;
-}
-
-double log_evidence_of(double z, double largest) {
-  std::vector<double> logs;
-  for (double s = 1.0; s < std::max(2.0, largest); s *= 1.25) logs.push_back(z * s - 0.5 * s * s);
-  return log_mean(logs);
-}
 
 std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
                                      const std::vector<std::optional<core::CameraSettings>>& cameras) {
@@ -159,7 +142,7 @@ PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
   add_noise(clips, evidence);
   for (PictureFinding& finding : evidence.findings) {
     finding.seen = finding.log_evidence > kSeenInPictures;
-    finding.stage = effect_list()[effect_index(finding.id)].stage;
+    finding.stage = to_text(effect_of(finding.id).stage);
   }
   evidence.clips = std::move(clips);
   return evidence;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/pictures/scene/codec_blocks.h"
+#include "diagnose/effects/effect_library.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -38,9 +39,9 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
     if (lossy_codec.empty() && clip.record->lossy.value_or(false)) lossy_codec = clip.record->codec;
   }
   const bool changes = std::any_of(evidence.findings.begin(), evidence.findings.end(), [](const PictureFinding& other) {
-    return (other.id == "light_flicker" || other.id == "camera_motion") && other.log_evidence > kSeenInPictures;
+    return (other.id == ids::light_flicker || other.id == ids::camera_motion) && other.log_evidence > kSeenInPictures;
   });
-  PictureFinding finding = finding_of("compression");
+  PictureFinding finding = finding_of(ids::compression);
   const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // of columns that tell their scatter poorly
   // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
   finding.stated = lossy > 0;
@@ -74,13 +75,13 @@ void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
     }
   }
   if (missing + repeated == 0) return;
-  PictureFinding finding = finding_of("dropped_frames");
+  PictureFinding finding = finding_of(ids::dropped_frames);
   finding.log_evidence = std::min(50.0, 5.0 * static_cast<double>(missing + repeated));
   const double count = static_cast<double>(missing + repeated);
   finding.parameters = {
       {"fraction", count / static_cast<double>(frames), std::sqrt(count) / static_cast<double>(frames)}};
   finding.words =
-      fmt::format("{} frames repeat the picture before, and the time stamps leave a gap for {}.", repeated, missing);
+      fmt::format("{} frames repeat the image before, and the time stamps leave a gap for {}.", repeated, missing);
   evidence.findings.push_back(std::move(finding));
 }
 

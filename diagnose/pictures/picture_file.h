@@ -7,11 +7,11 @@
 /// withholds nothing: it is named for what it does to the positions (joined_evidence.h).
 #pragma once
 
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/picture_finding.h"
 
 namespace glidelab::diagnose {
 
-/// Log evidence that pixels at rest remember what they were: a codec's predicted pictures do.
+/// Log evidence that pixels at rest remember what they were: a codec's predicted images do.
 double memory_log_evidence(const std::vector<FilmedClip>& clips);
 
 /// After add_flicker and add_sway, whose findings it reads.

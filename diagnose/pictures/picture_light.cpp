@@ -9,6 +9,7 @@
 #include "base/math/dense.h"
 #include "base/text/number_text.h"
 #include "core/pictures/scene/codec_blocks.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/pictures/picture_file.h"
 #include "diagnose/pictures/series_wave.h"
 
@@ -77,7 +78,7 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   const core::CameraSettings& camera = clips.front().camera;
   const double f_hz = flicker_of_mains(wave.f_hz, wave.sd_hz, camera.frame_rate_hz);
   const double passed = std::max(0.1, std::abs(averaged(f_hz, camera.exposure_s.value_or(0.0))));
-  PictureFinding finding = finding_of("light_flicker");
+  PictureFinding finding = finding_of(ids::light_flicker);
   // Where the file does not tell, pixels that remember do: light that changes by less than 1 % cannot make them.
   double least = memory_log_evidence(clips) > kSeenInPictures ? kLeastFlickerLossy : kLeastFlicker;
   for (const FilmedClip& clip : clips) {
@@ -98,7 +99,7 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   evidence.findings.push_back(std::move(finding));
 }
 
-/// Light along the path from how bright the marker is: ln(brightness) = a + g s + q s² about the picture's middle.
+/// Light along the path from how bright the marker is: ln(brightness) = a + g s + q s² about the image's middle.
 void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   const auto columns = static_cast<Eigen::Index>(clips.size() + 2);
   std::vector<Eigen::VectorXd> rows;
@@ -131,7 +132,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   const double gradient = found[columns - 2];
   // Neighbouring frames share what the pixels' own response does; one in ten counts.
   const double sd = std::sqrt(10.0 * variance * inverse(columns - 2, columns - 2));
-  PictureFinding finding = finding_of("light_gradient");
+  PictureFinding finding = finding_of(ids::light_gradient);
   const double usual = std::hypot(sd, kUsualGradient_1_m);
   finding.log_evidence = log_evidence_of(std::abs(gradient) / usual, 10.0 / usual);
   finding.parameters = {{"gradient", gradient, sd}};

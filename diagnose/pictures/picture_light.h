@@ -2,10 +2,10 @@
 ///
 /// Flicker: a wave in the brightness of what rests in the scene (in four bands of rows where these are exposed one
 /// after the other), against 0.2 % (1 % in a file with loss, said or seen). Gradient: ln(brightness) of the marker = a
-/// + g s + q s² over its place s in metres from the picture's middle, against the 10 % a metre that any lamp makes.
+/// + g s + q s² over its place s in metres from the middle of the image, against the 10 % a metre that any lamp makes.
 #pragma once
 
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/picture_finding.h"
 
 namespace glidelab::diagnose {
 

@@ -1,7 +1,7 @@
 /// The noise of resting pixels over their brightness (noise_law.h), as a curve for the page.
 #pragma once
 
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/picture_finding.h"
 
 namespace glidelab::diagnose {
 

@@ -11,9 +11,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr int kReach = 4;            // frames to each side that give a frame's speed
-constexpr std::size_t kFewest = 40;  // frames of all clips together
-constexpr int kPlace = 4;            // terms of a cubic
+constexpr int kReach = 4;                         // frames to each side that give a frame's speed
+constexpr std::size_t kFewestFramesOfShape = 40;  // frames of all clips together
+constexpr int kPlace = 4;                         // terms of a cubic
 constexpr double kShortest_s = 2e-5;
 constexpr double kFinest = 1.06;  // step of the exposures that are tried
 constexpr int kBins = 24;
@@ -24,7 +24,7 @@ constexpr double kSlowest_px_s = 1.0;       // of the fastest sample: slower, no
 constexpr double kLongestSmear = 3.0;       // radii
 
 struct Sample {
-  double place = 0.0;  ///< u, -1 to 1 over the picture
+  double place = 0.0;  ///< u, -1 to 1 over the image
   std::size_t view = 0;
   double wu = 0.0, wv = 0.0, vv = 0.0;
   double stretch = 0.0, shear = 0.0;  ///< m_uu - m_vv, m_uv
@@ -241,7 +241,7 @@ ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
   ShapeFit result;
   std::size_t views = 0;
   std::vector<Sample> samples = all_samples(clips, views);
-  if (samples.size() < kFewest) return result;
+  if (samples.size() < kFewestFramesOfShape) return result;
   std::vector<double> radii;
   double longest_s = 0.0;
   for (const FilmedClip& clip : clips) {
@@ -256,7 +256,7 @@ ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
   Scan scan;
   for (int round = 0; round < kRounds; ++round) {
     if (round > 0) leave_outliers(scan.best, samples, weight);
-    if (samples.size() < kFewest) return result;
+    if (samples.size() < kFewestFramesOfShape) return result;
     scan = scan_exposures({samples, views, weight}, longest_s, kLongestSmear * result.radius_px, result.fastest_px_s);
   }
   const Solved& best = scan.best;

@@ -7,14 +7,14 @@
 ///     m_uu - m_vv = p(u) + (w_u² - w_v²) T²/12 - 2 line w_v m_vv
 ///     m_uv        = q(u) + w_u w_v T²/12 + line w_u m_vv
 ///
-/// p, q cubic in the place in the picture, one pair for each view: perspective and lens, which do not go with the
+/// p, q cubic in the place in the image, one pair for each view: perspective and lens, which do not go with the
 /// speed. T is found by trying exposures, all else by least squares; outliers beyond seven median deviations are left
 /// out, and variances are multiplied by how long residuals last.
 #pragma once
 
 #include <vector>
 
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/picture_finding.h"
 
 namespace glidelab::diagnose {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/pictures/scene/codec_blocks.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/score_space.h"
 #include "diagnose/pictures/series_wave.h"
 
@@ -83,7 +84,7 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   }
   if (series.empty()) return;
   const SeriesWave wave = strongest_wave(series);
-  PictureFinding finding = finding_of("camera_motion");
+  PictureFinding finding = finding_of(ids::camera_motion);
   const bool shakes = wave.log_evidence > kSeenInPictures && wave.amplitude > least_px;
   const double drift_sd = std::hypot(drift.sd, least_px);
   const double of_drift = log_evidence_of(drift.size / drift_sd, 100.0 / drift_sd);
@@ -91,17 +92,17 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
     finding.log_evidence = std::max(wave.log_evidence, of_drift);
     finding.parameters = {{"amplitude_px", wave.amplitude, wave.sd}, {"f_hz", wave.f_hz, wave.sd_hz}};
     finding.words =
-        fmt::format("What rests in the scene sways in the picture by ±{:.2g} px with {:.3g} Hz: the camera shakes.",
+        fmt::format("What rests in the scene sways in the image by ±{:.2g} px with {:.3g} Hz: the camera shakes.",
                     wave.amplitude, wave.f_hz);
   } else if (of_drift > kSeenInPictures) {
     finding.log_evidence = of_drift;
     finding.parameters = {{"amplitude_px", 0.5 * drift.size, 0.5 * drift_sd}};
     finding.words = fmt::format(
-        "What rests in the scene drifts in the picture by {:.2g} px within a clip: the camera moves.", drift.size);
+        "What rests in the scene drifts in the image by {:.2g} px within a clip: the camera moves.", drift.size);
   } else {
     finding.log_evidence = std::min({of_drift, wave.log_evidence, -2.0});
     finding.parameters = {{"amplitude_px", 0.0, std::max(least_px, wave.amplitude)}};
-    finding.words = fmt::format("The camera rests: what is fixed in the scene stays within {:.2g} px in the picture.",
+    finding.words = fmt::format("The camera rests: what is fixed in the scene stays within {:.2g} px in the image.",
                                 std::max(least_px, std::max(wave.amplitude, drift.size)));
   }
   evidence.findings.push_back(std::move(finding));

@@ -1,10 +1,10 @@
-/// Findings about the camera's rest: what is fixed in the scene sways or drifts in the picture, or stays.
+/// Findings about the camera's rest: what is fixed in the scene sways or drifts in the image, or stays.
 ///
 /// Patches are trusted to 0.02 px. A wave is looked for in both directions of all clips; a drift is the range of the
 /// means of eight parts of a clip beyond what noise makes of it.
 #pragma once
 
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/picture_finding.h"
 
 namespace glidelab::diagnose {
 

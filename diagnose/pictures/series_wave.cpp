@@ -12,11 +12,11 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewest = 24;     // points of a series
-constexpr double kFineness = 4.0;       // frequencies a width of the peak
-constexpr double kFewestPeriods = 3.0;  // a series
+constexpr std::size_t kFewestSamples = 24;  // points of a series
+constexpr double kFineness = 4.0;           // frequencies a width of the peak
+constexpr double kFewestPeriods = 3.0;      // a series
 constexpr double kOverMedian = 4.0;
-constexpr std::size_t kMost = 6000;  // frequencies
+constexpr std::size_t kMostFrequencies = 6000;  // frequencies
 
 /// A series with its mean, slope and curvature taken out, and the orthonormal terms that did it.
 class Flat {
@@ -94,7 +94,7 @@ SeriesWave strongest_wave(const std::vector<Series>& all) {
   std::vector<Flat> series;
   double span = 0.0, rate = 0.0, shortest = std::numeric_limits<double>::infinity();
   for (const Series& one : all) {
-    if (one.t_s.size() < kFewest) continue;
+    if (one.t_s.size() < kFewestSamples) continue;
     series.emplace_back(one);
     if (!(series.back().squares() > 0.0)) {
       series.pop_back();
@@ -107,7 +107,8 @@ SeriesWave strongest_wave(const std::vector<Series>& all) {
   SeriesWave wave;
   if (series.empty()) return wave;
   const double lowest = kFewestPeriods / shortest, highest = 0.5 * rate;
-  const auto many = std::min<std::size_t>(kMost, static_cast<std::size_t>(std::max(8.0, kFineness * span * highest)));
+  const auto many =
+      std::min<std::size_t>(kMostFrequencies, static_cast<std::size_t>(std::max(8.0, kFineness * span * highest)));
   std::vector<double> gains;
   double best = 0.0;
   for (std::size_t k = 0; k <= many; ++k) {
@@ -138,7 +139,7 @@ SeriesWave strongest_wave(const std::vector<Series>& all) {
 }
 
 Amplitude amplitude_at(const Series& series, double f_hz) {
-  if (series.t_s.size() < kFewest) return {};
+  if (series.t_s.size() < kFewestSamples) return {};
   const Flat flat(series);
   const Flat::At at = flat.at(f_hz);
   return {std::hypot(at.a, at.b), std::sqrt(at.variance)};

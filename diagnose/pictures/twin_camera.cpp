@@ -120,7 +120,7 @@ void look_through_lens(const Filming& filming, double reference_m, double inclin
   for (const int downhill : {1, -1}) {
     const Eigen::Isometry3d X_WP = plane_in_world(filming, downhill, reference_m, incline_rad);
     const Eigen::Isometry3d X_WC = X_WP * filming.X_CP.inverse();
-    // Both are the same picture, one upside down: a camera stands upright.
+    // Both are the same image, one upside down: a camera stands upright.
     if (downhill == 1 && X_WC.linear()(1, 1) > 0.0) continue;
     view.downhill = downhill;
     view.position_m = X_WC.translation();
@@ -141,7 +141,7 @@ void look_by_scale(const Filming& filming, double reference_m, double incline_ra
   view.focal_px = {focal, focal};
   view.downhill = filming.along_px_m.x() < 0.0 ? -1 : 1;
   const double away = focal / filming.along_px_m.norm() + filming.marker_height_m;
-  // The picture's right is the world's, turned by what the track's slope there differs from the inclination.
+  // The image's right is the world's, turned by what the track's slope there differs from the inclination.
   const Eigen::Vector2d seen = filming.along_px_m * view.downhill;
   view.roll_rad = view.downhill * incline_rad - std::atan2(seen.y(), seen.x());
   const Eigen::Vector2d middle(0.5 * (filming.width_px - 1), 0.5 * (filming.height_px - 1));

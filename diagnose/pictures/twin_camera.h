@@ -21,7 +21,7 @@
 
 namespace glidelab::diagnose {
 
-/// Of the first folder that has clips made of pictures, and of its first such clip.
+/// Of the first folder that has clips made of images, and of its first such clip.
 struct Filming {
   core::CameraSettings settings;
   int width_px = 0, height_px = 0;
@@ -43,7 +43,7 @@ struct Filming {
 };
 
 /// Nothing where no clip was filmed, or too little of one was seen. The folders are those of the results, in order; the
-/// pattern's pictures are read once more, `jobs` at a time (InputError as by the analysis).
+/// pattern's images are read once more, `jobs` at a time (InputError as by the analysis).
 std::optional<Filming> filming_of(const core::AnalysisResults& results, const std::vector<core::Experiment>& folders,
                                   int jobs);
 
@@ -58,7 +58,7 @@ struct TwinView {
   struct Pattern {
     double square_m = 0.0, x_m = 0.0, y_m = 0.0, rotation_rad = 0.0;
   };
-  std::optional<Pattern> pattern;    ///< where it is known and wholly in the picture
+  std::optional<Pattern> pattern;    ///< where it is known and wholly in the image
   std::vector<std::string> assumed;  ///< what is not known and is as a scenario has it by itself
 };
 

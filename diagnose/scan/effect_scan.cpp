@@ -4,30 +4,15 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "diagnose/effects/effect_ranges.h"
 #include "diagnose/fit/common_limits.h"
+#include "diagnose/fit/effect_ranges.h"
 #include "diagnose/scan/push_scan.h"
 #include "diagnose/scan/wave_scan.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kNumerical = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
-
-std::vector<double> second_parameters(const TrackSet& set, const EffectInfo& effect) {
-  std::vector<double> shapes;
-  if (effect.id == "damping_gradient") {
-    return set.groups.size() > 1 ? std::vector<double>{0.0, 1.0} : std::vector<double>{0.0};
-  }
-  if (effect.id == "stribeck") {
-    for (double v = std::max(0.008, set.held_m_s); v < 0.7; v *= 1.5) shapes.push_back(v);
-    return shapes;
-  }
-  const ParameterRange x = range_of_places(set);
-  const int parts = effect.id == "tether" ? 24 : 9;
-  for (int i = 0; i < parts; ++i) shapes.push_back(x.low + (x.high - x.low) * (i + 0.5) / parts);
-  return shapes;
-}
+constexpr double kDerivativeFloor = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
 
 EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
@@ -71,13 +56,15 @@ std::vector<std::vector<double>> effect_shapes(const TrackSet& set, std::size_t 
   const EffectInfo& info = effect_list()[effect];
   if (info.search != Search::shape) return {{}};
   std::vector<std::vector<double>> shapes;
-  for (const double second : second_parameters(set, info)) shapes.push_back({second});
+  const ParameterRange x = range_of_places(set);
+  for (const double second : info.shapes({x.low, x.high, set.groups.size() > 1, set.held_m_s}))
+    shapes.push_back({second});
   return shapes;
 }
 
 double seen_square(const ScoreSpace& space, const ScoreColumn& column) {
   const double square = space.dot(column, column);
-  const bool derived = std::isfinite(square) && square >= kNumerical * column.rest.squaredNorm();
+  const bool derived = std::isfinite(square) && square >= kDerivativeFloor * column.rest.squaredNorm();
   return derived ? std::max(0.0, square) : 0.0;
 }
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <utility>
 
-#include "diagnose/effects/effect_ranges.h"
+#include "diagnose/fit/effect_ranges.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kAlike = 1e-6;  // of sin²: one direction is the other, to what derivatives err
+constexpr double kSameDirection = 1e-6;  // of sin²: one direction is the other, to what derivatives err
 
 /// Sizes of two directions fitted together.
 struct Together {
@@ -21,7 +21,7 @@ struct Together {
 
 std::optional<Together> fit_together(const TriedShape& a, const TriedShape& b, double ab) {
   const double det = a.square * b.square - ab * ab;
-  if (!(det > kAlike * a.square * b.square)) return std::nullopt;
+  if (!(det > kSameDirection * a.square * b.square)) return std::nullopt;
   Together both;
   both.first = (b.square * a.score - ab * b.score) / det;
   both.second = (a.square * b.score - ab * a.score) / det;

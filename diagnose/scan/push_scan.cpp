@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "base/math/dense.h"
-#include "diagnose/effects/effect_ranges.h"
+#include "diagnose/fit/effect_ranges.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kAnyWay = 0.1;     // of late releases: pushes of any size and sign, each clip its own
-constexpr double kHoldsBack = 0.1;  // of one hand's: it drags, instead of pushing
-constexpr double kUnlike = 0.5;     // standard deviation of one hand's push, over that of the part common to all
+constexpr double kShareOfAnyPushes = 0.1;  // of late releases: pushes of any size and sign, each clip its own
+constexpr double kShareOfDragging = 0.1;   // of one hand's: it drags, instead of pushing
+constexpr double kPushStep_m_s2 = 1e-4;    // of the finite difference
+constexpr double kPushSpread = 0.5;        // standard deviation of one hand's push, over that of the part common to all
 
 /// Which way a motion goes at a time, or first after it.
 double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
@@ -27,7 +28,7 @@ double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
 /// Sizes of pushes from independent ones: one hand's go along the motions and are about alike.
 Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& ways) {
   Eigen::MatrixXd sizes(ways.size(), ways.size() + 1);
-  sizes << ways, kUnlike * Eigen::MatrixXd::Identity(ways.size(), ways.size());
+  sizes << ways, kPushSpread * Eigen::MatrixXd::Identity(ways.size(), ways.size());
   return sizes;
 }
 
@@ -36,9 +37,9 @@ double log_below(double z) {
 }
 
 /// log of the probability that all of these normal deviates, taken as independent, are positive, or all negative; of
-/// the latter kHoldsBack, as far as it was as likely beforehand.
+/// the latter kShareOfDragging, as far as it was as likely beforehand.
 double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
-  double positive = std::log1p(-kHoldsBack), negative = std::log(kHoldsBack);
+  double positive = std::log1p(-kShareOfDragging), negative = std::log(kShareOfDragging);
   for (Eigen::Index k = 0; k < mean.size(); ++k) {
     const double z = mean[k] / std::max(sd[k], 1e-300);
     positive += log_below(z);
@@ -55,7 +56,7 @@ double log_one_sign_beforehand(Eigen::Index pushes) {
   double sum = 0.0;
   for (int i = 0; i < kParts; ++i) {
     const double common = kWidest * ((i + 0.5) / kParts * 2.0 - 1.0);
-    sum += std::exp(-0.5 * common * common + static_cast<double>(pushes) * log_below(common / kUnlike));
+    sum += std::exp(-0.5 * common * common + static_cast<double>(pushes) * log_below(common / kPushSpread));
   }
   return std::log(sum * 2.0 * kWidest / kParts / std::sqrt(2.0 * std::numbers::pi));
 }
@@ -77,10 +78,9 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
   double best = 0.0;
   const ParameterRange range = range_of(set, effect_list()[effect].parameters[0]);
   for (double t_r = range.low; t_r < range.high; t_r *= 1.3) {
-    EffectValues values;
-    values.release_s = t_r;
     std::vector<ScoreColumn> columns;
-    for (const std::size_t i : from_start) columns.push_back(space.of_own(i, &EffectValues::push_m_s2, 1e-4, values));
+    for (const std::size_t i : from_start)
+      columns.push_back(space.of_own(i, {effect, 1}, kPushStep_m_s2, {effect, 0}, t_r));
     const auto n = static_cast<Eigen::Index>(columns.size());
     Eigen::MatrixXd products(n, n);
     Eigen::VectorXd scores(n);
@@ -106,8 +106,8 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
     // A hand pushes what it launches; seldom it holds back what it lets go, or this one clip and not the next.
     const double one_sign =
         log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
-    const double of_one_hand = std::log1p(-kAnyWay) + evidence.log_evidence + one_sign;
-    const double of_any = std::log(kAnyWay) + any.log_evidence;
+    const double of_one_hand = std::log1p(-kShareOfAnyPushes) + evidence.log_evidence + one_sign;
+    const double of_any = std::log(kShareOfAnyPushes) + any.log_evidence;
     const double more = std::max(of_one_hand, of_any);
     logs.push_back(more + std::log(std::exp(of_one_hand - more) + std::exp(of_any - more)));
     const bool alike = of_one_hand >= of_any;

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <vector>
 
-#include "diagnose/effects/effect_ranges.h"
+#include "diagnose/fit/effect_ranges.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastWave_px = 0.002;  // in pictures: what finding a marker among pixels errs by itself
+constexpr double kLeastWave_px = 0.002;  // in images: what finding a marker among pixels errs by itself
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// Score and information of (sin, cos) of one frequency in one motion.
@@ -92,7 +92,7 @@ Wave find_wave(const ScoreSpace& space) {
     least_m = std::max(least_m, kLeastWave_px * motion.m_per_px);
     longest = std::max(longest, motion.t_s.back() - motion.t_s.front());
   }
-  const ParameterRange hz = range_of(set, effect_list()[effect_index("base_vibration")].parameters[1]);
+  const ParameterRange hz = range_of(set, effect_of(ids::base_vibration).parameters[1]);
   std::vector<double> logs;
   for (double f = hz.low; f < hz.high; f += 0.3 / longest) {
     const WaveEvidence at = weigh_wave(wave_parts(space, f), least_m);
@@ -113,7 +113,7 @@ EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& w
   scan.gain = wave.gain;
   scan.log_evidence = wave.log_evidence;
   const double omega = kTurn * wave.f_hz;
-  const bool force = info.id == "base_vibration";
+  const bool force = info.law.moves();  // else what is seen swings
   std::size_t i = 0;
   double amplitude = wave.size_m;
   for (const WavePart& part : wave_parts(space, wave.f_hz)) {

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "diagnose/scan/effect_scan.h"
+#include "diagnose/scan/scanned_effect.h"
 
 namespace glidelab::diagnose {
 

@@ -6,12 +6,12 @@
 ///     x error = (a sin 2 pi s + b cos 2 pi s + c sin 4 pi s + d cos 4 pi s) / (pixels a metre),
 ///
 /// s the centre's coordinate (column or row) along which it moves more. a to d are not known: each N(0, (0.01 px)²),
-/// which is what good trackers are reported to reach, and ten times what this one was seen to do on sharp pictures.
+/// which is what good trackers are reported to reach, and ten times what this one was seen to do on sharp images.
 /// Over many pixels this cannot imitate a force; left out, it is taken for waves as soon as the noise is small.
 #pragma once
 
 #include "core/result/results.h"
-#include "diagnose/tracks/track_set.h"
+#include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
 

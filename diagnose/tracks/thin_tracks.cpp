@@ -3,7 +3,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kMostPoints = 30000;  // of all motions
+constexpr std::size_t kMostPositions = 30000;  // of all motions
 
 }  // namespace
 
@@ -30,8 +30,8 @@ void thin_out(TrackSet& set, std::size_t fewest) {
   const auto driven = [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); };
   std::size_t points = 0;
   for (const TrackedMotion& motion : set.motions) points += driven(motion) ? 0 : motion.t_s.size();
-  if (points <= kMostPoints) return;
-  const std::size_t every = (points + kMostPoints - 1) / kMostPoints;
+  if (points <= kMostPositions) return;
+  const std::size_t every = (points + kMostPositions - 1) / kMostPositions;
   for (TrackedMotion& motion : set.motions) {
     if (!driven(motion)) motion = some_points(motion, 0, motion.t_s.size(), every);
   }

@@ -1,7 +1,7 @@
 /// Parts of motions, and fewer points of them.
 #pragma once
 
-#include "diagnose/tracks/track_set.h"
+#include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
 

@@ -1,110 +1,13 @@
-/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated.
+/// From the results of an analysis to the motions that a diagnosis fits (tracked_motions.h), and their noise.
 #pragma once
 
-#include <Eigen/Core>
-
-#include <filesystem>
-#include <limits>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
-#include "diagnose/model/track_model.h"
-#include "diagnose/result/note.h"
+#include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
-
-/// What neighbouring frames of a filmed clip share of their noise (whitening.h); amplitudes over the white noise.
-struct NoiseShape {
-  double pixels = 0.0, pixels_px = 0.4;
-  double phase = 0.0, phase_px = 10.0;
-  double lasting = 0.0, lasting_frames = 2.0;
-  double jitter_s = 0.0;
-};
-
-/// As positions show it by themselves (position_noise.h).
-struct PositionNoise {
-  NoiseShape shape;
-  double jitter_gain = 0.0, jitter_log_evidence = 0.0;  ///< of uneven times, against the likeliest noise without
-  double jitter_s = 0.0, jitter_sd_s = 0.0;
-  double lasting_gain = 0.0, lasting_log_evidence = 0.0;  ///< of what a codec hands on from frame to frame
-};
-
-/// One stretch of motion without a bump or a rest in it; it may turn.
-struct TrackedMotion {
-  std::size_t clip = 0;     ///< index in TrackSet::clips
-  std::size_t group = 0;    ///< index in TrackSet::groups
-  std::size_t mass = 0;     ///< index in TrackSet::masses
-  double start_s = 0.0;     ///< clip's first frame to the motion's first point
-  std::vector<double> t_s;  ///< from the clip's first frame
-  std::vector<double> x_m;
-  std::vector<char> outlier;                  ///< 1: lies off the neighbours; not fitted
-  double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
-  std::vector<double> wider;                  ///< of each position, its noise over sd_m; empty: 1
-  std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
-  /// Where among them errors by the place between pixels begin (pixel_modes.h).
-  std::size_t first_pixel_mode = std::numeric_limits<std::size_t>::max();
-  double scale_sd = 0.0;         ///< relative
-  double m_per_px = 0.0;         ///< along the motion; 0: not filmed
-  std::vector<double> row_px;    ///< of the picture, where the marker is; empty: not filmed
-  std::vector<double> along_px;  ///< of the picture, along the motion; empty: not filmed, or hardly moving
-  /// Of consecutive points, all in all: makes white noise of theirs over sd_of() (whitening.h). Empty: it is white.
-  std::vector<Eigen::MatrixXd> whitening;
-  KnownForce known;  ///< where one was recorded
-
-  double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
-};
-
-struct TrackedMass {
-  double mass_kg = 0.0;
-  double sd_kg = 0.0;
-};
-
-struct InclineStatement {
-  double alpha_rad = 0.0;
-  double sd_rad = 0.0;
-  std::string against;  ///< "plumb" or "stated"
-};
-
-struct TrackGroup {
-  std::string name;
-  double stated_rad = 0.0;
-  std::vector<InclineStatement> statements;  ///< those with a known uncertainty
-  double x_mid_m = 0.0;                      ///< middle of the range of x
-};
-
-struct TrackedClip {
-  std::string name;
-  double frame_rate_hz = 0.0;
-  double duration_s = 0.0;
-  std::size_t frames = 0;
-  double bandwidth_s = 0.0;  ///< of the analysis' smoothing
-  /// As the analysis finds them (core/lost_frames.h), in the file's times from the clip's first frame.
-  std::vector<core::LostFrames> lost = {};
-};
-
-struct TrackSet {
-  double gravity_m_s2 = 9.80665;
-  std::vector<TrackedClip> clips;
-  std::vector<TrackGroup> groups;
-  std::vector<TrackedMass> masses;
-  std::vector<TrackedMotion> motions;
-  double x_mid_m = 0.0;    ///< middle of the range of x of all set-ups
-  std::size_t modes = 0;   ///< shared errors of camera and plane
-  bool pieces = false;     ///< clips are pieces of a single one (driven_motions.h)
-  bool pictures = false;   ///< at least one clip was filmed
-  bool lossy = false;      ///< at least one has been through a codec with loss,
-  bool handed_on = false;  ///< and one that makes pictures out of those before:
-  double held_m_s = 0.0;   ///< slower than this the marker may be held where it was (0: by none)
-  std::optional<PositionNoise> position_noise;
-  std::vector<Note> notes;
-  /// Frames that the analysis took for hand or stop and that a motion could hold.
-  std::size_t disputed = 0;
-  std::size_t left_out = 0;  ///< of these, all or none
-  std::size_t moving = 0;    ///< frames of free motion and disputed ones
-};
 
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
 /// start or for a stop stays in the motion; else it is left out. Motions with fewer than 12 points are left out. Of

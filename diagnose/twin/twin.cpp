@@ -10,52 +10,40 @@
 #include <numbers>
 #include <set>
 
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/twin/twin_effects.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-/// Why a scenario has no such force; empty where it has one.
-std::string_view no_force_for(std::string_view id) {
-  if (id == "track_bow" || id == "damping_gradient" || id == "tether")
-    return "no force of a scenario depends on the place";
-  if (id == "base_vibration" || id == "late_release") return "no force of a scenario depends on the time";
-  return "";
+/// The forces of a model with the effects that act in it.
+TwinForces forces_of(const TrackModel& model) {
+  const std::vector<EffectInfo>& list = effect_list();
+  const auto acts = [&](std::size_t e) { return model.effects.of(e)[list[e].law.size] != 0.0; };
+  const double m = model.mass_kg;
+  double inertia_kg = m;
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    if (list[e].law.inertia_kg != nullptr) inertia_kg += list[e].law.inertia_kg(model.effects.of(e));
+  }
+  TwinForces forces;
+  forces.part = m / inertia_kg;
+  forces.k_n_s_m = forces.part * model.k_n_s_m;
+  forces.mu = forces.part * model.mu;
+  forces.normal_n = m * model.gravity_m_s2 * std::cos(model.alpha_rad);
+  forces.along_n = m * model.gravity_m_s2 * std::sin(model.alpha_rad);
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    if (list[e].twin.force != nullptr && acts(e)) list[e].twin.force(model.effects.of(e), forces);
+  }
+  return forces;
 }
 
-std::string force(const std::string& law, const std::map<std::string, double>& keys) {
-  std::string text = fmt::format("[[configuration.force]]\nlaw = \"{}\"\n", law);
-  for (const auto& [key, value] : keys) text += fmt::format("{} = {:.12g}\n", key, value);
-  return text;
-}
-
-std::string forces_of(const TrackModel& model) {
-  const EffectValues& e = model.effects;
-  const double m = model.mass_kg, normal = m * model.gravity_m_s2 * std::cos(model.alpha_rad);
-  // (m + m_w) dv/dt = F is m dv/dt = m/(m + m_w) F.
-  const double part = m / (m + e.wheels_kg);
-  const double k = part * model.k_n_s_m, mu = part * model.mu;
-  std::string text;
-  if (e.power != 0.0) {
-    text += force("power_law", {{"k_n_s_m", k}, {"n", 1.0 + e.power}});
-  } else if (e.rolloff_s2_m2 > 0.0) {
-    text += force("eddy_rolloff", {{"k_n_s_m", k}, {"v_c_m_s", 1.0 / std::sqrt(e.rolloff_s2_m2)}});
-  } else if (k >= 0.0) {
-    text += force("viscous", {{"k_n_s_m", k}});
-  }
-  if (e.c_kg_m != 0.0) text += force("quadratic", {{"c_kg_m", part * e.c_kg_m}});
-  if (e.stribeck != 0.0) {
-    text += force("stribeck", {{"mu", mu}, {"s", 1.0 + e.stribeck}, {"v_s_m_s", e.stribeck_m_s}});
-  } else if (mu >= 0.0) {
-    text += force("coulomb", {{"mu", mu}});
-  }
-  if (e.force_n != 0.0) text += force("coulomb", {{"mu", part * e.force_n / normal}});
-  if (e.asymmetry != 0.0) text += force("constant", {{"force_n", -e.asymmetry * mu * normal}});
-  if (part != 1.0) {
-    text += force("constant", {{"force_n", -(1.0 - part) * m * model.gravity_m_s2 * std::sin(model.alpha_rad)}});
-  }
-  return text;
+std::string sections_of(const TwinForces& forces) {
+  std::string text = forces.drag;
+  if (forces.drag.empty() && forces.k_n_s_m >= 0.0) text = scenario_force("viscous", {{"k_n_s_m", forces.k_n_s_m}});
+  text += forces.more_drag + forces.friction;
+  if (forces.friction.empty() && forces.mu >= 0.0) text += scenario_force("coulomb", {{"mu", forces.mu}});
+  return text + forces.others;
 }
 
 /// What one configuration needs besides its motions.
@@ -68,15 +56,15 @@ std::vector<TwinLack> lacks_of_forces(const TrackSet& set, const TrackModel& mod
                                       const std::vector<DiagnosedEffect>& effects, bool nameless) {
   std::vector<TwinLack> lacks;
   for (const DiagnosedEffect& effect : effects) {
-    const std::string_view why = no_force_for(effect.id);
-    if (!why.empty()) lacks.push_back({effect.id, std::string(why)});
+    const EffectInfo& info = effect_of(effect.id);
+    if (info.stage == Stage::dynamics && !info.twin.why_not.empty())
+      lacks.push_back({effect.id, std::string(info.twin.why_not)});
   }
   if (nameless) lacks.push_back({"what is missing", "it has no name"});
   const bool forced = std::any_of(set.motions.begin(), set.motions.end(),
                                   [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); });
   if (forced) lacks.push_back({"the recorded force", "no force of a scenario depends on the time"});
-  if (model.effects.power != 0.0 && model.effects.rolloff_s2_m2 > 0.0)
-    lacks.push_back({"eddy_rolloff", "a drag of one law has no other one in it"});
+  for (const MissingInTwin& lack : forces_of(model).lacks) lacks.push_back({std::string(lack.id), lack.why});
   if (model.k_n_s_m < 0.0) lacks.push_back({"a drag below zero", "a scenario's drag takes energy"});
   if (model.mu < 0.0) lacks.push_back({"a friction below zero", "a scenario's friction takes energy"});
   return lacks;
@@ -106,7 +94,7 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
     if (statement.against == "stated")
       text += fmt::format("stated_incline_sd_deg = {:.9g}\n", statement.sd_rad * kDegrees);
   }
-  text += forces_of(model);
+  text += sections_of(forces_of(model));
   for (const std::size_t i : motions) {
     const TrackedMotion& motion = set.motions[i];
     const Eigen::VectorXd& own = fit.at.own[i];

@@ -1,12 +1,11 @@
 /// The simulation that behaves like the data: the fitted motions as a scenario file.
 ///
 /// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
-/// Expressed exactly: K, mu, quadratic_drag, eddy_rolloff or power_law_drag, stribeck, load_independent_friction (more
-/// mu for a lighter glider), direction_asymmetry (a constant force), rotational_inertia (all forces, gravity with them,
-/// less by the factor m/(m + m_w): m dv/dt is then the same), and what twin_effects.h says of camera and clock. A
-/// scenario has no forces that depend on the place or the time, and none that was recorded: what needs one is listed,
-/// and the twin lacks it. The camera is that of the folder as far as it is known (twin_camera.h); what is assumed
-/// stands in the file's first lines. x counts from the middle of the data.
+/// Each effect says what force of a scenario it is (effects/effect_twin.h), or that no scenario can say it; additional
+/// inertia is all forces, gravity with them, less by the factor m/(m + m_w): m dv/dt is then the same. Camera and clock
+/// are those of twin_effects.h. A scenario has no forces that depend on the place or the time, and none that was
+/// recorded: what needs one is listed, and the twin lacks it. The camera is that of the folder as far as it is known
+/// (twin_camera.h); what is assumed stands in the file's first lines. x counts from the middle of the data.
 #pragma once
 
 #include <string>

@@ -4,222 +4,108 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/pictures/picture_evidence.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kUsualExposure_s = 0.001;
-constexpr double kJitterReach = 2.0 * 5.9;  // standard deviations that a scenario keeps free between two exposures
-constexpr double kMostFocalChange = 0.2;    // that a scenario allows,
-constexpr double kMostPan_rad = 30.0 / kDegrees;
-constexpr double kMostGradient_1_m = 2.0;
-constexpr double kMostPpm = 1e5;
-constexpr double kMostDropped = 0.9;
+constexpr double kAssumedExposure_s = 0.001;
+constexpr double kMostFocalChange = 0.2;  // that a scenario allows
 
-const DiagnosedEffect* named(const std::vector<DiagnosedEffect>& effects, std::string_view id) {
-  const auto found = std::find_if(effects.begin(), effects.end(), [&](const auto& effect) { return effect.id == id; });
-  return found == effects.end() ? nullptr : &*found;
+TwinCamera as_filmed(const std::optional<Filming>& filming, const TwinView& view, double frame_s, double reference_m) {
+  TwinCamera camera;
+  camera.filmed = filming.has_value();
+  camera.exposure_known = filming && filming->settings.exposure_s;
+  camera.stated_frame_s = camera.frame_s = frame_s;
+  camera.height_px = filming ? filming->height_px : 0;
+  camera.downhill = view.downhill;
+  camera.x_m = view.position_m.x();
+  camera.z_m = view.position_m.z();
+  camera.distance_m = view.distance_m();
+  camera.focal_px = view.focal_px[0];
+  camera.reference_m = reference_m;
+  // Of an unknown exposure, half of the frame time at most leaves the clock room.
+  camera.exposure_s =
+      camera.exposure_known ? *filming->settings.exposure_s : std::min(kAssumedExposure_s, 0.5 * frame_s);
+  camera.line_s = filming ? stated_line_s(filming->settings) : 0.0;
+  return camera;
 }
 
-std::optional<double> size_of(const DiagnosedEffect* effect, std::string_view key) {
-  if (effect == nullptr) return {};
-  for (const DiagnosedParameter& parameter : effect->parameters) {
-    if (parameter.key == key) return parameter.value;
-  }
-  return {};
+std::string section(const std::string& name, const std::string& keys) {
+  return keys.empty() ? "" : "\n" + name + "\n" + keys;
 }
 
-class Writer {
- public:
-  Writer(const std::vector<DiagnosedEffect>& effects, const std::optional<Filming>& filming, const TwinView& view,
-         double frame_rate_hz, double reference_m)
-      : effects_(effects), filming_(filming), view_(view), frame_s_(1.0 / frame_rate_hz), reference_m_(reference_m) {}
+std::string shutter_section(const TwinCamera& camera) {
+  if (camera.line_s == 0.0) return "";
+  return section("[shutter]", fmt::format("kind = \"rolling\"\nline_readout_s = {:.9g}\nfirst_row = \"{}\"\n",
+                                          std::abs(camera.line_s), camera.line_s < 0.0 ? "bottom" : "top"));
+}
 
-  TwinEffects write() {
-    exposure();
-    clock();
-    shutter();
-    light();
-    mount();
-    codec();
-    return std::move(twin_);
+std::string mount_sections(TwinCamera& camera) {
+  if (std::abs(camera.focal_factor - 1.0) > kMostFocalChange) {
+    camera.lack(camera.focal_by, "a focal length is off by a fifth at most");
+    camera.focal_factor = 1.0;
   }
+  const double change = camera.focal_factor - 1.0;
+  return section("[mount]", change == 0.0 ? "" : fmt::format("focal_change = {:.12g}\n", change)) + camera.motions;
+}
 
- private:
-  const DiagnosedEffect* effect(std::string_view id) const { return named(effects_, id); }
-  void lack(std::string_view id, std::string why) { twin_.lacks.push_back({std::string(id), std::move(why)}); }
-  void section(const std::string& name, const std::string& keys) {
-    if (!keys.empty()) twin_.sections += "\n" + name + "\n" + keys;
+std::string codec_sections(const std::optional<Filming>& filming, TwinCamera& camera) {
+  const bool deep = filming && filming->settings.bit_depth > 8;
+  const std::string depth =
+      section("[sensor]", deep ? fmt::format("bit_depth = {}\n", filming->settings.bit_depth) : "");
+  const bool stated_lossy = filming && filming->lossy.value_or(false);
+  if (!camera.lossy && !stated_lossy) return depth;
+  if (deep) {
+    camera.lack(ids::compression, "what has more than 8 bits is kept without loss");
+    return depth;
   }
+  const bool motion_jpeg = !filming || filming->codec == "MJPG";
+  const bool even = filming && filming->width_px % 2 == 0 && filming->height_px % 2 == 0;
+  // Of 8 x 8 blocks in a file that does not say which codec made them, each image by itself is the simplest.
+  const bool h264 = stated_lossy && !motion_jpeg && even;
+  camera.notes.emplace_back("how strongly the codec compresses is not known: as a scenario has it by itself");
+  return depth + section("[codec]", h264 ? "name = \"h264\"\n" : "name = \"mjpeg\"\n");
+}
 
-  void exposure() {
-    // Of an unknown one, half of the frame time at most leaves the clock room.
-    twin_.exposure_s = filming_ && filming_->settings.exposure_s ? *filming_->settings.exposure_s
-                                                                 : std::min(kUsualExposure_s, 0.5 * frame_s_);
-    const auto found = size_of(effect("exposure_blur"), "exposure_s");
-    if (!found) return;
-    if (*found > frame_s_) return lack("exposure_blur", "an exposure ends before the next one begins");
-    twin_.exposure_s = *found;
+TwinSizes sizes_of(const DiagnosedEffect& effect) {
+  std::vector<std::pair<std::string, double>> sizes;
+  for (const DiagnosedParameter& parameter : effect.parameters) sizes.emplace_back(parameter.key, parameter.value);
+  return TwinSizes(std::move(sizes));
+}
+
+/// All named effects of one part of the camera, in the order of the list.
+void apply(TwinPart part, const std::vector<DiagnosedEffect>& effects, TwinCamera& camera) {
+  for (const EffectInfo& info : effect_list()) {
+    if (info.twin.camera == nullptr || info.twin.part != part) continue;
+    const auto named = std::find_if(effects.begin(), effects.end(), [&](const auto& e) { return e.id == info.id; });
+    if (named != effects.end()) info.twin.camera(sizes_of(*named), camera);
   }
-
-  void clock() {
-    std::string keys;
-    double frame_s = frame_s_;
-    if (const auto e = size_of(effect("frame_rate_error"), "e")) {
-      // The true step is (1 + e) times the stated one: the camera runs slower than stated.
-      const double ppm = 1e6 * (1.0 / (1.0 + *e) - 1.0);
-      const double step_s = frame_s_ * (1.0 + *e);
-      if (std::abs(ppm) > kMostPpm || step_s < twin_.exposure_s) {
-        lack("frame_rate_error", "a clock is off by a tenth at most, and exposures do not overlap");
-      } else {
-        keys += fmt::format("rate_error_ppm = {:.9g}\n", ppm);
-        frame_s = step_s;
-      }
-    }
-    if (const auto fraction = size_of(effect("dropped_frames"), "fraction")) {
-      if (*fraction > kMostDropped) {
-        lack("dropped_frames", "nine frames in ten are lost at most");
-      } else {
-        keys += fmt::format("dropped_fraction = {:.6g}\n", *fraction);
-      }
-    }
-    if (const auto sd_s = size_of(effect("timestamp_jitter"), "sd_s")) {
-      const double room_s = frame_s - kJitterReach * *sd_s;
-      if (!(filming_ && filming_->settings.exposure_s) && room_s > 0.0) {
-        twin_.exposure_s = std::min(twin_.exposure_s, 0.999 * room_s);
-      }
-      if (twin_.exposure_s > room_s) {
-        lack("timestamp_jitter", "exposures do not overlap, with 5.9 standard deviations of each");
-      } else {
-        keys += fmt::format("jitter_s = {:.6g}\n", *sd_s);
-      }
-    }
-    section("[clock]", keys);
-  }
-
-  void shutter() {
-    double line_s = filming_ ? stated_line_s(filming_->settings) : 0.0;
-    if (const auto found = size_of(effect("rolling_shutter"), "line_s")) {
-      if (!filming_ || std::abs(*found) * filming_->height_px > frame_s_) {
-        lack("rolling_shutter", "all rows are read within the frame time");
-      } else {
-        line_s = *found;
-        twin_.notes.emplace_back(
-            "render states the shutter in experiment.toml, where the data's folder states another");
-      }
-    }
-    if (line_s == 0.0) return;
-    twin_.readout_s = std::abs(line_s) * filming_->height_px;
-    section("[shutter]", fmt::format("kind = \"rolling\"\nline_readout_s = {:.9g}\nfirst_row = \"{}\"\n",
-                                     std::abs(line_s), line_s < 0.0 ? "bottom" : "top"));
-  }
-
-  void light() {
-    std::string keys;
-    const DiagnosedEffect* flicker = effect("light_flicker");
-    const auto depth = size_of(flicker, "depth"), f_hz = size_of(flicker, "f_hz");
-    if (depth && f_hz) {
-      if (*depth > 1.0) {
-        lack("light_flicker", "light flickers by its own brightness at most");
-      } else {
-        keys += fmt::format("flicker_depth = {:.6g}\nflicker_hz = {:.9g}\n", *depth, *f_hz);
-      }
-    }
-    if (const auto gradient = size_of(effect("light_gradient"), "gradient")) {
-      if (std::abs(*gradient) > kMostGradient_1_m) {
-        lack("light_gradient", "light changes by a factor of exp(2) a metre at most");
-      } else {
-        keys += fmt::format("gradient_per_m = [{:.6g}, 0.0]\n", *gradient);
-      }
-    }
-    section("[light]", keys);
-  }
-
-  void mount() {
-    double focal = 1.0;
-    std::string motions;
-    if (const auto e = size_of(effect("scale_error"), "e")) {
-      focal *= 1.0 + *e;
-      twin_.notes.emplace_back(
-          "the wrong scale is a focal length that was changed after the calibration: it shows in pictures only");
-    }
-    if (const auto p = size_of(effect("perspective_error"), "p_1_m")) {
-      const double before_m = 1.0 + *p * (reference_m_ + view_.downhill * view_.position_m.x());
-      const double tangent = view_.downhill * *p / before_m * view_.position_m.z();
-      if (!(before_m > 0.0) || std::abs(std::atan(tangent)) > kMostPan_rad) {
-        lack("perspective_error", "a camera is turned by 30 degrees at most");
-      } else {
-        focal /= before_m * before_m * (1.0 + tangent * tangent);
-        motions +=
-            fmt::format("\n[[mount.motion]]\naxis = \"pan\"\noffset_deg = {:.9g}\n", std::atan(tangent) * kDegrees);
-        twin_.notes.emplace_back(
-            "the perspective is a camera that was turned after the calibration: it shows in pictures only");
-      }
-    }
-    if (const DiagnosedEffect* motion = effect("camera_motion")) motions += sway(*motion);
-    if (std::abs(focal - 1.0) > kMostFocalChange) {
-      lack(effect("scale_error") != nullptr ? "scale_error" : "perspective_error",
-           "a focal length is off by a fifth at most");
-      focal = 1.0;
-    }
-    section("[mount]", focal == 1.0 ? "" : fmt::format("focal_change = {:.12g}\n", focal - 1.0));
-    twin_.sections += motions;
-  }
-
-  std::string sway(const DiagnosedEffect& motion) {
-    const auto f_hz = size_of(&motion, "f_hz"), along_m = size_of(&motion, "amplitude_m"),
-               in_px = size_of(&motion, "amplitude_px");
-    if (!f_hz || !(along_m || in_px)) {
-      lack("camera_motion", "which way the camera drifts is not measured");
-      return "";
-    }
-    const double pan = along_m ? std::atan(*along_m / view_.distance_m()) : std::atan(*in_px / view_.focal_px[0]);
-    if (std::abs(pan) > kMostPan_rad) {
-      lack("camera_motion", "a camera is turned by 30 degrees at most");
-      return "";
-    }
-    twin_.notes.emplace_back("the camera's motion is a pan, with one phase for all clips: it shows in pictures only");
-    return fmt::format("\n[[mount.motion]]\naxis = \"pan\"\namplitude_deg = {:.9g}\nfrequency_hz = {:.9g}\n",
-                       pan * kDegrees, *f_hz);
-  }
-
-  void codec() {
-    const bool deep = filming_ && filming_->settings.bit_depth > 8;
-    if (deep) section("[sensor]", fmt::format("bit_depth = {}\n", filming_->settings.bit_depth));
-    const bool named = effect("compression") != nullptr;
-    if (!named && !(filming_ && filming_->lossy.value_or(false))) return;
-    if (deep) return lack("compression", "what has more than 8 bits is kept without loss");
-    const bool motion_jpeg = !filming_ || filming_->codec == "MJPG";
-    const bool even = filming_ && filming_->width_px % 2 == 0 && filming_->height_px % 2 == 0;
-    // Of 8 x 8 blocks in a file that does not say which codec made them, each picture by itself is the simplest.
-    const bool lossy = filming_ && filming_->lossy.value_or(false);
-    const bool h264 = lossy && !motion_jpeg && even;
-    section("[codec]", h264 ? "name = \"h264\"\n" : "name = \"mjpeg\"\n");
-    twin_.notes.emplace_back("how strongly the codec compresses is not known: as a scenario has it by itself");
-  }
-
-  const std::vector<DiagnosedEffect>& effects_;
-  const std::optional<Filming>& filming_;
-  const TwinView& view_;
-  double frame_s_;
-  double reference_m_;
-  TwinEffects twin_;
-};
+}
 
 }  // namespace
 
 TwinEffects effects_of_camera(const std::vector<DiagnosedEffect>& effects, const std::optional<Filming>& filming,
                               const TwinView& view, double frame_rate_hz, double reference_m) {
-  TwinEffects twin = Writer(effects, filming, view, frame_rate_hz, reference_m).write();
-  if (named(effects, "lens_distortion") != nullptr) {
-    twin.lacks.push_back({"lens_distortion", "a scenario's clips are seen through the lens that it calibrates"});
+  TwinCamera camera = as_filmed(filming, view, 1.0 / frame_rate_hz, reference_m);
+  for (const TwinPart part :
+       {TwinPart::exposure, TwinPart::clock, TwinPart::shutter, TwinPart::light, TwinPart::mount, TwinPart::codec}) {
+    apply(part, effects, camera);
   }
-  if (named(effects, "heavy_tailed_noise") != nullptr) {
-    twin.lacks.push_back({"heavy_tailed_noise", "a scenario has no outliers of its own"});
+  TwinEffects twin;
+  twin.exposure_s = camera.exposure_s;
+  if (camera.line_s != 0.0) twin.readout_s = std::abs(camera.line_s) * camera.height_px;
+  twin.sections = section("[clock]", camera.clock) + shutter_section(camera) + section("[light]", camera.light);
+  twin.sections += mount_sections(camera);
+  twin.sections += codec_sections(filming, camera);
+  twin.notes = camera.notes;
+  for (const MissingInTwin& lack : camera.lacks) twin.lacks.push_back({std::string(lack.id), lack.why});
+  for (const DiagnosedEffect& effect : effects) {
+    const EffectInfo& info = effect_of(effect.id);
+    if (info.stage != Stage::dynamics && !info.twin.why_not.empty())
+      twin.lacks.push_back({effect.id, std::string(info.twin.why_not)});
   }
   return twin;
 }

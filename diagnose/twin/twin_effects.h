@@ -1,10 +1,8 @@
 /// What the named effects of the camera and its clock are in a scenario: sections of keys, and what no key can say.
 ///
-/// Exactly: frame_rate_error, dropped_frames, timestamp_jitter ([clock]), exposure_blur ([camera]), rolling_shutter
-/// ([shutter]), light_flicker, light_gradient ([light]). Of the same kind: compression ([codec]; how strong is not
-/// known), camera_motion (a camera that pans; one phase for all clips), scale_error (a focal length that was changed
-/// after the calibration by the factor 1 + e), perspective_error (a camera that was turned by
-/// atan(downhill p' Z), p' = p/(1 + p x_f), x_f the place before which the camera stands, Z how far off).
+/// What each effect makes of the camera stands in its own file (effects/effect_twin.h): exactly what [clock], [camera]
+/// exposure, [shutter] and [light] say; of the same kind a codec of unknown strength, a pan with one phase for all
+/// clips, a focal length or a direction that was changed after the calibration.
 #pragma once
 
 #include <string>

@@ -49,14 +49,14 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
                                                    const PictureEvidence& pictures,
                                                    const std::vector<DiagnosedParameter>& known) {
   const auto& globals = fit.layout->globals();
-  const auto at = [&](double EffectValues::*member) {
+  const auto at = [&](const EffectSlot& slot) {
     return std::find_if(globals.begin(), globals.end(), [&](const ParameterLayout::Global& global) {
-      return global.parameter != nullptr && global.effect == effect && global.parameter->member == member;
+      return global.parameter != nullptr && global.effect == effect && global.parameter->slot == slot;
     });
   };
   const auto index = [&](auto global) { return static_cast<Eigen::Index>(global - globals.begin()); };
-  if (at(&EffectValues::bow_1_m) != globals.end()) return middles(set, 0.0, 0.0);
-  if (const auto about = at(&EffectValues::gradient_about); about != globals.end()) {
+  if (at(slot_of(ids::track_bow)) != globals.end()) return middles(set, 0.0, 0.0);
+  if (const auto about = at(slot_of(ids::damping_gradient, 1)); about != globals.end()) {
     const Eigen::MatrixXd covariance = common_covariance(fit);
     const double variance = covariance(index(about), index(about));
     return middles(set, fit.at.global[index(about)], std::sqrt(std::max(0.0, variance)));

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "core/analysis/analyze.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/edge_losses.h"
 #include "diagnose/frames/frame_effects.h"
 #include "diagnose/frames/missing_frames.h"
@@ -161,7 +162,7 @@ constexpr double kHeldPx = 0.05;  // from one frame to the next
 /// Whether the files say, or the images show, that they went through a lossy codec.
 void note_loss(const PictureEvidence& pictures, TrackSet& set) {
   set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
-    return finding.id == "compression" && (finding.stated || finding.seen);
+    return finding.id == ids::compression && (finding.stated || finding.seen);
   });
   set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
                     return clip.record->codec == "MJPG";  // each image by itself

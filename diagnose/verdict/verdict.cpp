@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/missing_frames.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
@@ -67,11 +68,12 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
   for (const FrameEffect& frame : comparison.frames) {
     if (frame.effect != effect) continue;
     if (!parameters.empty()) continue;
-    parameters.push_back({effect_list()[effect].id == "timestamp_jitter" ? "sd_s" : "fraction", frame.value, frame.sd});
+    parameters.push_back(
+        {effect_list()[effect].id == ids::timestamp_jitter ? "sd_s" : "fraction", frame.value, frame.sd});
   }
   if (hypothesis.fit < 0) return parameters;
   const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
-  if (parameters.empty() && effect == effect_index("dropped_frames")) {
+  if (parameters.empty() && effect == effect_index(ids::dropped_frames)) {
     double points = 0.0;
     for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
     const auto count = static_cast<double>(missing_in(set, fit));
@@ -85,11 +87,11 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
                                     [&](const auto& p) { return p.key == globals[g].parameter->key; });
     const auto at = static_cast<Eigen::Index>(g);
     ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
-    if (globals[g].parameter->member == &EffectValues::line_s) {
+    if (globals[g].parameter->slot == slot_of(ids::rolling_shutter)) {
       value.value += pictures.stated_line_s;  // tracks show what it is more than stated
     }
     const DiagnosedParameter tracked{std::string(globals[g].parameter->key), value.value,
-                                     std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_member)};
+                                     std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_fitted)};
     if (known == parameters.end()) {
       parameters.push_back(tracked);
     } else if (tracked.sd < known->sd) {  // seen in the images as well, but less well
@@ -112,7 +114,7 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
       if (hypothesis.fit >= 0) count += missing_in(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]);
     }
     if (info.search == Search::pictures) ++count;
-    if (info.search == Search::noise) count += info.id == "heavy_tailed_noise" ? 2 : 1;
+    if (info.search == Search::noise) count += info.id == ids::heavy_tailed_noise ? 2 : 1;
   }
   return count;
 }
@@ -224,7 +226,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
     for (const std::size_t e : best->effects) {
       const EffectInfo& info = effect_list()[e];
-      diagnosis.effects.push_back({std::string(info.id), std::string(info.stage), std::string(info.words),
+      diagnosis.effects.push_back({std::string(info.id), std::string(to_text(info.stage)), std::string(info.words),
                                    comparison.effect_probability[e], equivalents(comparison, *best, e),
                                    parameters_of(set, comparison, pictures, *best, e)});
     }

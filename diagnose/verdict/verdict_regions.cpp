@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "diagnose/effects/effect_library.h"
+
 namespace glidelab::diagnose {
 namespace {
 
@@ -155,9 +157,9 @@ bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
 
 void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
   static const std::map<std::string, std::pair<const char*, const char*>> kWhere = {
-      {"exposure_blur", {"v_m_s", "marker's width"}},  {"rolling_shutter", {"v_px", "marker's shear"}},
-      {"light_flicker", {"t_s", "brightness"}},        {"light_gradient", {"u_px", "brightness"}},
-      {"camera_motion", {"t_s", "the scene's place"}}, {"compression", {"u_px", "steps between blocks"}}};
+      {ids::exposure_blur, {"v_m_s", "marker's width"}},  {ids::rolling_shutter, {"v_px", "marker's shear"}},
+      {ids::light_flicker, {"t_s", "brightness"}},        {ids::light_gradient, {"u_px", "brightness"}},
+      {ids::camera_motion, {"t_s", "the scene's place"}}, {ids::compression, {"u_px", "steps between blocks"}}};
   for (const DiagnosedEffect& effect : diagnosis.effects) {
     for (const PictureFinding& finding : pictures.findings) {
       const auto where = kWhere.find(finding.id);

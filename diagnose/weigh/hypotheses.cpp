@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
@@ -165,7 +166,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
     if (scan.visible && !fitted)
       comparison.all.push_back({{scan.effect}, false, scan.gain, scan.log_evidence, 0.0, -1});
   }
-  if (const auto dropped = effect_index("dropped_frames"); !left_out.contains(dropped)) {
+  if (const auto dropped = effect_index(ids::dropped_frames); !left_out.contains(dropped)) {
     work.at(0.4).look();
     comparison.missing = find_missing_frames(set, nominal);
     if (comparison.missing.count > 0) {

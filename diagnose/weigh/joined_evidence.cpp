@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/score_space.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/pictures/picture_sway.h"
@@ -30,8 +31,8 @@ double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::
   for (std::size_t g = 0; g < globals.size(); ++g) {
     if (globals[g].parameter == nullptr || globals[g].effect != effect) continue;
     const double value = fit.at.global[static_cast<Eigen::Index>(g)];
-    if (globals[g].parameter->member == &EffectValues::camera_m) amplitude_m = value;
-    if (globals[g].parameter->member == &EffectValues::camera_hz) f_hz = value;
+    if (globals[g].parameter->slot == slot_of(ids::camera_motion)) amplitude_m = value;
+    if (globals[g].parameter->slot == slot_of(ids::camera_motion, 1)) f_hz = value;
   }
   return f_hz > 0.0 ? camera_sway_support(pictures.clips, amplitude_m, f_hz) : otherwise;
 }
@@ -115,9 +116,9 @@ void temper(const TrackSet& set, Comparison& comparison) {
 
 void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
                    Comparison& comparison) {
-  const std::size_t codec = effect_index("compression"), sway = effect_index("camera_motion"),
-                    jitter = effect_index("timestamp_jitter"), rows = effect_index("rolling_shutter"),
-                    tails = effect_index("heavy_tailed_noise");
+  const std::size_t codec = effect_index(ids::compression), sway = effect_index(ids::camera_motion),
+                    jitter = effect_index(ids::timestamp_jitter), rows = effect_index(ids::rolling_shutter),
+                    tails = effect_index(ids::heavy_tailed_noise);
   std::vector<const PictureFinding*> findings;
   for (const PictureFinding& finding : pictures.findings) {
     if (!without.contains(effect_index(finding.id))) findings.push_back(&finding);
@@ -172,7 +173,7 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
         }
       }
       // A smeared marker is found less well the faster it moves: what the scatter shows of that is its own.
-      if (finding->id == "exposure_blur" && finding->seen) of_tracks = scatter;
+      if (finding->id == ids::exposure_blur && finding->seen) of_tracks = scatter;
       if (of_pictures + of_tracks < kWorthJoining) continue;
       with.log_evidence += of_pictures + of_tracks;
       with.gain += std::max(0.0, of_pictures);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/obvious_losses.h"
 
 namespace glidelab::diagnose {
@@ -59,7 +60,7 @@ Beside beside_effect(const TrackSet& set, const MotionFit& nominal, std::size_t 
 
 void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std::set<std::size_t>& without,
                        const Work& work, Comparison& comparison) {
-  const std::size_t dropped = effect_index("dropped_frames");
+  const std::size_t dropped = effect_index(ids::dropped_frames);
   if (without.contains(dropped)) return;
   if (comparison.missing.count + plain_losses(set).count + analysed_losses(set).count == 0) return;
   const std::vector<Hypothesis> pairs = pairs_with(dropped, comparison);

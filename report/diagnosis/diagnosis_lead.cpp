@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text/number_text.h"
+#include "diagnose/effects/effect_list.h"
 #include "report/diagnosis/next_step_words.h"
 #include "report/diagnosis/note_words.h"
 #include "report/diagnosis/verdict_words.h"
@@ -15,7 +16,7 @@ namespace {
 /// taken as they are, or where it is open.
 std::string consequence(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == diagnose::Verdict::effect) {
-    const bool lost_only = diagnosis.effects.size() == 1 && diagnosis.effects.front().id == "dropped_frames" &&
+    const bool lost_only = diagnosis.effects.size() == 1 && diagnosis.effects.front().id == diagnose::ids::dropped_frames &&
                            diagnosis.effects.front().equivalent_to.empty();
     if (lost_only)
       return " An analysis of these data reports the losses that it finds, and corrects the times after them.";

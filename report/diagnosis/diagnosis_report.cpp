@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
+#include "diagnose/effects/effect_list.h"
 #include "report/diagnosis/diagnosis_lead.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/explanation_text.h"
@@ -182,7 +183,7 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
     text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-    if (effect.id != "rolling_shutter" && effect.id != "camera_motion") continue;
+    if (effect.id != diagnose::ids::rolling_shutter && effect.id != diagnose::ids::camera_motion) continue;
     text +=
         fmt::format("<p class=\"note\">{} acts only in the twin's images: here the data are off by what it does.</p>\n",
                     effect_html(effect.id));

@@ -6,6 +6,7 @@
 
 #include "base/text/number_text.h"
 #include "base/text/size_text.h"
+#include "diagnose/effects/effect_library.h"
 #include "report/diagnosis/explanation_text.h"
 
 namespace glidelab::report {
@@ -46,9 +47,7 @@ std::string words_of(const diagnose::Diagnosis& diagnosis, const std::string& id
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     if (effect.id == id) return effect.words;
   }
-  if (id == "load_independent_friction") return "a dry friction that does not depend on the load";
-  if (id == "smoothing_bias") return "the smoothing's own bias";
-  return "inertia that is not in the weighed mass";
+  return std::string(diagnose::effect_of(id).words);
 }
 
 /// "either of two things, and these lines cannot tell which: A (…), or B (…)".
@@ -68,7 +67,8 @@ std::string alike_words(const diagnose::Diagnosis& diagnosis) {
   std::string text;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const std::string& id : effect.equivalent_to) {
-      if (id == "eddy_rolloff" || id == "power_law_drag") text += (text.empty() ? "" : " or ") + id;
+      if (id == diagnose::ids::eddy_rolloff || id == diagnose::ids::power_law_drag)
+        text += (text.empty() ? "" : " or ") + id;
     }
   }
   if (text.empty()) return text;

@@ -1,5 +1,5 @@
-/// What effects are called for people, beside the ids that stand in files and options: one table, after the effects'
-/// own descriptions.
+/// What effects are called on pages, beside the ids that stand in files and options: the names that the effects' own
+/// files give them (diagnose/effects/).
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace glidelab::report {
 
-/// "drag by the speed squared + rolling shutter" of "quadratic_drag + rolling_shutter"; "none" and "unknown" are told
+/// "quadratic drag + rolling shutter" of "quadratic_drag + rolling_shutter"; "none" and "unknown" are told
 /// in words too. What is the id of no effect (a cause without a name, in words already) stays as it is.
 std::string effect_name(std::string_view ids);
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
+#include <stdexcept>
 
-#include "validate/blind/blind_left_out.h"
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_scene_effects.h"
 
@@ -242,8 +244,8 @@ void add_confusion(const BlindOutcome& outcome, BlindScore& score) {
 }  // namespace
 
 std::string blind_class(const std::string& id, bool filmed) {
-  if (id == "frame_rate_error") return "scale_error";
-  if (id == "base_vibration" && !filmed) return "camera_motion";
+  if (id == diagnose::ids::frame_rate_error) return diagnose::ids::scale_error;
+  if (id == diagnose::ids::base_vibration && !filmed) return diagnose::ids::camera_motion;
   return id;
 }
 
@@ -294,6 +296,43 @@ BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
   std::sort(score.confusion.begin(), score.confusion.end(),
             [](const auto& a, const auto& b) { return a.truth < b.truth; });
   return score;
+}
+
+std::string verdict_without(const BlindOutcome& outcome) {
+  if (!outcome.left_out) throw std::logic_error("a case that was not diagnosed without its effect");
+  const BlindVerdict& without = *outcome.left_out;
+  if (without.verdict != "effect") return without.verdict;
+  // Equals of the truth on these data, as the full diagnosis says it, may take its place.
+  const std::set<std::string> named = named_by(outcome);
+  const bool truth_named = named.contains(true_class(outcome));
+  if (truth_named && named.contains(blind_class(without.effects.front().id, outcome.filmed))) return "equivalent";
+  const bool sure = std::any_of(without.effects.begin(), without.effects.end(),
+                                [](const BlindNamed& effect) { return effect.probability > kSureName; });
+  return sure ? "another name, probability over 0.8" : "another name";
+}
+
+std::vector<std::string> variables_of(const std::string& effect) {
+  const std::vector<std::string> speed = {"v_m_s"}, place = {"x_m"}, time = {"t_s", "clip"};
+  static const std::map<std::string, std::vector<std::string>> seen = {
+      {diagnose::ids::quadratic_drag, speed},
+      {diagnose::ids::eddy_rolloff, speed},
+      {diagnose::ids::power_law_drag, speed},
+      {diagnose::ids::stribeck, speed},
+      {diagnose::ids::load_independent_friction, {"mass_kg", "direction", "v_m_s"}},  // -sign(v) F0, by mass
+      {diagnose::ids::direction_asymmetry, {"direction", "v_m_s"}},
+      {diagnose::ids::track_bow, place},
+      {diagnose::ids::damping_gradient, {"x_m", "v_m_s"}},  // a drag by place
+      {diagnose::ids::rotational_inertia, {"mass_kg", "a_m_s2"}},
+      {diagnose::ids::tether, place},
+      {diagnose::ids::base_vibration, time},
+      {diagnose::ids::late_release, time},
+      {diagnose::ids::camera_motion, time},
+      {diagnose::ids::dropped_frames, time},
+      {diagnose::ids::perspective_error, place},
+      {diagnose::ids::lens_distortion, place},
+      {diagnose::ids::rolling_shutter, {"v_m_s", "x_m"}}};
+  const auto found = seen.find(effect);
+  return found == seen.end() ? std::vector<std::string>{} : found->second;
 }
 
 }  // namespace glidelab::validate

@@ -1,7 +1,7 @@
 /// Diagnoses of blind cases held against their truths.
 ///
 /// Two pairs of effects are the same thing on tracks and count as one (effects.md: "cannot be told apart, always"):
-/// scale_error and frame_rate_error; camera_motion and base_vibration. Pictures tell the second pair apart. Weak cases
+/// scale_error and frame_rate_error; camera_motion and base_vibration. Images tell the second pair apart. Weak cases
 /// gain less than 15 in log likelihood, moderate ones 15 to 50, strong ones more.
 #pragma once
 
@@ -81,7 +81,7 @@ struct BlindScore {
   double calibration_error = 0.0;                ///< expected: mean |stated - right| over cases
   /// Single and strong, and the gap that the true effect's own fit closes is clear: the diagnosis' closes 95 % of it.
   BlindShare shrunk;
-  std::map<std::string, BlindShare> left_out;  ///< by each word of verdict_without() (blind_left_out.h)
+  std::map<std::string, BlindShare> left_out;  ///< by each word of verdict_without()
   BlindShare left_out_where;                   ///< unknown of those: the first region is in a variable of the effect
   std::vector<ConfusionRow> confusion;
   std::size_t failed = 0;
@@ -89,5 +89,13 @@ struct BlindScore {
 
 /// Every case counts; one that could not be diagnosed as wrong, but not among the probabilities.
 BlindScore score_blind(const std::vector<BlindOutcome>& outcomes);
+
+/// "unknown", "none", "failed", "equivalent" (an equal of the truth on these data, as the full diagnosis says),
+/// "another name", "another name, probability over 0.8". std::logic_error of a case that was not diagnosed without it.
+std::string verdict_without(const BlindOutcome& outcome);
+
+/// The variables over which an effect of the list can be seen to act (`where` of a diagnosis.json, "clip" for a region
+/// of one clip), as effects.md has it; none of an effect that no region can show (an inclination alone, single frames).
+std::vector<std::string> variables_of(const std::string& effect);
 
 }  // namespace glidelab::validate

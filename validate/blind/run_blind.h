@@ -7,7 +7,7 @@
 ///     OUT/diagnoses/0012/left-out/     the same of the diagnosis without the case's effect
 ///     OUT/truth/0012.json              written after the diagnosis
 ///
-/// With pictures a case is rendered in OUT/making-0012/, which is gone before the diagnosis begins.
+/// With images a case is rendered in OUT/making-0012/, which is gone before the diagnosis begins.
 ///
 /// Run again, it goes on where it stopped: a case counts as done when its truth is there.
 #pragma once
@@ -42,7 +42,7 @@ using Diagnoser = std::function<std::string(const std::filesystem::path& folder,
 /// How many of the cases are whole in `out`: a run goes on behind them.
 std::size_t kept_cases(const BlindOptions& options, const std::filesystem::path& out);
 
-/// InputError for no cases, for an unknown effect, and where OUT holds another run. `render` is for pictures only.
+/// InputError for no cases, for an unknown effect, and where OUT holds another run. `render` is for images only.
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
                                     const Diagnoser& diagnose, const base::Progress& progress = base::no_progress,
                                     const FilmRenderer& render = {});

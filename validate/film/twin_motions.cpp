@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/analysis/analyze_motion.h"
+#include "diagnose/effects/effect_list.h"
 #include "render/scenario/scenario.h"
 #include "validate/tracks/made_tracks.h"
 
@@ -40,7 +41,8 @@ double size_of(const diagnose::Diagnosis& diagnosis, std::string_view id, std::s
 
 /// x as a wrong scale or perspective shows it, where one is named: (1 + e) x and x / (1 + p x), x of the data.
 void see(const diagnose::Diagnosis& diagnosis, MadeTracks& made) {
-  const double e = size_of(diagnosis, "scale_error", "e"), p = size_of(diagnosis, "perspective_error", "p_1_m");
+  const double e = size_of(diagnosis, diagnose::ids::scale_error, "e"),
+               p = size_of(diagnosis, diagnose::ids::perspective_error, "p_1_m");
   for (core::TrackData& track : made.tracks) {
     for (double& x_m : track.x_m) {
       const double there = diagnosis.twin_from_m + x_m;

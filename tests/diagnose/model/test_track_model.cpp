@@ -10,6 +10,10 @@ using namespace glidelab;
 
 namespace {
 
+constexpr auto kShake = diagnose::slot_of(diagnose::ids::base_vibration, 0);
+constexpr auto kHz = diagnose::slot_of(diagnose::ids::base_vibration, 1);
+constexpr auto kPhase = diagnose::slot_of(diagnose::ids::base_vibration, 2);
+
 /// Frames of 1.5 s, among them pairs that lie close together, and a gap.
 std::vector<double> times(double rate_hz) {
   std::vector<double> t;
@@ -59,19 +63,19 @@ TEST_CASE("a glider that runs up and comes back is where the closed form has it,
 TEST_CASE("a shaken glider is where the closed form has it, whatever the frames") {
   diagnose::TrackModel model = glider();
   model.v0_m_s = 0.4;
-  model.effects.shake_m_s2 = 0.3;
-  model.effects.shake_phase = 0.8;
+  model.effects[kShake] = 0.3;
+  model.effects[kPhase] = 0.8;
   for (const double hz : {3.0, 11.0}) {
-    model.effects.shake_hz = hz;
+    model.effects[kHz] = hz;
     const double k = model.k_n_s_m / model.mass_kg, omega = 2.0 * std::numbers::pi * hz;
     const double drive = model.gravity_m_s2 * std::sin(model.alpha_rad);
-    const double part = model.effects.shake_m_s2 / (k * k + omega * omega);
+    const double part = model.effects[kShake] / (k * k + omega * omega);
     const auto speed = [&](double t) {  // the forced motion
-      const double phase = omega * t + model.effects.shake_phase;
+      const double phase = omega * t + model.effects[kPhase];
       return drive / k + part * (k * std::sin(phase) - omega * std::cos(phase));
     };
     const auto place = [&](double t) {
-      const double phase = omega * t + model.effects.shake_phase;
+      const double phase = omega * t + model.effects[kPhase];
       return drive / k * t - part * (k / omega * std::cos(phase) + std::sin(phase));
     };
     const double own = model.v0_m_s - speed(0.0);  // and what dies away

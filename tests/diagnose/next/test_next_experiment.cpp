@@ -10,7 +10,7 @@
 #include "diagnose/next/next_changes.h"
 #include "diagnose/next/next_clip.h"
 #include "diagnose/next/next_unnamed.h"
-#include "diagnose/next/next_words.h"
+
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -195,16 +195,17 @@ TEST_CASE("a clip is worth what it is worth once it is recorded, also where the 
   }
 }
 
-TEST_CASE("what only pictures or single frames show has a sentence with its reason, what moves a glider has none") {
+TEST_CASE("what only images or single frames show has a sentence with its reason, what moves a glider has none") {
   using diagnose::Search;
   for (const diagnose::EffectInfo& info : diagnose::effect_list()) {
     const bool seen = info.search == Search::pictures || info.search == Search::noise ||
-                      info.search == Search::frames || info.search == Search::rows || info.id == "camera_motion";
+                      info.search == Search::frames || info.search == Search::rows ||
+                      info.id == std::string_view("camera_motion");
     INFO(info.id);
-    CHECK(diagnose::next_for_pictures(info.id).empty() != seen);
+    CHECK(info.next.empty() != seen);
   }
-  CHECK(diagnose::next_for_pictures("light_flicker").find("whole period") != std::string::npos);
-  CHECK(diagnose::next_for_pictures("rolling_shutter").find("upside down") != std::string::npos);
+  CHECK(diagnose::effect_of("light_flicker").next.find("whole period") != std::string::npos);
+  CHECK(diagnose::effect_of("rolling_shutter").next.find("upside down") != std::string::npos);
 }
 
 TEST_CASE("what has no name is followed into the speeds, places and masses in which it lies") {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "base/errors.h"
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "diagnose/weigh/hypotheses.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

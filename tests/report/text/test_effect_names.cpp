@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
 #include "tests/catch.h"
@@ -45,7 +45,7 @@ TEST_CASE("every effect with a size says what the letters of its size mean, on t
 }
 
 TEST_CASE("effects that act together are named together, and a cause without a name keeps its words") {
-  CHECK(report::effect_name("quadratic_drag + tether") == "drag by the speed squared + cable that tightens");
+  CHECK(report::effect_name("quadratic_drag + tether") == "quadratic drag + cable that tightens");
   CHECK(report::effect_name("unknown: friction of each mass") == "unknown: friction of each mass");
   CHECK(report::effect_name("") == "");
   CHECK(report::effect_html("tether") == "cable that tightens <small><code>tether</code></small>");
@@ -69,9 +69,9 @@ TEST_CASE("the page of a diagnosis tells an effect by its name, and its id besid
   of.ranking[1].log_evidence_gain -= 5.84;
   const std::string page = report::diagnosis_report("named", of, {}).html;
   const auto has = [&](const char* part) { return page.find(part) != std::string::npos; };
-  CHECK(has("<b>0.900</b><span>friction whatever the load, alone or with another</span>"));
-  CHECK(has("friction whatever the load <small><code>load_independent_friction</code></small>"));
-  CHECK(has("friction whatever the load + cable that tightens"));
+  CHECK(has("<b>0.900</b><span>load-independent friction, alone or with another</span>"));
+  CHECK(has("load-independent friction <small><code>load_independent_friction</code></small>"));
+  CHECK(has("load-independent friction + cable that tightens"));
   // Both print alike; by how much the second is behind, and nothing at all, is told beside.
   CHECK(has("+1.235·10⁸</td><td class=\"n\">+0.0<"));
   CHECK(has("+1.235·10⁸</td><td class=\"n\">−5.8<"));

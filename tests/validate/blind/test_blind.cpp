@@ -5,7 +5,7 @@
 #include "base/errors.h"
 #include "base/files/staged_output.h"
 #include "core/experiment/experiment.h"
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "validate/blind/case/blind_effects.h"

@@ -10,7 +10,7 @@
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker.h"
-#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
 #include "render/film/render_experiment.h"
 #include "render/scenario/scene.h"
 #include "sim/motion/simulate.h"

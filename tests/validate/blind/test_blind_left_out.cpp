@@ -1,4 +1,4 @@
-#include "validate/blind/blind_left_out.h"
+#include "validate/blind/blind_score.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -10,7 +10,6 @@
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
-#include "validate/blind/case/blind_choice.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_strength.h"
 

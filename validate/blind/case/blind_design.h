@@ -4,20 +4,13 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "validate/blind/case/blind_motion.h"
+#include "validate/blind/case/blind_random.h"
 
 namespace glidelab::validate {
-
-using BlindRandom = std::mt19937_64;
-
-/// Uniform in [low, high), evenly over the logarithm, and a standard normal deviate.
-double uniform(BlindRandom& random, double low, double high);
-double log_uniform(BlindRandom& random, double low, double high);
-double normal(BlindRandom& random);
 
 struct BlindGroup {
   std::string name;
@@ -70,7 +63,7 @@ struct BlindFilm {
   std::vector<double> off_m;                                        ///< added to each position besides the noise
 };
 
-/// Nominal: the law of equation (8), frames at even times, seen as it is.
+/// Nominal: linear drag and dry friction, frames at even times, seen as it is.
 BlindFilm nominal_film(const BlindDesign& design, const BlindClip& clip);
 
 /// Positions as the camera has them, without noise; NaN where the glider has come to rest.

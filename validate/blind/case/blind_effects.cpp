@@ -5,13 +5,12 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/blind_outside.h"
 #include "validate/blind/case/blind_seen_effects.h"
 
 namespace glidelab::validate {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double sign_of(double v) {
   return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0;
@@ -159,7 +158,7 @@ BlindEffect wheels(const BlindDesign& design, BlindRandom&) {
 
 const std::vector<DrawnEffect>& force_library() {
   static const std::vector<DrawnEffect> list = {
-      {"quadratic_drag",
+      {diagnose::ids::quadratic_drag,
        [](const BlindDesign& design, BlindRandom&) {
          const double k = design.k_n_s_m;
          return force_effect(
@@ -171,7 +170,7 @@ const std::vector<DrawnEffect>& force_library() {
                return std::map<std::string, double>{{"c_kg_m", size * k}};
              });
        }},
-      {"eddy_rolloff",
+      {diagnose::ids::eddy_rolloff,
        [](const BlindDesign&, BlindRandom&) {
          return force_effect(
              6.0,
@@ -182,16 +181,16 @@ const std::vector<DrawnEffect>& force_library() {
                return std::map<std::string, double>{{"v_c_m_s", 1.0 / std::sqrt(size)}};
              });
        }},
-      {"power_law_drag", drag_power},
-      {"stribeck", stribeck},
-      {"load_independent_friction", fixed_friction},
-      {"direction_asymmetry", asymmetry},
-      {"track_bow", bow},
-      {"damping_gradient", drag_gradient},
-      {"rotational_inertia", wheels},
-      {"tether", tether},
-      {"base_vibration", vibration},
-      {"late_release", hand},
+      {diagnose::ids::power_law_drag, drag_power},
+      {diagnose::ids::stribeck, stribeck},
+      {diagnose::ids::load_independent_friction, fixed_friction},
+      {diagnose::ids::direction_asymmetry, asymmetry},
+      {diagnose::ids::track_bow, bow},
+      {diagnose::ids::damping_gradient, drag_gradient},
+      {diagnose::ids::rotational_inertia, wheels},
+      {diagnose::ids::tether, tether},
+      {diagnose::ids::base_vibration, vibration},
+      {diagnose::ids::late_release, hand},
   };
   return list;
 }

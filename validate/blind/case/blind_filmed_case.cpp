@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
-#include "validate/blind/case/blind_choice.h"
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/blind_retouch.h"
 #include "validate/blind/case/blind_scene_effects.h"
 
@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kNone = 0.25, kSingle = 0.82;
-constexpr double kLeastGain = 8.0, kMostGain = 1500.0;
+constexpr double kFilmedNone = 0.25, kFilmedSingle = 0.82;
+constexpr double kFilmedLeastGain = 8.0, kFilmedMostGain = 1500.0;
 constexpr int kMostScenes = 400;
 constexpr std::uint32_t kFilmed = 0x66696c6d;  // so that filmed cases are no tracks' cases of the same seed
 
@@ -43,15 +43,15 @@ FilmedCase make_filmed_case(std::uint64_t seed, std::size_t index, const BlindDr
   if (!draw.only.empty()) {
     one.kind = outside(draw.only) ? BlindKind::outside : BlindKind::single;
   } else {
-    one.kind = lot < kNone ? BlindKind::none : lot < kSingle ? BlindKind::single : BlindKind::outside;
+    one.kind = lot < kFilmedNone ? BlindKind::none : lot < kFilmedSingle ? BlindKind::single : BlindKind::outside;
   }
   for (int attempt = 0; attempt < kMostScenes; ++attempt) {
     const auto& ids = one.kind == BlindKind::outside ? filmed_outside_effects() : filmed_effects();
     const std::string id = one.kind == BlindKind::none ? "" : draw.only.empty() ? one_of(ids, random) : draw.only;
-    const double wanted = log_uniform(random, kLeastGain, kMostGain);
+    const double wanted = log_uniform(random, kFilmedLeastGain, kFilmedMostGain);
     one.scene = draw_scene(random, needs_lossless(id));
     one.told.clear();
-    if (one.scene.camera.lossy()) one.told.emplace_back("compression");
+    if (one.scene.camera.lossy()) one.told.emplace_back(diagnose::ids::compression);
     if (id.empty()) return one;
     const auto cause = put_filmed_effect(id, wanted, one.scene, random);
     if (!cause) continue;

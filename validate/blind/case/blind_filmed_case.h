@@ -3,7 +3,7 @@
 ///
 /// Drawn from (seed, index) alone: scene, cause and strength (blind_scene_effects.h; 8 to 1500). The folder shown to
 /// the diagnosis is what the renderer wrote, less what is withheld; the scenario, the renderer's own truth and all that
-/// was done to the pictures are kept from it.
+/// was done to the images are kept from it.
 #pragma once
 
 #include <cstdint>

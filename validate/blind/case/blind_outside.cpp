@@ -4,12 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "validate/blind/case/blind_seen_effects.h"
-
 namespace glidelab::validate {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double bell(double z) {
   return std::exp(-0.5 * z * z);
@@ -158,7 +154,7 @@ BlindEffect pixel_locking(const BlindDesign&, BlindRandom& random) {
                      [=](double size, double x, double) { return x + size * std::sin(kTurn * x / pixel + phase); });
 }
 
-/// A tripod that sags: the picture drifts, faster at first, each clip its own way.
+/// A tripod that sags: the image drifts, faster at first, each clip its own way.
 BlindEffect sagging_tripod(const BlindDesign& design, BlindRandom& random) {
   std::vector<double> share;
   for (std::size_t c = 0; c < design.clips.size(); ++c) share.push_back(normal(random));

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "validate/blind/case/blind_effects.h"
+#include "validate/blind/case/blind_effect.h"
 
 namespace glidelab::validate {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/blind_strength.h"
 
 namespace glidelab::validate {
@@ -40,8 +41,8 @@ std::optional<BlindCause> long_exposure(double wanted, BlindScene& scene, BlindR
   const double usual_s = std::hypot(0.4 * stated_s, 0.2 / camera.px_per_m() / top_speed(scene));
   // Rows that are read one after the other must still end within the frame time.
   const double largest_s = 0.85 / camera.rate_hz - camera.line_s * camera.height_px - stated_s;
-  auto cause =
-      by_pictures("exposure_blur", usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s, wanted, "exposure_s");
+  auto cause = by_pictures(diagnose::ids::exposure_blur, usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s, wanted,
+                           "exposure_s");
   if (!cause) return cause;
   camera.exposure_s = stated_s + cause->size;
   cause->parameters["exposure_s"] = camera.exposure_s;
@@ -55,7 +56,8 @@ std::optional<BlindCause> hidden_rolling(double wanted, BlindScene& scene, Blind
   const double usual_s = 0.02 / (marker_px * top_speed(scene) * camera.px_per_m());
   const double largest_s = (1.0 / camera.rate_hz - camera.exposure_s) / camera.height_px;
   camera.line_s = 0.0;
-  auto cause = by_pictures("rolling_shutter", usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s, wanted, "line_s");
+  auto cause = by_pictures(diagnose::ids::rolling_shutter, usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s,
+                           wanted, "line_s");
   if (!cause) return cause;
   camera.line_s = cause->size;
   scene.stated.push_back({"shutter", "\"global\""});
@@ -76,7 +78,7 @@ std::optional<BlindCause> flicker(double wanted, BlindScene& scene, BlindRandom&
   if (folded * shortest_s < 5.0 || folded > 0.47 * camera.rate_hz) return std::nullopt;
   const double half_turns = std::numbers::pi * hz * camera.exposure_s;
   const double usual = (camera.lossy() ? 0.01 : 0.002) / (std::sin(half_turns) / half_turns);
-  auto cause = by_pictures("light_flicker", usual * std::sqrt(2.0 * wanted), usual, 0.25, wanted, "depth");
+  auto cause = by_pictures(diagnose::ids::light_flicker, usual * std::sqrt(2.0 * wanted), usual, 0.25, wanted, "depth");
   if (!cause) return cause;
   scene.flicker_depth = cause->size;
   scene.flicker_hz = hz;
@@ -86,8 +88,8 @@ std::optional<BlindCause> flicker(double wanted, BlindScene& scene, BlindRandom&
 
 std::optional<BlindCause> gradient(double wanted, BlindScene& scene, BlindRandom& random) {
   constexpr double kUsual_1_m = 0.1, kMost_1_m = 1.2;
-  auto cause =
-      by_pictures("light_gradient", kUsual_1_m * std::sqrt(2.0 * wanted), kUsual_1_m, kMost_1_m, wanted, "gradient");
+  auto cause = by_pictures(diagnose::ids::light_gradient, kUsual_1_m * std::sqrt(2.0 * wanted), kUsual_1_m, kMost_1_m,
+                           wanted, "gradient");
   if (!cause) return cause;
   scene.gradient_1_m = uniform(random, 0.0, 1.0) < 0.5 ? -cause->size : cause->size;
   cause->parameters["gradient"] = scene.gradient_1_m;
@@ -100,7 +102,7 @@ std::optional<BlindCause> hidden_codec(double wanted, BlindScene& scene, BlindRa
   const double noise_code = 253.0 / camera.full_well_e * std::hypot(std::sqrt(wall_e), camera.read_noise_e);
   const double usual = 3.0 * std::hypot(noise_code, 0.3), step = usual * std::sqrt(2.0 * wanted);
   scene.retouch.rewritten = true;
-  BlindCause cause{"compression", step, {}, "", wanted};
+  BlindCause cause{diagnose::ids::compression, step, {}, "", wanted};
   if (uniform(random, 0.0, 1.0) < 0.5) {
     // The quantiser's step doubles every 6 of crf, 0.625 at 0.
     camera.codec = "h264";

@@ -1,8 +1,8 @@
-/// Effects of effects.md that a filmed blind case has in its pictures alone: they move no position.
+/// Effects of effects.md that a filmed blind case has in its images alone: they move no position.
 ///
 /// Strength is
 ///
-///     gain = z²/2,   z = size / what a picture may show where nothing is wrong,
+///     gain = z²/2,   z = size / what a image may show where nothing is wrong,
 ///
 /// for exposure_blur a smear of 0.4 of the stated exposure's or 0.2 px, for rolling_shutter a shear of 0.02 px over the
 /// marker's height at its fastest, for light_flicker 0.2 % of the light (1 % in a lossy file), for light_gradient 10 %

@@ -50,7 +50,7 @@ render::FrameMotion moved_to(render::FrameMotion motion, const ShownAt& shown_at
   return motion;
 }
 
-/// The pictures of a clip, one after the other.
+/// The images of a clip, one after the other.
 using Pictures = std::function<std::optional<cv::Mat>()>;
 
 Pictures as_filed(const fs::path& clip, double rate_hz) {

@@ -3,7 +3,7 @@
 /// loss.
 ///
 /// A glider that is shown elsewhere is drawn there, by the same camera with the same noise, with a marker of the same
-/// shape (a lens that shifts it by x² or x³ would stretch it by some percent). Its pictures are not pulled instead: one
+/// shape (a lens that shifts it by x² or x³ would stretch it by some percent). Its images are not pulled instead: one
 /// whose edges are sharper than its pixels cannot be pulled by parts of a pixel, and centres would be off by up to
 /// 0.03 px, in beats of some centimetres that no lens makes.
 #pragma once

@@ -7,15 +7,14 @@
 #include <numbers>
 
 #include "core/pictures/marker/marker_bound.h"
-#include "validate/blind/case/blind_choice.h"
 
 namespace glidelab::validate {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMarker_m = 0.02, kReflectance = 1.1, kWhite = 0.75, kWall = 0.38;
-constexpr double kReach_m = 0.46;  // from the reference point: the marker is in the picture
-constexpr std::size_t kFewestFrames = 40, kMostFrames = 150;
+constexpr double kReach_m = 0.46;  // from the reference point: the marker is in the image
+constexpr std::size_t kFewestFrames = 40, kMostFilmedFrames = 150;
 
 BlindCamera draw_camera(BlindRandom& random, bool lossless) {
   BlindCamera camera;
@@ -67,9 +66,9 @@ double added_px(const BlindCamera& camera) {
   return camera.tone == "linear" ? 0.001 : 0.002;
 }
 
-/// Frames until the glider has left the picture or rests.
+/// Frames until the glider has left the image or rests.
 std::size_t frames_of(const BlindDesign& design, BlindClip clip) {
-  clip.frames = kMostFrames;
+  clip.frames = kMostFilmedFrames;
   const BlindFilm film = nominal_film(design, clip);
   const auto motion = blind_motion(film.law, clip.x0_m, clip.v0_m_s, film.true_t_s);
   std::size_t frames = 0;

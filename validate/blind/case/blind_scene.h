@@ -1,5 +1,5 @@
 /// What stands before the camera in a filmed blind case, and the camera: drawn, and written as a scenario of the
-/// renderer, together with what experiment.toml is to say otherwise and what is done to the pictures afterwards.
+/// renderer, together with what experiment.toml is to say otherwise and what is done to the images afterwards.
 ///
 /// A small experiment: 640 x 240 pixels 1.2 to 1.4 m from the track, 100 to 240 Hz, 2 to 6 clips of 40 to 150 frames,
 /// one or two masses, a level track, an inclined one or both; a sensor of 8,000 to 60,000 electrons, sometimes a tone
@@ -47,7 +47,7 @@ struct BlindStated {
   std::string value;  ///< as TOML; empty: the line is taken out
 };
 
-/// What is done to the pictures after they were taken, and before they are filed.
+/// What is done to the images after they were taken, and before they are filed.
 struct BlindRetouch {
   bool rewritten = false;  ///< the clips are filed anew, without loss
   /// By clip: where a point at x (on the track) is shown instead. Empty: nowhere else.

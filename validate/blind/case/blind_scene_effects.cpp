@@ -9,14 +9,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_picture_effects.h"
 #include "validate/blind/case/blind_strength.h"
 
 namespace glidelab::validate {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 using Put = std::function<std::optional<BlindCause>(double wanted, BlindScene&, BlindRandom&)>;
 using Parameters = std::map<std::string, double>;
@@ -26,9 +25,9 @@ Put as_in_tracks(std::string id, std::function<void(const BlindEffect&, double s
   return [=](double wanted, BlindScene& scene, BlindRandom& random) -> std::optional<BlindCause> {
     BlindEffect effect = draw_effect(id, scene.motion, random);
     // The renderer's clock is at most a tenth wrong.
-    if (id == "frame_rate_error") effect.largest = std::min(effect.largest, 0.09);
+    if (id == diagnose::ids::frame_rate_error) effect.largest = std::min(effect.largest, 0.09);
     // Exposures that follow each other must not overlap, each up to six standard deviations off its time.
-    if (id == "timestamp_jitter") {
+    if (id == diagnose::ids::timestamp_jitter) {
       const double exposed_s = scene.camera.exposure_s + scene.camera.line_s * scene.camera.height_px;
       effect.largest = std::min(effect.largest, (1.0 / scene.camera.rate_hz - exposed_s) / 12.0);
       if (!(effect.largest > 0.0)) return std::nullopt;  // a shutter that is open for the whole frame time
@@ -65,7 +64,7 @@ Put as_drag_factor(std::string id) {
   });
 }
 
-/// A displacement that goes with the place alone: the pictures are pulled by it.
+/// A displacement that goes with the place alone: the images are pulled by it.
 Put as_warp(std::string id) {
   return as_in_tracks(id, [](const BlindEffect& effect, double size, BlindScene& scene) {
     scene.retouch.rewritten = true;
@@ -97,7 +96,7 @@ std::optional<BlindCause> friction_of_each_run(double wanted, BlindScene& scene,
   return BlindCause{effect.id, strength->size, {}, "clip", strength->gain};
 }
 
-/// A picture that is put together of two, which do not quite meet: a step in the place.
+/// An image that is put together of two, which do not quite meet: a step in the place.
 std::optional<BlindCause> seam_in_picture(double wanted, BlindScene& scene, BlindRandom& random) {
   const double at = uniform(random, -0.25, 0.25);
   const auto see = [at](double size, double x) { return x + 0.5 * size * std::tanh((x - at) / 0.02); };
@@ -136,7 +135,7 @@ void lose_frames(const BlindEffect& effect, double size, BlindScene& scene) {
 std::optional<BlindCause> shaken_camera(double wanted, BlindScene& scene, BlindRandom& random) {
   const bool pans = uniform(random, 0.0, 1.0) < 0.5;
   const double phase_deg = uniform(random, 0.0, 360.0);
-  return as_in_tracks("camera_motion", [=](const BlindEffect& effect, double size, BlindScene& shaken) {
+  return as_in_tracks(diagnose::ids::camera_motion, [=](const BlindEffect& effect, double size, BlindScene& shaken) {
     shaken.mount =
         fmt::format("[[mount.motion]]\naxis = \"{}\"\n{} = {:.9g}\nfrequency_hz = {:.9g}\nphase_deg = {:.6g}\n\n",
                     pans ? "pan" : "x", pans ? "amplitude_deg" : "amplitude_m",
@@ -146,71 +145,73 @@ std::optional<BlindCause> shaken_camera(double wanted, BlindScene& scene, BlindR
 
 const std::vector<std::pair<std::string, Put>>& library() {
   static const std::vector<std::pair<std::string, Put>> list = {
-      {"quadratic_drag", as_law("quadratic_drag",
-                                [](const Parameters& p, double, double, BlindForces& forces) {
-                                  forces.more =
-                                      fmt::format("[[configuration.force]]\nlaw = \"quadratic\"\nc_kg_m = {:.9g}\n",
-                                                  p.at("c_kg_m"));
-                                })},
-      {"eddy_rolloff", as_law("eddy_rolloff",
-                              [](const Parameters& p, double, double, BlindForces& forces) {
-                                forces.drag_law = "eddy_rolloff";
-                                forces.drag_keys = fmt::format("v_c_m_s = {:.9g}\n", p.at("v_c_m_s"));
-                              })},
-      {"power_law_drag", as_law("power_law_drag",
-                                [](const Parameters& p, double, double, BlindForces& forces) {
-                                  forces.drag_law = "power_law";
-                                  forces.drag_keys = fmt::format("n = {:.9g}\n", p.at("n"));
-                                })},
-      {"stribeck", as_law("stribeck",
-                          [](const Parameters& p, double, double, BlindForces& forces) {
-                            forces.friction_law = "stribeck";
-                            forces.friction_keys =
-                                fmt::format("s = {:.9g}\nv_s_m_s = {:.9g}\n", p.at("s"), p.at("v_s_m_s"));
-                          })},
-      {"load_independent_friction",
-       as_law("load_independent_friction",
+      {diagnose::ids::quadratic_drag, as_law(diagnose::ids::quadratic_drag,
+                                             [](const Parameters& p, double, double, BlindForces& forces) {
+                                               forces.more = fmt::format(
+                                                   "[[configuration.force]]\nlaw = \"quadratic\"\nc_kg_m = {:.9g}\n",
+                                                   p.at("c_kg_m"));
+                                             })},
+      {diagnose::ids::eddy_rolloff, as_law(diagnose::ids::eddy_rolloff,
+                                           [](const Parameters& p, double, double, BlindForces& forces) {
+                                             forces.drag_law = "eddy_rolloff";
+                                             forces.drag_keys = fmt::format("v_c_m_s = {:.9g}\n", p.at("v_c_m_s"));
+                                           })},
+      {diagnose::ids::power_law_drag, as_law(diagnose::ids::power_law_drag,
+                                             [](const Parameters& p, double, double, BlindForces& forces) {
+                                               forces.drag_law = "power_law";
+                                               forces.drag_keys = fmt::format("n = {:.9g}\n", p.at("n"));
+                                             })},
+      {diagnose::ids::stribeck, as_law(diagnose::ids::stribeck,
+                                       [](const Parameters& p, double, double, BlindForces& forces) {
+                                         forces.friction_law = "stribeck";
+                                         forces.friction_keys =
+                                             fmt::format("s = {:.9g}\nv_s_m_s = {:.9g}\n", p.at("s"), p.at("v_s_m_s"));
+                                       })},
+      {diagnose::ids::load_independent_friction,
+       as_law(diagnose::ids::load_independent_friction,
               [](const Parameters& p, double mass_kg, double alpha_rad, BlindForces& forces) {
                 forces.mu += p.at("force_n") / (mass_kg * 9.80665 * std::cos(alpha_rad));
               })},
       // -mu (1 + d sign(v)) N sign(v) is -mu N sign(v) and a constant force.
-      {"direction_asymmetry", as_law("direction_asymmetry",
-                                     [](const Parameters& p, double mass_kg, double alpha_rad, BlindForces& forces) {
-                                       forces.more = fmt::format(
-                                           "[[configuration.force]]\nlaw = \"constant\"\nforce_n = {:.9g}\n",
-                                           -forces.mu * p.at("d") * mass_kg * 9.80665 * std::cos(alpha_rad));
-                                     })},
+      {diagnose::ids::direction_asymmetry,
+       as_law(diagnose::ids::direction_asymmetry,
+              [](const Parameters& p, double mass_kg, double alpha_rad, BlindForces& forces) {
+                forces.more = fmt::format("[[configuration.force]]\nlaw = \"constant\"\nforce_n = {:.9g}\n",
+                                          -forces.mu * p.at("d") * mass_kg * 9.80665 * std::cos(alpha_rad));
+              })},
       // (m + w) a = F is m a = F m/(m + w).
-      {"rotational_inertia", as_law("rotational_inertia",
-                                    [](const Parameters& p, double mass_kg, double alpha_rad, BlindForces& forces) {
-                                      const double share = mass_kg / (mass_kg + p.at("mass_kg"));
-                                      forces.k_n_s_m *= share;
-                                      forces.mu *= share;
-                                      forces.more =
-                                          fmt::format("[[configuration.force]]\nlaw = \"constant\"\nforce_n = {:.9g}\n",
-                                                      (share - 1.0) * mass_kg * 9.80665 * std::sin(alpha_rad));
-                                    })},
-      {"frame_rate_error", as_in_tracks("frame_rate_error",
-                                        [](const BlindEffect& effect, double size, BlindScene& scene) {
-                                          scene.rate_error = 1.0 / (1.0 + effect.truth(size).at("e")) - 1.0;
-                                        })},
-      {"scale_error", as_in_tracks("scale_error",
-                                   [](const BlindEffect& effect, double size, BlindScene& scene) {
-                                     scene.stated.push_back(
-                                         {"square_m",
-                                          fmt::format("{:.9g}", 0.04 * (1.0 + effect.truth(size).at("e")))});
-                                   })},
-      {"perspective_error", as_warp("perspective_error")},
-      {"lens_distortion", as_warp("lens_distortion")},
-      {"dropped_frames", as_in_tracks("dropped_frames", lose_frames)},
-      {"timestamp_jitter", as_in_tracks("timestamp_jitter", [](const BlindEffect&, double size,
-                                                               BlindScene& scene) { scene.jitter_s = size; })},
-      {"camera_motion", shaken_camera},
-      {"exposure_blur", long_exposure},
-      {"rolling_shutter", hidden_rolling},
-      {"light_flicker", flicker},
-      {"light_gradient", gradient},
-      {"compression", hidden_codec},
+      {diagnose::ids::rotational_inertia,
+       as_law(diagnose::ids::rotational_inertia,
+              [](const Parameters& p, double mass_kg, double alpha_rad, BlindForces& forces) {
+                const double share = mass_kg / (mass_kg + p.at("mass_kg"));
+                forces.k_n_s_m *= share;
+                forces.mu *= share;
+                forces.more = fmt::format("[[configuration.force]]\nlaw = \"constant\"\nforce_n = {:.9g}\n",
+                                          (share - 1.0) * mass_kg * 9.80665 * std::sin(alpha_rad));
+              })},
+      {diagnose::ids::frame_rate_error, as_in_tracks(diagnose::ids::frame_rate_error,
+                                                     [](const BlindEffect& effect, double size, BlindScene& scene) {
+                                                       scene.rate_error =
+                                                           1.0 / (1.0 + effect.truth(size).at("e")) - 1.0;
+                                                     })},
+      {diagnose::ids::scale_error,
+       as_in_tracks(diagnose::ids::scale_error,
+                    [](const BlindEffect& effect, double size, BlindScene& scene) {
+                      scene.stated.push_back(
+                          {"square_m", fmt::format("{:.9g}", 0.04 * (1.0 + effect.truth(size).at("e")))});
+                    })},
+      {diagnose::ids::perspective_error, as_warp(diagnose::ids::perspective_error)},
+      {diagnose::ids::lens_distortion, as_warp(diagnose::ids::lens_distortion)},
+      {diagnose::ids::dropped_frames, as_in_tracks(diagnose::ids::dropped_frames, lose_frames)},
+      {diagnose::ids::timestamp_jitter,
+       as_in_tracks(diagnose::ids::timestamp_jitter,
+                    [](const BlindEffect&, double size, BlindScene& scene) { scene.jitter_s = size; })},
+      {diagnose::ids::camera_motion, shaken_camera},
+      {diagnose::ids::exposure_blur, long_exposure},
+      {diagnose::ids::rolling_shutter, hidden_rolling},
+      {diagnose::ids::light_flicker, flicker},
+      {diagnose::ids::light_gradient, gradient},
+      {diagnose::ids::compression, hidden_codec},
   };
   return list;
 }
@@ -224,7 +225,7 @@ const std::vector<std::pair<std::string, Put>>& outside_library_filmed() {
   return list;
 }
 
-std::vector<std::string> ids_of(const std::vector<std::pair<std::string, Put>>& list) {
+std::vector<std::string> filmed_ids_of(const std::vector<std::pair<std::string, Put>>& list) {
   std::vector<std::string> ids;
   for (const auto& [id, put] : list) ids.push_back(id);
   return ids;
@@ -233,18 +234,22 @@ std::vector<std::string> ids_of(const std::vector<std::pair<std::string, Put>>& 
 }  // namespace
 
 const std::vector<std::string>& filmed_effects() {
-  static const std::vector<std::string> ids = ids_of(library());
+  static const std::vector<std::string> ids = filmed_ids_of(library());
   return ids;
 }
 
 const std::vector<std::string>& filmed_outside_effects() {
-  static const std::vector<std::string> ids = ids_of(outside_library_filmed());
+  static const std::vector<std::string> ids = filmed_ids_of(outside_library_filmed());
   return ids;
 }
 
 bool needs_lossless(const std::string& id) {
-  static const std::vector<std::string> filed_anew = {"perspective_error", "lens_distortion", "dropped_frames",
-                                                      "compression",       "flawed_pane",     "scale_of_each_clip",
+  static const std::vector<std::string> filed_anew = {diagnose::ids::perspective_error,
+                                                      diagnose::ids::lens_distortion,
+                                                      diagnose::ids::dropped_frames,
+                                                      diagnose::ids::compression,
+                                                      "flawed_pane",
+                                                      "scale_of_each_clip",
                                                       "seam_in_picture"};
   return std::find(filed_anew.begin(), filed_anew.end(), id) != filed_anew.end();
 }

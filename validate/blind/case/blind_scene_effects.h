@@ -1,5 +1,5 @@
 /// What a filmed blind case has besides what its folder says: effects of effects.md made in the scenario, in what
-/// experiment.toml says of it, or in the pictures; and some that are in no list.
+/// experiment.toml says of it, or in the images; and some that are in no list.
 ///
 /// Strength of what displaces positions is the log likelihood of blind_strength.h, the noise being the bound that the
 /// camera's noise sets. What moves no position has that of blind_picture_effects.h.
@@ -18,7 +18,7 @@ namespace glidelab::validate {
 const std::vector<std::string>& filmed_effects();
 const std::vector<std::string>& filmed_outside_effects();
 
-/// Whether it is made in pictures that are filed anew, which a file with loss would show twice.
+/// Whether it is made in images that are filed anew, which a file with loss would show twice.
 bool needs_lossless(const std::string& id);
 
 /// Puts the effect into the scene with about the wanted gain; nothing where that scene cannot show it.

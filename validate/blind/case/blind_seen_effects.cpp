@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnose/effects/effect_list.h"
+
 namespace glidelab::validate {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// A change of what is seen, the same in all clips.
 BlindEffect view_effect(double largest, std::function<double(double size, double x)> see,
@@ -147,10 +147,10 @@ BlindEffect lens(const BlindDesign&, BlindRandom& random) {
 
 const std::vector<DrawnEffect>& seen_library() {
   static const std::vector<DrawnEffect> list = {
-      {"frame_rate_error", clock_rate},
-      {"dropped_frames", missing_frames},
-      {"timestamp_jitter", jitter},
-      {"scale_error",
+      {diagnose::ids::frame_rate_error, clock_rate},
+      {diagnose::ids::dropped_frames, missing_frames},
+      {diagnose::ids::timestamp_jitter, jitter},
+      {diagnose::ids::scale_error,
        [](const BlindDesign&, BlindRandom& random) {
          const double sign = either_sign(random);
          return view_effect(
@@ -159,7 +159,7 @@ const std::vector<DrawnEffect>& seen_library() {
                return std::map<std::string, double>{{"e", sign * size}};
              });
        }},
-      {"perspective_error",
+      {diagnose::ids::perspective_error,
        [](const BlindDesign&, BlindRandom& random) {
          const double sign = either_sign(random);
          return view_effect(
@@ -168,27 +168,11 @@ const std::vector<DrawnEffect>& seen_library() {
                return std::map<std::string, double>{{"p_1_m", sign * size}};
              });
        }},
-      {"lens_distortion", lens},
-      {"camera_motion", shaking_camera},
-      {"heavy_tailed_noise", tails},
+      {diagnose::ids::lens_distortion, lens},
+      {diagnose::ids::camera_motion, shaking_camera},
+      {diagnose::ids::heavy_tailed_noise, tails},
   };
   return list;
-}
-
-double either_sign(BlindRandom& random) {
-  return uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0;
-}
-
-std::vector<double> phases(const BlindDesign& design, BlindRandom& random) {
-  std::vector<double> phase;
-  for (std::size_t c = 0; c < design.clips.size(); ++c) phase.push_back(uniform(random, 0.0, kTurn));
-  return phase;
-}
-
-double wave_hz(const BlindDesign& design, BlindRandom& random) {
-  const BlindClip& clip = design.clips.front();
-  const double longest = static_cast<double>(clip.frames) / clip.rate_hz;
-  return log_uniform(random, 3.0 / longest, std::min(0.35 * clip.rate_hz, 40.0));
 }
 
 }  // namespace glidelab::validate

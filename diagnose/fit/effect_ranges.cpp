@@ -1,4 +1,4 @@
-#include "diagnose/effects/effect_ranges.h"
+#include "diagnose/fit/effect_ranges.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,10 +6,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kFewestTurns = 2.0;   // in the longest motion: slower is a drift, which other causes make as well
-constexpr double kFastest = 0.48;      // of the frame rate
-constexpr double kFastestLossy = 0.2;  // a codec takes frames by twos to fours, each with its own error
-constexpr double kLatest = 0.4;        // of the longest motion: later it is no start
+constexpr double kFewestTurns = 2.0;    // in the longest motion: slower is a drift, which other causes make as well
+constexpr double kFastest = 0.48;       // of the frame rate
+constexpr double kFastestLossy = 0.2;   // a codec takes frames by twos to fours, each with its own error
+constexpr double kLatestRelease = 0.4;  // of the longest motion: later it is no start
 constexpr double kFewFrames = 3.0;
 constexpr double kShortestPush = 4.0;  // frames: one that ends before that is an error of single frames
 
@@ -38,21 +38,20 @@ ParameterRange range_of_places(const TrackSet& set) {
 }
 
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
-  using E = EffectValues;
-  if (parameter.member == &E::tether_x_m || parameter.member == &E::lens_x_m) return range_of_places(set);
-  if (parameter.member == &E::shake_hz || parameter.member == &E::camera_hz) return range_of_waves(set);
+  if (parameter.reach == Reach::places) return range_of_places(set);
+  if (parameter.reach == Reach::waves) return range_of_waves(set);
   ParameterRange range{parameter.low, parameter.high};
-  if (parameter.member == &E::release_s) {
+  if (parameter.reach == Reach::release) {
     double longest = 0.0, frame = 0.0;
     for (const TrackedMotion& motion : set.motions) {
       if (!begins_with_its_clip(set, motion)) continue;
       longest = std::max(longest, motion.t_s.back());
       frame = std::max(frame, 1.0 / set.clips[motion.clip].frame_rate_hz);
     }
-    if (longest > 0.0) range = {kShortestPush * frame, kLatest * longest};
+    if (longest > 0.0) range = {kShortestPush * frame, kLatestRelease * longest};
   }
-  if (parameter.member == &E::stribeck_m_s) range.low = std::max(range.low, set.held_m_s);
-  if (parameter.with_mass) {
+  if (parameter.reach == Reach::held_speed) range.low = std::max(range.low, set.held_m_s);
+  if (parameter.reach == Reach::with_mass) {
     double heaviest_kg = 1.0;
     for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
     range.high *= heaviest_kg;

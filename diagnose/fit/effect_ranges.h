@@ -1,6 +1,6 @@
 /// What the parameters of effects may be in given data: one range for the scan, which averages evidence over it, and
 /// for the fit. A fit that went further would gain by what its evidence was never asked to pay for: a wave slower than
-/// the clips is any drift, a cable that tightens before the first position or a lens whose axis is out of the picture
+/// the clips is any drift, a cable that tightens before the first position or a lens whose axis is out of the image
 /// is any bend.
 #pragma once
 
@@ -13,9 +13,9 @@ struct ParameterRange {
   double low = 0.0, high = 0.0;
 };
 
-/// Sizes as in effect_list(), those that go with the mass for the heaviest glider; a place within the positions, a
-/// frequency of at least two turns in the longest motion, a release after four frames and in the first two
-/// fifths of the longest one, a Stribeck speed above that at which a codec may hold the marker (TrackSet::held_m_s).
+/// Sizes as the effects state them, those that go with the mass for the heaviest glider; a place within the positions,
+/// a frequency of at least two turns in the longest motion, a release after four frames and in the first two fifths of
+/// the longest one, a Stribeck speed above that at which a codec may hold the marker (TrackSet::held_m_s).
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
 
 /// From the least to the largest position.

@@ -1,4 +1,4 @@
-#include "diagnose/effects/effect_ranges.h"
+#include "diagnose/fit/effect_ranges.h"
 
 #include <array>
 #include <cmath>

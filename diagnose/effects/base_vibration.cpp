@@ -1,0 +1,43 @@
+/// A table or track that shakes: m A sin(2 pi f t + phase), the phase of each motion its own.
+#include "diagnose/effects/effect.h"
+
+#include <numbers>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+// A step may turn the wave by 0.9 where it may slow the glider by 0.3: Simpson's rule errs by (omega h)^4 / 2880 of it.
+constexpr double kTurnOfWave = 0.3 / 0.9;
+
+double vibration_force(const double* p, const GliderConstants& glider, const GliderState& at) {
+  return glider.mass_kg * p[0] * at.wave;
+}
+
+double vibration_rate(const double* p, double) {
+  return kTurnOfWave * (2.0 * std::numbers::pi * p[1]);
+}
+
+}  // namespace
+
+EffectInfo base_vibration() {
+  return {
+      .id = ids::base_vibration,
+      .stage = Stage::dynamics,
+      .words = "a table or track that shakes",
+      .name = "shaking table",
+      .meaning = "an acceleration of amplitude a and frequency f",
+      .search = Search::wave,
+      .both_signs = false,
+      .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5},
+                     {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
+                     {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .own = true}},
+      .law = {.force_n = vibration_force, .rate_1_s = vibration_rate},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,64 @@
+/// A camera that sways or shakes: what rests in the scene moves in the image, the phase of each motion its own.
+///
+/// A turning camera moves what is at the sides of the image by more: A (1 + slope (x - x_mid) + bend (x - x_mid)²). Of
+/// tracks nobody knows the camera: one size everywhere.
+#include "diagnose/effects/effect.h"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <numbers>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+constexpr double kDegreesOfSway = 180.0 / std::numbers::pi;
+constexpr double kMostSway_rad = 30.0 / kDegreesOfSway;  // that a scenario allows
+
+double sway_seen(const double* p, const GliderConstants& glider, double x_m, double t_s, double seen_m) {
+  const double off = x_m - glider.x_mid_all_m;
+  const double size = p[0] * (1.0 + p[2] * off + p[3] * off * off);
+  return seen_m + size * std::sin(2.0 * std::numbers::pi * p[1] * t_s + p[4]);
+}
+
+void sway_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto f_hz = sizes.of("f_hz"), along_m = sizes.of("amplitude_m"), in_px = sizes.of("amplitude_px");
+  if (!f_hz || !(along_m || in_px)) {
+    return camera.lack(ids::camera_motion, "the direction in which the camera drifts is not measured");
+  }
+  const double pan = along_m ? std::atan(*along_m / camera.distance_m) : std::atan(*in_px / camera.focal_px);
+  if (std::abs(pan) > kMostSway_rad) {
+    return camera.lack(ids::camera_motion, "a camera is turned by 30 degrees at most");
+  }
+  camera.notes.emplace_back("the camera's motion is a pan, with one phase for all clips: it shows in images only");
+  camera.motions += fmt::format("\n[[mount.motion]]\naxis = \"pan\"\namplitude_deg = {:.9g}\nfrequency_hz = {:.9g}\n",
+                                pan * kDegreesOfSway, *f_hz);
+}
+
+}  // namespace
+
+EffectInfo camera_motion() {
+  return {
+      .id = ids::camera_motion,
+      .stage = Stage::optics,
+      .words = "a camera that sways or shakes",
+      .name = "moving camera",
+      .meaning = "what rests in the scene moves by this amplitude, with frequency f",
+      .search = Search::wave,
+      .both_signs = false,
+      .parameters = {{.key = "amplitude_m", .absent = 0.0, .low = 0.0, .high = 0.05, .step = 1e-8},
+                     {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
+                     {.key = {}, .absent = 0.0, .low = -2.0, .high = 2.0, .step = 1e-4, .only_filmed = true},
+                     {.key = {}, .absent = 0.0, .low = -2.0, .high = 2.0, .step = 1e-4, .only_filmed = true},
+                     {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .own = true}},
+      .law = {.seen_m = sway_seen, .seen_by = SeenBy::mount},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::mount, sway_twin),
+      .next =
+          "Put the camera on a stand that does not touch the table, with a mark that is fixed to the wall in the "
+          "image, and record the same launch again: a camera that sways moves the mark as it moves the glider.",
+      .alike = {.id = ids::base_vibration, .filmed = false},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

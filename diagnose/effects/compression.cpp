@@ -1,0 +1,34 @@
+/// A codec that loses detail: edges of blocks, and errors that last over frames.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void codec_twin(const TwinSizes&, TwinCamera& camera) {
+  camera.lossy = true;
+}
+
+}  // namespace
+
+EffectInfo compression() {
+  return {
+      .id = ids::compression,
+      .stage = Stage::sensor,
+      .words = "a codec that loses detail",
+      .name = "lossy compression",
+      .meaning = {},
+      .search = Search::pictures,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::codec, codec_twin),
+      .next =
+          "Record the same launch again without loss (FFV1 or single images; at least MJPEG in place of H.264): edges "
+          "of blocks and errors that last over frames come from the codec and go with it.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

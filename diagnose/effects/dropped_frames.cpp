@@ -1,0 +1,42 @@
+/// Frames that are missing, later ones moved up.
+#include "diagnose/effects/effect.h"
+
+#include <fmt/format.h>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+constexpr double kMostDropped = 0.9;  // that a scenario allows
+
+void dropped_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto fraction = sizes.of("fraction");
+  if (!fraction) return;
+  if (*fraction > kMostDropped) return camera.lack(ids::dropped_frames, "nine frames in ten are lost at most");
+  camera.clock += fmt::format("dropped_fraction = {:.6g}\n", *fraction);
+}
+
+}  // namespace
+
+EffectInfo dropped_frames() {
+  return {
+      .id = ids::dropped_frames,
+      .stage = Stage::timing,
+      .words = "frames that are missing",
+      .name = "lost frames",
+      .meaning = "this fraction of the frames is missing",
+      .search = Search::frames,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::clock, dropped_twin),
+      .next =
+          "Record the same launch again at half the frame rate or with a smaller image, and keep the camera's own "
+          "time stamps: frames are lost where writing them does not keep up, and a time stamp shows the gap, which "
+          "no other launch does.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,59 @@
+#include "diagnose/effects/effect_library.h"
+
+#include <stdexcept>
+
+namespace glidelab::diagnose {
+namespace effects {
+
+#define GLIDELAB_DECLARE(id) EffectInfo id();
+GLIDELAB_EFFECTS(GLIDELAB_DECLARE)
+#undef GLIDELAB_DECLARE
+
+}  // namespace effects
+
+namespace {
+
+std::vector<EffectInfo> list_of_all() {
+  std::vector<EffectInfo> list;
+#define GLIDELAB_ADD(id) list.push_back(effects::id());
+  GLIDELAB_EFFECTS(GLIDELAB_ADD)
+#undef GLIDELAB_ADD
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    if (list[e].id != kEffectIds[e]) throw std::logic_error("an effect of another id: " + std::string(list[e].id));
+    if (list[e].parameters.size() > kMostParameters) throw std::logic_error("too many parameters of an effect");
+    for (std::size_t p = 0; p < list[e].parameters.size(); ++p) list[e].parameters[p].slot = {e, p};
+  }
+  return list;
+}
+
+}  // namespace
+
+const std::vector<EffectInfo>& all_effects() {
+  static const std::vector<EffectInfo> list = list_of_all();
+  return list;
+}
+
+const std::vector<EffectInfo>& effect_list() {
+  static const std::vector<EffectInfo> list = [] {
+    std::vector<EffectInfo> shown = all_effects();
+    std::erase_if(shown, [](const EffectInfo& effect) { return effect.search == Search::lines; });
+    return shown;
+  }();
+  return list;
+}
+
+const EffectInfo& effect_of(std::string_view id) {
+  return all_effects()[effect_index(id)];
+}
+
+std::vector<std::string> effect_words() {
+  return {kEffectIds.begin(), kEffectIds.end()};
+}
+
+std::size_t first_alike(std::size_t effect, bool filmed) {
+  const Alike& alike = effect_list()[effect].alike;
+  const bool same = !alike.id.empty() && (alike.filmed || !filmed);
+  return same ? effect_index(alike.id) : effect;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,78 @@
+/// The list of effects: it names each once. Everything else about an effect stands in diagnose/effects/<id>.cpp.
+///
+/// A new effect is a line here and that file. The order is that of the indices by which the searches know an effect.
+/// What only a table of lines shows comes last.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace glidelab::diagnose {
+
+// clang-format off
+#define GLIDELAB_EFFECTS(EFFECT)     \
+  EFFECT(quadratic_drag)             \
+  EFFECT(eddy_rolloff)               \
+  EFFECT(power_law_drag)             \
+  EFFECT(stribeck)                   \
+  EFFECT(load_independent_friction)  \
+  EFFECT(direction_asymmetry)        \
+  EFFECT(track_bow)                  \
+  EFFECT(damping_gradient)           \
+  EFFECT(rotational_inertia)         \
+  EFFECT(tether)                     \
+  EFFECT(base_vibration)             \
+  EFFECT(late_release)               \
+  EFFECT(frame_rate_error)           \
+  EFFECT(dropped_frames)             \
+  EFFECT(timestamp_jitter)           \
+  EFFECT(scale_error)                \
+  EFFECT(perspective_error)          \
+  EFFECT(lens_distortion)            \
+  EFFECT(camera_motion)              \
+  EFFECT(rolling_shutter)            \
+  EFFECT(exposure_blur)              \
+  EFFECT(light_flicker)              \
+  EFFECT(light_gradient)             \
+  EFFECT(compression)                \
+  EFFECT(heavy_tailed_noise)         \
+  EFFECT(smoothing_bias)
+// clang-format on
+
+/// The id of each, for code that means one of them: ids::tether is "tether".
+namespace ids {
+#define GLIDELAB_ID(id) inline constexpr const char* id = #id;
+GLIDELAB_EFFECTS(GLIDELAB_ID)
+#undef GLIDELAB_ID
+}  // namespace ids
+
+#define GLIDELAB_ID(id) std::string_view(#id),
+inline constexpr std::array kEffectIds = {GLIDELAB_EFFECTS(GLIDELAB_ID)};
+#undef GLIDELAB_ID
+inline constexpr std::size_t kEffects = kEffectIds.size();
+
+/// Index in the list; std::out_of_range for another word.
+constexpr std::size_t effect_index(std::string_view id) {
+  for (std::size_t i = 0; i < kEffects; ++i) {
+    if (kEffectIds[i] == id) return i;
+  }
+  throw std::out_of_range("no such effect: " + std::string(id));
+}
+
+inline constexpr std::size_t kMostParameters = 5;  ///< that an effect has
+
+/// Where the value of one parameter stands.
+struct EffectSlot {
+  std::size_t effect = kEffects, parameter = 0;
+  bool operator==(const EffectSlot&) const = default;
+};
+
+/// Of an effect's parameter, in the order in which its file has them.
+constexpr EffectSlot slot_of(std::string_view id, std::size_t parameter = 0) {
+  return {effect_index(id), parameter};
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,39 @@
+/// An exposure that is longer than stated: the image of the marker is smeared by the speed times the exposure.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void blur_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto found = sizes.of("exposure_s");
+  if (!found) return;
+  if (*found > camera.stated_frame_s) {
+    return camera.lack(ids::exposure_blur, "an exposure ends before the next one begins");
+  }
+  camera.exposure_s = *found;
+}
+
+}  // namespace
+
+EffectInfo exposure_blur() {
+  return {
+      .id = ids::exposure_blur,
+      .stage = Stage::sensor,
+      .words = "an exposure that is longer than stated",
+      .name = "exposure longer than stated",
+      .meaning = "exposure: as the marker's image is smeared",
+      .search = Search::pictures,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::exposure, blur_twin),
+      .next =
+          "Record the same launch again with half the exposure and twice the light: the marker's smear is the speed "
+          "times the exposure, and halves if the exposure is what makes it.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

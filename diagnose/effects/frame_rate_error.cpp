@@ -1,0 +1,50 @@
+/// A frame rate that is not the stated one: the true time step is (1 + e) times the stated one.
+#include "diagnose/effects/effect.h"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+constexpr double kMostClockError_ppm = 1e5;  // that a scenario allows
+
+double rate_stretch(const double* p) {
+  return 1.0 + p[0];
+}
+
+void rate_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto e = sizes.of("e");
+  if (!e) return;
+  // The camera runs slower than stated.
+  const double ppm = 1e6 * (1.0 / (1.0 + *e) - 1.0);
+  const double step_s = camera.stated_frame_s * (1.0 + *e);
+  if (std::abs(ppm) > kMostClockError_ppm || step_s < camera.exposure_s) {
+    return camera.lack(ids::frame_rate_error, "a clock is off by a tenth at most, and exposures do not overlap");
+  }
+  camera.clock += fmt::format("rate_error_ppm = {:.9g}\n", ppm);
+  camera.frame_s = step_s;
+}
+
+}  // namespace
+
+EffectInfo frame_rate_error() {
+  return {
+      .id = ids::frame_rate_error,
+      .stage = Stage::timing,
+      .words = "a frame rate that is not the stated one",
+      .name = "wrong frame rate",
+      .meaning = "the time from frame to frame is (1 + e) times what is stated",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
+      .law = {.stretch = rate_stretch},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::clock, rate_twin),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

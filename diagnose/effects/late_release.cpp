@@ -1,0 +1,33 @@
+/// A hand that still pushes until t_r after the first frame: a constant acceleration, each motion its own.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+double release_force(const double* p, const GliderConstants& glider, const GliderState& at) {
+  return at.pushed ? glider.mass_kg * p[1] : 0.0;
+}
+
+}  // namespace
+
+EffectInfo late_release() {
+  return {
+      .id = ids::late_release,
+      .stage = Stage::dynamics,
+      .words = "a hand that still pushes at the start of the clips",
+      .name = "hand that lets go late",
+      .meaning = "the hand pushes until t_r",
+      .search = Search::pushes,
+      .both_signs = true,
+      .parameters = {{.key = "t_r_s", .absent = 0.0, .low = 1e-3, .high = 3.0, .step = 1e-4, .reach = Reach::release},
+                     {.key = "push", .absent = 0.0, .low = -50.0, .high = 50.0, .step = 1e-5, .own = true}},
+      .law = {.size = 1, .force_n = release_force},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,40 @@
+/// Light that flickers: the brightness goes up and down with time.
+#include "diagnose/effects/effect.h"
+
+#include <fmt/format.h>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void flicker_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto depth = sizes.of("depth"), f_hz = sizes.of("f_hz");
+  if (!depth || !f_hz) return;
+  if (*depth > 1.0) return camera.lack(ids::light_flicker, "light flickers by its own brightness at most");
+  camera.light += fmt::format("flicker_depth = {:.6g}\nflicker_hz = {:.9g}\n", *depth, *f_hz);
+}
+
+}  // namespace
+
+EffectInfo light_flicker() {
+  return {
+      .id = ids::light_flicker,
+      .stage = Stage::optics,
+      .words = "light that flickers",
+      .name = "flickering light",
+      .meaning = "brightness changes by this depth, with frequency f",
+      .search = Search::pictures,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::light, flicker_twin),
+      .next =
+          "Record the same launch again with an exposure of one whole period of the flicker (lamps flicker at twice "
+          "the mains' frequency: 10 ms at 50 Hz, 8.3 ms at 60 Hz), or in light of a direct current: every frame "
+          "collects the same light then.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

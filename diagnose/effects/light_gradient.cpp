@@ -1,0 +1,44 @@
+/// Light that is brighter on one side of the marker, to which its centre is drawn.
+#include "diagnose/effects/effect.h"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+constexpr double kMostGradient_1_m = 2.0;  // that a scenario allows
+
+void side_light_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto gradient = sizes.of("gradient");
+  if (!gradient) return;
+  if (std::abs(*gradient) > kMostGradient_1_m) {
+    return camera.lack(ids::light_gradient, "light changes by a factor of exp(2) a metre at most");
+  }
+  camera.light += fmt::format("gradient_per_m = [{:.6g}, 0.0]\n", *gradient);
+}
+
+}  // namespace
+
+EffectInfo light_gradient() {
+  return {
+      .id = ids::light_gradient,
+      .stage = Stage::optics,
+      .words = "light that is much brighter on one side",
+      .name = "light from one side",
+      .meaning = "how much brighter it is on one side of the marker",
+      .search = Search::pictures,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::light, side_light_twin),
+      .next =
+          "Record the same launch again with a second lamp from the other side, or through a diffuser: where the "
+          "light is even, nothing pulls the marker's centre to the brighter side.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,58 @@
+/// A calibration pattern that was not in the plane of motion: x becomes x / (1 + p x).
+///
+/// Its twin is a camera that was turned by atan(downhill p' Z), p' = p/(1 + p x_f), x_f the place before which the
+/// camera stands, Z how far off.
+#include "diagnose/effects/effect.h"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <numbers>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+constexpr double kDegreesOfPan = 180.0 / std::numbers::pi;
+constexpr double kMostTurn_rad = 30.0 / kDegreesOfPan;  // that a scenario allows
+
+double perspective_seen(const double* p, const GliderConstants&, double, double, double seen_m) {
+  return seen_m / (1.0 + p[0] * seen_m);
+}
+
+void perspective_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto p = sizes.of("p_1_m");
+  if (!p) return;
+  const double before_m = 1.0 + *p * (camera.reference_m + camera.downhill * camera.x_m);
+  const double tangent = camera.downhill * *p / before_m * camera.z_m;
+  if (!(before_m > 0.0) || std::abs(std::atan(tangent)) > kMostTurn_rad) {
+    return camera.lack(ids::perspective_error, "a camera is turned by 30 degrees at most");
+  }
+  camera.focal_factor /= before_m * before_m * (1.0 + tangent * tangent);
+  if (camera.focal_by.empty()) camera.focal_by = ids::perspective_error;
+  camera.motions +=
+      fmt::format("\n[[mount.motion]]\naxis = \"pan\"\noffset_deg = {:.9g}\n", std::atan(tangent) * kDegreesOfPan);
+  camera.notes.emplace_back(
+      "the perspective is a camera that was turned after the calibration: it shows in images only");
+}
+
+}  // namespace
+
+EffectInfo perspective_error() {
+  return {
+      .id = ids::perspective_error,
+      .stage = Stage::optics,
+      .words = "a calibration pattern that was not in the plane of motion",
+      .name = "pattern off the plane",
+      .meaning = "x becomes x / (1 + p x)",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "p_1_m", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-7}},
+      .law = {.seen_m = perspective_seen, .seen_by = SeenBy::plane},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::mount, perspective_twin),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,39 @@
+/// A drag -C v |v|, as air makes it.
+#include "diagnose/effects/effect.h"
+
+#include <cmath>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void quadratic_resistance(const double* p, const GliderConstants&, const GliderState& at, Resistance& of) {
+  of.against_n += p[0] * at.v * std::abs(at.v);
+}
+
+void quadratic_twin(const double* p, TwinForces& forces) {
+  forces.more_drag += scenario_force("quadratic", {{"c_kg_m", forces.part * p[0]}});
+}
+
+}  // namespace
+
+EffectInfo quadratic_drag() {
+  return {
+      .id = ids::quadratic_drag,
+      .stage = Stage::dynamics,
+      .words = "a drag that grows with the square of the speed, such as air's",
+      .name = "quadratic drag",
+      .meaning = "a force −c v |v|",
+      .search = Search::amplitude,
+      .both_signs = false,
+      .parameters =
+          {{.key = "c_kg_m", .absent = 0.0, .low = 0.0, .high = 1.0, .step = 1e-6, .reach = Reach::with_mass}},
+      .law = {.resistance = quadratic_resistance},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_force(quadratic_twin),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,47 @@
+/// Rows that are exposed one after the other, each later than the one above by the line time.
+#include "diagnose/effects/effect.h"
+
+#include <cmath>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+double rows_late(const double* p) {
+  return p[0];
+}
+
+void rows_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto found = sizes.of("line_s");
+  if (!found) return;
+  if (!camera.filmed || std::abs(*found) * camera.height_px > camera.stated_frame_s) {
+    return camera.lack(ids::rolling_shutter, "all rows are read within the frame time");
+  }
+  camera.line_s = *found;
+  camera.notes.emplace_back("render states the shutter in experiment.toml, where the data's folder states another");
+}
+
+}  // namespace
+
+EffectInfo rolling_shutter() {
+  return {
+      .id = ids::rolling_shutter,
+      .stage = Stage::timing,
+      .words = "rows that are exposed one after the other, not as stated",
+      .name = "rolling shutter",
+      .meaning = "line: from the exposure of a row to the next one's",
+      .search = Search::rows,
+      .both_signs = true,
+      .parameters = {{.key = "line_s", .absent = 0.0, .low = -3e-4, .high = 3e-4, .step = 1e-7}},
+      .law = {.row_s = rows_late},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::shutter, rows_twin),
+      .next =
+          "Turn the camera upside down and record the same launch again (or film it with a global shutter): rows are "
+          "read in the other order over the track then, so that their lateness and the marker's shear change sign, "
+          "and a force does not.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,44 @@
+/// Inertia m_w that is not in the weighed mass, such as that of wheels: (m + m_w) dv/dt.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+double wheels_kg(const double* p) {
+  return p[0];
+}
+
+/// a0 (1 - m_w/m) and ln(K/m) - m_w/m, to first order in m_w/m.
+LineChange wheels_lines(const LineQuantities& line) {
+  return {-1.0 / line.mass_kg, -line.a0_m_s2 / line.mass_kg};
+}
+
+/// All forces are less by m/(m + m_w) already; gravity is so by a constant force.
+void wheels_twin(const double*, TwinForces& forces) {
+  if (forces.part == 1.0) return;
+  forces.others += scenario_force("constant", {{"force_n", -(1.0 - forces.part) * forces.along_n}});
+}
+
+}  // namespace
+
+EffectInfo rotational_inertia() {
+  return {
+      .id = ids::rotational_inertia,
+      .stage = Stage::dynamics,
+      .words = "inertia that is not in the weighed mass, such as wheels'",
+      .name = "inertia of wheels",
+      .meaning = "m dv/dt becomes (m + mass) dv/dt",
+      .search = Search::amplitude,
+      .both_signs = false,
+      .parameters =
+          {{.key = "mass_kg", .absent = 0.0, .low = 0.0, .high = 0.5, .step = 1e-7, .reach = Reach::with_mass}},
+      .law = {.inertia_kg = wheels_kg},
+      .shapes = nullptr,
+      .lines = {.change = wheels_lines, .key = "mass_kg", .largest = 0.3},
+      .twin = EffectTwin::as_force(wheels_twin),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,35 @@
+/// The smoothing's own bias, which bends a(v) near v = 0. Only a table of lines shows it.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+/// a0 - s c (K/m)², c in s² m/s² = m.
+LineChange smoothing_lines(const LineQuantities& line) {
+  return {0.0, -line.direction * line.k_over_m_1_s * line.k_over_m_1_s};
+}
+
+}  // namespace
+
+EffectInfo smoothing_bias() {
+  return {
+      .id = ids::smoothing_bias,
+      .stage = Stage::analysis,
+      .words = "the smoothing's own bias, which bends a(v) near v = 0 as (K/m)²",
+      .name = "smoothing bias",
+      .meaning = "intercepts are off by this for each 1/s² of (K/m)²",
+      .search = Search::lines,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {.change = smoothing_lines, .key = "intercept_s2_m_s2", .largest = 1.0},
+      .twin = EffectTwin::none("a table of lines has no motion to simulate"),
+      .next =
+          "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its "
+          "square.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,51 @@
+/// A cable or spring that pulls back with -k (x - x_t) beyond x_t.
+#include "diagnose/effects/effect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+double tether_force(const double* p, const GliderConstants&, const GliderState& at) {
+  return at.x > p[1] ? -(p[0] * (at.x - p[1])) : 0.0;
+}
+
+double tether_rate(const double* p, double mass_kg) {
+  return std::sqrt(std::max(0.0, p[0]) / mass_kg);
+}
+
+std::vector<double> tether_places(const ShapeReach& reach) {
+  return places_of(reach, 24);
+}
+
+}  // namespace
+
+EffectInfo tether() {
+  return {
+      .id = ids::tether,
+      .stage = Stage::dynamics,
+      .words = "a cable or spring that pulls back beyond some place",
+      .name = "cable that tightens",
+      .meaning = "a force −k (x − x_t) beyond x_t",
+      .search = Search::shape,
+      .both_signs = false,
+      .parameters =
+          {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 200.0, .step = 1e-5, .reach = Reach::with_mass},
+           {.key = "x_t_m",
+            .absent = std::numeric_limits<double>::infinity(),
+            .low = -1e3,
+            .high = 1e3,
+            .step = 1e-4,
+            .reach = Reach::places}},
+      .law = {.force_n = tether_force, .rate_1_s = tether_rate},
+      .shapes = tether_places,
+      .lines = {},
+      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,47 @@
+/// Frames that are not taken at even times: each time is off at random.
+#include "diagnose/effects/effect.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+constexpr double kJitterReach = 2.0 * 5.9;  // standard deviations that a scenario keeps free between two exposures
+
+void jitter_twin(const TwinSizes& sizes, TwinCamera& camera) {
+  const auto sd_s = sizes.of("sd_s");
+  if (!sd_s) return;
+  const double room_s = camera.frame_s - kJitterReach * *sd_s;
+  if (!camera.exposure_known && room_s > 0.0) camera.exposure_s = std::min(camera.exposure_s, 0.999 * room_s);
+  if (camera.exposure_s > room_s) {
+    return camera.lack(ids::timestamp_jitter, "exposures do not overlap, with 5.9 standard deviations of each");
+  }
+  camera.clock += fmt::format("jitter_s = {:.6g}\n", *sd_s);
+}
+
+}  // namespace
+
+EffectInfo timestamp_jitter() {
+  return {
+      .id = ids::timestamp_jitter,
+      .stage = Stage::timing,
+      .words = "frames that are not taken at even times",
+      .name = "uneven frame times",
+      .meaning = "sd: of a frame's time",
+      .search = Search::noise,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_camera(TwinPart::clock, jitter_twin),
+      .next =
+          "Record the same launch again with the camera's own time stamps, or with a lamp in the image that counts "
+          "milliseconds: an uneven time moves a position by the speed times its error, and only a clock shows the "
+          "error itself.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

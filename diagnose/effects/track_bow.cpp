@@ -1,0 +1,32 @@
+/// A bowed track: sin(alpha) becomes sin(alpha) + c (x - x_mid).
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void bow_resistance(const double* p, const GliderConstants& glider, const GliderState& at, Resistance& of) {
+  of.slope += p[0] * (at.x - glider.x_mid_m);
+}
+
+}  // namespace
+
+EffectInfo track_bow() {
+  return {
+      .id = ids::track_bow,
+      .stage = Stage::dynamics,
+      .words = "a track that is not straight but bowed",
+      .name = "bowed track",
+      .meaning = "sin α becomes sin α + slope (x − x_mid), x_mid the middle of the data",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "slope_1_m", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
+      .law = {.resistance = bow_resistance},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects
