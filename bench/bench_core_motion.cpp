@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
 #include "core/motion/smoothing/local_cubic.h"
 
 namespace {

@@ -26,6 +26,8 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # w
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/glidelab)
+install(TARGETS glidelab_motion EXPORT glidelab ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/glidelab)  # its headers are core's
+set_target_properties(glidelab_motion PROPERTIES EXPORT_NAME motion)
 foreach(room base sim core render fit diagnose validate report teach)
   set_target_properties(glidelab_${room} PROPERTIES EXPORT_NAME ${room})
   install(TARGETS glidelab_${room} EXPORT glidelab ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/glidelab)

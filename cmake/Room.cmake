@@ -55,10 +55,19 @@ function(glidelab_precompile target)
   endif()
 endfunction()
 
-# glidelab_room(NAME LINK <public libraries…>): all sources of the folder make glidelab::NAME, included as "NAME/header.h".
+# glidelab_room(NAME [FOLDERS <folders…>] LINK <public libraries…>): all sources of the folders (default: this one) make
+# glidelab::NAME, included as "room/suite/header.h".
 function(glidelab_room name)
-  cmake_parse_arguments(ROOM "" "" "LINK" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  cmake_parse_arguments(ROOM "" "" "FOLDERS;LINK" ${ARGN})
+  if(NOT ROOM_FOLDERS)
+    set(ROOM_FOLDERS .)
+  endif()
+  set(patterns)
+  foreach(folder IN LISTS ROOM_FOLDERS)
+    get_filename_component(path ${CMAKE_CURRENT_SOURCE_DIR}/${folder} ABSOLUTE)
+    list(APPEND patterns ${path}/*.cpp)
+  endforeach()
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${patterns})
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   add_library(glidelab_${name} STATIC ${sources})
   add_library(glidelab::${name} ALIAS glidelab_${name})

@@ -20,7 +20,7 @@
 #include "core/experiment/bare_track.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "fit/trajectory/trajectory_results.h"
+#include "fit/estimators.h"
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/results_json.h"
 #include "report/html/gnuplot.h"
@@ -33,18 +33,16 @@ namespace fs = std::filesystem;
 struct AnalyzeOptions {
   CommonOptions common;
   std::vector<std::string> experiments;
-  std::string bandwidth = "lines";
-  std::string estimator = "phase-diagram";
+  std::string bandwidth{core::kLinesRule};
+  std::string estimator{fit::default_estimator().name};
   bool robust = false;
   core::BareTrackOptions bare;
 };
 
-constexpr const char* kLines = "lines";  // the default: what serves the lines best (core/motion/bandwidth/rule_lines.h)
-
 /// A checked text: a number of seconds or the name of a rule.
 void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
   double value = 0.0;
-  if (text == kLines) return;
+  if (text == core::kLinesRule) return;
   if (CLI::detail::lexical_cast(text, value)) {
     how.bandwidth_s = value;
   } else {
@@ -70,7 +68,8 @@ void check_file_options(const AnalyzeOptions& options, const std::vector<fs::pat
 }
 
 void analyze(const AnalyzeOptions& options) {
-  if (options.robust && options.estimator != "trajectory") {
+  const fit::Estimator& estimator = *fit::find_estimator(options.estimator);  // a checked name
+  if (options.robust && !estimator.takes_robust) {
     throw CommandLineError(
         base::describe({"", 0, "--robust", options.estimator,
                         "the estimator trajectory (lines leave positions off the motion out anyway)"}));
@@ -90,11 +89,9 @@ void analyze(const AnalyzeOptions& options) {
   how.jobs = options.common.jobs;
   how.bare = options.bare;
   read_bandwidth(options.bandwidth, how);
-  if (options.estimator == "phase-diagram-gls") how.lines = core::LineMethod::generalised;
-  core::AnalysisResults results = core::analyze(folders, how, progress);
-  if (options.estimator == "trajectory") {
-    results = fit::with_trajectory_fits(std::move(results), {.robust = options.robust});
-  }
+  how.lines = estimator.lines;
+  const core::AnalysisResults results =
+      estimator.estimate(core::analyze(folders, how, progress), {.robust = options.robust});
   write_analysis_files(results, staged.dir());
   const std::vector<core::Preview> previews = previews_of(folders, results, progress, options.bare);
   report::write_page(staged.dir(), "report.html", report::analysis_report(title, results, previews, progress));
@@ -106,14 +103,8 @@ void analyze(const AnalyzeOptions& options) {
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 
-std::vector<std::string> rule_names() {
-  std::vector<std::string> names = core::bandwidth_rule_names();
-  names.insert(names.begin(), kLines);
-  return names;
-}
-
 std::string check_bandwidth(const std::string& text) {
-  const std::vector<std::string> rules = rule_names();
+  const std::vector<std::string> rules = core::bandwidth_choices();
   if (std::find(rules.begin(), rules.end(), text) != rules.end()) return {};
   if (check_above_0(text).empty()) return {};
   return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}{}", text, fmt::join(rules, ", "),
@@ -125,6 +116,14 @@ std::string check_incline(const std::string& text) {
   double value_deg = 0.0;
   if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
   return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}", text, kSteepest_deg);
+}
+
+std::string estimator_help() {
+  std::string text = "Method";
+  for (const fit::Estimator& estimator : fit::estimators()) {
+    text += fmt::format("{} \"{}\" {}", text == "Method" ? ":" : ";", estimator.name, estimator.method);
+  }
+  return text;
 }
 
 }  // namespace
@@ -144,19 +143,14 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->add_option("--bandwidth", options->bandwidth,
                    fmt::format("Width of the smoothing kernel in seconds, or the rule that chooses it for each clip: "
                                "{} (docs/guide/bandwidth.md)",
-                               fmt::join(rule_names(), ", ")))
+                               fmt::join(core::bandwidth_choices(), ", ")))
       ->type_name("SECONDS|RULE")
       ->check(CLI::Validator([](std::string& text) { return check_bandwidth(text); },
-                             fmt::format("{{{}}}", fmt::join(rule_names(), ","))))
+                             fmt::format("{{{}}}", fmt::join(core::bandwidth_choices(), ","))))
       ->capture_default_str();
-  command
-      ->add_option(
-          "--estimator", options->estimator,
-          "Method; \"phase-diagram\" fits lines in a(v) as the paper does, \"phase-diagram-gls\" with the points' "
-          "covariance, errors in v and a, and no bias by the kernel, \"trajectory\" the whole motion to the "
-          "positions")
+  command->add_option("--estimator", options->estimator, estimator_help())
       ->type_name("NAME")
-      ->check(CLI::IsMember({"phase-diagram", "phase-diagram-gls", "trajectory"}))
+      ->check(CLI::IsMember(fit::estimator_names()))
       ->capture_default_str();
   command->add_flag("--robust", options->robust,
                     "With \"trajectory\": leave out positions more than four scaled median absolute deviations off the "

@@ -93,7 +93,7 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
   options.jobs = common.jobs;
   ProgressDisplay display(common.quiet, common.verbose);
   const validate::Baseline now =
-      validate::measure_baseline(scenario, text, options, validate::analyze_both, display.callback());
+      validate::measure_baseline(scenario, text, options, validate::analyze_as_judged, display.callback());
   display.clear();
   throw_if_interrupted();
   print_result(common.json ? validate::baseline_json(now) : table(now));

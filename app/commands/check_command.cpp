@@ -29,7 +29,7 @@ struct CheckOptions {
 };
 
 /// One frame of every clip in which the marker was seen.
-std::vector<core::Preview> previews_of(const core::Experiment& experiment, const core::RecordingCheck& check) {
+std::vector<core::Preview> previews_of_check(const core::Experiment& experiment, const core::RecordingCheck& check) {
   std::vector<core::Preview> previews;
   for (std::size_t i = 0; i < check.clips.size(); ++i) {
     core::ClipResult seen;
@@ -54,7 +54,7 @@ void check(const CheckOptions& options) {
   const core::RecordingCheck found = core::check_recording(experiment, options.common.jobs, display.callback());
   const std::string json = report::check_json(found);
   base::write_file(staged.dir() / "check.json", json);
-  report::write_page(staged.dir(), "report.html", report::check_report(found, previews_of(experiment, found)));
+  report::write_page(staged.dir(), "report.html", report::check_report(found, previews_of_check(experiment, found)));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

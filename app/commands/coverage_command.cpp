@@ -14,6 +14,7 @@
 #include "app/shell/progress_display.h"
 #include "base/errors.h"
 #include "base/files/staged_output.h"
+#include "fit/estimators.h"
 #include "render/scenario/scenario.h"
 #include "report/coverage/coverage_report.h"
 #include "report/html/gnuplot.h"
@@ -75,7 +76,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
                     options.scenario));
   }
   if (bandwidth_given && std::all_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
-        return row.determined == 0 || row.estimator != "phase-diagram";
+        return row.determined == 0 || row.estimator != fit::default_estimator().name;
       })) {
     throw base::NotMet(fmt::format("{}: with --bandwidth {} the phase diagram finds no value in any replicate",
                                    options.scenario, options.bandwidth_s));
@@ -109,7 +110,7 @@ void add_coverage(CLI::App& app, Command& chosen) {
                        "smallest that the scenario's camera, light and marker allow, clip by clip")
           ->type_name("METRES")
           ->check(check_noise_m);
-  command->add_option("--replicates", options->coverage.replicates, "How many")
+  command->add_option("--replicates", options->coverage.replicates, "Number of replicates")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

@@ -10,6 +10,7 @@
 #include "app/shell/progress_display.h"
 #include "base/errors.h"
 #include "base/files/staged_output.h"
+#include "core/result/quantity.h"
 #include "report/html/gnuplot.h"
 #include "report/requirement/requirement_report.h"
 #include "validate/study/requirement/requirement.h"
@@ -81,9 +82,9 @@ void add_require(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "--target", options->targets,
-          "QUANTITY=VALUE or QUANTITY:sd=VALUE (root mean square error), QUANTITY:error95=VALUE (what 95 % of the "
-          "errors stay within) or QUANTITY:bias=VALUE (mean error); quantities are k_over_m_1_s, mu, alpha_deg, "
-          "v_lim_m_s")
+          fmt::format("QUANTITY=VALUE or QUANTITY:sd=VALUE (root mean square error), QUANTITY:error95=VALUE (what 95 % "
+                      "of the errors stay within) or QUANTITY:bias=VALUE (mean error); quantities are {}",
+                      fmt::join(core::quantity_keys(), ", ")))
       ->type_name("TARGET")
       ->required();
   command

@@ -106,7 +106,7 @@ int run_command(const Command& command) {
   }
 }
 
-/// An option's value that is none of its words, with the word that was meant; empty where there is none. What takes a
+/// An option's value that is none of its words, with the word that was meant; empty if there is none. What takes a
 /// number or a word ("SECONDS|RULE") says it itself.
 std::string misspelt_value(const CLI::App& command, const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -124,7 +124,7 @@ std::string misspelt_value(const CLI::App& command, const std::vector<std::strin
   return {};
 }
 
-/// What stands where a command is wanted: an option that only commands take, or none at all; empty where it is the
+/// What stands where a command is wanted: an option that only commands take, or none at all; empty if it is the
 /// program's own, or may be misspelt.
 std::string before_command(const CLI::App& app, const std::string& word) {
   if (app.get_option_no_throw(word) != nullptr) return {};
@@ -139,7 +139,7 @@ std::string before_command(const CLI::App& app, const std::string& word) {
 }
 
 /// CLI11 says of a misspelt command that one is missing, of a misspelt option that it was not expected; this says which
-/// word it was and which was meant. Empty where it is none of these, nor an option's value.
+/// word it was and which was meant. Empty if it is none of these, nor an option's value.
 std::string misspelt(const CLI::App& app, const std::vector<std::string>& arguments) {
   if (arguments.empty()) return {};
   const std::string& first = arguments.front();

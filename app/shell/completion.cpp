@@ -51,7 +51,7 @@ std::string command_names(const CLI::App& app) {
   return names + "help";
 }
 
-/// What follows an option: "words" are offered, or nothing where "nothing" is set, or files.
+/// What follows an option: "words" are offered, or nothing if "nothing" is set, or files.
 std::string bash_values(const CLI::App& app, const std::string& indent) {
   std::string text;
   for (const CLI::Option* option : app.get_options()) {

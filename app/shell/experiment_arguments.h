@@ -15,7 +15,7 @@ namespace glidelab::app {
 /// Adds --allow-outside, which sets `outside`.
 void add_allow_outside(CLI::App& command, core::OutsideFiles& outside);
 
-/// InputError where one of these is a scenario or a sweep, which hold no recording.
+/// InputError if one of these is a scenario or a sweep, which hold no recording.
 void refuse_scenarios(const std::vector<std::string>& inputs);
 
 }  // namespace glidelab::app

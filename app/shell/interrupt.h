@@ -26,7 +26,7 @@ class InterruptedKeeping : public base::Interrupted {
   std::string kept_;
 };
 
-/// Throws base::Interrupted where the flag is set.
+/// Throws base::Interrupted if the flag is set.
 void throw_if_interrupted();
 
 /// `work`, which keeps what it has finished: InterruptedKeeping where an interrupt ends it, with what `kept` says.

@@ -19,7 +19,7 @@ constexpr auto kBarInterval = 100ms;
 constexpr auto kLineInterval = 1s;
 constexpr double kEnoughToGuess = 0.02;  // of a stage: before that, a time left is a wild guess
 
-/// ", 1:05 left", or nothing where there is too little to go by.
+/// ", 1:05 left", or nothing if there is too little to go by.
 std::string time_left(double elapsed_s, double fraction) {
   if (fraction < kEnoughToGuess || elapsed_s < 0.5) return {};
   const long seconds = std::lround(elapsed_s * (1.0 - fraction) / fraction);

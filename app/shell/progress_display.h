@@ -38,7 +38,7 @@ class ProgressDisplay {
   void print_line(Clock::time_point now);
   void end_stage(Clock::time_point now);
   void erase_bar();
-  /// How many pieces of the stage are done in a second, in words; empty where it has none.
+  /// How many pieces of the stage are done in a second, in words; empty if it has none.
   std::string rate(double elapsed_s) const;
 
   bool quiet_;

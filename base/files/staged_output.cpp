@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/files/append_file.h"
 #include "base/files/made_files.h"
 
 namespace glidelab::base {

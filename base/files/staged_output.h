@@ -37,6 +37,9 @@ class StagedOutput {
 /// Writes the whole text or throws EnvironmentError (a full disk shows at the write or at the close; both are checked).
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// Adds to the end of a file, which is made where it is not there; EnvironmentError as write_file.
+void append_file(const std::filesystem::path& path, std::string_view bytes);
+
 /// Reads a whole file; InputError where it is not there or cannot be read.
 std::string read_file(const std::filesystem::path& path);
 

@@ -8,10 +8,10 @@
 
 #include "base/errors.h"
 #include "base/parallel.h"
-#include "core/analysis/analyze_motion.h"
 #include "core/analysis/clip_to_track.h"
-#include "core/experiment/require_clips.h"
+#include "core/motion/analyze_motion.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/motion/join_configurations.h"
 
 namespace glidelab::core {
 namespace {
@@ -63,9 +63,9 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     throw base::InputError(
         base::Issue{"", 0, "bandwidth", fmt::format("{}", *options.bandwidth_s), "a time in seconds above 0"});
   }
-  if (!options.bandwidth_rule.empty() && !make_bandwidth_rule(options.bandwidth_rule)) {
+  if (!options.bandwidth_rule.empty() && !find_bandwidth_rule(options.bandwidth_rule)) {
     throw base::InputError(base::Issue{"", 0, "bandwidth", options.bandwidth_rule,
-                                       fmt::format("{}", fmt::join(bandwidth_rule_names(), ", "))});
+                                       fmt::format("{}", fmt::join(bandwidth_choices(), ", "))});
   }
   const std::vector<Experiment> experiments = read_all(folders, options.bare);
   AnalysisResults results;
@@ -104,7 +104,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   });
   results.gravity_m_s2 = experiments.front().gravity_m_s2;
   results.configurations = join_configurations(setups, results.clips, experiments.front().gravity_m_s2, options.lines);
-  if (options.lines == LineMethod::generalised) results.estimator = "phase-diagram-gls";
+  results.estimator = name_of(options.lines);
   return results;
 }
 

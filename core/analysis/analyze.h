@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "core/analysis/analyze_motion.h"
 #include "core/experiment/bare_track.h"
 #include "core/experiment/experiment.h"
+#include "core/motion/analyze_motion.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/result/results.h"
 

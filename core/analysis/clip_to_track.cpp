@@ -18,7 +18,7 @@ namespace glidelab::core {
 namespace {
 
 constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track up to a few degrees"
-constexpr double kMoves = 0.5;                                   // marker diameters from end to end
+constexpr double kLeastPath = 0.5;                               // marker diameters from end to end
 
 int downhill_of(const Experiment& experiment, const std::string& name) {
   const GroupSetup* group = group_of(experiment, name);
@@ -79,7 +79,7 @@ MotionAxis axis_through(const std::vector<cv::Point2d>& places, double diameter_
     low = {std::min(low.x, place.x), std::min(low.y, place.y)};
     high = {std::max(high.x, place.x), std::max(high.y, place.y)};
   }
-  const bool moves = !places.empty() && cv::norm(high - low) > kMoves * diameter_m;
+  const bool moves = !places.empty() && cv::norm(high - low) > kLeastPath * diameter_m;
   return moves ? MotionAxis::through(places, downhill) : MotionAxis::along_x(downhill);
 }
 

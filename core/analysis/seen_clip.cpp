@@ -16,13 +16,13 @@ namespace {
 // A marker whose brightness nobody states: of the frames from its first to its last, in how many a good one is seen;
 // and in how many times as many as a bright one a dark one must be.
 constexpr double kWellSeen = 0.9, kFarBetter = 1.2;
-constexpr double kMoves = 1.5;         // radii from its first place
+constexpr double kLeastTravel = 1.5;   // radii from its first place
 constexpr double kSomeRadiusPx = 5.0;  // where the camera has no ray for any pixel that was asked for: small, but seen
 
 bool moves(const TrackedMarker& marker) {
   return std::any_of(marker.sightings.begin(), marker.sightings.end(), [&](const MarkerSighting& sighting) {
     const MarkerSighting& first = marker.sightings.front();
-    return std::hypot(sighting.u_px - first.u_px, sighting.v_px - first.v_px) > kMoves * first.radius_px;
+    return std::hypot(sighting.u_px - first.u_px, sighting.v_px - first.v_px) > kLeastTravel * first.radius_px;
   });
 }
 
@@ -57,7 +57,7 @@ void put_even(SeenClip& seen) {
   if (!even) return;
   seen.notes.push_back(
       fmt::format("the container's time stamps are whole multiples of {:.4g} ms, and frames at an even distance of "
-                  "{:.6g} ms (to {:.0f} parts in a million) explain them all: these times count",
+                  "{:.6g} ms (to {:.0f} parts in a million) explain them all: those times are used",
                   even->tick_s * 1e3, even->step_s * 1e3, std::ceil(even->half_width_s / even->step_s * 1e6)));
   seen.frame_t_s = std::move(even->t_s);
 }
@@ -138,7 +138,7 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
     no_bright = nothing;
   }
   MarkerSetup dark = *experiment.marker;
-  dark.color_bgr = cv::Vec3b(0, 0, 0);
+  dark.color_bgr = {0, 0, 0};
   try {
     SeenClip seen = look(dark);
     const double others = bright && moves(bright->marker) ? static_cast<double>(bright->marker.sightings.size()) : 0.0;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/check/marker_smear.h"
-#include "core/math/median.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 #include "core/track/track_csv.h"
@@ -105,7 +104,7 @@ void check_pictures(const Experiment& experiment, const ClipAttempt& attempt, co
                     ClipCheck& clip) {
   const TrackData& track = attempt.track;
   MarkerSetup marker = *experiment.marker;
-  if (track.dark_marker) marker.color_bgr = cv::Vec3b(0, 0, 0);
+  if (track.dark_marker) marker.color_bgr = {0, 0, 0};
   take_look(watch.look(marker, track.sightings, attempt.fits), clip);
   std::vector<double> radii, sds;
   for (const MarkerSighting& sighting : track.sightings) {

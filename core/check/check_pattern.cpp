@@ -42,9 +42,10 @@ CheckedPattern check_pattern(const Experiment& experiment, int jobs) {
   std::optional<SeenPattern>& seen = checked.seen;
   const double square_m = experiment.calibration->square_m;
   const std::set<std::filesystem::path> planes = all_planes(experiment);
+  const BoardSize grid = experiment.calibration->inner_corners;
   BoardViews boards;
   try {
-    boards = find_board_views(pattern_files(experiment), experiment.calibration->inner_corners, jobs);
+    boards = find_board_views(pattern_files(experiment), cv::Size(grid.columns, grid.rows), jobs);
     seen = SeenPattern{boards, calibrate_any_lens(boards, square_m)};
   } catch (const base::InputError& error) {
     pattern.failure = error.what();

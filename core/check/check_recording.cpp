@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "core/analysis/analyze_motion.h"
 #include "core/analysis/clip_to_track.h"
 #include "core/check/check_clip.h"
 #include "core/check/check_pattern.h"
-#include "core/experiment/require_clips.h"
+#include "core/motion/analyze_motion.h"
+#include "core/motion/join_configurations.h"
 #include "core/pictures/scene/clip_look.h"
 #include "core/track/track_csv.h"
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "core/experiment/experiment.h"
-#include "core/experiment/folder_files.h"
 
 namespace glidelab::core {
 

@@ -18,7 +18,7 @@ using base::TomlTable;
 namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-constexpr long kLargestPicturePx = 100000;  // larger than any sensor; keeps rectangles within int
+constexpr long kLargestImagePx = 100000;  // larger than any sensor; keeps rectangles within int
 
 CameraSettings read_camera(const TomlTable& table) {
   CameraSettings camera;
@@ -53,7 +53,7 @@ CalibrationSetup read_calibration(const TomlTable& table, const FolderFiles& fol
   table.word("pattern", {"chessboard"});
   const std::vector<double> corners = table.numbers("inner_corners", 2, base::between(3, 100));
   if (std::all_of(corners.begin(), corners.end(), [](double n) { return n == std::floor(n); })) {
-    setup.inner_corners = cv::Size(static_cast<int>(corners[0]), static_cast<int>(corners[1]));
+    setup.inner_corners = {static_cast<int>(corners[0]), static_cast<int>(corners[1])};
   } else if (std::isfinite(corners[0])) {
     table.reject("inner_corners", fmt::format("[{}, {}]", corners[0], corners[1]), "two whole numbers");
   }
@@ -81,7 +81,7 @@ ScaleSetup read_scale(const TomlTable& table) {
   const double length_px = std::hypot(to[0] - from[0], to[1] - from[1]);
   if (length_px == 0.0) table.reject("to_px", "the same point as from_px", "another point");
   setup.px_per_m = length_px / length_m;
-  // Both ends are read off the picture to one pixel; a value that is given counts instead.
+  // Both ends are read off the image to one pixel; a value that is given counts instead.
   setup.px_per_m_sd = table.has("px_per_m_sd") ? sd : std::numbers::sqrt2 / length_m;
   return setup;
 }
@@ -89,18 +89,18 @@ ScaleSetup read_scale(const TomlTable& table) {
 PlumbSetup read_plumb(const TomlTable& table, const FolderFiles& folder) {
   PlumbSetup setup;
   setup.view = folder.file(table, "view");
-  const std::vector<double> region = table.numbers("region", 4, base::between(0, kLargestPicturePx));
+  const std::vector<double> region = table.numbers("region", 4, base::between(0, kLargestImagePx));
   if (!std::isfinite(region[0])) return setup;
   if (region[2] < 3.0 || region[3] < 3.0) {
     table.reject("region", fmt::format("{} x {} pixels", region[2], region[3]),
                  "a width and a height of at least 3 pixels");
   }
   const auto whole = [](double value) { return static_cast<int>(std::lround(value)); };
-  setup.region = cv::Rect(whole(region[0]), whole(region[1]), whole(region[2]), whole(region[3]));
+  setup.region = {whole(region[0]), whole(region[1]), whole(region[2]), whole(region[3])};
   return setup;
 }
 
-std::optional<cv::Vec3b> read_color(const TomlTable& table) {
+std::optional<std::array<unsigned char, 3>> read_color(const TomlTable& table) {
   const std::optional<std::string> text = table.maybe_text("color");
   if (!text || text->empty()) return std::nullopt;
   const bool is_hex =
@@ -111,8 +111,8 @@ std::optional<cv::Vec3b> read_color(const TomlTable& table) {
     return std::nullopt;
   }
   const unsigned long rgb = std::stoul(text->substr(1), nullptr, 16);
-  return cv::Vec3b(static_cast<uchar>(rgb & 0xff), static_cast<uchar>((rgb >> 8) & 0xff),
-                   static_cast<uchar>((rgb >> 16) & 0xff));
+  const auto byte = [rgb](int shift) { return static_cast<unsigned char>((rgb >> shift) & 0xff); };
+  return std::array<unsigned char, 3>{byte(0), byte(8), byte(16)};
 }
 
 MarkerSetup read_marker(const TomlTable& table) {
@@ -121,7 +121,7 @@ MarkerSetup read_marker(const TomlTable& table) {
   setup.height_m = table.number_or("height_m", 0.0);
   setup.color_bgr = read_color(table);
   if (const auto start = table.maybe_numbers("start_px", 2, base::at_least(0.0))) {
-    setup.start_px = cv::Point2d((*start)[0], (*start)[1]);
+    setup.start_px = PixelPoint{(*start)[0], (*start)[1]};
   }
   return setup;
 }
@@ -180,15 +180,15 @@ GroupSetup read_group(const TomlTable& table, const FolderFiles& folder) {
   return group;
 }
 
-bool stated_by_all_groups(const Experiment& experiment, bool only_pictures, bool (*states)(const GroupSetup&)) {
+bool stated_by_all_groups(const Experiment& experiment, bool only_images, bool (*states)(const GroupSetup&)) {
   return std::all_of(experiment.clips.begin(), experiment.clips.end(), [&](const ClipSetup& clip) {
-    if (only_pictures && clip.file.empty()) return true;
+    if (only_images && clip.file.empty()) return true;
     return std::any_of(experiment.groups.begin(), experiment.groups.end(),
                        [&](const GroupSetup& group) { return group.name == clip.group && states(group); });
   });
 }
 
-/// The sections that clips made of pictures cannot do without.
+/// The sections that clips of images cannot do without.
 void check_sections(const Experiment& experiment, const TomlTable& root) {
   if (experiment.calibration && experiment.scale) {
     root.reject("scale", "a table [scale] beside [calibration]", "one of the two");
@@ -227,10 +227,6 @@ void check_folder(const fs::path& path) {
 }
 
 }  // namespace
-
-Experiment read_experiment(const fs::path& path) {
-  return read_experiment(path, OutsideFiles::refused);
-}
 
 Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
   check_folder(path);
@@ -280,6 +276,15 @@ Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
   check_sections(experiment, root);
   file.finish();
   return experiment;
+}
+
+void require_clips(const Experiment& experiment) {
+  if (!experiment.clips.empty()) return;
+  if (experiment.lines) {
+    throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
+                                       "clips or tracks here; glidelab diagnose takes such a table"});
+  }
+  throw base::InputError(base::Issue{experiment.file.string(), 0, "clip", "none", "one or more clips or tracks"});
 }
 
 }  // namespace glidelab::core

@@ -12,7 +12,6 @@ namespace glidelab::core {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kContradiction = 5.0;  // standard deviations between two readings of one angle
 
 std::string reading(const ClipSetup& clip) {
   return fmt::format("{:.6g} \xC2\xB1 {:.3g}", clip.incline_rad * kDegrees + 0.0,  // + 0.0: no "-0"
@@ -20,12 +19,6 @@ std::string reading(const ClipSetup& clip) {
 }
 
 }  // namespace
-
-bool contradicts(const ClipSetup& one, const ClipSetup& other) {
-  if (!one.incline_sd_rad || !other.incline_sd_rad) return false;
-  const double apart = std::abs(one.incline_rad - other.incline_rad);
-  return apart > kSameIncline_rad + kContradiction * std::hypot(*one.incline_sd_rad, *other.incline_sd_rad);
-}
 
 void name_groups(std::vector<ClipSetup>& clips) {
   std::set<double> inclinations;
@@ -60,7 +53,7 @@ void check_names(const std::vector<ClipSetup>& clips, const std::vector<base::To
     if (!names.insert(groups[i].name).second) {
       group_tables[i].reject("name", fmt::format("text \"{}\" a second time", groups[i].name), "a name of its own");
     } else if (!known_groups.contains(groups[i].name)) {
-      group_tables[i].reject("name", fmt::format("text \"{}\", of which there is no clip", groups[i].name),
+      group_tables[i].reject("name", fmt::format("text \"{}\", a group without a clip", groups[i].name),
                              fmt::format("one of {}", fmt::join(known_groups, ", ")));
     }
   }
@@ -73,7 +66,7 @@ void check_readings(const std::vector<ClipSetup>& clips, const std::vector<base:
     });
     if (other == clips.begin() + static_cast<long>(i)) continue;
     clip_tables[i].reject("incline_deg", reading(clips[i]),
-                          fmt::format("the inclination of group \"{}\", of which clip \"{}\" states {}; or a group "
+                          fmt::format("the inclination of group \"{}\", for which clip \"{}\" states {}; or a group "
                                       "of its own",
                                       clips[i].group, other->name, reading(*other)));
   }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/toml/strict_toml.h"
-#include "core/experiment/experiment.h"
+#include "core/experiment/clip_setup.h"
 
 namespace glidelab::core {
 

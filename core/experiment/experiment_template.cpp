@@ -28,19 +28,19 @@ frame_rate_hz = 240.0              # what it filmed at, whatever rate the file p
 pattern = "chessboard"
 inner_corners = [9, 6]             # where four squares meet; a board of 10 x 7 squares has 9 x 6
 square_m = 0.025                   # side of one square AS PRINTED: measure 9 in a row with a ruler
-views = "calibration/view-*.png"   # a dozen pictures: tilted to all sides, near and far, out to the picture's corners
-plane = "calibration/plane.png"    # the pattern where the marker moves, its long side along the track; several pictures
+views = "calibration/view-*.png"   # a dozen images: tilted to all sides, near and far, out to the image's corners
+plane = "calibration/plane.png"    # the pattern where the marker moves, its long side along the track; several images
                                    # along the track are better: "calibration/plane-*.png"
 
 # ---- Or, instead of [calibration], one scale: no lens is corrected, and all lengths are as good as this one.
 #[scale]
 #px_per_m = 480.0                  # or from_px, to_px and length_m together
-#from_px = [100.0, 240.0]          # two points of the picture ...
+#from_px = [100.0, 240.0]          # two points of the image ...
 #to_px = [580.0, 240.0]
-#length_m = 1.0                    # ... and how far they are apart in the plane of motion
+#length_m = 1.0                    # ... and how far apart they are in the plane of motion
 #px_per_m_sd = 5.0                 # how far the scale may be off
 
-# ---- A plumb line in the picture, which tells the inclination (and with it mu of a single direction).
+# ---- A plumb line in the image, which tells the inclination (and with it mu of a single direction).
 #[plumb]
 #view = "plumb.png"
 #region = [40, 0, 120, 500]        # x, y, width, height in pixels, around the line
@@ -50,11 +50,11 @@ plane = "calibration/plane.png"    # the pattern where the marker moves, its lon
 diameter_m = 0.016                 # AS PRINTED: the sheet of "glidelab pattern" has discs of 8, 12, 16 and 24 mm
 #height_m = 0.0                    # its centre off the pattern's plane, towards the camera
 #color = "#101010"                 # a black disc (left out, a bright one is looked for first); or the hue of an object, as "#e04020"
-#start_px = [400, 120]             # where it is in the first frame, should something else move as well
+#start_px = [400, 120]             # where it is in the first frame, if something else moves as well
 
 [track]
-downhill = "+X"                    # which way is down along the pattern's long row, which runs from the side with black
-                                   # corner squares to that with white ones; level track: which way you call positive
+downhill = "+X"                    # which direction of the pattern's long row is down; it runs from the side with black
+                                   # corner squares to that with white ones; level track: the one you call positive
 #length_m = 2.0
 
 # ---- The clips, one [[clip]] a motion. mu and the inclination need both directions: launch it both ways, or up a
@@ -70,7 +70,7 @@ incline_deg = 4.0                  # of the track, as set; one reading for all c
 #incline_sd_deg = 0.3              # how far that may be off
 launched = "up"                    # "up" (towards -x), "down" (towards +x) or "released"
 #start_s = 0.2                     # the part of the clip in which the glider moves freely; ...
-#end_s = 1.8                       # ... left out, the analysis finds it
+#end_s = 1.8                       # ... without them the analysis finds it
 #group = "slope"                   # clips that share one inclination; default: those of equal incline_deg
 
 [[clip]]
@@ -98,15 +98,15 @@ What goes where, and what follows. `experiment.toml` explains every key.
 1. **Pattern.** `glidelab pattern` draws a chessboard and markers to print. Print at 100 %, check the ruler line, glue the
    board flat, and write the side of a square *as measured* into `experiment.toml`.
 2. **Camera.** On something that does not move, at right angles to the track. Focus, exposure and zoom fixed; short exposure, much
-   light. From here on nothing of the camera is touched.
-3. **`calibration/`.** `view-00.png`, `view-01.png`, …: a dozen pictures of the board, tilted to all sides, near and far, reaching
-   into all corners of the picture. `plane.png`: the board held where the marker will move, its long side along the track.
-4. **`clips/`.** One clip a motion, both directions, and more than one mass if you can. Say of each in `experiment.toml` its
-   mass, the inclination and how it was launched.
+   light. From here on do not touch the camera.
+3. **`calibration/`.** `view-00.png`, `view-01.png`, …: a dozen images of the board, tilted to all sides, near and far, reaching
+   into all corners of the image. `plane.png`: the board held where the marker will move, its long side along the track.
+4. **`clips/`.** One clip a motion, both directions, and more than one mass if you can. In `experiment.toml`, state the mass, the
+   inclination and the launch of each.
 
 Then, before you put anything away:
 
-    glidelab check .       # is the recording good enough? says what to change
+    glidelab check .       # is the recording good enough? what to change
     glidelab analyze .     # K/m, mu, inclination, limit velocity
     glidelab diagnose .    # what the simple law does not explain, if anything
 )";

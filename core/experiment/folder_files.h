@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "base/toml/strict_toml.h"
-#include "core/experiment/experiment.h"
+#include "core/experiment/clip_setup.h"
 
 namespace glidelab::core {
-
-enum class OutsideFiles { refused, allowed };
 
 struct FolderFiles {
   std::filesystem::path folder;
@@ -26,7 +24,8 @@ struct FolderFiles {
   std::filesystem::path file(const base::TomlTable& table, std::string_view key, bool or_folder = false) const;
 };
 
-/// read_experiment() of experiment.h, of which files outside the folder are a choice.
-Experiment read_experiment(const std::filesystem::path& folder, OutsideFiles outside);
+/// The regular files below `folder` whose relative path matches `pattern`, sorted by name (byte by byte). `*` and `?`
+/// match within one part of the path, `[…]` as in a shell; a name that exists as it stands is taken literally.
+std::vector<std::filesystem::path> files_matching(const std::filesystem::path& folder, std::string_view pattern);
 
 }  // namespace glidelab::core

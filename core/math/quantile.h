@@ -23,6 +23,13 @@ inline double quantile(std::vector<double> values, double part) {
   return values[static_cast<std::size_t>(at)];
 }
 
+/// The median: the upper of the two middle values where their number is even; there must be at least one.
+inline double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// The median step between times that rise; 0 for fewer than two.
 inline double median_step(std::span<const double> t_s) {
   std::vector<double> steps;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/result/line_method.h"
+
 namespace glidelab::core {
 
 struct PictureRecord;
@@ -20,26 +22,26 @@ struct Estimate {
   double high95 = 0.0;
 };
 
-/// A quantity that the data determine, or the reason why they do not.
+/// A quantity that the data determine, or why they do not.
 struct Quantity {
   std::optional<Estimate> estimate;
   std::string why;  ///< empty where there is an estimate
-  /// What the estimate has added to it because a kernel bends the law of a line (law_bias.h); without it, what the
-  /// lines as they are give.
+  /// The correction for the kernel's bias of a line (law_bias.h) that the estimate contains; without it, the lines as
+  /// fitted give the value.
   std::optional<double> smoothing_correction = {};
-  /// The part of the estimate's standard deviation that is random from clip to clip (the positions' noise and what they
+  /// The part of the estimate's standard deviation that is random from clip to clip (the positions' noise and their
   /// scatter beyond it), without what all clips share: calibration, clock, scale, mass, the kernel's bias.
   std::optional<double> noise_sd = {};
 };
 
-/// Why a point of the motion is not in a fit.
+/// Why a point of the motion is left out of a fit.
 enum class LeftOut {
   used,             ///< it is in the fit
   before_start,     ///< before start_s
   after_end,        ///< after end_s
   hand,             ///< the glider is not free yet (or held)
   rest,             ///< it does not move
-  stop,             ///< it bumps into something: the end of the track, a bumper
+  stop,             ///< it hits something: the end of the track, a bumper
   kernel_end,       ///< the kernel reaches over the start or the end of the free motion
   kernel_reversal,  ///< the kernel reaches over a reversal
   kernel_gap,       ///< too few frames with a marker within the kernel
@@ -47,7 +49,7 @@ enum class LeftOut {
   outlier,          ///< the centre lies off the motion by more than its noise allows
   short_stretch,    ///< a stretch so short beside others of its direction that it adds noise and no information
 };
-/// A word for tables ("used", "hand", "kernel over a reversal", …).
+/// In words, for tables ("used", "hand", "kernel over a reversal", …).
 std::string describe(LeftOut reason);
 
 /// One frame of a clip: as measured, and as smoothed by the local cubic (equations 10 to 12).
@@ -89,8 +91,8 @@ struct LineUncertainty {
   double var_k = 0.0;  ///< random: the noise of the positions, and what the points scatter beyond it
   double var_a0 = 0.0;
   double cov = 0.0;
-  double scatter = 0.0;      ///< root mean square residual over what the noise explains: 1 where the line is right
-  bool jackknife = false;    ///< the random part is that of leaving out stretches (line_fit.h)
+  double scatter = 0.0;      ///< root mean square residual over that expected of the noise: 1 where the line is right
+  bool jackknife = false;    ///< the random part comes from leaving out stretches (line_fit.h)
   double degrees = 0.0;      ///< of freedom that the random part rests on; infinite where it is as good as known
   double smoothing_k = 0.0;  ///< estimated bias by the kernel where it cannot be taken off; not subtracted
   double smoothing_a0 = 0.0;
@@ -129,7 +131,7 @@ struct LeftOutInterval {
   LeftOut reason = LeftOut::used;
 };
 
-/// Frames that were lost without a trace in the file's times (lost_frames.h).
+/// Frames that were lost, of which the file's times show nothing (lost_frames.h).
 struct LostFrames {
   double after_s = 0.0;   ///< by the file's times: the last frame before them
   std::size_t count = 0;  ///< how many follow each other
@@ -144,7 +146,7 @@ struct MarkerSighting {
   double radius_px = 0.0;
 };
 
-/// Measured positions of free motion that follow each other; it may turn at v = 0, and nothing else happens to it.
+/// Measured positions of free motion that follow each other; the motion may turn at v = 0 and is otherwise free.
 struct FreeBlock {
   std::vector<double> t_s;
   std::vector<double> x_m;
@@ -152,15 +154,16 @@ struct FreeBlock {
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of these points
 };
 
-/// Motion against the stated direction of the launch, before any with it (free_motion.h).
+/// Motion against the stated direction of the launch, before any along it (free_motion.h).
 struct AgainstLaunch {
-  int direction = 0;              ///< in which it moves
-  std::optional<double> until_s;  ///< where motion as launched begins; none where there is none: nothing is left out
-  double share = 0.0;             ///< of the points that move freely
-  bool at_a_turn = false;         ///< it goes over into motion as launched with neither a rest nor a push between
+  int direction = 0;  ///< in which it moves
+  std::optional<double>
+      until_s;             ///< where motion as launched begins; without a value there is none, and nothing is left out
+  double share = 0.0;      ///< of the points that move freely
+  bool at_a_turn = false;  ///< it turns into motion as launched with neither a rest nor a push between
 };
 
-/// "what moves towards +x before 0.542 s is left out as the hand: the launch was towards -x"
+/// "motion towards +x before 0.542 s is left out as the hand's: the launch was towards -x"
 std::string sentence(const AgainstLaunch& against);
 
 struct ClipResult {
@@ -174,10 +177,10 @@ struct ClipResult {
   double position_noise_m = 0.0;
   std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points
   double scale_sd_relative = 0.0;               ///< as in TrackData
-  std::optional<double> rounding_m;             ///< step to which the positions are rounded, where that shows
+  std::optional<double> rounding_m;             ///< step to which the positions are rounded, where that matters
   bool forced = false;                          ///< a known force acts
-  std::vector<LostFrames> lost_frames;          ///< found from the motion; what is done about them: MotionOptions
-  std::vector<FreeBlock> blocks;                ///< what a fit of the whole motion rests on
+  std::vector<LostFrames> lost_frames;          ///< found from the motion; MotionOptions says what is done about them
+  std::vector<FreeBlock> blocks;                ///< to which the whole motion is fitted
   std::vector<LineFit> segments;                ///< at most one for each direction
   Quantity v_lim_m_s;
   std::vector<Stretch> stretches;
@@ -187,7 +190,7 @@ struct ClipResult {
   std::vector<MotionPoint> motion;
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of every frame of `motion`; 0 without a marker
   std::vector<MarkerSighting> sightings;      ///< empty for a track
-  /// What the pictures show besides (picture_record.h); none for a track, and where it was not asked for.
+  /// What the images show besides the motion (picture_record.h); null for a track, and where it was not asked for.
   std::shared_ptr<const PictureRecord> pictures;
 };
 
@@ -195,7 +198,7 @@ struct ClipResult {
 struct ConfigurationResult {
   double mass_kg = 0.0;
   double incline_deg = 0.0;
-  std::optional<double> incline_sd_deg;  ///< the smallest that its clips state; none where none does
+  std::optional<double> incline_sd_deg;  ///< the smallest that its clips state, if any
   std::string group;
   std::vector<std::string> clips;
   std::vector<LineFit> lines;  ///< at most one for each direction, through the points of all its clips
@@ -208,12 +211,12 @@ struct ConfigurationResult {
 
 struct CornerCell {
   double u_px = 0.0, v_px = 0.0;    ///< mean place of its corners
-  double du_px = 0.0, dv_px = 0.0;  ///< mean rest
+  double du_px = 0.0, dv_px = 0.0;  ///< mean residual
   double sd_px = 0.0;               ///< of either
   std::size_t corners = 0;
 };
 
-/// What a camera's fit leaves of the pattern's corners, over the picture (corner_map.h).
+/// What a camera's fit leaves of the pattern's corners, over the image (corner_map.h).
 struct CornerMap {
   int width_px = 0, height_px = 0;
   std::vector<CornerCell> cells;  ///< with two corners or more, row by row
@@ -229,10 +232,10 @@ struct CalibrationResult {
   std::vector<double> sd;             ///< of fx, fy, cx, cy, then `distortion`; 0 for a term that is fixed
   std::string model;                  ///< which terms the views support, and why
   double restitution_rms_m = 0.0;     ///< of the plane views' corners, restituted, against the pattern
-  double plane_rms_px = 0.0;          ///< the same in the picture, one coordinate
-  double plane_expected_px = 0.0;     ///< what the corners' noise explains of it
+  double plane_rms_px = 0.0;          ///< the same in the image, of one coordinate
+  double plane_expected_px = 0.0;     ///< the part that the corners' noise explains
   std::size_t views_used = 0;
-  CornerMap rests;                 ///< what the camera's fit leaves of the corners, over the picture
+  CornerMap rests;                 ///< what the camera's fit leaves of the corners, over the image
   std::vector<std::string> notes;  ///< views without a visible pattern, …
 };
 
@@ -246,9 +249,9 @@ struct AnalysisResults {
   double gravity_m_s2 = 0.0;
   std::vector<ClipResult> clips;
   std::vector<ConfigurationResult> configurations;
-  std::vector<CalibrationResult> calibrations;  ///< one for each folder that has a pattern
-  std::vector<PlumbResult> plumbs;              ///< one for each group that has a plumb line
-  std::string estimator = "phase-diagram";
+  std::vector<CalibrationResult> calibrations;            ///< one for each folder that has a pattern
+  std::vector<PlumbResult> plumbs;                        ///< one for each group that has a plumb line
+  std::string estimator = name_of(LineMethod::ordinary);  ///< a name of fit/estimators.h
 };
 
 }  // namespace glidelab::core

@@ -83,7 +83,8 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
   for (ConfigurationResult& result : results) {
     if (result.mass_kg >= kMassRatio * least_kg) {
       result.notes.push_back(
-          fmt::format("mass_kg = {:.6g}, and {:.6g} of the lightest: masses are in kilograms, and one looks like grams",
+          fmt::format("mass_kg = {:.6g}, but {:.6g} for the lightest glider: masses are in kilograms, and one of these "
+                      "looks like grams",
                       result.mass_kg, least_kg));
     }
     const auto contradiction = incline_contradiction(result, gravity_m_s2, stated_incline(result));

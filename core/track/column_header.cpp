@@ -32,7 +32,7 @@ std::optional<double> factor(const std::array<Unit, N>& units, std::string_view 
   return found->second;
 }
 
-std::string_view trim(std::string_view text) {
+std::string_view trimmed(std::string_view text) {
   const std::string_view blanks = " \t,:";
   const auto first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
@@ -73,20 +73,20 @@ TableColumn column_of(const std::string& text) {
   const auto close = open == std::string_view::npos ? open : rest.find_first_of(")]", open);
   std::string name(rest);
   if (close != std::string_view::npos) {
-    column.unit = std::string(trim(rest.substr(open + 1, close - open - 1)));
-    column.run = std::string(trim(rest.substr(close + 1)));
-    name = std::string(trim(rest.substr(0, open)));
+    column.unit = std::string(trimmed(rest.substr(open + 1, close - open - 1)));
+    column.run = std::string(trimmed(rest.substr(close + 1)));
+    name = std::string(trimmed(rest.substr(0, open)));
   }
   if (const auto colon = name.find(':'); colon != std::string::npos) {
-    column.run = std::string(trim(std::string_view(name).substr(0, colon)));
-    name = std::string(trim(std::string_view(name).substr(colon + 1)));
+    column.run = std::string(trimmed(std::string_view(name).substr(0, colon)));
+    name = std::string(trimmed(std::string_view(name).substr(colon + 1)));
   }
   const std::string small = lower(name);
   for (const char* const mark : {", run", " run #", " run "}) {
     const auto at = small.find(mark);
     if (at == std::string::npos || at == 0) continue;
-    column.run = std::string(trim(std::string_view(name).substr(at)));
-    name = std::string(trim(std::string_view(name).substr(0, at)));
+    column.run = std::string(trimmed(std::string_view(name).substr(at)));
+    name = std::string(trimmed(std::string_view(name).substr(0, at)));
     break;
   }
   const auto underscore = name.rfind('_');

@@ -6,9 +6,15 @@
 #include <string_view>
 #include <vector>
 
-#include "core/track/column_table.h"
-
 namespace glidelab::core {
+
+struct TableColumn {
+  std::string text;                           ///< the header as it stands; "column 2" where there is none
+  std::string name;                           ///< without unit and run
+  std::string unit;                           ///< empty where none is stated
+  std::string run;                            ///< empty where none is stated
+  std::vector<std::optional<double>> values;  ///< one for each data line; nothing where the field is empty or NaN
+};
 
 /// Metres for a unit of length, seconds for one of time; nothing for any other text. "um" and "µm" are one.
 std::optional<double> metres_per(std::string_view unit);

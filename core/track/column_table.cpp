@@ -14,7 +14,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kMaxIssues = 10;
+constexpr std::size_t kMostFieldIssues = 10;
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \r");
@@ -153,7 +153,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
                       ambiguous ? "one for each name (a decimal comma needs another delimiter than the comma)"
                                 : "one for each name"});
   }
-  for (std::size_t r = first_data; r < rows.size() && issues.size() < kMaxIssues; ++r) {
+  for (std::size_t r = first_data; r < rows.size() && issues.size() < kMostFieldIssues; ++r) {
     table.line.push_back(lines[r].number);
     for (std::size_t c = 0; c < width; ++c) {
       const std::string_view field = c < rows[r].size() ? rows[r][c] : std::string_view{};

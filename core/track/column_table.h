@@ -9,19 +9,12 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
-namespace glidelab::core {
+#include "core/track/column_header.h"
 
-struct TableColumn {
-  std::string text;                           ///< the header as it stands; "column 2" where there is none
-  std::string name;                           ///< without unit and run
-  std::string unit;                           ///< empty where none is stated
-  std::string run;                            ///< empty where none is stated
-  std::vector<std::optional<double>> values;  ///< one for each data line; nothing where the field is empty or NaN
-};
+namespace glidelab::core {
 
 struct ColumnTable {
   std::string file;

@@ -16,11 +16,11 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kMaxIssues = 10;  // unsorted times are wrong on many lines
+constexpr std::size_t kMostTimeIssues = 10;  // unsorted times are wrong on many lines
 
 void check_times(const base::CsvTable& table, const std::vector<double>& t_s) {
   std::vector<base::Issue> issues;
-  for (std::size_t i = 1; i < t_s.size() && issues.size() < kMaxIssues; ++i) {
+  for (std::size_t i = 1; i < t_s.size() && issues.size() < kMostTimeIssues; ++i) {
     if (t_s[i] > t_s[i - 1]) continue;
     issues.push_back({table.file, table.line[i], "column \"t_s\"",
                       fmt::format("{}{}", t_s[i], t_s[i] == t_s[i - 1] ? " twice" : ""),
@@ -63,13 +63,6 @@ bool has_own_header(const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-void take_rows_as_frames(TrackData& track) {
-  track.frame.resize(track.t_s.size());
-  std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
-  track.frame_t_s = track.t_s;
-  track.frame_rate_hz = 1.0 / median_step(track.t_s);
-}
 
 TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column) {
   assert(downhill == 1 || downhill == -1);

@@ -13,6 +13,10 @@
 
 namespace glidelab::core {
 
+/// Fewer points than this say nothing about an acceleration: a local cubic has four coefficients, and as many points
+/// again are left for their noise.
+inline constexpr std::size_t kFewestTrackPoints = 8;
+
 /// Positions along the line of motion, positive downhill. All vectors have one length; times rise strictly.
 struct TrackData {
   std::vector<double> t_s;  ///< frames in which the marker was found, middle of exposure
@@ -30,5 +34,9 @@ struct TrackData {
   bool dark_marker = false;  ///< seen as darker than its surroundings, without a colour that says so
   std::vector<std::string> notes;
 };
+
+/// Every point of a track from a file is a frame in which the object was seen; the frame rate is one over the median
+/// time step.
+void take_rows_as_frames(TrackData& track);
 
 }  // namespace glidelab::core

@@ -10,12 +10,11 @@
 #include "core/experiment/clip_names.h"
 #include "core/track/column_header.h"
 #include "core/track/column_table.h"
-#include "core/track/track_csv.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kMaxIssues = 10;
+constexpr std::size_t kMostRowIssues = 10;
 
 const std::vector<std::string> kPlaces{"x",   "position", "pos",        "distance",     "displacement",    "position x",
                                        "weg", "ort",      "x-position", "position (x)", "posici\xC3\xB3n", "distancia"};
@@ -125,7 +124,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
     if (!lines.empty()) missing += missing_so_far;
     missing_so_far = 0;
     const double at = *t.values[row] * seconds;
-    if (!lines.empty() && at <= track.t_s.back() && issues.size() < kMaxIssues) {
+    if (!lines.empty() && at <= track.t_s.back() && issues.size() < kMostRowIssues) {
       issues.push_back({table.file, table.line[row], fmt::format("column \"{}\"", t.text),
                         fmt::format("{}", *t.values[row]), fmt::format("a time above that of line {}", lines.back())});
     }
@@ -140,7 +139,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
                                        fmt::format("at least {}", kFewestTrackPoints)});
   }
   if (missing > 0)
-    track.notes.push_back(fmt::format("{} rows between others have no time or x and are left out", missing));
+    track.notes.push_back(fmt::format("{} rows between others lack a time or x and are left out", missing));
   take_rows_as_frames(track);
   return track;
 }

@@ -16,7 +16,7 @@
 namespace glidelab::core {
 
 /// x is multiplied by `downhill`. InputError: no or several columns that x may be, a unit that is no length or time,
-/// times that do not rise, fewer points than kFewestTrackPoints (track_csv.h).
+/// times that do not rise, fewer points than kFewestTrackPoints.
 TrackData import_track(const std::filesystem::path& file, const std::string& column, int downhill);
 
 }  // namespace glidelab::core

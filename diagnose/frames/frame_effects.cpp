@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "core/math/median.h"
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/common_limits.h"

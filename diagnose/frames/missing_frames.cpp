@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/math/dense.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/obvious_losses.h"
 

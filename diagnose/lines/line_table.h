@@ -8,7 +8,6 @@
 
 #include "base/errors.h"
 #include "core/experiment/experiment.h"
-#include "core/experiment/folder_files.h"
 
 namespace glidelab::diagnose {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/common_limits.h"
 #include "diagnose/fit/score_space.h"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "base/math/dense.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 
 namespace glidelab::diagnose {
 namespace {

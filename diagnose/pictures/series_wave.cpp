@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -196,8 +196,8 @@ std::optional<Filming> filming_of(const core::AnalysisResults& results, const st
       found.noise = noise_law(clip.pictures->noise_levels);
       if (folder.calibration) {
         found.inner_columns =
-            std::max(folder.calibration->inner_corners.width, folder.calibration->inner_corners.height);
-        found.inner_rows = std::min(folder.calibration->inner_corners.width, folder.calibration->inner_corners.height);
+            std::max(folder.calibration->inner_corners.columns, folder.calibration->inner_corners.rows);
+        found.inner_rows = std::min(folder.calibration->inner_corners.columns, folder.calibration->inner_corners.rows);
         found.square_m = folder.calibration->square_m;
       }
       if (folder.calibration) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {

@@ -13,7 +13,6 @@
 
 #include "base/progress.h"
 #include "core/experiment/experiment.h"
-#include "core/experiment/folder_files.h"
 #include "core/result/results.h"
 #include "diagnose/result/diagnosis.h"
 

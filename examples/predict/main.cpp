@@ -5,7 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
+#include "core/motion/join_configurations.h"
 #include "sim/force/force_terms.h"
 #include "sim/motion/simulate.h"
 

@@ -9,7 +9,6 @@
 
 #include "base/errors.h"
 #include "base/math/dense.h"
-#include "core/math/median.h"
 #include "core/math/quantile.h"
 #include "fit/trajectory/trajectory_uncertainty.h"
 #include "sim/sensitivity/track_sensitivity.h"

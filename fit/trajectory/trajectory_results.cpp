@@ -58,7 +58,8 @@ void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResu
   const double drive = fit.parameters[1], friction = fit.parameters[2];
   result.v_lim_m_s = limit_velocity(fit, k_estimate, drive - friction, Eigen::Vector3d(0.0, 1.0, -1.0));
   if (!(std::abs(drive) < gravity_m_s2)) {
-    result.alpha_deg = result.mu = core::undetermined("the drive is more than gravity: no inclination has it");
+    result.alpha_deg = result.mu =
+        core::undetermined("the acceleration without friction exceeds gravity: no inclination gives that");
     return;
   }
   const double cosine = std::sqrt(1.0 - std::pow(drive / gravity_m_s2, 2));
@@ -105,7 +106,7 @@ void leave_out(const std::string& why, core::ConfigurationResult& result) {
 }  // namespace
 
 core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options) {
-  results.estimator = "trajectory";
+  results.estimator = kTrajectory;
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.notes.clear();  // of the lines
     std::vector<FitBlock> blocks;
@@ -120,7 +121,7 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
       }
     }
     if (forced) {
-      leave_out("a known force acts: the fit of the whole motion does not take it; use the phase diagram",
+      leave_out("a known force acts, which the fit of the whole motion does not include; use the phase diagram",
                 configuration);
       continue;
     }
@@ -130,7 +131,8 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
     }
     const auto fit = fit_trajectories(blocks, start_of(configuration), options);
     if (!fit) {
-      leave_out("the fit of the whole motion does not converge, or the motion does not determine it", configuration);
+      leave_out("the fit of the whole motion does not converge, or the motion does not determine its parameters",
+                configuration);
       continue;
     }
     fill(*fit, results.gravity_m_s2, configuration);

@@ -6,11 +6,13 @@
 
 namespace glidelab::fit {
 
+inline constexpr const char* kTrajectory = "trajectory";  ///< the estimator's name in options and files
+
 /// The same results with K/m, mu, alpha and v_lim of every configuration by fit_trajectories() in place of the lines',
-/// and estimator = "trajectory"; the clips and their lines stay. mu = f / (g cos(alpha)), sin(alpha) = d / g.
+/// and estimator = kTrajectory; the clips and their lines stay. mu = f / (g cos(alpha)), sin(alpha) = d / g.
 ///
-/// Null with the reason: mu and alpha where the motion goes one way only (the reason says which combination is known);
-/// all of them for tracks with a known force, for clips without free motion, and where no fit converges.
+/// Null with the reason: mu and alpha where the motion has one direction only (the reason says which combination is
+/// known); all of them for tracks with a known force, for clips without free motion, and where no fit converges.
 core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options = {});
 
 }  // namespace glidelab::fit

@@ -12,7 +12,7 @@
 
 #include <vector>
 
-#include "fit/trajectory/trajectory_fit.h"
+#include "fit/trajectory/trajectory_model.h"
 
 namespace glidelab::fit {
 

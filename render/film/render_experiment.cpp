@@ -7,7 +7,6 @@
 #include <opencv2/core.hpp>
 
 #include "base/errors.h"
-#include "base/files/append_file.h"
 #include "base/files/staged_output.h"
 #include "base/parallel.h"
 #include "base/text/csv.h"

@@ -11,7 +11,7 @@
 
 namespace glidelab::report {
 
-/// Mean residuals of the pattern's corners in cells of the image, as arrows; nothing where there are none. `experiment`
+/// Mean residuals of the pattern's corners in cells of the image, as arrows; nothing if there are none. `experiment`
 /// is named where there are several.
 std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::string& experiment);
 

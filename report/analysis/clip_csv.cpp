@@ -18,7 +18,7 @@ namespace {
 class MotionRow {
  public:
   MotionRow(base::CsvWriter& table, const core::ClipResult& clip, double t_s) : table_(table), clip_(clip), t_s_(t_s) {}
-  /// NumericalError where the number is not finite; it names the clip and the time.
+  /// NumericalError if the number is not finite; it names the clip and the time.
   void put(std::optional<double> value) {
     if (!value) {
       table_.empty();
@@ -36,7 +36,7 @@ class MotionRow {
   double t_s_;
 };
 
-/// a on the clip's own line; nothing where there is none, and for a clip with a known force.
+/// a on the clip's own line; nothing if there is none, and for a clip with a known force.
 std::optional<double> own_line_at(const core::ClipResult& clip, double v_m_s) {
   const core::LineFit* const line = clip.forced ? nullptr : line_of(clip.segments, v_m_s);
   return line == nullptr ? std::nullopt : std::optional(line_at(*line, v_m_s));

@@ -13,11 +13,11 @@ namespace glidelab::report {
 ///     t_s,measured_x_m,x_m,sd_x_m,residual_x_m,v_m_s,sd_v_m_s,a_m_s2,sd_a_m_s2,line_a_m_s2,residual_a_m_s2,reason
 ///
 /// residual_x_m = measured_x_m - x_m. line_a_m_s2 = a0 - (K/m) v by the clip's own line for the sign of v, and
-/// residual_a_m_s2 = a_m_s2 - line_a_m_s2; both are empty where there is no line, and for a clip with a known force,
+/// residual_a_m_s2 = a_m_s2 - line_a_m_s2; both are empty if there is no line, and for a clip with a known force,
 /// whose line is one of a - F/m. Fields that have no value are empty; `reason` says why a frame is not in a line,
 /// "used" where it is.
 ///
-/// NumericalError where a value is not finite.
+/// NumericalError if a value is not finite.
 std::string motion_csv(const core::ClipResult& clip);
 
 /// `motion-<clip>.csv` for each clip, as phase_file_names() has it.
@@ -28,10 +28,10 @@ std::vector<std::string> motion_file_names(const core::AnalysisResults& results)
 ///     t_s,x_m,v_m_s,a_m_s2,used,sd_v_m_s,sd_a_m_s2,measured_x_m,reason
 ///
 /// The first seven columns are numbers in every row; `used` is 1 where the point is in a fit of a line and 0 where it
-/// is not, for the reason in the last column. `measured_x_m` is empty where no marker was found. Frames that were not
+/// is not, for the reason in the last column. `measured_x_m` is empty if no marker was found. Frames that were not
 /// smoothed (before the start, at rest, …) have no row; "left_out" of results.json lists them.
 ///
-/// NumericalError where a value is not finite.
+/// NumericalError if a value is not finite.
 std::string phase_csv(const core::ClipResult& clip);
 
 }  // namespace glidelab::report

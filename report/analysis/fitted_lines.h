@@ -8,7 +8,7 @@
 
 namespace glidelab::report {
 
-/// The line for the sign of v (or of a direction, ±1); null where there is none, and at v = 0.
+/// The line for the sign of v (or of a direction, ±1); null if there is none, and at v = 0.
 inline const core::LineFit* line_of(const std::vector<core::LineFit>& lines, double v_m_s) {
   const auto found =
       std::find_if(lines.begin(), lines.end(), [&](const core::LineFit& line) { return line.direction * v_m_s > 0.0; });

@@ -8,7 +8,7 @@
 
 namespace glidelab::report {
 
-/// Three plots, or none where no frame has a position.
+/// Three plots, or none if no frame has a position.
 std::vector<Plot> motion_plots(const core::ClipResult& clip);
 
 }  // namespace glidelab::report

@@ -28,7 +28,7 @@ std::string configuration_label(const core::AnalysisResults& results, const Phas
 double line_half95_m_s2(const core::LineFit& line, double v_m_s);
 
 /// The diagram, its detail near v = 0, and the residuals of the lines, each with the lines' 95 % bands and the bars of
-/// some points; none where no point is used. Where a known force was applied, a - F/m stands for a.
+/// some points; none if no point is used. Where a known force was applied, a - F/m stands for a.
 std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group);
 
 }  // namespace glidelab::report

@@ -35,7 +35,7 @@ struct PixelLocking {
 /// Nothing for fewer than 20 points, and where they leave a quarter of the pixel empty.
 std::optional<PixelLocking> pixel_locking(const std::vector<PixelPhase>& points);
 
-/// The points, their means over twentieths of a pixel, and the harmonic. Nothing where pixel_locking() gives nothing.
+/// The points, their means over twentieths of a pixel, and the harmonic. Nothing if pixel_locking() gives nothing.
 std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool from_truth);
 
 }  // namespace glidelab::report

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/result/quantity.h"
 #include "report/text/json_numbers.h"
 #include "report/text/result_names.h"
 
@@ -72,10 +73,9 @@ Json configuration_json(const core::ConfigurationResult& configuration) {
   object["incline_deg"] = configuration.incline_deg;
   object["group"] = configuration.group;
   object["clips"] = configuration.clips;
-  put(object, "k_over_m_1_s", configuration.k_over_m_1_s);
-  put(object, "mu", configuration.mu);
-  put(object, "alpha_deg", configuration.alpha_deg);
-  put(object, "v_lim_m_s", configuration.v_lim_m_s);
+  for (const core::QuantityName& quantity : core::kQuantities) {
+    put(object, std::string(quantity.key).c_str(), core::value_of(configuration, quantity.which));
+  }
   object["lines"] = lines_json(configuration.lines);
   object["notes"] = configuration.notes;
   return object;

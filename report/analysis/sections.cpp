@@ -217,7 +217,7 @@ std::string method_section() {
          "reach over a reversal or over an end of the free motion are left out.</p>\n";
 }
 
-/// What the lines give as they are, and what the kernel's bias adds to it; nothing where none was taken off.
+/// What the lines give as they are, and what the kernel's bias adds to it; nothing if none was taken off.
 std::string corrections_html(const core::AnalysisResults& results) {
   HtmlTable table({"configuration", "quantity", "uncorrected", "correction", "recovered"}, 2);
   for (const core::ConfigurationResult& c : results.configurations) {

@@ -8,7 +8,7 @@
 
 namespace glidelab::report {
 
-/// A self-contained HTML page. EnvironmentError where gnuplot fails.
+/// A self-contained HTML page. EnvironmentError if gnuplot fails.
 Page camera_report(const core::CameraMeasurement& camera);
 
 }  // namespace glidelab::report

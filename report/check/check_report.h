@@ -10,7 +10,7 @@
 
 namespace glidelab::report {
 
-/// `previews` is empty or has one for each clip. EnvironmentError where gnuplot fails.
+/// `previews` is empty or has one for each clip. EnvironmentError if gnuplot fails.
 Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews);
 
 /// The findings with their advice, and a line for each clip.

@@ -14,7 +14,7 @@ namespace glidelab::report {
 Plot coverage_plot(const validate::Coverage& coverage) {
   std::string tics, script(kFrame);
   std::vector<PlotData> data;
-  const auto& estimators = validate::kCoverageEstimators;
+  const std::vector<std::string> estimators = validate::coverage_estimators();
   for (std::size_t e = 0; e < estimators.size(); ++e) data.push_back({fmt::format("e{}", e), {}});
   double row_number = 0.0, lowest = 90.0;
   for (const validate::CoverageRow& row : coverage.rows) {
@@ -48,7 +48,7 @@ Plot reliability_plot(const validate::Coverage& coverage) {
   // A column of the plot for each level: over the level itself 90, 95 and 99 % would lie over each other.
   PlotData band{"band", {}}, stated{"stated", {}};
   std::string tics;
-  const auto& estimators = validate::kCoverageEstimators;
+  const std::vector<std::string> estimators = validate::coverage_estimators();
   for (std::size_t i = 0; i < coverage.levels.size(); ++i) {
     const double level = coverage.levels[i], x = static_cast<double>(i);
     const validate::CoverageBand of = validate::band_of(level, coverage.replicates);

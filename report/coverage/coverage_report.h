@@ -14,7 +14,7 @@ std::string coverage_json(const validate::Coverage& coverage);
 /// Every quantity, and below it how often the intervals of every level hold the truth.
 std::string coverage_text(const validate::Coverage& coverage);
 
-/// The same as a page, with what it means first. EnvironmentError where gnuplot fails.
+/// The same as a page, with what it means first. EnvironmentError if gnuplot fails.
 Page coverage_page(const std::string& title, const validate::Coverage& coverage);
 
 }  // namespace glidelab::report

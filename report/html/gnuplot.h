@@ -24,14 +24,14 @@ struct DrawnPlot {
                        ///< two blank lines apart
 };
 
-/// Draws the plots; names[i] is that of plots[i]'s files. EnvironmentError where gnuplot is missing or fails (with its
+/// Draws the plots; names[i] is that of plots[i]'s files. EnvironmentError if gnuplot is missing or fails (with its
 /// message).
 std::vector<DrawnPlot> draw_plots(std::span<const Plot> plots, std::span<const std::string> names);
 
 /// Names for the files of a page's plots, in order: "01-residuals-of-the-fitted-lines-over-v", of ASCII only.
 std::vector<std::string> plot_file_names(std::span<const Plot> plots);
 
-/// EnvironmentError where gnuplot cannot be started: to be found before the long work, not after it.
+/// EnvironmentError if gnuplot cannot be started: to be found before the long work, not after it.
 void check_gnuplot();
 
 /// The text in `most` characters or fewer, "…" in its middle where it is longer, for a name's two ends tell it from

@@ -82,7 +82,7 @@ struct Page {
   std::map<std::string, std::string> files;
 };
 
-/// The title is text. EnvironmentError where gnuplot fails.
+/// The title is text. EnvironmentError if gnuplot fails.
 Page page(std::string_view title, const Html& body);
 
 /// Writes the document under the name and the files of its plots into the folder.

@@ -44,7 +44,7 @@ void validate(const BoardSheet& sheet);
 /// What the sheet says below the board: how many squares in a row to measure. At its black ends a row shows the
 /// board's edge, and no row has two.
 std::string measure_text(const BoardSheet& sheet);
-/// The file's bytes, and the same as pixels (for tests). InputError as validate() has it; EnvironmentError where Cairo
+/// The file's bytes, and the same as pixels (for tests). InputError as validate() has it; EnvironmentError if Cairo
 /// fails.
 std::string board_page(const BoardSheet& sheet, SheetFormat format);
 SheetPicture board_picture(const BoardSheet& sheet, double pixels_per_m);

@@ -36,7 +36,7 @@ class SheetCanvas {
   /// The text's baseline starts at (x, y); `size_m` is the font's height.
   void text(double x_m, double y_m, double size_m, std::string_view text);
 
-  /// The bytes of a page()'s file. EnvironmentError where Cairo fails. Nothing may be drawn any more.
+  /// The bytes of a page()'s file. EnvironmentError if Cairo fails. Nothing may be drawn any more.
   std::string finish_page();
   /// The pixels of a picture(); likewise.
   SheetPicture finish_picture();

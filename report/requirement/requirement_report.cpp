@@ -66,7 +66,7 @@ std::string order_text(const Requirement& requirement) {
   return requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)";
 }
 
-/// "3 of 200"; nothing where none was run.
+/// "3 of 200"; nothing if none was run.
 std::string beyond_text(const validate::TargetResult& result) {
   return result.runs == 0 ? "–" : fmt::format("{} of {}", result.beyond, result.runs);
 }

@@ -8,7 +8,7 @@
 
 namespace glidelab::report {
 
-/// EnvironmentError where gnuplot fails.
+/// EnvironmentError if gnuplot fails.
 Page requirement_report(const validate::Requirement& requirement);
 
 /// The tables for a terminal.

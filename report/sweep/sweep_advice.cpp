@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "fit/estimators.h"
 #include "report/html/html.h"
 #include "report/text/quantity_names.h"
 
@@ -18,13 +19,17 @@ using validate::GroupStatistics;
 using validate::Series;
 using validate::SweepSummary;
 
-constexpr const char* kDefault = "phase-diagram";
+/// The lines with the default rule.
+std::string default_lines() {
+  return std::string(fit::default_estimator().name);
+}
 
 /// A line by a rule that knows no more than the data: no fixed bandwidth, no truth.
 bool is_rule(const std::string& estimator) {
-  const std::string best = validate::Analysis{kDefault, std::nullopt, validate::kBestPossible}.name();
-  return estimator.starts_with(kDefault) && !estimator.starts_with("phase-diagram-gls") &&
-         estimator.find(" h=") == std::string::npos && estimator != best;
+  const std::string lines = default_lines();
+  const std::string best = validate::Analysis{lines, std::nullopt, validate::kBestPossible}.name();
+  return (estimator == lines || estimator.starts_with(lines + " ")) && estimator.find(" h=") == std::string::npos &&
+         estimator != best;
 }
 
 const Series* series_of(const std::vector<Series>& all, std::string_view quantity, std::string_view estimator) {
@@ -80,7 +85,8 @@ std::optional<double> overall_rms(const SweepSummary& summary, std::string_view 
 std::string factor_sentence(const SweepSummary& summary, const std::string& other, const std::string& words) {
   std::string factors;
   for (const QuantityName& quantity : kQuantities) {
-    const auto ours = overall_rms(summary, quantity.key, kDefault), theirs = overall_rms(summary, quantity.key, other);
+    const auto ours = overall_rms(summary, quantity.key, default_lines()),
+               theirs = overall_rms(summary, quantity.key, other);
     if (!ours || !theirs || !(*theirs > 0.0)) continue;
     factors +=
         fmt::format("{}{} in {}", factors.empty() ? "" : ", ", base::number_text(*ours / *theirs, 3), quantity.symbol);
@@ -90,7 +96,7 @@ std::string factor_sentence(const SweepSummary& summary, const std::string& othe
 
 /// Neighbouring groups of one axis in which another rule than the default wins clearly.
 std::string exceptions(const validate::AxisSummary& axis, const QuantityName& quantity) {
-  const Series* const ours = series_of(axis.series, quantity.key, kDefault);
+  const Series* const ours = series_of(axis.series, quantity.key, default_lines());
   if (ours == nullptr) return {};
   std::string text;
   for (std::size_t i = 0; i < ours->groups.size();) {
@@ -98,7 +104,7 @@ std::string exceptions(const validate::AxisSummary& axis, const QuantityName& qu
       const GroupStatistics& group = ours->groups[at];
       const std::optional<Winner> best = winner(axis.series, quantity.key, group.position);
       const bool clear =
-          best && best->estimator != kDefault &&
+          best && best->estimator != default_lines() &&
           (group.statistics.answered == 0 || group.statistics.rms > clearly(group.statistics) * best->rms);
       return clear ? best : std::nullopt;
     };
@@ -126,11 +132,11 @@ std::string sweep_advice(const SweepSummary& summary) {
   const auto rules = std::count_if(summary.overall.begin(), summary.overall.end(), [](const Series& series) {
     return series.quantity == "k_over_m_1_s" && is_rule(series.estimator);
   });
-  if (rules < 2 || !overall_rms(summary, "k_over_m_1_s", kDefault)) return {};
+  if (rules < 2 || !overall_rms(summary, "k_over_m_1_s", default_lines())) return {};
   std::string text = "<h2>Which rule</h2>\n<p>Over all runs, among the rules alone, the least rms error is that of";
   bool any = false;
   for (const QuantityName& quantity : kQuantities) {
-    const Series* const series = series_of(summary.overall, quantity.key, kDefault);
+    const Series* const series = series_of(summary.overall, quantity.key, default_lines());
     if (series == nullptr) continue;
     const std::optional<Winner> best = winner(summary.overall, quantity.key, series->groups.front().position);
     if (!best) continue;
@@ -138,12 +144,14 @@ std::string sweep_advice(const SweepSummary& summary) {
                         base::number_text(best->rms, 3));
     any = true;
   }
-  text += fmt::format("; \"{}\" is the default.", kDefault);
-  const std::string best_possible = validate::Analysis{kDefault, std::nullopt, validate::kBestPossible}.name();
+  text += fmt::format("; \"{}\" is the default.", default_lines());
+  const std::string best_possible = validate::Analysis{default_lines(), std::nullopt, validate::kBestPossible}.name();
   text += factor_sentence(summary, best_possible, "the best possible bandwidth");
-  text += factor_sentence(summary, "trajectory", "the fit of the whole motion");
+  for (const fit::Estimator& other : fit::judged_estimators()) {
+    if (!other.of_lines) text += factor_sentence(summary, std::string(other.name), fmt::format("the {}", other.title));
+  }
   for (const validate::AccelerationError& of : summary.accelerations) {
-    if (of.estimator != kDefault || !of.regret || !of.regret90) continue;
+    if (of.estimator != default_lines() || !of.regret || !of.regret90) continue;
     text += fmt::format(
         " Its a(t) has {} times the best possible error in the median clip, at most {} times in nine of ten.",
         base::number_text(*of.regret, 3), base::number_text(*of.regret90, 3));

@@ -13,7 +13,7 @@ inline constexpr double kLeastAnsweredShare = 0.98;
 /// "Better" is by more than this factor in rms error, and than two standard errors of it.
 inline constexpr double kClearlyBetterFactor = 1.1;
 
-/// HTML; empty where the sweep has no lines by more than one rule.
+/// HTML; empty if the sweep has no lines by more than one rule.
 std::string sweep_advice(const validate::SweepSummary& summary);
 
 }  // namespace glidelab::report

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "fit/estimators.h"
 #include "report/html/html.h"
 #include "report/sweep/sweep_advice.h"
 #include "report/text/quantity_names.h"
@@ -28,8 +29,8 @@ bool knows_truth(const std::string& estimator) {
 
 /// "h=0.04 s" of the lines with that bandwidth; empty for all others.
 std::string given_bandwidth(const std::string& estimator) {
-  constexpr std::string_view kLines = "phase-diagram h=";
-  return estimator.starts_with(kLines) ? estimator.substr(kLines.size() - 2) : std::string();
+  const std::string lines = std::string(fit::default_estimator().name) + " h=";
+  return estimator.starts_with(lines) ? estimator.substr(lines.size() - 2) : std::string();
 }
 
 /// Of one group each: the least rms error among those that answer and are asked for.
@@ -80,7 +81,7 @@ std::string winners_of(const SweepSummary& summary, const std::function<bool(con
   return text;
 }
 
-/// Which of several given bandwidths errs least; nothing where there are not two of them.
+/// Which of several given bandwidths errs least; nothing if there are not two of them.
 std::string bandwidths_of(const SweepSummary& summary) {
   std::set<std::string> given;
   std::uint64_t answered = 0;
@@ -110,7 +111,7 @@ std::string part_of(const validate::Likeness& of, std::string_view what) {
   return fmt::format(", over those {} of {} {}", of.alike, of.combinations, what);
 }
 
-/// "0.001 1/s at 500 Hz and 0.004 1/s at 31.25 Hz, 4 times as much"; empty where one value has answers or none errs.
+/// "0.001 1/s at 500 Hz and 0.004 1/s at 31.25 Hz, 4 times as much"; empty if one value has answers or none errs.
 std::string span_of(const validate::AxisSummary& axis, const Series& series) {
   const GroupStatistics *least = nullptr, *most = nullptr;
   const auto rms = [&](const GroupStatistics& of) { return validate::comparable(series, of)->rms; };

@@ -13,7 +13,7 @@ inline constexpr double kAstray = 2.0;
 /// HTML. Who has the least rms error of each quantity (of those that answer in kLeastAnsweredShare of the most often
 /// answered runs, sweep_advice.h), how it changes along each key and from one configuration to the other, whose 95 %
 /// intervals do not hold the truth as often (by more than three binomial standard errors), and whose stated
-/// standard deviation is off the rms error by more than kAstray, either way. Empty where no run has an answer.
+/// standard deviation is off the rms error by more than kAstray, either way. Empty if no run has an answer.
 std::string sweep_meaning(const validate::SweepSummary& summary);
 
 }  // namespace glidelab::report

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/math/normal95.h"
+#include "fit/estimators.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot_axis.h"
 #include "report/html/plot_style.h"
@@ -154,11 +155,11 @@ struct Titles {
 
 Titles titles_of(const std::vector<const Series*>& drawn) {
   constexpr std::size_t kMany = 5;
-  constexpr std::string_view kLines = "phase-diagram ";
+  const std::string lines = std::string(fit::default_estimator().name) + " ";
   Titles titles;
   for (const Series* const series : drawn) {
-    const bool by_rule = drawn.size() >= kMany && series->estimator.starts_with(kLines);
-    titles.of_each.push_back(by_rule ? series->estimator.substr(kLines.size()) : series->estimator);
+    const bool by_rule = drawn.size() >= kMany && series->estimator.starts_with(lines);
+    titles.of_each.push_back(by_rule ? series->estimator.substr(lines.size()) : series->estimator);
     titles.shortened = titles.shortened || by_rule;
   }
   return titles;

@@ -9,7 +9,7 @@
 
 namespace glidelab::report {
 
-/// EnvironmentError where gnuplot fails.
+/// EnvironmentError if gnuplot fails.
 Page sweep_report(const validate::SweepSummary& summary, const base::Progress& progress = base::no_progress);
 
 /// The table over all runs, for a terminal.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "fit/estimators.h"
 #include "report/analysis/pixel_phase.h"
 #include "report/html/decimate.h"
 #include "report/html/gnuplot.h"
@@ -30,7 +31,8 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
   double widest = 3.0;
   for (const validate::QuantityComparison& quantity : comparison.quantities) {
     if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
-    const bool whole_motion = quantity.estimator == "trajectory";
+    const fit::Estimator* const estimator = fit::find_estimator(quantity.estimator);
+    const bool whole_motion = estimator != nullptr && !estimator->of_lines;
     const std::string kind = quantity.quantity + (whole_motion ? " whole" : "");
     if (!by_quantity.contains(kind)) {
       order.push_back(kind);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "fit/estimators.h"
 #include "report/analysis/sections.h"
 #include "report/html/html.h"
 #include "report/text/quantity_names.h"
@@ -26,7 +27,8 @@ constexpr std::array<std::string_view, 3> kHeadline = {"k_over_m_1_s", "mu", "al
 /// The fit of the whole motion where it has a value, as it is the more precise; else the first of the estimators.
 std::string headline_estimator(const validate::Comparison& comparison) {
   for (const validate::QuantityComparison& q : comparison.quantities) {
-    if (q.estimator == "trajectory" && q.value) return q.estimator;
+    const fit::Estimator* const estimator = fit::find_estimator(q.estimator);
+    if (estimator != nullptr && !estimator->of_lines && q.value) return q.estimator;
   }
   return comparison.quantities.empty() ? std::string() : comparison.quantities.front().estimator;
 }

@@ -12,7 +12,7 @@
 
 namespace glidelab::report {
 
-/// `previews` is empty or has one for each clip of the results. EnvironmentError where gnuplot fails.
+/// `previews` is empty or has one for each clip of the results. EnvironmentError if gnuplot fails.
 Page validation_report(const std::string& title, const core::AnalysisResults& results,
                        const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
                        const base::Progress& progress = base::no_progress);

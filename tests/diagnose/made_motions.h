@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/analysis/analyze_motion.h"
 #include "core/experiment/experiment.h"
+#include "core/motion/analyze_motion.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"
 

@@ -4,7 +4,6 @@
 
 #include "core/analysis/clip_to_track.h"
 #include "core/experiment/experiment.h"
-#include "core/experiment/folder_files.h"
 #include "core/pictures/camera/calibrate_fisheye.h"
 #include "render/film/clip_set.h"
 #include "render/film/render_experiment.h"
@@ -37,7 +36,8 @@ FilmStudio::FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int
   const core::Experiment experiment =
       rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = false}, progress_);
   const core::CalibrationSetup& setup = *experiment.calibration;
-  pattern_.boards = core::find_board_views(core::pattern_files(experiment), setup.inner_corners, jobs);
+  pattern_.boards = core::find_board_views(core::pattern_files(experiment),
+                                           cv::Size(setup.inner_corners.columns, setup.inner_corners.rows), jobs);
   pattern_.calibration = core::calibrate_any_lens(pattern_.boards, setup.square_m);
 }
 

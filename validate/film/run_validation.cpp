@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/errors.h"
-#include "fit/trajectory/trajectory_results.h"
+#include "fit/estimators.h"
 #include "validate/truth/cramer_rao.h"
 #include "validate/truth/truth_folder.h"
 
@@ -36,10 +36,13 @@ ValidationResult run_validation(const render::Scenario& scenario, const std::fil
   result.results = core::analyze({experiment_dir}, options.analysis, progress);
   const Truth truth = read_truth(truth_dir);
   result.comparison = compare(result.results, truth);
-  const core::AnalysisResults whole_motion = fit::with_trajectory_fits(result.results);
-  result.comparison.quantities =
-      with_bounds(join_estimators(result.comparison.quantities, compare_quantities(whole_motion, truth)),
-                  least_sds(truth, noise_of(result.results, truth), scenario.motion.gravity_m_s2));
+  std::vector<QuantityComparison> quantities;
+  for (const core::AnalysisResults& by :
+       fit::estimate_each(fit::judged_estimators(), [&](core::LineMethod) { return result.results; })) {
+    quantities = join_estimators(std::move(quantities), compare_quantities(by, truth));
+  }
+  result.comparison.quantities = with_bounds(
+      std::move(quantities), least_sds(truth, noise_of(result.results, truth), scenario.motion.gravity_m_s2));
   result.comparison.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

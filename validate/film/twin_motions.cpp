@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
 #include "diagnose/effects/effect_list.h"
 #include "render/scenario/scenario.h"
 #include "validate/tracks/made_tracks.h"

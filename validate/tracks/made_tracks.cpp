@@ -6,7 +6,8 @@
 #include <random>
 
 #include "base/parallel.h"
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
+#include "core/motion/join_configurations.h"
 #include "render/camera/frame_clock.h"
 #include "render/scenario/clip_motion.h"
 #include "sim/motion/simulate.h"
@@ -147,7 +148,7 @@ core::AnalysisResults analyze_tracks(const MadeTracks& made, std::optional<doubl
 
 core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionOptions& how, int jobs) {
   core::AnalysisResults results;
-  if (how.lines == core::LineMethod::generalised) results.estimator = "phase-diagram-gls";
+  results.estimator = core::name_of(how.lines);
   results.gravity_m_s2 = made.gravity_m_s2;
   results.clips.resize(made.tracks.size());
   base::for_each_parallel(made.tracks.size(), jobs, [&](std::size_t c) {

@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/analysis/analyze_motion.h"
 #include "core/experiment/experiment.h"
+#include "core/motion/analyze_motion.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"
 #include "render/scenario/scenario.h"
@@ -26,7 +26,7 @@ struct MadeTracks {
   double gravity_m_s2 = 9.80665;
 };
 
-/// Without noise. The seed is that of the clock. NumericalError where a motion cannot be moved.
+/// Without noise. The seed is that of the clock. NumericalError if a motion cannot be moved.
 MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed);
 
 /// The same tracks with independent normal deviates added; a duplicated frame repeats its own. Clip c draws from

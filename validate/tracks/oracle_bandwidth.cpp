@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "base/errors.h"
-#include "core/analysis/analyze_motion.h"
 #include "core/math/quantile.h"
+#include "core/motion/analyze_motion.h"
+#include "core/motion/join_configurations.h"
 #include "core/motion/smoothing/local_cubic.h"
 
 namespace glidelab::validate {

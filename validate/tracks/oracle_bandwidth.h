@@ -22,7 +22,7 @@ struct TrueStretch {
   std::span<const double> a_m_s2;
 };
 
-/// Mean square error of a at one bandwidth; nothing where a kernel holds too few points.
+/// Mean square error of a at one bandwidth; nothing if a kernel holds too few points.
 std::optional<double> true_error(const std::vector<TrueStretch>& stretches, const std::vector<double>& autocovariance,
                                  double bandwidth_s);
 
@@ -36,11 +36,11 @@ std::optional<OracleBandwidth> best_bandwidth(const std::vector<TrueStretch>& st
                                               const std::vector<double>& autocovariance);
 
 /// The phase diagram in which every clip has its best bandwidth, for the stretches that an analysis finds and the noise
-/// that it estimates. NumericalError where a clip has none.
+/// that it estimates. NumericalError if a clip has none.
 core::AnalysisResults with_best_bandwidths(const MadeTracks& made);
 
 /// Root mean square of the smoothed acceleration minus the true one over the points that count, as they fell out in
-/// this clip; empty where none counts. The clip's frames are the truth's.
+/// this clip; empty if none counts. The clip's frames are the truth's.
 std::optional<double> acceleration_error_m_s2(const core::ClipResult& clip, const TrueClip& truth);
 
 }  // namespace glidelab::validate

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/errors.h"
+#include "core/result/quantity.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
@@ -38,10 +39,9 @@ std::vector<QuantityComparison> compare_quantities(const core::AnalysisResults& 
   for (const TrueConfiguration& expected : truth.configurations) {
     for (const core::ConfigurationResult& found : results.configurations) {
       if (!share_a_clip(expected.clips, found.clips)) continue;
-      for (QuantityComparison compared : {compare_quantity("k_over_m_1_s", expected.k_over_m_1_s, found.k_over_m_1_s),
-                                          compare_quantity("mu", expected.mu, found.mu),
-                                          compare_quantity("alpha_deg", expected.alpha_deg, found.alpha_deg),
-                                          compare_quantity("v_lim_m_s", expected.v_lim_m_s, found.v_lim_m_s)}) {
+      for (const core::QuantityName& quantity : core::kQuantities) {
+        QuantityComparison compared = compare_quantity(
+            std::string(quantity.key), core::value_of(expected, quantity.which), core::value_of(found, quantity.which));
         compared.configuration = expected.name;
         compared.mass_kg = found.mass_kg;
         compared.incline_deg = found.incline_deg;

@@ -18,7 +18,7 @@ struct QuantityComparison {
   double mass_kg = 0.0;
   double incline_deg = 0.0;  ///< as stated
   std::string estimator;
-  std::string quantity;  ///< "k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"
+  std::string quantity;  ///< a key of core::kQuantities
   std::optional<double> truth;
   std::optional<double> value;
   std::optional<double> sd;
@@ -75,7 +75,7 @@ std::vector<QuantityComparison> join_estimators(std::vector<QuantityComparison> 
 
 /// Compares the results with the truth. Configurations are matched through their clips, frames by their number. The
 /// field is the range of the true positions and not the width of the view, so that an error relative to it is never
-/// made small by an empty margin. InputError where results and truth are not of one experiment.
+/// made small by an empty margin. InputError if results and truth are not of one experiment.
 Comparison compare(const core::AnalysisResults& results, const Truth& truth);
 
 }  // namespace glidelab::validate

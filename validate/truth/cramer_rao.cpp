@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/math/dense.h"
+#include "core/result/quantity.h"
 #include "sim/sensitivity/sensitivity.h"
 
 namespace glidelab::validate {
@@ -44,7 +45,7 @@ void add_clip(const TrueClip& clip, const sim::TrackLaw& law, double noise_sd_m,
   information.of_three += base::transposed_product(own, own) / (noise_sd_m * noise_sd_m);
 }
 
-/// Nothing where it does not determine all its parameters.
+/// Nothing if it does not determine all its parameters.
 std::optional<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& information) {
   if (!(information.diagonal().minCoeff() > 0.0)) return std::nullopt;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
@@ -117,11 +118,9 @@ std::vector<LeastSd> least_sds(const Truth& truth, const std::vector<double>& no
 }
 
 std::optional<double> least_sd_of(const LeastSd& least, std::string_view quantity) {
-  if (quantity == "k_over_m_1_s") return least.k_over_m_1_s;
-  if (quantity == "mu") return least.mu;
-  if (quantity == "alpha_deg") return least.alpha_deg;
-  if (quantity == "v_lim_m_s") return least.v_lim_m_s;
-  throw std::logic_error("no quantity: " + std::string(quantity));
+  const std::size_t place = core::place_of(quantity);
+  if (place == core::kQuantities.size()) throw std::logic_error("no quantity: " + std::string(quantity));
+  return core::value_of(least, core::kQuantities[place].which);
 }
 
 }  // namespace glidelab::validate

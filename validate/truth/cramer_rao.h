@@ -32,8 +32,8 @@ struct LeastSd {
 /// `noise_sd_m` of each clip of the truth, above 0. Where all motion goes one way only k and v_lim have a bound.
 std::vector<LeastSd> least_sds(const Truth& truth, const std::vector<double>& noise_sd_m, double gravity_m_s2);
 
-/// The bound of k_over_m_1_s, mu, alpha_deg or v_lim_m_s, in the quantity's unit; none where the motions do not
-/// determine it. std::logic_error of any other name.
+/// Of one of core::kQuantities, by its key and in its unit; none if the motions do not determine it.
+/// std::logic_error of any other key.
 std::optional<double> least_sd_of(const LeastSd& least, std::string_view quantity);
 
 }  // namespace glidelab::validate

@@ -10,6 +10,7 @@
 #include "base/errors.h"
 #include "base/files/staged_output.h"
 #include "base/text/csv.h"
+#include "core/result/quantity.h"
 
 namespace glidelab::validate {
 namespace {
@@ -104,10 +105,9 @@ TrueConfiguration read_configuration(const Reader& reader) {
   configuration.mass_kg = reader.number("mass_kg");
   configuration.stated_incline_deg = reader.number("stated_incline_deg");
   configuration.group = reader.text("group");
-  configuration.k_over_m_1_s = reader.number_or_null("k_over_m_1_s");
-  configuration.mu = reader.number_or_null("mu");
-  configuration.alpha_deg = reader.number_or_null("alpha_deg");
-  configuration.v_lim_m_s = reader.number_or_null("v_lim_m_s");
+  for (const core::QuantityName& quantity : core::kQuantities) {
+    core::value_of(configuration, quantity.which) = reader.number_or_null(std::string(quantity.key).c_str());
+  }
   configuration.clips = reader.texts("clips");
   return configuration;
 }

@@ -1,23 +1,14 @@
-/// Rules that choose the bandwidth of the local cubic from data, by name: what each makes least, and its source.
+/// Rules that choose the bandwidth of the local cubic from data, and the table that names each once.
 ///
-///  - `cv`: error of each position predicted by the others. Stone 1974. Assumes white noise.
-///  - `gcv`: n RSS / (n - tr S)^2. Craven and Wahba 1979. Assumes white noise.
-///  - `cv-correlated`: RSS of a kernel with K(0) = 0, then a factor. De Brabanter et al. 2011 (JMLR 12). Assumes a
-///    correlation that is short beside h.
-///  - `rsc`: local residual variance (1 + 4 V). Fan and Gijbels 1995. Assumes white noise.
-///  - `plug-in`: h^9 = 1.058 s^2 dt / mean(x''''^2). Ruppert, Sheather, Wand 1995. Takes x'''' from a global fit of
-///    order 6.
-///  - `ebbs`: variance + bias^2 of a, the bias from how a changes with h. Ruppert 1997. Assumes that it goes as h^2.
-///  - `ici`: at every point the widest h whose confidence intervals all meet. Goldenshluger, Nemirovski 1997. Assumes
-///    known noise.
+/// Every rule stands in a rule_*.cpp of its own, which begins with what it minimises and its source. `cv`, `gcv`,
+/// `cv-correlated` and `rsc` judge x; their h is converted to that for a by the constants of kernel_constants.h, which
+/// holds where x'''' varies little over the kernel. All rules here judge single points and know of no line; the
+/// default of `analyze` (rule_lines.h) serves the lines. The paper took its rule from its reference [15], which is not
+/// in its text; none of these is claimed to be it.
 ///
-/// `cv`, `gcv`, `cv-correlated` and `rsc` look at x; their h is converted to that for a by the constants of
-/// kernel_constants.h (`cv`: times 0.867, `rsc`: times 0.829), which holds where x'''' varies little over the kernel.
-/// All look at a point at a time and know of no line; the default rule of `analyze` (bandwidth.h) serves lines.
-/// The rule that the paper took from its reference [15] is not in its text, and none of these is claimed to be it.
+/// To add a rule: rule_<name>.cpp, which defines its BandwidthRule, and one line in bandwidth_rule.cpp.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,16 +42,24 @@ struct BandwidthPick {
   std::vector<LocalBandwidth> local;  ///< of a local rule only
 };
 
-class BandwidthRule {
- public:
-  virtual ~BandwidthRule() = default;
+struct BandwidthRule {
+  std::string_view name;     ///< in options and files
+  std::string_view words;    ///< what it does: "leave-one-out cross-validation of x"
+  std::string_view assumes;  ///< "white noise"
   /// Nothing where the motion is too short for any bandwidth.
-  virtual std::optional<BandwidthPick> choose(const BandwidthProblem& problem) const = 0;
+  std::optional<BandwidthPick> (*choose)(const BandwidthProblem& problem) = nullptr;
 };
 
-const std::vector<std::string>& bandwidth_rule_names();
+/// In the order in which people are told of them.
+const std::vector<BandwidthRule>& bandwidth_rules();
 
 /// Null where there is no rule of the name.
-std::unique_ptr<BandwidthRule> make_bandwidth_rule(std::string_view name);
+const BandwidthRule* find_bandwidth_rule(std::string_view name);
+
+/// The name of the default, which serves the lines and is no rule of this table (rule_lines.h).
+inline constexpr std::string_view kLinesRule = "lines";
+
+/// What a person may ask for: kLinesRule, then the table's names.
+std::vector<std::string> bandwidth_choices();
 
 }  // namespace glidelab::core

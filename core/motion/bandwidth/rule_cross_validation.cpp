@@ -1,10 +1,21 @@
-#include "core/motion/bandwidth/bandwidth_cross_validation.h"
-
+// Cross-validation of the local cubic: of x, converted to the bandwidth for a. Where the criterion has several local
+// minima the widest bandwidth's counts.
+//
+//   cv             CV(h) = mean ((x_j - xs_j) / (1 - w_jj))^2, with w_jj the weight of a point in its own smoothed
+//   value:
+//                  the error of predicting it from the others, exactly, for any linear smoother whose weights are
+//                  renormalised (Stone 1974).
+//   gcv            GCV(h) = mean (x_j - xs_j)^2 / (1 - mean w_jj)^2 (Craven and Wahba 1979).
+//   cv-correlated  With the kernel u^2 exp(-u^2), which gives a point no weight in its own value and little to its
+//                  neighbours', the residual sum of squares is least at about the right h also where the noise of
+//                  neighbours is correlated; that h times 1.0143 is the Gaussian kernel's (De Brabanter, De Brabanter,
+//                  Suykens, De Moor 2011, JMLR 12, 1955-1976).
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
+#include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/bandwidth/bandwidth_scan.h"
 #include "core/motion/smoothing/kernel_constants.h"
 
@@ -48,33 +59,42 @@ std::optional<BandwidthPick> choose_by(const BandwidthProblem& problem, Kernel k
   return pick;
 }
 
-double mean_square(const std::vector<double>& values) {
+double mean_of_squares(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value * value;
   return sum / static_cast<double>(values.size());
 }
 
-}  // namespace
-
-std::optional<BandwidthPick> LeaveOneOut::choose(const BandwidthProblem& problem) const {
+std::optional<BandwidthPick> leave_one_out(const BandwidthProblem& problem) {
   return choose_by(problem, Kernel::gaussian, kGaussianX, "leave-one-out cross-validation", [](const Residuals& of) {
     std::vector<double> predicted;
     for (std::size_t i = 0; i < of.residual.size(); ++i) predicted.push_back(of.residual[i] / (1.0 - of.own_weight[i]));
-    return mean_square(predicted);
+    return mean_of_squares(predicted);
   });
 }
 
-std::optional<BandwidthPick> GeneralisedCrossValidation::choose(const BandwidthProblem& problem) const {
+std::optional<BandwidthPick> generalised_cross_validation(const BandwidthProblem& problem) {
   return choose_by(problem, Kernel::gaussian, kGaussianX, "generalised cross-validation", [](const Residuals& of) {
     double own = 0.0;
     for (const double weight : of.own_weight) own += weight / static_cast<double>(of.own_weight.size());
-    return mean_square(of.residual) / std::pow(1.0 - own, 2);
+    return mean_of_squares(of.residual) / std::pow(1.0 - own, 2);
   });
 }
 
-std::optional<BandwidthPick> CorrelatedCrossValidation::choose(const BandwidthProblem& problem) const {
+std::optional<BandwidthPick> correlated_cross_validation(const BandwidthProblem& problem) {
   return choose_by(problem, Kernel::bimodal, kBimodalX, "cross-validation for correlated noise",
-                   [](const Residuals& of) { return mean_square(of.residual); });
+                   [](const Residuals& of) { return mean_of_squares(of.residual); });
 }
+
+}  // namespace
+
+extern const BandwidthRule kLeaveOneOut = {
+    "cv", "leave-one-out cross-validation: predicts each position from the others", "white noise", leave_one_out};
+extern const BandwidthRule kGeneralisedCrossValidation = {
+    "gcv", "generalised cross-validation: the same with one mean weight", "white noise", generalised_cross_validation};
+extern const BandwidthRule kCorrelatedCrossValidation = {
+    "cv-correlated",
+    "cross-validation with a kernel that gives a point and its neighbours no weight, then a factor of 1.0143",
+    "noise correlated over times short beside h", correlated_cross_validation};
 
 }  // namespace glidelab::core

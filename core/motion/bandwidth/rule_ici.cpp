@@ -1,4 +1,14 @@
-// Rules that look at how a changes with the bandwidth, point by point.
+// Rules that watch how a changes with the bandwidth, point by point.
+//
+//   ebbs  Ruppert 1997 (J. Am. Stat. Assoc. 92, 1049): at each point the estimates a(t; h) of nine neighbouring
+//         bandwidths are fitted by c_0 + c_1 h^2; c_1 h^2 is the bias at h, and the mean over points of variance +
+//         bias^2 is minimised. The variance is exact for the noise as estimated, correlated or not.
+//   ici   Intersection of confidence intervals (Goldenshluger and Nemirovski 1997; Katkovnik 1999): at each point the
+//         widest h for which all a(t; h') +- kIciWidth sd(h'), h' <= h, have a value in common. Local: h varies along
+//         the motion. Theory gives the width's order, not its value: with bias ~ h^2 and sd ~ h^-2.5 (their ratio at
+//         the best h is sqrt(5)/2) the intervals, their noise apart, part at the best h for a width of 0.17, and at 1.6
+//         times it for 1.25; but narrow ones part by chance long before. 1.25 was chosen on a glider that slows down
+//         (tests/core/motion/bandwidth/test_bandwidth_rule.cpp), and serves the other motions there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,11 +16,13 @@
 #include <limits>
 
 #include "core/math/quantile.h"
-#include "core/motion/bandwidth/bandwidth_derivative_rules.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/bandwidth/bandwidth_scan.h"
 
 namespace glidelab::core {
 namespace {
+
+constexpr double kIciWidth = 1.25;  // standard deviations
 
 /// a and its variance at every probe (inner) for every bandwidth (outer) of the grid; where a kernel holds too few
 /// points the variance is infinite.
@@ -49,9 +61,7 @@ double empirical_bias(const std::vector<double>& grid, const Estimates& estimate
   return (sa - s * a / n) / (ss - s * s / n);
 }
 
-}  // namespace
-
-std::optional<BandwidthPick> EmpiricalBias::choose(const BandwidthProblem& problem) const {
+std::optional<BandwidthPick> by_empirical_bias(const BandwidthProblem& problem) {
   constexpr std::size_t kEachSide = 4;
   const BandwidthScan scan(problem);
   const std::vector<double>& grid = scan.grid();
@@ -77,7 +87,7 @@ std::optional<BandwidthPick> EmpiricalBias::choose(const BandwidthProblem& probl
   return pick;
 }
 
-std::optional<BandwidthPick> IntersectionOfIntervals::choose(const BandwidthProblem& problem) const {
+std::optional<BandwidthPick> by_intersection(const BandwidthProblem& problem) {
   const BandwidthScan scan(problem);
   const std::vector<double>& grid = scan.grid();
   if (grid.empty() || scan.probes().empty()) return {};
@@ -106,5 +116,16 @@ std::optional<BandwidthPick> IntersectionOfIntervals::choose(const BandwidthProb
   if (2 * widest > chosen.size()) pick.method += " (the widest tried)";
   return pick;
 }
+
+}  // namespace
+
+extern const BandwidthRule kEmpiricalBias = {
+    "ebbs", "empirical bias: watches how a at each point drifts as h grows, and takes that for the bias",
+    "the bias goes as h²", by_empirical_bias};
+extern const BandwidthRule kIntersectionOfIntervals = {
+    "ici",
+    "at each point widens h until the confidence intervals of a no longer agree; here the median over the points is "
+    "taken",
+    "the noise is known", by_intersection};
 
 }  // namespace glidelab::core

@@ -10,17 +10,16 @@
 #include "base/text/number_text.h"
 #include "core/motion/bandwidth/bandwidth_scan.h"
 #include "core/motion/lines/line_fit.h"
-#include "core/motion/lines/line_input.h"
 #include "core/motion/lines/stretch_points.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kQuiet = 0.0125;            // noise of a over its standard deviation along the line
-constexpr double kSteep = 3.0;               // standard deviations of K/m that make a line one to be seen
+constexpr double kNoiseOfPoints = 0.0125;    // wanted: noise of a over its standard deviation along the line
+constexpr double kSlopeSeen = 3.0;           // standard deviations of K/m from which a line is not level
 constexpr double kBiasAllowed = 0.0035;      // of the lines' size, for the sake of quieter points
 constexpr double kNoiseAllowed = 1.25;       // growth of the lines' variance, for the sake of quieter points
-constexpr double kShareOfTime = 0.1;         // of the free time that a direction needs to have a say
+constexpr double kShareOfTime = 0.1;         // of the free time, below which a direction does not count
 constexpr double kPointsPerBandwidth = 3.0;  // points closer together say the same
 
 double time_of(const Motion& motion, const FreeStretch& stretch) {
@@ -61,7 +60,7 @@ class Scan {
 
   double longest_s() const { return longest_s_; }
 
-  /// Nothing where a direction that should have a say has no line.
+  /// Nothing where a direction that counts has no line.
   std::optional<Errors> at(double bandwidth_s) {
     const auto stride =
         static_cast<std::size_t>(std::max(1.0, std::floor(bandwidth_s / (kPointsPerBandwidth * motion_.step_s))));
@@ -89,9 +88,9 @@ class Scan {
     return errors;
   }
 
-  /// Noise of a over the standard deviation of a along the line; none where the line is level for all that is known.
+  /// Noise of a over the standard deviation of a along the line; none where the line may well be level.
   double noise_share(const LineFit& line, const LineInput& input) const {
-    if (std::abs(line.k_over_m_1_s.value) < kSteep * std::sqrt(line.parts.var_k)) return 0.0;
+    if (std::abs(line.k_over_m_1_s.value) < kSlopeSeen * std::sqrt(line.parts.var_k)) return 0.0;
     RowVariance variance(noise_.autocovariance);
     double noise = 0.0, v = 0.0, vv = 0.0;
     for (std::size_t j = 0; j < input.rows.size(); ++j) {
@@ -182,7 +181,7 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
   const auto best = std::min_element(tried.begin(), tried.end(),
                                      [](const Errors& a, const Errors& b) { return a.square < b.square; });
   auto taken = best;
-  while (taken->noise_share > kQuiet && std::next(taken) != tried.end() &&
+  while (taken->noise_share > kNoiseOfPoints && std::next(taken) != tried.end() &&
          std::next(taken)->bias_share <= kBiasAllowed && std::next(taken)->random <= kNoiseAllowed * best->random) {
     ++taken;
   }

@@ -1,10 +1,15 @@
+// plug-in: h^9 = 5 R_2 s^2 dt / mean(x''''^2), R_2 = 3/(8 sqrt(pi)) (kernel_constants.h): the least mean square error
+// of a with one h for all points. x'''' comes from one polynomial of order 6 through each part (order p + 3: Fan and
+// Gijbels 1996, section 4.2; Ruppert, Sheather and Wand 1995 fit it in blocks); the noise's share of its square is
+// subtracted. Where x'''' does not stand out of the noise by two standard deviations of its mean square, the widest
+// bandwidth is taken, and the method says so. Correlated noise counts by its sum over all lags.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/math/orthogonal_polynomials.h"
-#include "core/motion/bandwidth/bandwidth_derivative_rules.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/bandwidth/bandwidth_scan.h"
 #include "core/motion/smoothing/kernel_constants.h"
 
@@ -12,7 +17,7 @@ namespace glidelab::core {
 namespace {
 
 constexpr int kGlobalOrder = 6;
-constexpr double kClear = 2.0;  // standard deviations by which the mean square of x'''' must stand out
+constexpr double kCurvatureSeen = 2.0;  // standard deviations by which the mean square of x'''' must stand out
 
 /// Sums over the points of a part: of x''''^2 as fitted, of its expectation by noise, and the variance of the first
 /// sum.
@@ -62,9 +67,7 @@ FourthDerivative fourth_derivative(const MotionPart& part, double noise_variance
   return sums;
 }
 
-}  // namespace
-
-std::optional<BandwidthPick> PlugIn::choose(const BandwidthProblem& problem) const {
+std::optional<BandwidthPick> by_plug_in(const BandwidthProblem& problem) {
   const BandwidthScan scan(problem);
   if (scan.grid().empty()) return {};
   const double white = sum_over_lags(problem.noise.autocovariance);
@@ -80,7 +83,7 @@ std::optional<BandwidthPick> PlugIn::choose(const BandwidthProblem& problem) con
   BandwidthPick pick;
   const double signal = all.square - all.by_noise;
   const double narrowest = scan.grid().front(), widest = scan.grid().back();
-  if (signal <= kClear * std::sqrt(all.variance)) {
+  if (signal <= kCurvatureSeen * std::sqrt(all.variance)) {
     pick.bandwidth_s = widest;
     pick.method = "plug-in: x'''' does not stand out of the noise; the widest tried";
     return pick;
@@ -95,5 +98,11 @@ std::optional<BandwidthPick> PlugIn::choose(const BandwidthProblem& problem) con
   }
   return pick;
 }
+
+}  // namespace
+
+extern const BandwidthRule kPlugIn = {
+    "plug-in", "the h of least mean square error of a, with x'''' from one polynomial of order 6 through each stretch",
+    "such a polynomial has the right x''''", by_plug_in};
 
 }  // namespace glidelab::core

@@ -1,17 +1,22 @@
+// rsc: the residual squares criterion of Fan and Gijbels 1995 (J. R. Stat. Soc. B 57, 371), the mean over points of
+//
+//     RSC(t; h) = s^2(t) (1 + 4 V),   s^2(t) = sum K_i r_i^2 / tr(K - K X (X'KX)^-1 X'K),   V = sum w_i^2,
+//
+// with r the residuals of the local cubic about t and w its weights for x; its minimum times 0.829 is the h for a.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
 #include "core/math/orthogonal_polynomials.h"
-#include "core/motion/bandwidth/bandwidth_derivative_rules.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/bandwidth/bandwidth_scan.h"
 #include "core/motion/smoothing/kernel_constants.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr int kOrder = 3;
+constexpr int kCubic = 3;
 
 /// RSC at one point; NaN where the kernel holds too few points.
 double residual_squares(const MotionPart& part, std::size_t point, double bandwidth_s) {
@@ -24,12 +29,12 @@ double residual_squares(const MotionPart& part, std::size_t point, double bandwi
     kernel.push_back(kernel_value(Kernel::gaussian, u.back()));
     x.push_back(part.x_m[i] - part.x_m[point]);
   }
-  const auto basis = OrthogonalPolynomials::make(kOrder, u, kernel);
-  if (u.size() < kOrder + 2 || !basis) return std::numeric_limits<double>::quiet_NaN();
+  const auto basis = OrthogonalPolynomials::make(kCubic, u, kernel);
+  if (u.size() < kCubic + 2 || !basis) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> at_zero = basis->derivatives(0.0, 0);
   double squares = 0.0, trace = 0.0, variance = 0.0;
   std::vector<double> fit(u.size(), 0.0), weight(u.size(), 0.0);
-  for (int k = 0; k <= kOrder; ++k) {
+  for (int k = 0; k <= kCubic; ++k) {
     const auto p = basis->at_points(k);
     double projection = 0.0, own = 0.0;
     for (std::size_t i = 0; i < u.size(); ++i) {
@@ -47,12 +52,10 @@ double residual_squares(const MotionPart& part, std::size_t point, double bandwi
     trace += kernel[i];
     variance += weight[i] * weight[i];
   }
-  return squares / trace * (1.0 + (kOrder + 1) * variance);
+  return squares / trace * (1.0 + (kCubic + 1) * variance);
 }
 
-}  // namespace
-
-std::optional<BandwidthPick> ResidualSquares::choose(const BandwidthProblem& problem) const {
+std::optional<BandwidthPick> by_residual_squares(const BandwidthProblem& problem) {
   const BandwidthScan scan(problem);
   std::vector<double> criterion;
   for (const double h : scan.grid()) {
@@ -69,5 +72,11 @@ std::optional<BandwidthPick> ResidualSquares::choose(const BandwidthProblem& pro
                             at_edge(scan.grid(), *best));
   return pick;
 }
+
+}  // namespace
+
+extern const BandwidthRule kResidualSquares = {
+    "rsc", "residual squares criterion: how far points lie off their local cubic, and how little that cubic averages",
+    "white noise", by_residual_squares};
 
 }  // namespace glidelab::core

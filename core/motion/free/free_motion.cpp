@@ -6,19 +6,18 @@
 #include <cmath>
 #include <optional>
 
-#include "core/math/point_range.h"
 #include "core/motion/free/law_consensus.h"
 #include "core/motion/free/motion_runs.h"
-#include "core/motion/free/pilot.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kNearEvent = 3.0;       // pilot bandwidths within which the pilot mixes both sides
-constexpr double kRealBandwidths = 4.0;  // a stretch shorter than this is no motion to fit
-constexpr std::size_t kRealPoints = 8;
-constexpr double kHardlyAny = 0.05;  // of the points against the launch: slivers of it are no motion with it
-constexpr double kShortest = 0.574;  // of the longest: 4^(-2/5), see the header
+constexpr double kNearEvent = 3.0;               // pilot bandwidths within which the pilot mixes both sides
+constexpr double kLeastStretchBandwidths = 4.0;  // a stretch shorter than this is no motion to fit
+constexpr std::size_t kLeastStretchPoints = 8;
+constexpr double kLeastShareAlong =
+    0.05;  // of the points against the launch: below that, what moves along it does not count
+constexpr double kLeastOfLongest = 0.574;  // of the longest: 4^(-2/5), see the header
 
 class Finder {
  public:
@@ -89,7 +88,8 @@ class Finder {
   }
 
   bool is_real(const PointRange& range) const {
-    return range.to - range.from >= kRealPoints && span_s(range) >= kRealBandwidths * pilot_.bandwidth_s;
+    return range.to - range.from >= kLeastStretchPoints &&
+           span_s(range) >= kLeastStretchBandwidths * pilot_.bandwidth_s;
   }
 
   /// Hand before the first real stretch, stop after it. What is too short to be a stretch and lies between handled
@@ -142,7 +142,7 @@ class Finder {
     found.direction = -launched;
     found.share = share_of_free(against);
     if (end == n_) {  // it never moves as launched: nothing to tell a hand from
-      if (static_cast<double>(with) > kHardlyAny * static_cast<double>(against)) return;
+      if (static_cast<double>(with) > kLeastShareAlong * static_cast<double>(against)) return;
       free.against_launch = found;
       return;
     }
@@ -180,7 +180,7 @@ class Finder {
     for (const FreeStretch& of : found)
       longest_s[of.direction > 0] = std::max(longest_s[of.direction > 0], time_of(of));
     for (FreeStretch& of : found) {
-      if (time_of(of) < kShortest * longest_s[of.direction > 0]) of.whole = LeftOut::short_stretch;
+      if (time_of(of) < kLeastOfLongest * longest_s[of.direction > 0]) of.whole = LeftOut::short_stretch;
     }
     return found;
   }
@@ -204,20 +204,13 @@ Motion between(const Motion& motion, std::size_t from, std::size_t to) {
 
 }  // namespace
 
-std::string sentence(const AgainstLaunch& against) {
-  const std::string way = against.direction > 0 ? "+x" : "-x", launch = against.direction > 0 ? "-x" : "+x";
-  if (!against.until_s) return fmt::format("it moves towards {} only: the launch was towards {}", way, launch);
-  return fmt::format("what moves towards {} before {:.3f} s is left out as the hand: the launch was towards {}", way,
-                     *against.until_s, launch);
-}
-
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
   const auto& t = motion.t_s;
   const auto from = setup.start_s ? std::lower_bound(t.begin(), t.end(), *setup.start_s) - t.begin() : 0;
   const auto to = setup.end_s ? std::upper_bound(t.begin(), t.end(), *setup.end_s) - t.begin()
                               : static_cast<std::ptrdiff_t>(t.size());
   FreeMotion free;
-  if (to - from >= static_cast<std::ptrdiff_t>(kRealPoints)) {
+  if (to - from >= static_cast<std::ptrdiff_t>(kLeastStretchPoints)) {
     free = Finder(between(motion, static_cast<std::size_t>(from), static_cast<std::size_t>(to)), setup).find();
   } else {
     free.reason.assign(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, to - from)), LeftOut::kernel_gap);
@@ -227,6 +220,53 @@ FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
   free.reason.resize(t.size(), LeftOut::after_end);
   for (FreeStretch& stretch : free.stretches) stretch.first += static_cast<std::size_t>(from);
   return free;
+}
+
+namespace {
+
+bool turns_into(const FreeStretch& before, const FreeStretch& after) {
+  return before.end == LeftOut::kernel_reversal && after.start == LeftOut::kernel_reversal &&
+         before.first + before.count == after.first;
+}
+
+FreeBlock block_of(const Motion& motion, std::size_t from, std::size_t to,
+                   const std::vector<std::vector<double>>& shared_m) {
+  FreeBlock block;
+  block.shared_m.resize(shared_m.size());
+  for (std::size_t i = from; i < to; ++i) {
+    block.t_s.push_back(motion.t_s[i]);
+    block.x_m.push_back(motion.x_m[i]);
+    for (std::size_t mode = 0; mode < shared_m.size(); ++mode) {
+      if (!shared_m[mode].empty()) block.shared_m[mode].push_back(shared_m[mode][motion.point[i]]);
+    }
+  }
+  return block;
+}
+
+}  // namespace
+
+std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
+                                   const std::vector<std::vector<double>>& shared_m, double margin_s) {
+  std::vector<FreeBlock> blocks;
+  for (std::size_t s = 0; s < stretches.size();) {
+    std::size_t end = s + 1;
+    while (end < stretches.size() && turns_into(stretches[end - 1], stretches[end])) ++end;
+    std::size_t from = stretches[s].first, to = stretches[end - 1].first + stretches[end - 1].count;
+    bool counts = false;
+    std::vector<int> directions;
+    for (; s < end; ++s) {
+      counts = counts || stretches[s].whole == LeftOut::used;
+      directions.push_back(stretches[s].direction);
+    }
+    const double first_s = motion.t_s[from] + (from > 0 ? margin_s : 0.0);
+    const double last_s = motion.t_s[to - 1] - (to < motion.t_s.size() ? margin_s : 0.0);
+    while (from < to && motion.t_s[from] < first_s) ++from;
+    while (to > from && motion.t_s[to - 1] > last_s) --to;
+    if (!counts || to - from < kFewestBlockPoints) continue;
+    blocks.push_back(block_of(motion, from, to, shared_m));
+    blocks.back().directions = std::move(directions);
+  }
+  return blocks;
 }
 
 }  // namespace glidelab::core

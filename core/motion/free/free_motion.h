@@ -23,7 +23,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/experiment/experiment.h"
+#include "core/experiment/clip_setup.h"
 #include "core/motion/free/motion.h"
 #include "core/result/results.h"
 
@@ -49,5 +49,15 @@ struct FreeMotion {
 /// The setup's start_s and end_s, where given, are taken at their word: nothing after the one counts as hand, nothing
 /// before the other as stop, and with both everything between is free where it moves.
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
+
+/// Free stretches joined where the motion turns.
+///
+/// Stretches that follow each other across a reversal make one block. Where a block borders on something that is not
+/// free (a hand, a stop, a rest), `margin_s` of it is left out: the border is known to about a bandwidth. Blocks of
+/// fewer than kFewestBlockPoints, and such of which no stretch counts, are left out.
+std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
+                                   const std::vector<std::vector<double>>& shared_m, double margin_s);
+
+inline constexpr std::size_t kFewestBlockPoints = 8;
 
 }  // namespace glidelab::core

@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t kBefore = 4, kBehind = 4;  // positions that a cubic goes through on either side
 constexpr std::size_t kFewestBehind = 2;         // where another loss follows soon
-constexpr std::size_t kFewest = 6;               // of both
+constexpr std::size_t kFewestInWindow = 6;       // of both
 constexpr int kMostPoints = kBefore + 1 + kBehind;
 constexpr double kEvidence = 50.0;      // variances by which a loss lessens the sum of squares
 constexpr double kExplained = 4.0;      // standard deviations of the noise that residuals may have
-constexpr double kOfWay = 0.1;          // of a frame's way that they may be: a law that changes at a reversal
+constexpr double kOfDistance = 0.1;     // of the distance in a frame that they may be: a law that changes at a reversal
 constexpr double kOfFrame = 1.0 / 7.0;  // that the jump may be from a whole number of frames
 constexpr double kMarkerMissing = 2.0;  // frames without a marker that a window may hold
 constexpr double kUniform = 0.1;        // of the step
@@ -132,7 +132,7 @@ int lost_between(const Window& window, double noise_m) {
     fit = tried;
   }
   const double scatter = std::max(variance, fit.squares / fit.freedom);
-  const double explained = std::max(kExplained * noise_m, kOfWay * fit.way);
+  const double explained = std::max(kExplained * noise_m, kOfDistance * fit.way);
   const bool explains = without - fit.squares > kEvidence * scatter && scatter < explained * explained;
   const bool whole = std::abs(fit.off) < kOfFrame && std::sqrt(scatter * fit.off_gain) < kOfFrame;
   return best > 0 && explains && whole ? best : 0;
@@ -168,7 +168,7 @@ int lost_before(const Motion& motion, const std::vector<double>& t_s, std::size_
   // Fewer points behind where the whole window does not say: another loss may follow.
   for (std::size_t behind = std::min(kBehind, t_s.size() - i); behind >= kFewestBehind; --behind) {
     const std::size_t count = before + behind;
-    if (count < kFewest) break;
+    if (count < kFewestInWindow) break;
     if (!is_close(motion, first, count, step_s)) continue;
     const Window window =
         window_of(std::span(t_s).subspan(first, count), std::span(motion.y_m).subspan(first, count), before, step_s);
@@ -186,7 +186,7 @@ struct Beside {
 std::optional<Beside> lost_beside(const Motion& motion, const std::vector<double>& t_s, std::size_t i, double step_s) {
   const std::size_t before = std::min(i, kBefore), behind = std::min(kBehind, t_s.size() - i - 1), first = i - before;
   const std::size_t count = before + 1 + behind;
-  if (before + behind < kFewest || behind < kFewestBehind || !is_close(motion, first, count, step_s)) return {};
+  if (before + behind < kFewestInWindow || behind < kFewestBehind || !is_close(motion, first, count, step_s)) return {};
   std::vector<double> times(t_s.begin() + static_cast<long>(first), t_s.begin() + static_cast<long>(first + count));
   std::vector<double> places(motion.y_m.begin() + static_cast<long>(first),
                              motion.y_m.begin() + static_cast<long>(first + count));
@@ -206,7 +206,7 @@ std::optional<Beside> lost_beside(const Motion& motion, const std::vector<double
   const auto lost = static_cast<int>(best - fits.begin());
   if (lost == 0 || lost == all) return {};  // one loss with nothing between: found as such
   const double scatter = std::max(motion.noise_m * motion.noise_m, best->squares / best->freedom);
-  const double explained = std::max(kExplained * motion.noise_m, kOfWay * best->way);
+  const double explained = std::max(kExplained * motion.noise_m, kOfDistance * best->way);
   const double otherwise = std::min(fits.front().squares, fits.back().squares);
   if (scatter >= explained * explained || otherwise - best->squares < kEvidence * scatter) return {};
   return Beside{lost, all - lost};

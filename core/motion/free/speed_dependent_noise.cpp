@@ -8,7 +8,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kFewest = 40;
+constexpr std::size_t kFewestResiduals = 40;
 constexpr int kPasses = 4;
 constexpr double kLeastShare = 0.1;  // of the mean variance that is left at any speed: a line has no floor of its own
 
@@ -48,7 +48,7 @@ std::vector<std::vector<double>> speed_factors(const std::vector<NoisePiece>& pi
       y.push_back(std::pow(piece.x_m[j] - smoothed.back()[j]->x_m, 2));
     }
   }
-  if (z.size() < kFewest) return {};
+  if (z.size() < kFewestResiduals) return {};
   double mean = 0.0;
   for (const double square : y) mean += square / static_cast<double>(y.size());
   if (!(mean > 0.0)) return {};

@@ -1,8 +1,7 @@
-// Free stretches up to the estimated times at which they turn or come to rest.
+#include "core/motion/lines/free_pieces.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "core/motion/lines/gls_line.h"
 
 namespace glidelab::core {
 namespace {

@@ -12,17 +12,16 @@
 #include "core/motion/lines/gls_nodes.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
-#include "core/result/jackknife.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kShortest = 4.0;  // bandwidths that a piece must last
+constexpr double kLeastPieceBandwidths = 4.0;  // bandwidths that a piece must last
 constexpr std::size_t kFewestPoints = 8;
 constexpr std::size_t kFewestNodes = 3;
 constexpr int kSteps = 60;
-constexpr double kSettled = 1e-4;  // of the standard deviation of k
-constexpr int kFewestBlocks = 8;
+constexpr double kSlopeSettled = 1e-4;  // of the standard deviation of k
+constexpr int kFewestNodeBlocks = 8;
 constexpr std::size_t kFewestPieces = 4;
 
 using Vector = Eigen::VectorXd;
@@ -110,7 +109,7 @@ std::vector<LineNodes> nodes_of(int direction, const Motion& motion, const std::
   for (const FreePiece& piece : pieces) {
     if (piece.direction != direction || piece.count < kFewestPoints) continue;
     const double span_s = motion.t_s[piece.first + piece.count - 1] - motion.t_s[piece.first];
-    if (span_s < kShortest * input.bandwidth_s) continue;
+    if (span_s < kLeastPieceBandwidths * input.bandwidth_s) continue;
     auto count = static_cast<std::size_t>(std::lround(span_s / input.bandwidth_s)) + 1;
     for (count = std::min(count, piece.count); count >= kFewestNodes; count = std::min(count - 1, 7 * count / 8)) {
       LineNodes made(motion, piece, input, count);
@@ -126,7 +125,7 @@ std::optional<Fit> settle(const std::vector<LineNodes>& nodes, double k) {
   for (int i = 0; i < kSteps; ++i) {
     Fit fit(nodes, k);
     if (!fit.valid()) return {};
-    if (std::abs(fit.step()) <= kSettled * fit.sd()) return fit;
+    if (std::abs(fit.step()) <= kSlopeSettled * fit.sd()) return fit;
     k += fit.step();
   }
   return {};
@@ -141,7 +140,7 @@ void set_random_part(const Fit& fit, LineUncertainty& parts) {
   const double ratio = free > 0 ? fit.chi2() / free : 1.0;
   parts.scatter = std::sqrt(ratio);
   if (free > 0 && ratio > chi2_ratio_limit(free)) {
-    const int length = std::max(1, fit.nodes() / kFewestBlocks);
+    const int length = std::max(1, fit.nodes() / kFewestNodeBlocks);
     Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
     double blocks = 0.0;
     for (const Fit::Piece& piece : fit.pieces()) {
@@ -166,7 +165,7 @@ void set_random_part(const Fit& fit, LineUncertainty& parts) {
 }
 
 /// Delete-one-piece jackknife, where it gives more (line_fit.h).
-void compare_with_jackknife(const Fit& fit, LineUncertainty& parts) {
+void compare_with_piece_jackknife(const Fit& fit, LineUncertainty& parts) {
   if (fit.pieces().size() < kFewestPieces) return;
   std::vector<Eigen::Vector2d> moved;
   for (const Fit::Piece& piece : fit.pieces()) {
@@ -232,7 +231,7 @@ std::optional<LineFit> fit_line_gls(int direction, const Motion& motion, const s
   line.a0_m_s2.value = fit->a0();
   describe_points(nodes, line);
   set_random_part(*fit, line.parts);
-  compare_with_jackknife(*fit, line.parts);
+  compare_with_piece_jackknife(*fit, line.parts);
   set_shared_parts(*fit, motion, input, line.parts);
   complete_line(line);
   return line;

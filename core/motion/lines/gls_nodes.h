@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/motion/lines/gls_line.h"
+#include "core/motion/lines/free_pieces.h"
 #include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::core {

@@ -12,9 +12,9 @@ namespace glidelab::core {
 namespace {
 
 constexpr int kMostSteps = 12;
-constexpr double kSettled = 1e-3;     // of the standard deviation of k and of a0
-constexpr double kLargest = 0.5;      // share of k, or of two of its standard deviations, that its bias may be
-constexpr double kDifference = 1e-3;  // relative step of the derivatives of the bias
+constexpr double kBiasSettled = 1e-3;  // of the standard deviation of k and of a0
+constexpr double kLargest = 0.5;       // share of k, or of two of its standard deviations, that its bias may be
+constexpr double kDifference = 1e-3;   // relative step of the derivatives of the bias
 
 /// Points of one stretch, and the measured positions that their kernels reach.
 struct Part {
@@ -135,7 +135,8 @@ std::optional<LawBias> law_bias(const LineInput& input, const LineFit& line,
     bias = own.bias(law);
     const Eigen::Vector2d next = as_fitted - bias;
     if (!next.allFinite()) return {};
-    settled = ((next - law).array().abs() <= kSettled * sd.array() + 1e-12).all();  // 1e-12: positions without noise
+    settled =
+        ((next - law).array().abs() <= kBiasSettled * sd.array() + 1e-12).all();  // 1e-12: positions without noise
     law = next;
   }
   if (!settled || !(std::abs(bias[0]) <= kLargest * std::max(std::abs(law[0]), 2.0 * sd[0]))) return {};

@@ -26,6 +26,7 @@
 /// of no noise model; it counts where it is the larger one by more than chance makes it.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -90,5 +91,13 @@ std::vector<LineShift> shared_shifts(const LineFit& line);
 /// Where the line of v > 0 meets a = 0. Null with the reason where there is no such line, where a0 is not above zero
 /// by 1.96 standard deviations (a level track: no equilibrium at v > 0), or where K/m is not.
 Quantity limit_velocity(const std::vector<LineFit>& lines);
+
+/// Delete-one jackknife of a line: how far leaving out each of n parts of its points moves it.
+///
+///     cov = (n - 1)/n sum d_i d_i^T      d_i: change of (K/m, a0) without part i
+///
+/// Takes the jackknife's covariance into `parts` where a variance of it is larger than chance makes it
+/// (chi2_ratio_limit); variances only grow, and n - 2 degrees of freedom are left. Whether it did. Asserts n >= 3.
+bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertainty& parts);
 
 }  // namespace glidelab::core

@@ -1,4 +1,4 @@
-/// The smoothed points of free stretches that count for a line.
+/// The smoothed points of free stretches that count for a line, and what a line is fitted to.
 ///
 /// Every stretch is smoothed with its own points alone. Within kKernelMargin bandwidths of its first or last point the
 /// kernel is not complete there; what that costs, and why these points are left out: with c the distance in bandwidths,
@@ -47,5 +47,14 @@ std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vect
 /// integral as positions are smoothed. For v' = -k v + const it is (k h)^2 / 2 of a.
 std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<double>& law_m_s2, const std::vector<StretchPoint>& points);
+
+/// The used points of one direction; `bias` is that of smoothing_bias() for the same points. With a known force a is
+/// y'', and one standard deviation of the mass changes it by F sd / m^2.
+LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& points, const std::vector<double>& bias,
+                     int direction, double mass_kg, double mass_sd_kg);
+
+/// What displacements of the track's positions (TrackData::shared_m) do to v and a of the input's points.
+std::vector<std::vector<MotionShift>> calibration_shifts(const Motion& motion, const LineInput& input,
+                                                         const std::vector<std::vector<double>>& shared_m);
 
 }  // namespace glidelab::core

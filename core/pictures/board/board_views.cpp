@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "base/parallel.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/frames/read_image.h"
 
 namespace glidelab::core {

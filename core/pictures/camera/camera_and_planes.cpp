@@ -52,14 +52,16 @@ namespace {
 CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPattern* seen) {
   const CalibrationSetup& setup = *experiment.calibration;
   const BoardViews boards =
-      seen != nullptr ? seen->boards : find_board_views(pattern_files(experiment), setup.inner_corners, jobs);
+      seen != nullptr ? seen->boards
+                      : find_board_views(pattern_files(experiment),
+                                         cv::Size(setup.inner_corners.columns, setup.inner_corners.rows), jobs);
   const auto corners_in = [&](const fs::path& file) -> const BoardCorners& {
     for (const BoardView& view : boards.views) {
       if (view.file == file) return view.corners;
     }
     throw base::InputError(base::Issue{
         file.string(), 0, "calibration.plane", "no pattern in sight",
-        fmt::format("all {} x {} inner corners in sight", setup.inner_corners.width, setup.inner_corners.height)});
+        fmt::format("all {} x {} inner corners in sight", setup.inner_corners.columns, setup.inner_corners.rows)});
   };
 
   CameraAndPlanes setting;

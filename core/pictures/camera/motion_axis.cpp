@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "core/math/median.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {

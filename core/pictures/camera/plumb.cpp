@@ -39,13 +39,13 @@ Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, co
     fail(fmt::format("{} x {} pixels", grey.cols, grey.rows),
          fmt::format("{} x {} pixels, as the pattern's views", picture_size->width, picture_size->height));
   }
-  if ((setup.region & cv::Rect(0, 0, grey.cols, grey.rows)) != setup.region) {
-    fail(fmt::format("the region [{}, {}, {}, {}]", setup.region.x, setup.region.y, setup.region.width,
-                     setup.region.height),
+  const cv::Rect region(setup.region.x, setup.region.y, setup.region.width, setup.region.height);
+  if ((region & cv::Rect(0, 0, grey.cols, grey.rows)) != region) {
+    fail(fmt::format("the region [{}, {}, {}, {}]", region.x, region.y, region.width, region.height),
          fmt::format("a region inside the picture of {} x {} pixels", grey.cols, grey.rows));
   }
   const auto straight = [&](cv::Point2d pixel) { return restitution.undistorted(pixel); };
-  const ThreadInPicture thread = find_thread(grey, setup.region, straight);
+  const ThreadInPicture thread = find_thread(grey, region, straight);
   std::vector<cv::Point2d> places, turned, centres;
   for (std::size_t i = 0; i < thread.points.size(); ++i) {
     const auto place = restitution.to_plane(thread.points[i]), other = restitution.to_plane(thread.turned[i]);

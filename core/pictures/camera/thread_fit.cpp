@@ -7,7 +7,7 @@
 
 #include "base/math/dense.h"
 #include "core/math/least_squares.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/image/pixel_edge.h"
 
 namespace glidelab::core {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/experiment/clip_names.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/frames/frame_parts.h"
 
 namespace glidelab::core {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/math/least_squares.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/marker/marker_model.h"
 
 namespace glidelab::core {

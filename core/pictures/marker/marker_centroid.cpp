@@ -5,7 +5,7 @@
 #include <queue>
 #include <vector>
 
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/marker/marker.h"
 
 namespace glidelab::core {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 
 namespace glidelab::core {
 namespace {

@@ -134,7 +134,7 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
 
 SignalKind signal_kind(const MarkerSetup& marker) {
   if (!marker.color_bgr) return SignalKind::bright;
-  const cv::Vec3b& c = *marker.color_bgr;
+  const std::array<unsigned char, 3>& c = *marker.color_bgr;
   const int high = std::max({c[0], c[1], c[2]}), low = std::min({c[0], c[1], c[2]});
   if (high - low >= kColorful) return SignalKind::colored;
   return (c[0] + c[1] + c[2]) / 3.0 < kDark ? SignalKind::dark : SignalKind::bright;
@@ -147,7 +147,7 @@ double least_contrast(SignalKind kind) {
 std::optional<Signal> signal_of(const Frame& frame, const MarkerSetup& marker, SignalKind kind) {
   if (kind == SignalKind::colored) {
     if (frame.color.empty()) return std::nullopt;
-    return Signal{likeness(frame.color, *marker.color_bgr)};
+    return Signal{likeness(frame.color, cv::Vec3b(marker.color_bgr->data()))};
   }
   if (kind == SignalKind::bright) return Signal{frame.grey, frame.draw};
   if (frame.draw) frame.draw(cv::Rect({}, frame.grey.size()));

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/marker/marker_method.h"
 #include "core/pictures/marker/marker_track.h"
 
@@ -41,7 +41,8 @@ std::size_t MarkerTracker::path_at_start() const {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     if (paths_[i].seen.front().frame >= kStartFrames || paths_[i].seen.size() < kFewestMoving) continue;
-    const double distance = cv::norm(paths_[i].seen.front().fit.centre - *marker_.start_px);
+    const double distance =
+        cv::norm(paths_[i].seen.front().fit.centre - cv::Point2d(marker_.start_px->x, marker_.start_px->y));
     if (distance >= nearest) continue;
     nearest = distance;
     best = i;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 
 namespace glidelab::core {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/math/median.h"
+#include "core/math/quantile.h"
 #include "core/pictures/scene/scene_watch.h"
 
 namespace glidelab::core {

@@ -98,7 +98,7 @@ TEST_CASE("a launch stated the wrong way round is why there is no mu, with the c
   const auto results = analyze({folder}, {});
   const core::Quantity& mu = results.configurations.at(0).mu;
   CHECK_FALSE(mu.estimate);
-  const std::string before = "up: what moves towards -x before ";
+  const std::string before = "up: motion towards -x before ";
   const auto at = mu.why.find(before);
   REQUIRE(at != std::string::npos);
   // v = 0 in closed form, give or take the first smoothing's four frames.

@@ -215,7 +215,7 @@ TEST_CASE("free motion against the stated launch is a finding that names the cli
   CHECK(turned[0].about == "up-0");
   // It turns at v = 0, in closed form; the first smoothing knows that to some frames of 5 ms.
   const double turn_s = std::log1p(0.6 * kSlope.k_1_s / kSlope.a0(-1)) / kSlope.k_1_s;
-  const std::string before = "what moves towards +x before ";
+  const std::string before = "motion towards +x before ";
   REQUIRE(turned[0].found.rfind(before, 0) == 0);
   CHECK(std::abs(std::stod(turned[0].found.substr(before.size())) - turn_s) < 0.02);
   CHECK_THAT(turned[0].found, Catch::Matchers::Contains("launched = \"up\" and downhill = \"-X\""));

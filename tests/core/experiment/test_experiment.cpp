@@ -7,7 +7,6 @@
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
-#include "core/experiment/file_glob.h"
 #include "core/experiment/folder_files.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
@@ -95,17 +94,17 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   CHECK(experiment.camera->bit_depth == 12);
   CHECK(experiment.camera->time == core::TimeSource::container);
   REQUIRE(experiment.calibration);
-  CHECK(experiment.calibration->inner_corners == cv::Size(9, 6));
+  CHECK(experiment.calibration->inner_corners == core::BoardSize{9, 6});
   REQUIRE(experiment.calibration->views.size() == 3);
   CHECK(experiment.calibration->views[0] == folder.dir / "calibration/view-00.png");
   CHECK(experiment.calibration->views[2] == folder.dir / "calibration/view-02.png");
   CHECK(experiment.calibration->planes == std::vector<fs::path>{folder.dir / "calibration/plane.png"});
   REQUIRE(experiment.plumb);
-  CHECK(experiment.plumb->region == cv::Rect(40, 0, 120, 500));
+  CHECK(experiment.plumb->region == core::PixelRegion{40, 0, 120, 500});
   REQUIRE(experiment.marker);
   CHECK(experiment.marker->height_m == 0.03);
-  CHECK(experiment.marker->color_bgr == cv::Vec3b(0xa0, 0xf0, 0x10));
-  CHECK(experiment.marker->start_px == cv::Point2d(400.0, 120.5));
+  CHECK(experiment.marker->color_bgr == std::array<unsigned char, 3>{0xa0, 0xf0, 0x10});
+  CHECK(experiment.marker->start_px == core::PixelPoint{400.0, 120.5});
   CHECK(experiment.track.downhill == -1);
   CHECK(experiment.track.length_m == 2.0);
   REQUIRE(experiment.clips.size() == 2);
@@ -119,7 +118,7 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   CHECK(experiment.clips[1].file == folder.dir / "clips/frames");
   REQUIRE(experiment.groups.size() == 1);
   CHECK(experiment.groups[0].downhill == 1);
-  CHECK(experiment.groups[0].plumb->region == cv::Rect(1, 2, 3, 4));
+  CHECK(experiment.groups[0].plumb->region == core::PixelRegion{1, 2, 3, 4});
   CHECK(experiment.groups[0].planes.size() == 1);
 }
 

@@ -49,7 +49,7 @@ TEST_CASE("the template of an experiment is read as it is, once its files are th
   CHECK(experiment.name == "my \"first\" glider\\\t\u2764");
   CHECK(experiment.clips.size() == 2);
   REQUIRE(experiment.calibration);
-  CHECK(experiment.calibration->inner_corners == cv::Size(9, 6));
+  CHECK(experiment.calibration->inner_corners == core::BoardSize{9, 6});
   CHECK(experiment.camera->frame_rate_hz == 240.0);
 }
 

@@ -154,7 +154,7 @@ TEST_CASE("An experiment folder holds what the contract says, and the analysis r
   CHECK(experiment.clips[0].group == "a");
   CHECK(experiment.clips[2].group == "b");
   CHECK(experiment.calibration->views.size() == 3);
-  CHECK(experiment.calibration->inner_corners == cv::Size(5, 4));
+  CHECK(experiment.calibration->inner_corners == core::BoardSize{5, 4});
   CHECK(experiment.marker->height_m == 0.02);
   REQUIRE(experiment.plumb);
   CHECK(experiment.plumb->region.width > 0);

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "core/math/quantile.h"
-#include "fit/trajectory/trajectory_results.h"
+#include "fit/estimators.h"
 #include "validate/tracks/oracle_bandwidth.h"
 #include "validate/truth/comparison.h"
 #include "validate/truth/cramer_rao.h"
@@ -94,10 +94,10 @@ std::vector<std::optional<Smoothed>> smoothed_clips(const core::AnalysisResults&
 
 }  // namespace
 
-std::vector<core::AnalysisResults> analyze_both(const MadeTracks& made) {
-  core::AnalysisResults lines = analyze_tracks(made, core::MotionOptions{});
-  core::AnalysisResults whole = fit::with_trajectory_fits(lines);
-  return {std::move(lines), std::move(whole)};
+std::vector<core::AnalysisResults> analyze_as_judged(const MadeTracks& made) {
+  return fit::estimate_each(fit::judged_estimators(), [&](core::LineMethod lines) {
+    return analyze_tracks(made, core::MotionOptions{.lines = lines});
+  });
 }
 
 Baseline measure_baseline(const render::Scenario& scenario, const std::string& scenario_text,

@@ -55,11 +55,11 @@ struct BaselineOptions {
 /// All results of one run's tracks, one for each estimator.
 using AnalyzeTracks = std::function<std::vector<core::AnalysisResults>(const MadeTracks&)>;
 
-/// The phase diagram and the fit of the whole motion.
-std::vector<core::AnalysisResults> analyze_both(const MadeTracks& made);
+/// By each of fit::judged_estimators().
+std::vector<core::AnalysisResults> analyze_as_judged(const MadeTracks& made);
 
 Baseline measure_baseline(const render::Scenario& scenario, const std::string& scenario_text,
-                          const BaselineOptions& options, const AnalyzeTracks& analyze = analyze_both,
+                          const BaselineOptions& options, const AnalyzeTracks& analyze = analyze_as_judged,
                           const base::Progress& progress = base::no_progress);
 
 /// A seed whose noise differs from the baseline's; for a baseline without a seed, from that of the default, 1.

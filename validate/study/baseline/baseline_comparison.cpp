@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "core/result/line_method.h"
 
 namespace glidelab::validate {
 namespace {
@@ -114,7 +115,8 @@ void compare_smoothing(const SmoothingRecord& then, const SmoothingRecord& now, 
   if (then.runs < 2 || now.runs < 2) return;
   const auto judge = [&](const char* quantity, const char* what, double p, double log_then, double log_now) {
     if (p >= level_of(comparison)) return;
-    comparison.worse.push_back({then.clip, "phase-diagram", quantity, what, std::exp(log_then), std::exp(log_now), p});
+    comparison.worse.push_back({then.clip, core::name_of(core::LineMethod::ordinary), quantity, what,
+                                std::exp(log_then), std::exp(log_now), p});
   };
   const auto n = static_cast<double>(then.runs), m = static_cast<double>(now.runs);
   judge("a", "rms error",

@@ -26,8 +26,9 @@ namespace glidelab::validate {
 
 /// What became worse, in words with its numbers.
 struct Worse {
-  std::string configuration, estimator, quantity;  ///< of smoothing: the clip, "phase-diagram", "a" or "bandwidth"
-  std::string what;                                ///< "spread", "bias", "coverage", "answers"; "rms error", "mean"
+  std::string configuration, estimator,
+      quantity;      ///< of smoothing: the clip, the default estimator, "a" or "bandwidth"
+  std::string what;  ///< "spread", "bias", "coverage", "answers"; "rms error", "mean"
   double then = 0.0, now = 0.0;
   double p = 0.0;  ///< of one test, before the number of tests is counted
 };
@@ -41,7 +42,7 @@ struct BaselineComparison {
   std::vector<Worse> worse;
 };
 
-/// InputError where the two are not of one scenario, noise and set of quantities.
+/// InputError if the two are not of one scenario, noise and set of quantities.
 BaselineComparison compare_baselines(const Baseline& then, const Baseline& now);
 
 }  // namespace glidelab::validate

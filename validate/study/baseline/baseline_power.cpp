@@ -1,4 +1,5 @@
 #include "validate/study/baseline/baseline_power.h"
+#include "core/result/line_method.h"
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
@@ -11,7 +12,7 @@ double z_above(double part) {
   return boost::math::quantile(boost::math::complement(boost::math::normal(), part));
 }
 
-/// The factor f of the header, the larger root of its square; nothing where no factor is large enough.
+/// The factor f of the header, the larger root of its square; nothing if no factor is large enough.
 std::optional<double> factor_of(double mean, double sd, double z, double n, double m) {
   const double d2 = mean * mean, now = z * z * sd * sd / n, then = z * z * sd * sd / m;
   if (!(d2 > now)) return std::nullopt;
@@ -50,8 +51,8 @@ std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, co
     const double root = std::sqrt(1.0 / static_cast<double>(found->runs) + 1.0 / static_cast<double>(before.runs));
     const auto add = [&](const char* quantity, double sd, double z_of) {
       const double needed = z_of * sd / std::log(kWeakFactor);
-      all.push_back({before.clip, "phase-diagram", quantity, std::exp(z_of * sd * root), std::nullopt,
-                     rounded_up(2.0 * needed * needed)});
+      all.push_back({before.clip, core::name_of(core::LineMethod::ordinary), quantity, std::exp(z_of * sd * root),
+                     std::nullopt, rounded_up(2.0 * needed * needed)});
     };
     add("a", before.log_a_error_sd, z);
     add("bandwidth", before.log_bandwidth_sd, z_two_sided);

@@ -24,8 +24,9 @@ inline constexpr double kDetectionProbability = 0.9;
 inline constexpr double kWeakFactor = 1.5;
 
 struct Detectable {
-  std::string configuration, estimator, quantity;  ///< of smoothing: the clip, "phase-diagram", "a" or "bandwidth"
-  std::optional<double> factor;     ///< errors as many times as large; nothing where these runs find no factor at all
+  std::string configuration, estimator,
+      quantity;                     ///< of smoothing: the clip, the default estimator, "a" or "bandwidth"
+  std::optional<double> factor;     ///< errors as many times as large; nothing if these runs find no factor at all
   std::optional<double> bias;       ///< in the quantity's unit; of smoothing none
   std::uint64_t runs_for_weak = 0;  ///< then and now, with which a factor of kWeakFactor would be found
   bool weak() const { return !factor || *factor > kWeakFactor; }

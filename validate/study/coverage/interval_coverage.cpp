@@ -15,7 +15,8 @@
 #include "core/math/quantile.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
-#include "fit/trajectory/trajectory_results.h"
+#include "core/result/quantity.h"
+#include "fit/estimators.h"
 #include "validate/tracks/camera_noise.h"
 #include "validate/tracks/made_tracks.h"
 #include "validate/truth/binomial.h"
@@ -28,25 +29,6 @@ constexpr double kLevel = 0.95;
 
 /// What one estimator said of one quantity in one replicate.
 using Outcome = std::optional<core::Estimate>;
-
-const core::Quantity& quantity_of(const core::ConfigurationResult& found, int which) {
-  switch (which) {
-    case 0:
-      return found.k_over_m_1_s;
-    case 1:
-      return found.mu;
-    case 2:
-      return found.alpha_deg;
-    default:
-      return found.v_lim_m_s;
-  }
-}
-
-constexpr const char* kNames[] = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"};
-
-std::optional<double> truth_of(const TrueConfiguration& truth, int which) {
-  return which == 0 ? truth.k_over_m_1_s : which == 1 ? truth.mu : which == 2 ? truth.alpha_deg : truth.v_lim_m_s;
-}
 
 /// The same scenario filmed with another clock of its kind: its rate is off by a normal deviate of the standard
 /// deviation that the estimators assume of clocks. Frames are lost as the scenario says.
@@ -131,6 +113,12 @@ void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t pl
 
 }  // namespace
 
+std::vector<std::string> coverage_estimators() {
+  std::vector<std::string> names = fit::estimator_names();
+  names.emplace_back(kNaiveLines);
+  return names;
+}
+
 Coverage measure_coverage(const render::Scenario& scenario, const CoverageOptions& options,
                           const base::Progress& progress) {
   if (options.noise_sd_m && !(std::isfinite(*options.noise_sd_m) && *options.noise_sd_m > 0.0)) {
@@ -165,32 +153,36 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   base::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
     const MadeTracks noisy = with_noise(make_tracks(with_other_clock(scenario, options.seed + r), options.seed + r),
                                         noise_sd_m, options.seed + r);
-    const core::AnalysisResults lines = analyze_tracks(noisy, options.bandwidth_s);
-    const core::MotionOptions generalised{.bandwidth_s = options.bandwidth_s, .lines = core::LineMethod::generalised};
-    const core::AnalysisResults results[] = {lines, analyze_tracks(noisy, generalised),
-                                             fit::with_trajectory_fits(lines), with_naive_lines(lines)};
-    const std::vector<std::size_t> places = places_of(clean.truth, lines);
+    const std::vector<fit::Estimator>& wanted = fit::estimators();
+    std::vector<core::AnalysisResults> results = fit::estimate_each(wanted, [&](core::LineMethod lines) {
+      return analyze_tracks(noisy, core::MotionOptions{.bandwidth_s = options.bandwidth_s, .lines = lines});
+    });
+    results.push_back(with_naive_lines(results.front()));
+    const std::vector<std::size_t> places = places_of(clean.truth, results.front());
     for (const core::AnalysisResults& by : results) {
       for (std::size_t c = 0; c < configurations; ++c) {
-        for (int which = 0; which < 4; ++which)
-          outcomes[r].push_back(quantity_of(by.configurations[places[c]], which).estimate);
+        for (const core::QuantityName& quantity : core::kQuantities)
+          outcomes[r].push_back(core::value_of(by.configurations[places[c]], quantity.which).estimate);
       }
     }
     progress("replicates", static_cast<double>(++done) / static_cast<double>(options.replicates));
   });
   Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, options.levels, {}};
+  const std::vector<std::string> estimators = coverage_estimators();
   for (std::size_t c = 0; c < configurations; ++c) {
-    for (std::size_t e = 0; e < kCoverageEstimators.size(); ++e) {
-      for (int which = 0; which < 4; ++which) {
-        const std::optional<double> truth = truth_of(clean.truth.configurations[c], which);
+    for (std::size_t e = 0; e < estimators.size(); ++e) {
+      for (std::size_t q = 0; q < core::kQuantities.size(); ++q) {
+        const core::QuantityName& quantity = core::kQuantities[q];
+        const std::optional<double> truth = core::value_of(clean.truth.configurations[c], quantity.which);
         if (!truth) continue;
         CoverageRow row;
         row.configuration = clean.truth.configurations[c].name;
-        row.estimator = kCoverageEstimators[e];
-        row.quantity = kNames[which];
+        row.estimator = estimators[e];
+        row.quantity = quantity.key;
         row.truth = *truth;
-        row.cramer_rao_sd = least_sd_of(with_clock(bounds[c], clean.truth.configurations[c]), kNames[which]);
-        summarise(outcomes, (e * configurations + c) * 4 + static_cast<std::size_t>(which), options.levels, row);
+        const LeastSd bound = with_clock(bounds[c], clean.truth.configurations[c]);
+        row.cramer_rao_sd = core::value_of(bound, quantity.which);
+        summarise(outcomes, (e * configurations + c) * core::kQuantities.size() + q, options.levels, row);
         coverage.rows.push_back(std::move(row));
       }
     }

@@ -7,7 +7,6 @@
 /// stated interval has for its standard deviation.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -40,11 +39,10 @@ struct LevelCount {
   double p_value = 1.0;              ///< of a count as far from the level, two-sided
 };
 
-/// All that are counted, in the order of their rows.
-inline constexpr std::array<const char*, 4> kCoverageEstimators = {"phase-diagram", "phase-diagram-gls", "trajectory",
-                                                                   kNaiveLines};
+/// All that are counted, in the order of their rows: fit/estimators.h, and the naive lines.
+std::vector<std::string> coverage_estimators();
 
-/// One quantity of one configuration by one of kCoverageEstimators.
+/// One quantity of one configuration by one of coverage_estimators().
 struct CoverageRow {
   std::string configuration;
   std::string estimator;

@@ -157,7 +157,7 @@ core::AnalysisResults lines_through_all_points(const MadeTracks& made, double ba
     results.configurations.push_back(std::move(result));
   }
   results = with_naive_lines(std::move(results));
-  results.estimator = "all-points";
+  results.estimator = kAllPoints;
   return results;
 }
 

@@ -35,7 +35,7 @@ struct RequirementOptions {
 
 /// One target at one point; in the target's unit and measure.
 struct TargetResult {
-  std::optional<double> bound;  ///< empty where the motion does not determine the quantity
+  std::optional<double> bound;  ///< empty if the motion does not determine the quantity
   std::optional<double> found;  ///< by runs
   double found_sd = 0.0;        ///< standard deviation of it
   std::size_t runs = 0;         ///< whose errors these are

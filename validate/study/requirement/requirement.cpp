@@ -35,7 +35,7 @@ std::string name_of(const Sweep& sweep, const std::vector<base::TomlScalar>& val
   return name;
 }
 
-/// "3000-5000 EUR" is 4000; nothing where there is no number.
+/// "3000-5000 EUR" is 4000; nothing if there is no number.
 std::optional<double> price_of(const std::string& price_class) {
   std::istringstream text(price_class);
   double low = 0.0, high = 0.0;
@@ -65,7 +65,7 @@ double hardest_found(const std::vector<TargetResult>& results, const std::vector
 /// A point of the sweep on its way to a verdict.
 struct Trial {
   Candidate candidate;
-  std::optional<Setting> setting;  ///< nothing where it was refused
+  std::optional<Setting> setting;  ///< nothing if it was refused
   bool close = false;              ///< to be rendered
 };
 

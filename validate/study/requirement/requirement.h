@@ -36,7 +36,7 @@ struct Requirement {
   bool any_reached() const;
 };
 
-/// Judges every point. InputError where the sweep has more than 100,000; what refuses a single point is its verdict.
+/// Judges every point. InputError if the sweep has more than 100,000; what refuses a single point is its verdict.
 Requirement find_requirement(const Sweep& sweep, const RequirementOptions& options,
                              const base::Progress& progress = base::no_progress);
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "fit/trajectory/trajectory_results.h"
+#include "fit/estimators.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/requirement/target.h"
 #include "validate/study/sweep/design/sweep_design.h"
@@ -36,10 +36,10 @@ void add_errors(const std::vector<QuantityComparison>& quantities, std::vector<E
 
 /// The better estimator's measure, each judged by its worst configuration.
 void judge_errors(const std::vector<Errors>& all, const Target& target, TargetResult& result) {
-  for (const char* estimator : {"phase-diagram", "trajectory"}) {
+  for (const fit::Estimator& estimator : fit::judged_estimators()) {
     std::optional<ErrorMeasure> worst;
     for (const Errors& errors : all) {
-      if (errors.estimator != estimator || errors.quantity != target.quantity) continue;
+      if (errors.estimator != estimator.name || errors.quantity != target.quantity) continue;
       const ErrorMeasure measure = measure_errors(errors.errors, target);
       if (!worst || measure.value > worst->value) worst = measure;
     }
@@ -48,7 +48,7 @@ void judge_errors(const std::vector<Errors>& all, const Target& target, TargetRe
     result.found_sd = worst->sd;
     result.runs = worst->runs;
     result.beyond = worst->beyond;
-    result.estimator = estimator;
+    result.estimator = estimator.name;
   }
 }
 
@@ -95,10 +95,14 @@ Verdict RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector
   base::for_each_parallel(options_.runs, options_.jobs, [&](std::size_t run) {
     if (options_.before_run) options_.before_run();
     const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
-    const core::AnalysisResults lines = analyze_tracks(tracks_of(setting, clean, run, confirm), core::MotionOptions{});
-    of_runs[run] = compare_quantities(lines, clean.truth);
-    const auto fits = compare_quantities(fit::with_trajectory_fits(lines), clean.truth);
-    of_runs[run].insert(of_runs[run].end(), fits.begin(), fits.end());
+    const MadeTracks made = tracks_of(setting, clean, run, confirm);
+    const auto analyze = [&](core::LineMethod lines) {
+      return analyze_tracks(made, core::MotionOptions{.lines = lines});
+    };
+    for (const core::AnalysisResults& by : fit::estimate_each(fit::judged_estimators(), analyze)) {
+      const auto quantities = compare_quantities(by, clean.truth);
+      of_runs[run].insert(of_runs[run].end(), quantities.begin(), quantities.end());
+    }
   });
   std::vector<Errors> all;
   for (const std::vector<QuantityComparison>& of_run : of_runs) add_errors(of_run, all);

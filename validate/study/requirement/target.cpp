@@ -13,6 +13,7 @@
 
 #include "base/errors.h"
 #include "base/text/nearest_word.h"
+#include "core/result/quantity.h"
 
 namespace glidelab::validate {
 namespace {
@@ -72,7 +73,7 @@ Target parse_target(const std::string& text) {
   target.quantity = text.substr(0, std::min(colon, equals));
   const std::string measure =
       colon < equals && equals != std::string::npos ? text.substr(colon + 1, equals - colon - 1) : "sd";
-  const std::vector<std::string> quantities = {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"};
+  const std::vector<std::string> quantities = core::quantity_keys();
   std::istringstream number(equals == std::string::npos ? "" : text.substr(equals + 1));
   const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
   const bool known = std::find(quantities.begin(), quantities.end(), target.quantity) != quantities.end();

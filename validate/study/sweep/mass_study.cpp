@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/text/number_text.h"
+#include "validate/study/coverage/naive_lines.h"
 #include "validate/study/sweep/sweep_groups.h"
 
 namespace glidelab::validate {
@@ -143,7 +144,7 @@ MassStudy study_masses(const Sweep& sweep, Database& database) {
   if (clips.empty()) return study;
   MassRows rows;
   for (const Analysis& analysis : sweep.analyses) {
-    if (analysis.estimator != "all-points") continue;
+    if (analysis.estimator != kAllPoints) continue;
     SqlStatement select = database.prepare(query_of(*masses, others, clips.size()));
     select.bind(1, std::string_view(analysis.name()));
     for (std::size_t i = 0; i < clips.size(); ++i) select.bind(2 + static_cast<int>(i), std::string_view(clips[i]));

@@ -24,7 +24,7 @@ struct MassPoint {
 /// One bandwidth on one track, at one combination of what else varies.
 struct MassRow {
   std::string configuration;
-  std::string others;  ///< "tracks.noise_m = 2e-05"; empty where nothing else varies
+  std::string others;  ///< "tracks.noise_m = 2e-05"; empty if nothing else varies
   double bandwidth_s = 0.0;
   double truth = 0.0;
   std::vector<MassPoint> masses;  ///< the lightest first
@@ -44,8 +44,8 @@ struct FallAnswer {
   PublishedFall published;
   std::string others;
   MassRow widest;               ///< the largest bandwidth that was run
-  std::optional<FallAt> whole;  ///< where the whole fall is made; nothing where no bandwidth that was run makes it
-  std::optional<FallAt> at_r2;  ///< where R² is what was published; nothing where it never is, or is lower throughout
+  std::optional<FallAt> whole;  ///< where the whole fall is made; nothing if no bandwidth that was run makes it
+  std::optional<FallAt> at_r2;  ///< where R² is what was published; nothing if it never is, or is lower throughout
 };
 
 struct MassStudy {
@@ -53,7 +53,7 @@ struct MassStudy {
   std::vector<FallAnswer> answers;
 };
 
-/// Empty where the sweep has no lines through all points, or no axis of masses of two or more values.
+/// Empty if the sweep has no lines through all points, or no axis of masses of two or more values.
 MassStudy study_masses(const Sweep& sweep, Database& database);
 
 /// The answer from rows of one configuration and one combination, in rising order of bandwidth.

@@ -26,7 +26,7 @@ class SqlStatement {
   SqlStatement& bind_null(int parameter);
   /// What stands in a column of another statement's row, of any type.
   SqlStatement& bind_column(int parameter, const SqlStatement& other, int column);
-  /// NULL where there is none, or where the number is not finite.
+  /// NULL if there is none, or where the number is not finite.
   SqlStatement& bind(int parameter, const std::optional<double>& value);
 
   /// The next row; false at the end.

@@ -32,7 +32,7 @@ struct Shard {
 };
 
 /// What is held for as long as a process writes a database: flock(2) on "<file>-lock" beside it, let go when the
-/// process ends, however it ends. EnvironmentError where another one does, or where the lock's file cannot be made.
+/// process ends, however it ends. EnvironmentError if another one does, or where the lock's file cannot be made.
 class WriterLock {
  public:
   explicit WriterLock(const std::filesystem::path& database);
@@ -47,7 +47,7 @@ class WriterLock {
 class SweepDatabase {
  public:
   /// Makes the file, or opens one of the same sweep, version and shard. InputError, which says what differs, for
-  /// another one's; EnvironmentError where another process writes it.
+  /// another one's; EnvironmentError if another process writes it.
   SweepDatabase(const std::filesystem::path& file, const Sweep& sweep, const std::string& version, const Shard& shard);
 
   /// Runs of [from, to) that are there, in order.

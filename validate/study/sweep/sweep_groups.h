@@ -38,7 +38,7 @@ struct GroupStatistics {
   std::string label;      ///< of the value or the bin, for a table
   double position = 0.0;  ///< on a plot's axis: the value, the middle of the bin, or a number for a word
   ErrorStatistics statistics;
-  /// Over the combinations of all else that are answered in every group; nothing where all
+  /// Over the combinations of all else that are answered in every group; nothing if all
   /// runs have an answer, and where there are none.
   std::optional<ErrorStatistics> alike = {};
 };
@@ -58,7 +58,7 @@ struct Series {
   Likeness likeness = {};
 };
 
-/// Errors that may be compared from group to group; null where those of unlike runs are all there is.
+/// Errors that may be compared from group to group; null if those of unlike runs are all there is.
 const ErrorStatistics* comparable(const Series& series, const GroupStatistics& group);
 
 /// How the rows of `result` (s) and `run` (r) are put together: an SQL expression.
@@ -68,7 +68,7 @@ struct Grouping {
   bool binned = false, logarithmic = false, words = false;
   bool switched = false;    ///< the words are false and true
   bool as_written = false;  ///< the words are files, two of one name, which their folders tell apart
-  /// Two SQL expressions, of what has to be answered in every group to be compared; empty where the design has no such.
+  /// Two SQL expressions, of what has to be answered in every group to be compared; empty if the design has no such.
   std::string combination = {};
   std::uint64_t combinations = 0;  ///< how many there are, of one configuration
   std::uint64_t runs = 1;          ///< of one combination in one group
@@ -93,7 +93,7 @@ void find_alike(const Sweep& sweep, Database& database, const Grouping& grouping
                 const std::string& configuration, std::vector<Series>& all);
 
 /// Clip and configuration, one after the other, by their names in the first run that did not fail; no other run has
-/// other names. Empty where there is none.
+/// other names. Empty if there is none.
 std::vector<std::string> clips_and_configurations(const Sweep& sweep, Database& database);
 
 }  // namespace glidelab::validate

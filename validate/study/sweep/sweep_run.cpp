@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "base/errors.h"
-#include "fit/trajectory/trajectory_results.h"
+#include "core/result/quantity.h"
+#include "fit/estimators.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/coverage/naive_lines.h"
 #include "validate/study/sweep/design/sweep_design.h"
@@ -14,7 +15,7 @@
 namespace glidelab::validate {
 namespace {
 
-QuantityRow row_of(const char* quantity, const std::optional<double>& truth, const core::Quantity& found,
+QuantityRow row_of(std::string_view quantity, const std::optional<double>& truth, const core::Quantity& found,
                    const std::optional<double>& least_sd) {
   QuantityRow row;
   row.quantity = quantity;
@@ -40,10 +41,9 @@ void add_quantities(const core::AnalysisResults& results, const Truth& truth, co
           return std::find(result.clips.begin(), result.clips.end(), expected.clips.front()) != result.clips.end();
         });
     if (found == results.configurations.end()) continue;
-    for (QuantityRow row : {row_of("k_over_m_1_s", expected.k_over_m_1_s, found->k_over_m_1_s, bound.k_over_m_1_s),
-                            row_of("mu", expected.mu, found->mu, bound.mu),
-                            row_of("alpha_deg", expected.alpha_deg, found->alpha_deg, bound.alpha_deg),
-                            row_of("v_lim_m_s", expected.v_lim_m_s, found->v_lim_m_s, bound.v_lim_m_s)}) {
+    for (const core::QuantityName& quantity : core::kQuantities) {
+      QuantityRow row = row_of(std::string(quantity.key), core::value_of(expected, quantity.which),
+                               core::value_of(*found, quantity.which), core::value_of(bound, quantity.which));
       row.configuration = expected.name;
       row.estimator = estimator;
       rows.push_back(std::move(row));
@@ -103,25 +103,23 @@ void RunWorker::fill(RunRecord& record) {
       least = least_sds(clean.truth, std::vector<double>(clean.truth.clips.size(), run.noise_m), clean.gravity_m_s2);
     }
   }
-  std::optional<core::AnalysisResults> by_default;  // serves the fit of the whole motion as well
+  std::optional<core::AnalysisResults> by_default;  // the ordinary lines: several estimators start from them
   for (const Analysis& analysis : sweep_.analyses) {
+    const fit::Estimator* const estimator = fit::find_estimator(analysis.estimator);  // null: all points
     const bool plain = !analysis.bandwidth_s && analysis.bandwidth_rule.empty();
-    if (analysis.estimator == "trajectory" || (analysis.estimator == "phase-diagram" && plain)) {
+    core::AnalysisResults results;
+    if (estimator == nullptr) {
+      results = lines_through_all_points(made, *analysis.bandwidth_s);
+    } else if (analysis.bandwidth_rule == kBestPossible) {
+      results = with_best_bandwidths(made);
+    } else if (plain && estimator->lines == core::LineMethod::ordinary) {
       if (!by_default) by_default = analyze_tracks(made, core::MotionOptions{});
-      if (analysis.estimator == "trajectory") {
-        add_quantities(fit::with_trajectory_fits(*by_default), made.truth, least, analysis.name(), record.quantities);
-        continue;
-      }
+      results = estimator->estimate(*by_default, {});
+    } else {
+      const core::MotionOptions how{analysis.bandwidth_s, analysis.bandwidth_rule, estimator->lines};
+      results = estimator->estimate(analyze_tracks(made, how), {});
     }
-    const core::LineMethod lines =
-        analysis.estimator == "phase-diagram-gls" ? core::LineMethod::generalised : core::LineMethod::ordinary;
-    const core::AnalysisResults results =
-        analysis.estimator == "all-points"         ? lines_through_all_points(made, *analysis.bandwidth_s)
-        : analysis.bandwidth_rule == kBestPossible ? with_best_bandwidths(made)
-        : analysis.estimator == "phase-diagram" && plain
-            ? *by_default
-            : analyze_tracks(made, core::MotionOptions{analysis.bandwidth_s, analysis.bandwidth_rule, lines});
-    add_clips(results, made.truth, analysis.name(), record.clips);
+    if (estimator == nullptr || estimator->of_lines) add_clips(results, made.truth, analysis.name(), record.clips);
     add_quantities(results, made.truth, least, analysis.name(), record.quantities);
   }
 }

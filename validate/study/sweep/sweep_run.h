@@ -21,11 +21,11 @@ namespace glidelab::validate {
 struct QuantityRow {
   std::string configuration;
   std::string estimator;  ///< Analysis::name()
-  std::string quantity;   ///< "k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"
+  std::string quantity;   ///< a key of core::kQuantities
   std::optional<double> truth, value, sd, low95, high95;
   std::optional<double> least_sd;  ///< Cramér-Rao bound; only of tracks, whose noise is known
   std::string why;                 ///< why there is no value
-  /// The value with the smoothing's bias in it; nothing where none was taken off.
+  /// The value with the smoothing's bias in it; nothing if none was taken off.
   std::optional<double> uncorrected = {};
 };
 

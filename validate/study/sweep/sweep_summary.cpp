@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "fit/estimators.h"
 #include "validate/study/sweep/design/sweep_design.h"
 #include "validate/study/sweep/failure_kinds.h"
 
@@ -31,7 +32,7 @@ std::vector<AccelerationError> accelerations_of(Database& database, const std::v
     }
     counted += " AND c.clip IN (" + clips + ")";
   }
-  const std::string best = Analysis{"phase-diagram", std::nullopt, kBestPossible}.name();
+  const std::string best = Analysis{std::string(fit::default_estimator().name), std::nullopt, kBestPossible}.name();
   const std::string alone = "FROM clip c WHERE " + counted;
   const std::string beside = fmt::format(
       "FROM clip c JOIN clip b ON b.run = c.run AND b.clip = c.clip AND b.estimator = '{}' "
@@ -87,7 +88,7 @@ std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std
   return failures;
 }
 
-/// Empty where the scenario has one.
+/// Empty if the scenario has one.
 std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Database& database,
                                                       const ConfigurationCounts& counts) {
   const Grouping grouping = by_configuration(sweep);

@@ -52,7 +52,7 @@ struct SweepSummary {
   std::vector<std::string> failures;
   double cpu_s = 0.0;                                ///< wall time of all runs on their threads
   std::vector<Series> overall;                       ///< each of one group
-  std::vector<ConfigurationSummary> configurations;  ///< by their names; empty where the scenario has one
+  std::vector<ConfigurationSummary> configurations;  ///< by their names; empty if the scenario has one
   std::vector<AxisSummary> axes;
   std::vector<AccelerationError> accelerations;
   MassStudy masses;

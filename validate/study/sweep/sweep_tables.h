@@ -26,10 +26,10 @@ SweepEntries sweep_entries(Database& database);
 /// All tables, their schema and the sweep's entries, in an empty database.
 void make_tables(Database& database, const Sweep& sweep, const SweepEntries& entries);
 
-/// InputError where the database is not one of these entries; it says which one differs.
+/// InputError if the database is not one of these entries; it says which one differs.
 void check_entries(Database& database, const SweepEntries& expected);
 
-/// InputError where a row is of no run of the sweep, or of one that has another seed there.
+/// InputError if a row is of no run of the sweep, or of one that has another seed there.
 void check_runs(Database& database, const Sweep& sweep);
 
 }  // namespace glidelab::validate

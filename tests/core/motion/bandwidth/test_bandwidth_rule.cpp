@@ -7,7 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include "core/motion/bandwidth/bandwidth_derivative_rules.h"
 #include "core/motion/smoothing/kernel_constants.h"
 #include "core/motion/smoothing/local_cubic.h"
 #include "tests/catch.h"
@@ -116,7 +115,7 @@ double median_loss(const std::string& rule, const Case& of, unsigned seeds) {
   std::vector<double> loss;
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     const std::vector<double> x = noisy(of, seed);
-    const auto pick = make_bandwidth_rule(rule)->choose(problem_of(of, x));
+    const auto pick = find_bandwidth_rule(rule)->choose(problem_of(of, x));
     REQUIRE(pick);
     loss.push_back(error_at(of, pick->bandwidth_s) / best);
   }
@@ -188,7 +187,8 @@ TEST_CASE("every rule comes near the best bandwidth that knows the truth, with w
   // which one for all is a poor summary.
   for (const auto& [noise_m, rate_hz] : {std::pair{1e-4, 200.0}, std::pair{1e-3, 120.0}}) {
     const Case of = sliding(noise_m, rate_hz);
-    for (const std::string& rule : bandwidth_rule_names()) {
+    for (const BandwidthRule& one : bandwidth_rules()) {
+      const std::string rule(one.name);
       const double loss = median_loss(rule, of, 7);
       INFO(rule << " at noise " << noise_m << ": " << loss);
       CHECK(loss >= 0.99);  // nothing beats the best, but for the grid of it
@@ -219,7 +219,7 @@ TEST_CASE("correlated noise misleads cross-validation, but not the rules that al
 TEST_CASE("a local bandwidth is narrow where the motion bends and wide where it does not") {
   const Case of = sliding(1e-4, 400.0);
   const std::vector<double> x = noisy(of, 3);
-  const auto pick = make_bandwidth_rule("ici")->choose(problem_of(of, x));
+  const auto pick = find_bandwidth_rule("ici")->choose(problem_of(of, x));
   REQUIRE(pick);
   REQUIRE(pick->local.size() > 100);
   double early = 0.0, late = 0.0;  // means of the two halves
@@ -237,14 +237,14 @@ TEST_CASE("a motion that is too short for any bandwidth gets none, and unknown n
   problem.parts.push_back({t, x});
   problem.noise.autocovariance = {1e-6};
   problem.step_s = 0.1;
-  for (const std::string& rule : bandwidth_rule_names()) CHECK_FALSE(make_bandwidth_rule(rule)->choose(problem));
-  CHECK_FALSE(make_bandwidth_rule("silverman"));
+  for (const BandwidthRule& rule : bandwidth_rules()) CHECK_FALSE(rule.choose(problem));
+  CHECK_FALSE(find_bandwidth_rule("silverman"));
 }
 
 TEST_CASE("where x'''' drowns in the noise the plug-in rule says so and takes the widest") {
   Case of = sliding(1e-2, 60.0);
   for (double& x : of.x) x = 0.0;
-  const auto pick = make_bandwidth_rule("plug-in")->choose(problem_of(of, noisy(of, 2)));
+  const auto pick = find_bandwidth_rule("plug-in")->choose(problem_of(of, noisy(of, 2)));
   REQUIRE(pick);
   CHECK(pick->method.find("does not stand out") != std::string::npos);
 }

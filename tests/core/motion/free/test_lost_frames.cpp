@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 

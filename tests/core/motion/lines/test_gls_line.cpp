@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
+#include "core/motion/join_configurations.h"
 #include "core/motion/smoothing/local_cubic.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"

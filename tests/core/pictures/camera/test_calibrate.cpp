@@ -5,7 +5,7 @@
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
-#include "core/experiment/file_glob.h"
+#include "core/experiment/folder_files.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/core/known_camera.h"

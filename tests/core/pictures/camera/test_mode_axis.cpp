@@ -6,7 +6,8 @@
 #include <map>
 #include <numbers>
 
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
+#include "core/motion/join_configurations.h"
 #include "tests/catch.h"
 #include "tests/core/known_camera.h"
 

@@ -76,7 +76,7 @@ TEST_CASE("the inclination against a plumb line comes out within its uncertainty
        {Hanging{0.25, 0.0, 0.6, 20.0}, Hanging{0.25, 0.03, 0.6, 230.0}, Hanging{-0.2, -0.05, 1.5, 30.0}}) {
     cv::imwrite((dir / "plumb.png").string(), picture_of(h.x, h.off, h.half_width_px, h.value, seed++));
     const cv::Point2d middle = kCamera.project(wall().at(h.x, 0.0));
-    const cv::Rect region(static_cast<int>(middle.x) - 30, 10, 60, 270);
+    const core::PixelRegion region{static_cast<int>(middle.x) - 30, 10, 60, 270};
     const auto found = core::plumb_angle({dir / "plumb.png", region}, restitution(), axis_at(alpha), kCamera.size);
     REQUIRE(found.estimate);
     INFO("x " << h.x << ", off " << h.off << ": " << found.estimate->value << " sd " << found.estimate->sd);
@@ -92,7 +92,7 @@ TEST_CASE("the inclination against a plumb line comes out within its uncertainty
 TEST_CASE("a region without a thread, or outside the picture, is an error that names the file") {
   const tests::TempDir dir;
   cv::imwrite((dir / "plumb.png").string(), picture_of(0.25, 0.0, 0.6, 20.0, 1));
-  const auto error = [&](cv::Rect region) {
+  const auto error = [&](core::PixelRegion region) {
     try {
       core::plumb_angle({dir / "plumb.png", region}, restitution(), axis_at(0.0), kCamera.size);
     } catch (const base::InputError& e) {
@@ -108,7 +108,7 @@ TEST_CASE("an inclination is not determined where the marker does not move") {
   const tests::TempDir dir;
   cv::imwrite((dir / "plumb.png").string(), picture_of(0.25, 0.0, 0.6, 20.0, 1));
   const cv::Point2d middle = kCamera.project(wall().at(0.25, 0.0));
-  const cv::Rect region(static_cast<int>(middle.x) - 30, 10, 60, 270);
+  const core::PixelRegion region{static_cast<int>(middle.x) - 30, 10, 60, 270};
   const auto found =
       core::plumb_angle({dir / "plumb.png", region}, restitution(), core::MotionAxis::along_x(1), kCamera.size);
   CHECK_FALSE(found.estimate);

@@ -213,7 +213,7 @@ TEST_CASE("two equal markers that move alike are an error, unless start_px says 
   });
   CHECK_THAT(error_of(frames), Catch::Contains("clip.mkv") && Catch::Contains("two markers"));
   core::MarkerSetup which = marker();
-  which.start_px = place(0) + off;
+  which.start_px = {place(0).x + off.x, place(0).y + off.y};
   const auto tracked = track(frames, which);
   CHECK(tracked.sightings.size() == kFrames);
   CHECK(error_px(tracked, [&](std::size_t k) { return place(k) + off; }) < kNoiseLimitPx);
@@ -238,7 +238,7 @@ TEST_CASE("a clip without a marker is an error, and so is a start_px with nothin
              })),
              Catch::Contains("2 such things rest"));
   core::MarkerSetup elsewhere = marker();
-  elsewhere.start_px = cv::Point2d(200.0, 20.0);
+  elsewhere.start_px = {200.0, 20.0};
   CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); }), elsewhere),
              Catch::Contains("no marker near start_px"));
 }
@@ -257,7 +257,7 @@ TEST_CASE("a marker that rests all the time is found, with a note") {
 
 TEST_CASE("a thing of a known colour is found among brighter ones of other colours") {
   core::MarkerSetup green = marker();
-  green.color_bgr = cv::Vec3b(70, 115, 45);
+  green.color_bgr = {70, 115, 45};
   std::vector<cv::Mat> frames;
   for (std::size_t k = 0; k < kFrames; ++k) {
     std::vector<cv::Mat> channels{wall() + 30.0, wall() + 25.0, wall() + 22.0};
@@ -281,7 +281,7 @@ TEST_CASE("a thing of a known colour is found among brighter ones of other colou
 
 TEST_CASE("a dark marker is found where its colour says that it is dark") {
   core::MarkerSetup dark = marker();
-  dark.color_bgr = cv::Vec3b(16, 16, 16);
+  dark.color_bgr = {16, 16, 16};
   const auto frames = clip([](cv::Mat& p, std::size_t k) {
     p += 90.0;
     tests::put_disc(p, place(k), kRadius, 16.0);

@@ -42,7 +42,7 @@ validate::MadeTracks touched(validate::MadeTracks made, bool end_kept) {
 }
 
 std::vector<core::AnalysisResults> right(const validate::MadeTracks& made) {
-  return validate::analyze_both(touched(made, true));
+  return validate::analyze_as_judged(touched(made, true));
 }
 
 Baseline measured(std::uint64_t seed, const validate::AnalyzeTracks& analyze) {
@@ -107,7 +107,7 @@ TEST_CASE(
 }
 
 TEST_CASE("A clip's end that is left in is found") {
-  CHECK(finds([](const validate::MadeTracks& made) { return validate::analyze_both(touched(made, false)); }));
+  CHECK(finds([](const validate::MadeTracks& made) { return validate::analyze_as_judged(touched(made, false)); }));
 }
 
 TEST_CASE("A file keeps every number of a baseline") {

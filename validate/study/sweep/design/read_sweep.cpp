@@ -11,6 +11,8 @@
 #include "base/files/staged_output.h"
 #include "base/toml/strict_toml.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "fit/estimators.h"
+#include "validate/study/coverage/naive_lines.h"
 #include "validate/study/sweep/design/sweep_axes.h"
 #include "validate/study/sweep/design/sweep_design.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
@@ -28,28 +30,31 @@ void read_analyses(const TomlTable& root, Sweep& sweep) {
     if (!seen.insert(name).second) root.reject(key, fmt::format("\"{}\" twice", name), "each one once");
     sweep.analyses.push_back(std::move(analysis));
   };
-  std::vector<std::string> names = {"phase-diagram", "trajectory"};
+  std::vector<std::string> names;
+  for (const fit::Estimator& judged : fit::judged_estimators()) names.emplace_back(judged.name);
   if (root.has("estimators")) names = root.texts_or_none("estimators");
   for (const std::string& name : names) {
-    if (name != "phase-diagram" && name != "phase-diagram-gls" && name != "trajectory") {
+    if (fit::find_estimator(name) == nullptr) {
       root.reject("estimators", fmt::format("\"{}\"", name),
-                  "\"phase-diagram\", \"phase-diagram-gls\", \"trajectory\"");
+                  fmt::format("\"{}\"", fmt::join(fit::estimator_names(), "\", \"")));
     }
     add("estimators", {name, std::nullopt, {}});
   }
+  const std::string lines(fit::default_estimator().name);
   if (const auto given = root.maybe_numbers("bandwidths_s", 0, base::above(0.0))) {
-    for (const double bandwidth_s : *given) add("bandwidths_s", {"phase-diagram", bandwidth_s, {}});
+    for (const double bandwidth_s : *given) add("bandwidths_s", {lines, bandwidth_s, {}});
   }
   if (const auto given = root.maybe_numbers("all_points_bandwidths_s", 0, base::above(0.0))) {
-    for (const double bandwidth_s : *given) add("all_points_bandwidths_s", {"all-points", bandwidth_s, {}});
+    for (const double bandwidth_s : *given) add("all_points_bandwidths_s", {kAllPoints, bandwidth_s, {}});
   }
   for (const std::string& rule : root.texts_or_none("bandwidth_rules")) {
-    std::vector<std::string> known = core::bandwidth_rule_names();
+    std::vector<std::string_view> known;
+    for (const core::BandwidthRule& one : core::bandwidth_rules()) known.push_back(one.name);
     known.emplace_back(kBestPossible);
     if (std::find(known.begin(), known.end(), rule) == known.end()) {
       root.reject("bandwidth_rules", fmt::format("\"{}\"", rule), fmt::format("some of {}", fmt::join(known, ", ")));
     }
-    add("bandwidth_rules", {"phase-diagram", std::nullopt, rule});
+    add("bandwidth_rules", {lines, std::nullopt, rule});
   }
   if (sweep.analyses.empty()) root.reject("estimators", "an empty list", "one or more");
 }

@@ -63,11 +63,11 @@ inline constexpr const char* kBestPossible = "best-possible";
 
 /// One way to analyse a run's clips.
 struct Analysis {
-  std::string estimator = "phase-diagram";  ///< or "phase-diagram-gls", "trajectory", "all-points"
-  std::optional<double> bandwidth_s;        ///< given; else chosen
+  std::string estimator;              ///< a name of fit/estimators.h, or kAllPoints (naive_lines.h)
+  std::optional<double> bandwidth_s;  ///< given; else chosen
   std::string bandwidth_rule =
       {};                    ///< of core/motion/bandwidth/bandwidth_rule.h, or kBestPossible; empty: the default one
-  std::string name() const;  ///< "phase-diagram", "phase-diagram h=0.04 s", "phase-diagram gcv"
+  std::string name() const;  ///< the estimator's, with " h=0.04 s" or " gcv" where the bandwidth is not the default
 };
 
 /// What was published of a quantity that falls with mass: mu of the lightest and the heaviest glider on one track, and

@@ -5,7 +5,7 @@
 
 namespace glidelab::validate {
 
-/// InputError where the scenario refuses a value of an axis, the others at their first ones; with the line of the
+/// InputError if the scenario refuses a value of an axis, the others at their first ones; with the line of the
 /// sweep's file that the key stands on, or the choice. Up to 200 values of an axis are tried, its ends among them.
 void try_values(const Sweep& sweep);
 

@@ -1,4 +1,4 @@
-#include "core/analysis/clip_frames.h"
+#include "core/motion/clip_frames.h"
 
 #include <cmath>
 #include <span>

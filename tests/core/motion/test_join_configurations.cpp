@@ -4,7 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
+#include "core/motion/join_configurations.h"
 #include "core/motion/lines/line_fit.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
@@ -60,7 +61,7 @@ const ClipSetup kDown = tests::clip_setup(Launched::down, 4.0);
 
 }  // namespace
 
-TEST_CASE("equation (13) turns the intercepts of two lines into the inclination and the friction they came from") {
+TEST_CASE("the intercepts of two lines give the inclination and the friction that they came from") {
   const tests::Law law{4.3, 0.0071, 2.77};
   const auto result = join(
       {kUp, kDown}, {clip_on({{-1, 2.77, law.a0(-1), 0.01, 0.002}}), clip_on({{1, 2.77, law.a0(1), 0.01, 0.001}})});
@@ -121,7 +122,7 @@ TEST_CASE("a line that is missing because the motion went against the stated lau
   const auto result = join({kUp}, {clip});
   for (const Quantity* quantity : {&result.mu, &result.alpha_deg, &result.v_lim_m_s}) {
     CHECK_THAT(quantity->why, Catch::Matchers::Contains(
-                                  "clip: what moves towards +x before 0.542 s is left out as the hand: the launch was "
+                                  "clip: motion towards +x before 0.542 s is left out as the hand's: the launch was "
                                   "towards -x (launched and downhill"));
   }
   clip.against_launch->direction = -1;  // of which there is a line: that is not why

@@ -1,4 +1,4 @@
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,10 @@
 #include <utility>
 
 #include "base/text/number_text.h"
-#include "core/analysis/clip_frames.h"
 #include "core/math/quantile.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/bandwidth/rule_lines.h"
-#include "core/motion/free/free_blocks.h"
+#include "core/motion/clip_frames.h"
 #include "core/motion/free/free_motion.h"
 #include "core/motion/free/lost_frames.h"
 #include "core/motion/free/motion.h"
@@ -21,7 +20,6 @@
 #include "core/motion/lines/gls_line.h"
 #include "core/motion/lines/law_bias.h"
 #include "core/motion/lines/line_fit.h"
-#include "core/motion/lines/line_input.h"
 #include "core/motion/lines/stretch_points.h"
 #include "core/motion/smoothing/noise.h"
 
@@ -39,7 +37,7 @@ void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput inp
     auto line = fit_line_gls(direction, motion, pieces, input);
     if (line) {
       clip.notes.push_back(
-          fmt::format("v {} 0: the line rests on {} positions of free motion, up to its ends and reversals",
+          fmt::format("v {} 0: the line is fitted to {} positions of free motion, up to its ends and reversals",
                       direction > 0 ? ">" : "<", line->points));
       if (start != ordinary.end()) line->r2 = start->r2;  // of the diagram as it is shown
       clip.segments.push_back(std::move(*line));
@@ -75,7 +73,7 @@ BandwidthChoice by_rule(const std::string& name, const Motion& motion, const Fre
     problem.parts.push_back({std::span(motion.t_s).subspan(stretch.first, stretch.count),
                              std::span(motion.y_m).subspan(stretch.first, stretch.count)});
   }
-  const auto rule = make_bandwidth_rule(name);
+  const BandwidthRule* rule = find_bandwidth_rule(name);
   assert(rule);
   const auto pick = rule->choose(problem);
   if (pick) return {pick->bandwidth_s, pick->method, 0.0};
@@ -152,9 +150,10 @@ void note_lost_frames(const std::vector<LostFrames>& lost, LostFrameTimes times,
   const bool more = places.size() > kNamed;
   places.resize(std::min(places.size(), kNamed));
   notes.push_back(fmt::format(
-      "{} frame{} missing without a gap in the times (after {}{}): the motion jumps there by whole frames' way; {}",
+      "{} frame{} missing without a gap in the times (after {}{}): the motion jumps there by the distance of whole "
+      "frames; {}",
       frames, frames == 1 ? " is" : "s are", fmt::join(places, ", "), more ? ", …" : "",
-      times == LostFrameTimes::put_right ? "the times behind are put right" : "the times are left as they are"));
+      times == LostFrameTimes::put_right ? "the later times are corrected" : "the times are left as they are"));
 }
 
 void note_findings(const Motion& motion, std::size_t outliers, const std::vector<double>& factors, LineMethod lines,
@@ -173,7 +172,7 @@ void note_findings(const Motion& motion, std::size_t outliers, const std::vector
     if (std::isinf(line.parts.degrees)) continue;
     clip.notes.push_back(
         fmt::format("v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; "
-                    "its intervals are widened",
+                    "the intervals are widened",
                     line.direction > 0 ? ">" : "<", line.parts.scatter));
   }
   if (!factors.empty()) {
@@ -231,9 +230,8 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   clip.segments = ordinary_lines(smoothed, setup, weights);
   if (options.lines == LineMethod::generalised && clip.rounding_m) {
     clip.notes.push_back(fmt::format(
-        "positions are rounded to {:.3g} m and often repeat: the error of that lasts over frames, and generalised "
-        "lines, which weigh points by the covariance of their noise, are not fitted; the ordinary ones stand in "
-        "their place",
+        "positions are rounded to {:.3g} m and often repeat: the rounding error persists over frames, and generalised "
+        "lines, which weight points by the covariance of random noise, are not fitted; ordinary lines take their place",
         *clip.rounding_m));
   } else if (options.lines == LineMethod::generalised) {
     generalise_lines(motion, free, gls_input(smoothed, setup, weights), clip);

@@ -1,7 +1,8 @@
-#include "core/analysis/analyze_motion.h"
+#include "core/motion/analyze_motion.h"
 
 #include <map>
 
+#include "core/motion/join_configurations.h"
 #include "core/motion/smoothing/local_cubic.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"

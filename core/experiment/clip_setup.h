@@ -1,0 +1,64 @@
+/// The clips of an experiment and the set-ups of the track that they share, as plain data.
+///
+/// Every length is in metres, every time in seconds, every angle in radians; pixels are counted from the centre of the
+/// image's first pixel. Nothing here needs a picture library, so that an analysis of tracks does without one.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidelab::core {
+
+/// up: towards -x, down: towards +x, also on a level track; unknown: a track file on its own, which does not say.
+enum class Launched { up, down, released, unknown };
+
+/// Whether an experiment folder may name files outside itself.
+enum class OutsideFiles { refused, allowed };
+
+struct PixelPoint {
+  double x = 0.0, y = 0.0;
+  bool operator==(const PixelPoint&) const = default;
+};
+
+struct PixelRegion {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const PixelRegion&) const = default;
+};
+
+struct PlumbSetup {
+  std::filesystem::path view;
+  PixelRegion region;  ///< around the line
+};
+
+struct ClipSetup {
+  std::string name;
+  std::filesystem::path file;   ///< a video or a folder of frames; empty for a track
+  std::filesystem::path track;  ///< a CSV `t_s,x_m[,force_n]` or an exported table; empty for a clip
+  std::string column = {};      ///< the column of an exported table that is x: its header or number; empty: found
+  double mass_kg = 0.0;
+  double mass_sd_kg = 0.0;
+  double incline_rad = 0.0;  ///< as stated
+  std::optional<double> incline_sd_rad;
+  Launched launched = Launched::released;
+  std::optional<double> start_s;
+  std::optional<double> end_s;
+  std::string group;  ///< never empty once read: as given, else one name for each stated inclination
+};
+
+/// What a set-up has of its own; what it leaves out comes from [calibration], [plumb] and [track].
+struct GroupSetup {
+  std::string name;
+  std::vector<std::filesystem::path> planes;
+  std::optional<PlumbSetup> plumb;
+  std::optional<int> downhill;
+};
+
+inline constexpr double kSameIncline_rad = 1e-9;  ///< stated angles that differ by less are the same
+
+/// Whether two readings of one inclination are further apart than five standard deviations of their difference. A clip
+/// that states no uncertainty contradicts no other.
+bool contradicts(const ClipSetup& one, const ClipSetup& other);
+
+}  // namespace glidelab::core

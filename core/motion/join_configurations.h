@@ -1,0 +1,21 @@
+/// Clips of one configuration joined: lines through the points of all of them, and from these mu, alpha and v_lim.
+#pragma once
+
+#include <vector>
+
+#include "core/experiment/clip_setup.h"
+#include "core/result/line_method.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+/// The configurations of the clips: those of one mass, stated inclination and group. With lines for both directions
+///
+///     g sin(alpha) = (a0- + a0+)/2,     mu g cos(alpha) = (a0- - a0+)/2,                                       (13)
+///
+/// K/m is the directions' mean. With generalised lines the clips' own lines are weighted by their inverse covariances.
+std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
+                                                     const std::vector<ClipResult>& clips, double gravity_m_s2,
+                                                     LineMethod lines = LineMethod::ordinary);
+
+}  // namespace glidelab::core

@@ -1,0 +1,48 @@
+/// The estimators: from an experiment's lines to K/m, mu, alpha and v_lim. Every command, study and page reads this
+/// list.
+///
+/// All start from an analysis of the clips with one of core's two methods of fitting lines. The lines give the
+/// quantities themselves, or serve as the start of another fit.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result/line_method.h"
+#include "core/result/results.h"
+
+namespace glidelab::fit {
+
+struct EstimateOptions {
+  bool robust = false;  ///< leave out positions that lie off the motion; of estimators that `take_robust`
+};
+
+struct Estimator {
+  std::string_view name;    ///< in options and files
+  std::string_view title;   ///< on pages: "fit of the whole motion"
+  std::string_view method;  ///< in help, after the name: "fits the whole motion to the positions"
+  core::LineMethod lines = core::LineMethod::ordinary;  ///< that it starts from
+  bool of_lines = true;                                 ///< the lines give the quantities: they are what was smoothed
+  bool takes_robust = false;
+  bool judged = false;  ///< validate, require and a baseline judge by it; a sweep runs it where none is named
+  /// The quantities of all configurations, from an analysis with `lines`.
+  core::AnalysisResults (*estimate)(core::AnalysisResults of_lines, const EstimateOptions& options) = nullptr;
+};
+
+/// The first one is the default.
+const std::vector<Estimator>& estimators();
+inline const Estimator& default_estimator() {
+  return estimators().front();
+}
+std::vector<Estimator> judged_estimators();
+/// Null where there is none of the name.
+const Estimator* find_estimator(std::string_view name);
+std::vector<std::string> estimator_names();
+
+/// What each of `wanted` makes of one experiment; `analyze` is asked once for each method that they start from.
+std::vector<core::AnalysisResults> estimate_each(const std::vector<Estimator>& wanted,
+                                                 const std::function<core::AnalysisResults(core::LineMethod)>& analyze);
+
+}  // namespace glidelab::fit
