@@ -1,7 +1,5 @@
 #include "diagnose/gap/clip_interval.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -39,10 +37,8 @@ std::optional<GapInterval> jackknife(std::size_t n, const Pooled& of) {
 
 }  // namespace
 
-std::string why_no_interval(std::size_t clips) {
-  if (clips >= kFewestClips) return "";
-  return fmt::format("{} clip{} cannot say how far clips differ: an interval takes three or more", clips,
-                     clips == 1 ? "" : "s");
+std::optional<std::size_t> too_few_clips(std::size_t clips) {
+  return clips < kFewestClips ? std::optional(clips) : std::nullopt;
 }
 
 std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips) {

@@ -4,14 +4,13 @@
 ///
 ///     se² = (n - 1)/n sum_c (T_(c) - mean)²,      T ± t(0.975, n - 1) se
 ///
-/// A root mean square is taken by its logarithm, so that an interval stays above zero. Clips count as independent of
-/// each other: that the others taught each its model is left out. Of less than three clips there is none: one
-/// difference between two says nothing of the next.
+/// A root mean square is taken by its logarithm, so that its interval stays above zero. Clips count as independent of
+/// each other, although each one's model comes from the others. Fewer than three clips have no interval: one difference
+/// between two tells nothing of the next.
 #pragma once
 
 #include <optional>
 #include <span>
-#include <string>
 
 #include "diagnose/result/diagnosis.h"
 
@@ -19,20 +18,21 @@ namespace glidelab::diagnose {
 
 inline constexpr std::size_t kFewestClips = 3;
 
-/// Why so many clips have no interval; empty where they may have one.
-std::string why_no_interval(std::size_t clips);
+/// So many clips, where they are too few for an interval.
+std::optional<std::size_t> too_few_clips(std::size_t clips);
 
-/// What a clip adds to a mean square: a sum of squares, and of how many.
+/// What a clip adds to a mean square: a sum of squares, and their number.
 struct ClipSquares {
   double sum = 0.0;
   double count = 0.0;
 };
 
-/// Of sqrt(sum/count) over all clips. None of less than three clips that count, nor where one of them is all there is.
+/// Of sqrt(sum/count) over all clips. None for fewer than three clips that count, nor where one of them is all there
+/// is.
 std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips);
 
-/// Of (before - after)/(before - 1), the clips being the same in both. None of less than three clips, nor where without
-/// one of them `before` is not above 1.
+/// Of (before - after)/(before - 1), the clips being the same in both. None for fewer than three clips, nor where
+/// `before` without one of them is not above 1.
 std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after);
 
 }  // namespace glidelab::diagnose

@@ -13,7 +13,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kPlotted = 250;
+constexpr std::size_t kPlotted = 250;  // residuals of a motion
 
 /// A single clip in quarters, and both fits to them.
 struct SplitFits {
@@ -57,8 +57,8 @@ std::vector<ClipSquares> acceleration_squares_of(const HeldOutGap& gap) {
 
 GapIntervals intervals_of(const TrackSet& set, const HeldOutGap& before, const HeldOutGap& after, bool shrinks) {
   GapIntervals of;
-  of.why_none = why_no_interval(set.pieces ? 1 : set.clips.size());
-  if (!of.why_none.empty()) return of;
+  of.too_few = too_few_clips(set.pieces ? 1 : set.clips.size());
+  if (of.too_few) return of;
   of.before = rms_interval(squares_of(before));
   of.after = rms_interval(squares_of(after));
   if (shrinks) of.shrink = shrink_interval(squares_of(before), squares_of(after));
@@ -95,7 +95,7 @@ double most_seen(const std::vector<PictureFinding>& pictures, const std::vector<
 }  // namespace
 
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
-                std::vector<std::string>& notes) {
+                std::vector<Note>& notes) {
   GapSizes gap;
   HeldOutGap before, after;
   if (set.clips.size() < 2) {
@@ -103,8 +103,7 @@ GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& 
     before = held_out_gap(split.set, split.nominal);
     after = held_out_gap(split.set, split.best);
     gap.phase_plane = phase_gaps(split.set, split.nominal, split.best);
-    notes.push_back(
-        "There is one clip only, so that none can be held out: the gap is measured on held-out quarters of it.");
+    notes.emplace_back(QuartersHeldOut{});
   } else {
     before = held_out_gap(set, nominal);
     after = held_out_gap(set, best);

@@ -17,7 +17,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestPoints = 12;   // of a stretch that goes one way
+constexpr std::size_t kFewestOneWay = 12;   // of a stretch that goes one way
 constexpr double kOpenMu = 0.1;             // sd of a friction that is not known
 constexpr double kOpenK = 10.0;             // likewise of a drag, over the drag of all
 constexpr double kSameData = 1e-6;          // of the variance: then the part is all there is
@@ -53,7 +53,7 @@ Part part_of(const TrackSet& set, const MotionFit& fit, std::size_t mass, int di
       to = from + 1;
       if (!(v[from] * direction > 0.0)) continue;
       while (to < v.size() && v[to] * direction > 0.0) ++to;
-      if (to - from < kFewestPoints) continue;
+      if (to - from < kFewestOneWay) continue;
       TrackedMotion stretch = some_points(motion, from, to);
       if (set.position_noise) whiten(stretch, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
       part.set.motions.push_back(std::move(stretch));

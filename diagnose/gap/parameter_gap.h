@@ -1,7 +1,7 @@
 /// The gap in the parameters: K between masses, mu between masses and directions.
 ///
-/// The usual model (K, mu, inclinations, masses; effects held) is fitted to the motions of one mass alone, and to those
-/// stretches of them that go one way; q is what it gives for K or mu. Against the fit to all,
+/// The nominal model (K, mu, inclinations, masses; effects held) is fitted to the motions of one mass alone, and to
+/// those stretches of them that go one way; q is what it gives for K or mu. Against the fit to all,
 ///
 ///     z = (q_alone - q_all) / sd,    sd² = var q_alone - var q_all,
 ///

@@ -14,9 +14,9 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr int kBins = 12;
-constexpr double kFewestPoints = 5.0;
+constexpr double kFewestInBin = 5.0;  // points
 constexpr std::size_t kFewestToSmooth = 8;
-constexpr double kEnds = 2.0;  // bandwidths
+constexpr double kEnds = 2.0;  // bandwidths from a motion's ends that are left out
 
 /// A point of the phase plane: its speed, and d as weights of the motion's positions from `first` on.
 struct PhasePoint {
@@ -188,7 +188,7 @@ std::vector<PhaseGap> phase_gaps(const TrackSet& set, const MotionFit& before, c
         points += sums[i].points[static_cast<Eigen::Index>(b)];
         speed += sums[i].speed[static_cast<Eigen::Index>(b)];
       }
-      if (points < kFewestPoints) continue;
+      if (points < kFewestInBin) continue;
       gap.bins.push_back({bins.edge(b),
                           bins.edge(b + 1),
                           speed / points,

@@ -9,17 +9,13 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_gap.h"
-#include "diagnose/lines/line_isolability.h"
-#include "diagnose/lines/line_regions.h"
 #include "diagnose/lines/line_weighing.h"
-#include "diagnose/lines/line_words.h"
 #include "diagnose/result/alike_effects.h"
-#include "diagnose/result/verdict_words.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSameEvidence = 3.0;
+constexpr double kSameLineEvidence = 3.0;  // log evidence within which effects share it
 
 void check_names(const std::vector<std::string>& without) {
   const std::vector<std::string> known = effect_words();
@@ -30,19 +26,19 @@ void check_names(const std::vector<std::string>& without) {
   }
 }
 
-std::string id_of(const LineExplanation& explanation, const std::vector<LineTerm>& terms) {
-  std::string id;
-  for (const std::size_t t : explanation.named) id += (id.empty() ? "" : " + ") + terms[t].id;
-  if (explanation.family) id += id.empty() ? "unknown" : " + unknown";
-  return id.empty() ? "none" : id;
+Explanation explanation_of(const LineExplanation& lines, const std::vector<LineTerm>& terms) {
+  Explanation explanation;
+  for (const std::size_t t : lines.named) explanation.effects.push_back(terms[t].id);
+  explanation.unnamed = lines.family.has_value();
+  return explanation;
 }
 
 LineCandidate candidate_of(const LineExplanation& explanation, const std::vector<LineTerm>& terms,
                            const std::vector<LineFamily>& families, const LineSolution& nominal,
                            const OwnScatter& scatter) {
   const LineSolution& solution = explanation.solution;
-  LineCandidate candidate{id_of(explanation, terms),
-                          explanation.family ? families[*explanation.family].words : "",
+  LineCandidate candidate{explanation_of(explanation, terms),
+                          explanation.family ? std::optional(families[*explanation.family].of) : std::nullopt,
                           explanation.probability,
                           explanation.log_evidence,
                           log_likelihood_gain_of(solution, nominal),
@@ -81,8 +77,8 @@ std::vector<std::size_t> equals_of(const LineExplanation& best, const std::vecto
   if (best.named.size() != 1) return {};
   std::vector<std::size_t> equals = best.named;
   for (const LineExplanation& e : all) {
-    if (e.family || e.named.size() != 1 || e.named == best.named || !e.solution.left_out.empty()) continue;
-    if (e.log_evidence > best.log_evidence - kSameEvidence) equals.push_back(e.named.front());
+    if (e.family || e.named.size() != 1 || e.named == best.named || e.solution.left_out) continue;
+    if (e.log_evidence > best.log_evidence - kSameLineEvidence) equals.push_back(e.named.front());
   }
   return equals;
 }
@@ -123,8 +119,7 @@ void join_sets(const std::vector<LineTerm>& terms, const std::vector<LineExplana
   std::vector<NamedExplanation> named;
   for (const LineExplanation& e : all) {
     if (e.family) continue;
-    NamedExplanation& one = named.emplace_back(NamedExplanation{{}, e.probability});
-    for (const std::size_t t : e.named) one.ids.push_back(terms[t].id);
+    named.push_back({explanation_of(e, terms).effects, e.probability});
   }
   const auto words = [&](const std::string& id) {
     const auto term = std::find_if(terms.begin(), terms.end(), [&](const LineTerm& t) { return t.id == id; });
@@ -169,11 +164,11 @@ void weigh_up(const std::vector<LineExplanation>& all, LineComparison& table, Di
     } else {
       const LineCandidate& c = table.candidates[e];
       diagnosis.ranking.push_back(
-          {c.id, c.probability, c.log_evidence_gain, c.log_likelihood_gain, c.terms, c.gap, c.left_out});
+          {c.explanation, c.probability, c.log_evidence_gain, c.log_likelihood_gain, c.terms, c.gap, c.left_out});
     }
   }
   const auto likelier = [](const auto& a, const auto& b) {
-    return a.left_out.empty() != b.left_out.empty() ? a.left_out.empty() : a.probability > b.probability;
+    return a.left_out.has_value() != b.left_out.has_value() ? !a.left_out : a.probability > b.probability;
   };
   std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), likelier);
   std::stable_sort(table.candidates.begin(), table.candidates.end(), likelier);
@@ -197,20 +192,24 @@ std::vector<LineCurve> curves_of(const std::vector<TableLine>& lines, const Line
                                  const std::vector<LineTerm>& terms, const std::vector<LineExplanation>& all) {
   std::vector<LineCurve> curves;
   for (const LineExplanation& e : all) {
-    if (e.named.size() != 1 || e.family || !e.solution.left_out.empty()) continue;
+    if (e.named.size() != 1 || e.family || e.solution.left_out) continue;
     LineCurve curve = line_curve(lines, data, terms[e.named.front()], e.solution);
     if (!curve.mass_kg.empty()) curves.push_back(std::move(curve));
   }
   return curves;
 }
 
-std::string next_of(const std::vector<TableLine>& lines, const LineData& data) {
-  if (different(lines, &TableLine::mass_kg).size() < 2) {
-    return "Record a second mass: with one, a friction force is simply mu.";
-  }
+/// What would decide between a friction force and a smoothing bias.
+NextStep next_of(const std::vector<TableLine>& lines, const LineData& data) {
+  const std::vector<double> masses = different(lines, &TableLine::mass_kg);
+  if (masses.size() < 2) return Routine::second_mass;
   const std::vector<LineTerm> every = named_terms(lines, {});
-  return next_for_lines(lines, size_by_itself(data, every, ids::load_independent_friction),
-                        size_by_itself(data, every, ids::smoothing_bias));
+  const double force_n = size_by_itself(data, every, ids::load_independent_friction);
+  const double bias_s2_m_s2 = size_by_itself(data, every, ids::smoothing_bias);
+  double drag = 0.0;
+  for (const TableLine& line : lines) drag += line.k_over_m_1_s * line.mass_kg / static_cast<double>(lines.size());
+  const double heavy = 3.0 * masses.back();
+  return TellLinesApart{heavy, force_n, force_n / heavy, bias_s2_m_s2 * (drag / heavy) * (drag / heavy)};
 }
 
 }  // namespace
@@ -231,8 +230,8 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
   table.lines = lines.size();
   table.chi2_before = table.candidates.front().chi2;
   weigh_up(all, table, diagnosis);
-  const bool is_effect = diagnosis.verdict == "effect", is_unknown = diagnosis.verdict == "unknown";
-  if (leaders.named != nullptr && leaders.named->probability > 0.0 && diagnosis.verdict != "none") {
+  const bool is_effect = diagnosis.verdict == Verdict::effect, is_unknown = diagnosis.verdict == Verdict::unknown;
+  if (leaders.named != nullptr && leaders.named->probability > 0.0 && diagnosis.verdict != Verdict::none) {
     const std::vector<std::size_t> equals = equals_of(*leaders.named, all);
     tell_either(all, terms, equals, table);
     if (is_effect) diagnosis.effects = effects_of(*leaders.named, all, terms, equals, without);
@@ -250,13 +249,9 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
   }
   table.off = lines_off(lines, nominal);
   table.curves = curves_of(lines, data, terms, all);
-  diagnosis.next_experiment = next_of(lines, data);
-  diagnosis.notes.push_back(fmt::format(
-      "A table of {} lines: their errors are not stated and are taken from their scatter; the speeds that they rest on "
-      "are not known, so that effects of the speed (quadratic_drag, power_law_drag, stribeck) cannot be weighed.",
-      lines.size()));
+  diagnosis.next = next_of(lines, data);
+  diagnosis.notes.emplace_back(TableOfLines{lines.size()});
   diagnosis.lines = std::move(table);
-  diagnosis.summary = line_summary(diagnosis);
   return diagnosis;
 }
 

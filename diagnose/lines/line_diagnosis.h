@@ -1,6 +1,6 @@
 /// A table of published lines in, a diagnosis out.
 ///
-///     lines ─ line_terms ─ line_solution (fit, evidence) ─ line_weighing ─ line_regions, line_isolability ─ Diagnosis
+///     lines ─ line_terms ─ line_solution (fit, evidence) ─ line_weighing ─ line_gap ─ Diagnosis
 ///
 /// Predictions of each line by the others are the held-out gap, over the lines' own scatter.
 #pragma once

@@ -1,13 +1,10 @@
 #include "diagnose/lines/line_solution.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/math/dense.h"
-#include "base/text/size_text.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -17,18 +14,13 @@ constexpr double kLeastLeft = 1e-6;                     // of lines with very ma
 constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
 constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
 constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
-constexpr int kMostTurns = 50;
-constexpr double kLeastUnseen = 0.05;  // part of a line that its own prediction must not see
+constexpr int kMostTurns = 50;                          // of fitting sizes and scatters in turn
+constexpr double kLeastUnseen =
+    0.05;  // of a line that the others leave undetermined; its held-out residual is divided by no less
 
-std::string impossible(const LineTerm& term, double size) {
-  const auto [name, unit] = base::name_and_unit(term.key);
-  const std::string needed = fmt::format("{} would have to be {}", name, base::size_text(size, 2, unit));
-  if (!term.both_signs && !(size > 0.0)) {
-    return needed + ", and it cannot be below zero";
-  }
-  if (std::abs(size) > term.largest) {
-    return fmt::format("{}, and more than {} is absurd", needed, base::size_text(term.largest, 2, unit));
-  }
+std::optional<ImpossibleSize> impossible(const LineTerm& term, double size) {
+  if (!term.both_signs && !(size > 0.0)) return ImpossibleSize{term.key, size, {}};
+  if (std::abs(size) > term.largest) return ImpossibleSize{term.key, size, term.largest};
   return {};
 }
 
@@ -123,7 +115,7 @@ LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& term
   // With the degrees of freedom that the fit takes.
   const auto values = static_cast<double>(2 * n), parameters = static_cast<double>(pk + pa + pt);
   s.sd = inverse.diagonal().tail(pt).cwiseSqrt() * std::sqrt(values / std::max(1.0, values - parameters));
-  for (Eigen::Index t = 0; t < pt && s.left_out.empty(); ++t) {
+  for (Eigen::Index t = 0; t < pt && !s.left_out; ++t) {
     s.left_out = impossible(terms[static_cast<std::size_t>(t)], s.size[t]);
   }
   // Each line predicted by the others: residual over 1 - leverage.

@@ -1,6 +1,6 @@
-/// Lines fitted by the usual model and terms beside it, and how well.
+/// Lines fitted by the nominal model and terms beside it, and how well.
 ///
-/// The usual model gives, for a line of mass m, set-up g and direction s,
+/// The nominal model gives, for a line of mass m, set-up g and direction s,
 ///
 ///     ln(k m) = ln K,     a0 = gravity sin(alpha_g) - s mu gravity cos(alpha_g)
 ///
@@ -19,15 +19,16 @@
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "diagnose/lines/line_table.h"
 #include "diagnose/lines/line_terms.h"
+#include "diagnose/result/line_comparison.h"
 
 namespace glidelab::diagnose {
 
-/// Both kinds of data, and the usual model's columns.
+/// Both kinds of data, and the nominal model's columns.
 struct LineData {
   Eigen::VectorXd log_k, a0;
   Eigen::MatrixXd base_log_k, base_a0;
@@ -39,7 +40,7 @@ struct LineSolution {
   Eigen::VectorXd off_k, off_a;                ///< measured less fitted
   double sd_k = 0.0, sd_a = 0.0;               ///< root mean square of what is left
   std::vector<double> held_out_k, held_out_a;  ///< off the prediction by the other lines
-  std::string left_out;                        ///< why the sizes are impossible; empty where they are not
+  std::optional<ImpossibleSize> left_out;      ///< the first size that is impossible, if any
 };
 
 /// Scatter that no model of friction goes into: of the mean intercept over both directions between masses of one set-up
@@ -61,7 +62,7 @@ OwnScatter own_scatter(const std::vector<TableLine>& lines);
 /// where there are as many parameters as lines.
 double log_bayes_factor(double left, double nominal_left, double lines, double nominal_parameters, double terms);
 
-/// Of both kinds together, against the usual model. A term that acts on both is half a one of each.
+/// Of both kinds together, against the nominal model. A term that acts on both is half a one of each.
 double log_evidence_of(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
                        const LineSolution& nominal);
 

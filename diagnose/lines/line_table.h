@@ -1,4 +1,4 @@
-/// A table of fitted lines a = a0 - (K/m) v, as a paper prints it, instead of clips.
+/// A table of fitted lines a = a0 - (K/m) v, as a paper prints it, in place of clips.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file);
 /// its lines alone, with the default gravity. InputError as read_experiment(); what is in the table is not looked at.
 core::Experiment read_recording(const std::filesystem::path& path, core::OutsideFiles outside);
 
-/// What is said of a table with too few lines.
+/// The issue of a table with too few lines.
 base::Issue too_few_lines(const std::string& file, std::size_t lines);
 
 /// The values of a member among the lines, ascending, each once.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
@@ -9,7 +10,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kUnlimited = 1e9;
+constexpr double kUnlimited = 1e9;  // a size that no table reaches
 
 Eigen::Index count(const std::vector<TableLine>& lines) {
   return static_cast<Eigen::Index>(lines.size());
@@ -70,31 +71,29 @@ std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std
 
 std::vector<LineFamily> unnamed_families(const std::vector<TableLine>& lines) {
   std::vector<LineFamily> families;
-  const auto add = [&](const std::string& variable, const std::string& words, const auto& cell_of) {
+  const auto add = [&](UnnamedInLines::Over over, const auto& cell_of) {
     std::vector<Cell> cells;
     for (const TableLine& line : lines) cells.push_back(cell_of(line));
     for (const bool friction : {true, false}) {
-      families.push_back(
-          {variable, (friction ? "a friction" : "a drag") + words, 0.5, of_each(lines, cells, friction)});
+      const auto what = friction ? UnnamedInLines::What::friction : UnnamedInLines::What::drag;
+      families.push_back({{what, over}, 0.5, of_each(lines, cells, friction)});
     }
   };
   const bool masses = different(lines, &TableLine::mass_kg).size() > 1;
   const bool setups = different(lines, &TableLine::incline_deg).size() > 1;
-  if (masses) add("mass_kg", " of each mass by itself", [](const TableLine& l) { return Cell{l.mass_kg, 0.0}; });
-  if (setups) add("group", " of each set-up by itself", [](const TableLine& l) { return Cell{0.0, l.incline_deg}; });
+  if (masses) add(UnnamedInLines::Over::mass, [](const TableLine& l) { return Cell{l.mass_kg, 0.0}; });
+  if (setups) add(UnnamedInLines::Over::set_up, [](const TableLine& l) { return Cell{0.0, l.incline_deg}; });
   if (masses && setups) {
-    add("mass_kg and group", " of each mass in each set-up by itself", [](const TableLine& l) {
-      return Cell{l.mass_kg, l.incline_deg};
-    });
+    add(UnnamedInLines::Over::mass_and_set_up, [](const TableLine& l) { return Cell{l.mass_kg, l.incline_deg}; });
   }
   LineTerm ways{
       "",   "drag",    "dynamics", "", Eigen::VectorXd::Zero(count(lines)), Eigen::VectorXd::Zero(count(lines)),
       true, kUnlimited};
   for (Eigen::Index i = 0; i < count(lines); ++i) ways.of_log_k[i] = at(lines, i).direction;
-  families.push_back({"direction", "a drag of each direction by itself", 1.0, {ways}});
-  std::map<std::string, double> shares;
-  for (const LineFamily& family : families) shares[family.variable] += family.share;
-  for (LineFamily& family : families) family.share /= static_cast<double>(shares.size());
+  families.push_back({{UnnamedInLines::What::drag, UnnamedInLines::Over::direction}, 1.0, {ways}});
+  std::set<UnnamedInLines::Over> variables;
+  for (const LineFamily& family : families) variables.insert(family.of.over);
+  for (LineFamily& family : families) family.share /= static_cast<double>(variables.size());
   return families;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "diagnose/lines/line_table.h"
+#include "diagnose/result/line_comparison.h"
 
 namespace glidelab::diagnose {
 
@@ -24,8 +25,7 @@ struct LineTerm {
 
 /// Terms without a name that come together.
 struct LineFamily {
-  std::string variable;  ///< mass_kg, group, direction, or "mass_kg and group"
-  std::string words;
+  UnnamedInLines of;
   double share = 0.0;  ///< of the odds of something without a name: each variable alike, and of it friction and drag
   std::vector<LineTerm> terms;
 };

@@ -19,7 +19,7 @@ FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& cha
 
 struct NextMotion {
   TrackSet set;  ///< the set-ups and masses so far and the change's, with its clip as the only one
-  Moved moved;   ///< empty where the clip cannot be made: fewer than 12 positions among the places so far
+  Moved moved;   ///< empty where the clip cannot be made: fewer than 12 positions within the range so far
 };
 
 /// The change's clip as the fit makes it, without noise, cut where it leaves the places so far.

@@ -1,7 +1,7 @@
 /// What an experiment will be able to tell apart, before anybody has recorded it.
 ///
-/// Of every effect that displaces positions in one direction (in the space of all positions, over their noise, with all
-/// that a fit may change projected out): the size that makes one standard deviation, and the cosine between any two.
+/// Every effect that displaces positions in one direction (in the space of all positions, over their noise, with all
+/// that a fit may change projected out) has a size that makes one standard deviation, and a cosine with any other.
 /// Nothing but the planned motions and their noise goes in; measured residuals do not.
 #pragma once
 
@@ -28,11 +28,8 @@ struct Plan {
   Isolability isolability;  ///< of those that can be seen
   double noise_m = 0.0;     ///< mean over the motions
   std::size_t clips = 0, points = 0;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
-
-/// Two effects are called alike from here on: the second one then explains 90 % of what the first one gains.
-inline constexpr double kAlike = 0.95;
 
 /// From motions that were analysed: planned ones (a simulation) or recorded ones. InputError where nothing moves
 /// freely.

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "core/result/results.h"
+#include "diagnose/result/explanation.h"
 #include "diagnose/result/line_comparison.h"
+#include "diagnose/result/next_step.h"
+#include "diagnose/result/note.h"
 
 namespace glidelab::diagnose {
 
@@ -38,13 +41,13 @@ struct DiagnosedEffect {
 };
 
 struct RankedExplanation {
-  std::string id;  ///< one effect, or two joined by " + "
+  Explanation explanation;
   double probability = 0.0;
   double log_evidence_gain = 0.0;  ///< against the nominal model
   double log_likelihood_gain = 0.0;
-  std::size_t parameters = 0;       ///< more than the nominal model has
-  std::optional<double> gap_after;  ///< of held-out clips; where it was fitted in full
-  std::string left_out = {};        ///< why it was not weighed; empty where it was
+  std::size_t parameters = 0;                   ///< more than the nominal model has
+  std::optional<double> gap_after;              ///< of held-out clips; where it was fitted in full
+  std::optional<ImpossibleSize> left_out = {};  ///< why it was not weighed, where it was not
 };
 
 struct GapRegion {
@@ -55,7 +58,8 @@ struct GapRegion {
   std::string unit;     ///< of size: N, m/s², m, N s/m
   std::string what;     ///< force, friction, displacement, …
   std::string clip;     ///< where it is one clip's
-  /// What the usual model lacks at most, in the size's unit, where the size is far more than that: not to be believed.
+  /// What the nominal model lacks at most, in the size's unit, where the size is far more than that: not to be
+  /// believed.
   std::optional<double> lacking = {};
   std::optional<double> size_sd = {};  ///< of the size; none of what is found otherwise than by a curve or in lines
   int direction = 0;                   ///< sign of v of the lines it is of; 0 where it is of both, or of no lines
@@ -72,7 +76,7 @@ struct GapCurve {
 struct GapOfParameter {
   std::string quantity, against, group;
   std::optional<double> z_before = {}, z_after = {};  ///< none where it cannot be said
-  /// Of a part of the data alone, against all: the usual model's fits, in the quantity's unit.
+  /// Of a part of the data alone, against all: the nominal model's fits, in the quantity's unit.
   std::optional<DiagnosedParameter> alone = {}, together = {};
 };
 
@@ -83,7 +87,7 @@ struct GapInterval {
 
 struct GapIntervals {
   std::optional<GapInterval> before, after, shrink, acceleration_before, acceleration_after;
-  std::string why_none;  ///< where none of them can be said
+  std::optional<std::size_t> too_few = {};  ///< clips, where that is why there is no interval
 };
 
 /// A difference with its standard deviation.
@@ -131,6 +135,9 @@ struct ResidualCurve {
   std::vector<double> noise_m = {};
 };
 
+/// Two effects are called alike from this cosine on: the second one then explains 90 % of what the first one gains.
+inline constexpr double kAlike = 0.95;
+
 /// How alike what two effects change is: the cosine of the angle between them, everything fitted projected out.
 struct Isolability {
   std::vector<std::string> ids;
@@ -138,17 +145,17 @@ struct Isolability {
   std::vector<std::vector<double>> cosine;  ///< absolute
 };
 
-/// What the pictures of filmed clips say of one effect, whether or not it moves the positions.
+/// What the images of filmed clips say of one effect, whether or not it moves the positions.
 struct PictureFinding {
   std::string id, stage;
   bool seen = false;
-  double log_evidence = 0.0;  ///< of its presence against its absence, from the pictures alone
+  double log_evidence = 0.0;  ///< of its presence against its absence, from the images alone
   bool stated = false;        ///< the file itself says so: named only for what it does to the positions
   std::vector<DiagnosedParameter> parameters;
   std::string words;  ///< a sentence
 };
 
-/// A measurement in the pictures for the plots: `lengthening` (px², of the marker's image over px/s), `brightness`
+/// A measurement in the images for the plots: `lengthening` (px², of the marker's image over px/s), `brightness`
 /// (relative, over time), `drift across`, `drift down` (px, of the fixed scene over time), `noise` (codes², a pixel's
 /// variance over its level in codes).
 struct PictureCurve {
@@ -179,15 +186,15 @@ struct MeasuredMotion {
   std::vector<double> v_m_s, a_m_s2;  ///< smoothed, of the points that the lines rest on
 };
 
-/// What a reader must know before the verdict, in sentences (verdict_limits.h); also in the notes.
+/// What a reader must know before the verdict (verdict_limits.h); also in the notes.
 struct VerdictLimits {
-  std::vector<std::string> driving;       ///< a drag or friction below zero
-  std::vector<std::string> contradicted;  ///< statements that the motion contradicts
-  std::string set_aside;                  ///< a large part of the positions takes no part; else empty
+  std::vector<NegativeLoss> driving;
+  std::vector<ContradictedIncline> contradicted;
+  std::optional<SetAside> set_aside;
 };
 
 struct Diagnosis {
-  std::string verdict;     ///< none, effect, unknown
+  Verdict verdict = Verdict::none;
   std::size_t points = 0;  ///< positions that took part
   std::vector<DiagnosedEffect> effects;
   double none = 0.0, unknown = 0.0;
@@ -196,8 +203,7 @@ struct Diagnosis {
   std::vector<GapRegion> regions;
   std::vector<GapCurve> curves;
   std::optional<GapSizes> gap;
-  std::string next_experiment;
-  std::string summary;  ///< a paragraph in plain words
+  NextStep next;
   VerdictLimits limits;
   Isolability isolability;
   std::optional<LineComparison> lines;  ///< where the data are a table of published lines
@@ -205,11 +211,15 @@ struct Diagnosis {
   std::vector<PictureFinding> pictures;  ///< empty for tracks
   std::vector<PictureCurve> picture_curves;
   std::vector<CalibrationRests> calibrations;  ///< of each folder with a pattern
-  std::vector<std::string> notes;              ///< limits that a reader should know
-  std::string twin;                            ///< the fitted motions as a scenario file; empty for a table of lines
+  std::vector<Note> notes;
+  std::string twin;  ///< the fitted motions as a scenario file; empty for a table of lines
   std::vector<TwinLack> twin_lacks;
   double twin_from_m = 0.0;              ///< x of the data where the twin's x is 0
   std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
 };
+
+/// Whether the nominal model follows the positions to their noise, and the verdict is unknown for what is stated alone:
+/// an inclination that the motion contradicts, a drag or friction below zero.
+bool only_statements_fail(const Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

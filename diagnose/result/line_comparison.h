@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/result/explanation.h"
+
 namespace glidelab::diagnose {
 
 struct LineSize {
@@ -14,20 +16,33 @@ struct LineSize {
   double sd = 0.0;  ///< from what the explanation leaves
 };
 
+/// A size that a fit needs and nature does not have.
+struct ImpossibleSize {
+  std::string key;  ///< with its unit
+  double value = 0.0;
+  std::optional<double> largest;  ///< that is possible; none where the value is below zero and cannot be
+};
+
+/// What has no name in a table of lines: a friction or a drag that differs between masses, set-ups, directions.
+struct UnnamedInLines {
+  enum class What { friction, drag } what = What::friction;
+  enum class Over { mass, set_up, mass_and_set_up, direction } over = Over::mass;
+};
+
 /// One explanation of the lines.
 struct LineCandidate {
-  std::string id;     ///< "none", an effect, "a + b", "unknown", "a + unknown"
-  std::string words;  ///< of what has no name; empty for the others
+  Explanation explanation;
+  std::optional<UnnamedInLines> unnamed;  ///< what has no name in it
   double probability = 0.0;
   double log_evidence_gain = 0.0;
   double log_likelihood_gain = 0.0;
-  std::size_t terms = 0;            ///< more than the usual model has
-  std::vector<LineSize> sizes;      ///< of effects with a name
-  std::optional<double> chi2, gap;  ///< over the lines' own scatter, where that is known
-  std::string left_out;             ///< why it was not weighed; empty where it was
+  std::size_t terms = 0;                   ///< more than the nominal model has
+  std::vector<LineSize> sizes;             ///< of effects with a name
+  std::optional<double> chi2, gap;         ///< over the lines' own scatter, where that is known
+  std::optional<ImpossibleSize> left_out;  ///< why it was not weighed, where it was not
 };
 
-/// What the usual model leaves of one line.
+/// What the nominal model leaves of one line.
 struct LineOff {
   double mass_kg = 0.0, incline_deg = 0.0;
   int direction = 0;
@@ -36,7 +51,7 @@ struct LineOff {
   double log_k = 0.0;
 };
 
-/// The friction that an explanation adds to the usual model's, over the mass.
+/// The friction that an explanation adds to the nominal model's, over the mass.
 struct LineCurve {
   std::string id;
   std::vector<double> mass_kg, k_over_m_1_s, friction_m_s2;
@@ -46,7 +61,7 @@ struct LineComparison {
   std::size_t lines = 0;
   double intercept_sd_m_s2 = 0.0, slope_sd = 0.0;  ///< the lines' own scatter; 0 where nothing is repeated
   std::size_t scatter_freedom = 0;
-  std::optional<double> chi2_before;      ///< of the usual model; where the scatter is known
+  std::optional<double> chi2_before;      ///< of the nominal model; where the scatter is known
   std::vector<std::string> either_of;     ///< effects that share the evidence; empty where one stands out
   double either_probability = 0.0;        ///< that one of them acts, or several, and nothing else
   std::vector<LineCandidate> candidates;  ///< the likeliest first, those that were not weighed last

@@ -125,25 +125,19 @@ void cut_driven_motions(TrackSet& set, std::size_t fewest) {
     std::erase_if(chosen, [fewest](const TrackedMotion& piece) { return piece.t_s.size() < fewest; });
   }
   if (many > 0) {
-    set.notes.push_back(fmt::format(
-        "The recorded force turns the motion {} times: it is weighed in pieces of {} turns, each with a start of its "
-        "own. What shows over longer than a piece only, such as a slow drift, is not looked at.",
-        turns, kTurns));
+    set.notes.emplace_back(CutAtTurns{turns, kTurns});
   }
   if (kept < all) {
-    set.notes.push_back(fmt::format(
-        "Of {} pieces of motion with a recorded force {} are weighed, spread evenly over clips and time.", all, kept));
+    set.notes.emplace_back(SomePieces{all, kept});
   }
   if (every > 1) {
-    set.notes.push_back(fmt::format(
-        "Of {} positions of them one in {} is weighed: the law needs no more, and the search grows with them.", points,
-        every));
+    set.notes.emplace_back(ThinnedPositions{points, every, true});
   }
   set.motions = std::move(chosen);
   for (TrackedMotion& motion : others) set.motions.push_back(std::move(motion));
   if (set.clips.size() == 1 && many > 0 && set.motions.size() > 1) {
     name_pieces(set);
-    set.notes.push_back("There is one clip only: each piece of its motion is held out in turn.");
+    set.notes.emplace_back(PiecesHeldOut{});
   }
 }
 

@@ -1,7 +1,5 @@
 #include "diagnose/tracks/thin_tracks.h"
 
-#include <fmt/format.h>
-
 namespace glidelab::diagnose {
 namespace {
 
@@ -38,8 +36,7 @@ void thin_out(TrackSet& set, std::size_t fewest) {
     if (!driven(motion)) motion = some_points(motion, 0, motion.t_s.size(), every);
   }
   std::erase_if(set.motions, [fewest](const TrackedMotion& motion) { return motion.t_s.size() < fewest; });
-  set.notes.push_back(fmt::format(
-      "Of {} positions one in {} is weighed: the law needs no more, and the search grows with them.", points, every));
+  set.notes.emplace_back(ThinnedPositions{points, every, false});
 }
 
 }  // namespace glidelab::diagnose

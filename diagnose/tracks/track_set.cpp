@@ -1,7 +1,5 @@
 #include "diagnose/tracks/track_set.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -271,7 +269,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
       set.motions.push_back(std::move(motion));
       any = true;
     }
-    if (!any) set.notes.push_back(fmt::format("clip {}: no motion of {} points or more", clip.name, kFewestPoints));
+    if (!any) set.notes.emplace_back(NoFreeMotion{clip.name, kFewestPoints});
   }
   if (set.motions.empty()) return set;
   measure_noise(set.motions);

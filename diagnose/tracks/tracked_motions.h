@@ -10,6 +10,7 @@
 
 #include "core/result/results.h"
 #include "diagnose/model/track_model.h"
+#include "diagnose/result/note.h"
 
 namespace glidelab::diagnose {
 
@@ -96,7 +97,7 @@ struct TrackSet {
   bool handed_on = false;  ///< and one that predicts images from those before:
   double held_m_s = 0.0;   ///< slower than this the marker may be held where it was (0: by none)
   std::optional<PositionNoise> position_noise;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   /// Frames that the analysis took for hand or stop and that a motion could hold.
   std::size_t disputed = 0;
   std::size_t left_out = 0;  ///< of these, all or none

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/math/dense.h"
-#include "diagnose/unnamed/unnamed_shape.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
 namespace {

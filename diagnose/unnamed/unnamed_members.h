@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "diagnose/unnamed/unnamed.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
 

@@ -8,17 +8,17 @@
 #include <vector>
 
 #include "core/math/quantile.h"
-#include "diagnose/unnamed/unnamed_shape.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;
-constexpr double kFewestSwings = 2.0;                // periods over the whole range: fewer are any smooth shape
-constexpr double kMostPulls = 25.0;                  // periods of a force, which moves the less the finer it is
-constexpr double kMostSwings = 600;                  // that are tried in full
-constexpr double kFinestSwings = 2000;               // periods over the whole range: the pixels of a wide picture
-constexpr double kShowsALittle = 3.0, kShows = 8.0;  // log likelihood
+constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;  // bumps over the range
+constexpr double kFewestSwings = 2.0;                 // periods over the whole range: fewer are any smooth shape
+constexpr double kMostPulls = 25.0;                   // periods of a force, which moves the less the finer it is
+constexpr double kMostSwings = 600;                   // periods that are tried in full
+constexpr double kFinestSwings = 2000;                // periods over the whole range: the pixels of a wide image
+constexpr double kShowsALittle = 3.0, kShows = 8.0;   // log likelihood from which on a wave is tried more finely
 
 struct Ranges {
   Grid x, v, t, speed;

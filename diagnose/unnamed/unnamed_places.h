@@ -1,9 +1,9 @@
-/// Families of unnamed.h over the place, the speed and the time.
+/// Families of unnamed.h over position, speed and time.
 #pragma once
 
 #include <vector>
 
-#include "diagnose/unnamed/unnamed.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
 

@@ -1,4 +1,4 @@
-/// Parameters of an effect that no fit has as such, and that the list of effects states.
+/// Parameters that the list of effects states for an effect, and that no fit has as such.
 ///
 ///     track_bow          x_mid_m: middle of the range of x of all clips of a set-up
 ///     damping_gradient   x_mid_m: the same; with one K(x) for set-ups at several places, where K is K itself,
@@ -16,8 +16,8 @@
 
 namespace glidelab::diagnose {
 
-/// `known` are the effect's parameters so far; a key that stands there already is left as it is. Of tracks, whose
-/// camera nobody knows, and of cameras whose pixels differ in size by more than 5 %, no pixels are stated.
+/// `known` are the effect's parameters so far; a key that stands there already is left as it is. For tracks, whose
+/// camera nobody knows, and for cameras whose pixels differ in size by more than 5 %, no pixels are stated.
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
                                                    const PictureEvidence& pictures,
                                                    const std::vector<DiagnosedParameter>& known);

@@ -1,7 +1,6 @@
 #include "diagnose/verdict/diagnose.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,13 +26,13 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestPositions = 40;  // all clips together: fewer carry no verdict beside four parameters
+constexpr std::size_t kFewestPositions = 40;  // of all clips together: fewer carry no verdict beside four parameters
 constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
 constexpr double kContradiction = 5.0;        // standard deviations between two statements
-constexpr double kAtStart_s = 0.2;            // a motion that begins later is not the launch
+constexpr double kLatestLaunch_s = 0.2;       // a motion that begins later is not the launch
 constexpr std::size_t kFirstPoints = 8;       // that show which way it begins,
 constexpr double kOtherWay = 10.0;            // by so many standard deviations of a position
-constexpr double kMisfit = 1.5;               // chi² a point from which on the motion counts as not explained
+constexpr double kMisfit = 1.5;               // chi² per point from which on the motion counts as not explained
 
 std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
   std::vector<std::size_t> effects;
@@ -75,68 +74,50 @@ void add_once(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// What a reader should know of the data before he believes the verdict: one note for what many set-ups have alike.
+/// What a reader should know of the data before trusting the verdict: one note for what several set-ups share.
 void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   std::vector<std::string> free, mixed;
   for (const TrackGroup& group : set.groups) {
-    if (group.statements.empty()) add_once(fmt::format("\"{}\"", group.name), free);
+    if (group.statements.empty()) add_once(group.name, free);
     for (std::size_t a = 0; a < group.statements.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         const InclineStatement &one = group.statements[a], &two = group.statements[b];
         const double z = (one.alpha_rad - two.alpha_rad) / std::hypot(one.sd_rad, two.sd_rad);
         if (std::abs(z) < kContradiction) continue;
-        set.notes.push_back(fmt::format(
-            "Set-up \"{}\": {} and {} inclination contradict each other by {:.1f} standard deviations; one of them is "
-            "wrong, and what rests on them is unsure.",
-            group.name, one.against, two.against, std::abs(z)));
+        set.notes.emplace_back(StatementsDisagree{group.name, one.against, two.against, std::abs(z)});
       }
     }
   }
   for (std::size_t a = 0; a < set.groups.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      if (set.groups[a].name == set.groups[b].name) add_once(fmt::format("\"{}\"", set.groups[a].name), mixed);
+      if (set.groups[a].name == set.groups[b].name) add_once(set.groups[a].name, mixed);
     }
   }
-  if (!free.empty()) {
-    set.notes.push_back(fmt::format(
-        "{} {} {} neither a plumb line nor an inclination with its uncertainty (incline_sd_deg): what shows in the "
-        "inclination only (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
-        free.size() > 1 ? "Set-ups" : "Set-up", fmt::join(free, ", "), free.size() > 1 ? "have" : "has"));
-  }
-  if (!mixed.empty()) {
-    set.notes.push_back(
-        fmt::format("Clips of set-up {} state different inclinations; they are taken for set-ups of "
-                    "their own.",
-                    fmt::join(mixed, ", ")));
-  }
+  if (!free.empty()) set.notes.emplace_back(NoInclination{std::move(free)});
+  if (!mixed.empty()) set.notes.emplace_back(SplitSetUps{std::move(mixed)});
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
     const bool stated_way = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
-    if (!stated_way || motion.t_s.front() > kAtStart_s) continue;
+    if (!stated_way || motion.t_s.front() > kLatestLaunch_s) continue;
     const std::size_t some = std::min<std::size_t>(kFirstPoints, motion.x_m.size() - 1);
     const double way = motion.x_m[some] - motion.x_m.front();
     const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;
     if (way * stated < -kOtherWay * motion.sd_m) {
-      set.notes.push_back(fmt::format("Clip {} is stated as launched {}, and begins the other way.", setup.name,
-                                      stated < 0.0 ? "up" : "down"));
+      set.notes.emplace_back(LaunchedOtherWay{setup.name, stated < 0.0});
     }
   }
 }
 
-/// Of tracks, whose pictures nobody sees here.
+/// Of imported tracks, whose images nobody sees here.
 void note_lasting_noise(TrackSet& set) {
   const NoiseShape& shape = set.position_noise->shape;
   if (set.pictures || !(shape.lasting > 0.0)) return;
   const double lasting = shape.lasting * shape.lasting;
-  set.notes.push_back(fmt::format(
-      "Errors of positions that follow each other are alike (correlation {:.2f} from one frame to the next, {:.2f} to "
-      "the fourth), as a tracker's are that goes by its own last picture, or positions that were smoothed: they count "
-      "for fewer than they are.",
-      lasting / (1.0 + lasting) * std::exp(-1.0 / shape.lasting_frames),
-      lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)));
+  set.notes.emplace_back(LastingErrors{lasting / (1.0 + lasting) * std::exp(-1.0 / shape.lasting_frames),
+                                       lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)});
 }
 
-/// One position beyond a gap may as well be an outlier, where no frame is missing elsewhere; two of one end are not.
+/// One position beyond a gap may as well be an outlier where no frame is missing elsewhere; two at one end are none.
 void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
   const auto same_end = [&](const EdgePosition& a, const EdgePosition& b) {
     const std::size_t middle = set.motions[a.motion].t_s.size() / 2;
@@ -174,17 +155,17 @@ void settle_noise(TrackSet& set) {
   set_tails_aside(set, missing.fit);
 }
 
-/// A codec that makes pictures out of those before leaves what has moved by less than some hundredths of a pixel where
-/// it was, and so makes a friction of the slowest motion.
+/// A codec that predicts each image from those before it leaves a marker in place that has moved by less than some
+/// hundredths of a pixel, and so makes the slowest motion look like friction.
 constexpr double kHeldPx = 0.05;  // from one frame to the next
 
-/// Whether the files say, or the pictures show, that they have been through a codec with loss.
+/// Whether the files say, or the images show, that they went through a lossy codec.
 void note_loss(const PictureEvidence& pictures, TrackSet& set) {
   set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
     return finding.id == ids::compression && (finding.stated || finding.seen);
   });
   set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
-                    return clip.record->codec == "MJPG";  // each picture by itself
+                    return clip.record->codec == "MJPG";  // each image by itself
                   });
   set.held_m_s = 0.0;
   if (!set.handed_on) return;
@@ -195,7 +176,7 @@ void note_loss(const PictureEvidence& pictures, TrackSet& set) {
   }
 }
 
-/// How far the best explanation that names something (or nothing) is from the noise: chi² a point.
+/// How far the best explanation that names something (or nothing) is from the noise: chi² per point.
 double misfit(const TrackSet& set, const Comparison& comparison) {
   const Hypothesis& best = comparison.all.front();
   const int fit = best.fit >= 0 ? best.fit : 0;
@@ -251,9 +232,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
       set = std::move(trimmed);
       note_limits(setups, set);
       cut_driven_motions(set, kFewestPoints);
-      set.notes.push_back(
-          fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
-                      set.disputed));
+      set.notes.emplace_back(HandLeftOut{set.disputed});
       progress("weighing explanations", 0.5);
       note_loss(pictures, set);
       settle_noise(set);

@@ -1,7 +1,5 @@
 #include "diagnose/verdict/verdict.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,8 +13,8 @@
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/next_experiment.h"
 #include "diagnose/result/alike_effects.h"
-#include "diagnose/result/verdict_words.h"
 #include "diagnose/twin/twin.h"
+#include "diagnose/unnamed/unnamed.h"
 #include "diagnose/verdict/derived_parameters.h"
 #include "diagnose/verdict/verdict_limits.h"
 #include "diagnose/verdict/verdict_regions.h"
@@ -24,14 +22,15 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSameGain = 3.0;      // log likelihood: twenty times is not yet a difference
-constexpr double kSameEvidence = 4.6;  // a hundred times: what follows anything with free sizes is no equal
-constexpr double kNoChance = 5e-4;     // a page says "< 0.001"
+constexpr double kSameGain = 3.0;      // log likelihood within which effects are alike: twenty times is no difference
+constexpr double kSameEvidence = 4.6;  // log evidence within which they are: what follows anything is no equal
+constexpr double kNoChance = 5e-4;     // probability below which explanations are ranked by their evidence
 
-std::string joined(const std::vector<std::size_t>& effects) {
-  std::string text;
-  for (const std::size_t e : effects) text += (text.empty() ? "" : " + ") + std::string(effect_list()[e].id);
-  return text;
+Explanation explanation_of(const Hypothesis& hypothesis) {
+  Explanation explanation;
+  explanation.unnamed = hypothesis.unnamed;
+  for (const std::size_t e : hypothesis.effects) explanation.effects.emplace_back(effect_list()[e].id);
+  return explanation;
 }
 
 bool same_but(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b, std::size_t from, std::size_t to) {
@@ -95,7 +94,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
                                      std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_fitted)};
     if (known == parameters.end()) {
       parameters.push_back(tracked);
-    } else if (tracked.sd < known->sd) {  // seen in the pictures as well, but less well
+    } else if (tracked.sd < known->sd) {  // seen in the images as well, but less well
       *known = tracked;
     }
   }
@@ -124,7 +123,7 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& d
   std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
   for (const Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
-    RankedExplanation ranked{joined(hypothesis.effects),
+    RankedExplanation ranked{explanation_of(hypothesis),
                              hypothesis.probability,
                              hypothesis.log_evidence,
                              hypothesis.gain,
@@ -178,8 +177,7 @@ std::vector<NamedExplanation> named_explanations(const Comparison& comparison) {
   std::vector<NamedExplanation> named;
   for (const Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.unnamed) continue;
-    NamedExplanation& one = named.emplace_back(NamedExplanation{{}, hypothesis.probability});
-    for (const std::size_t e : hypothesis.effects) one.ids.emplace_back(effect_list()[e].id);
+    named.push_back({explanation_of(hypothesis).effects, hypothesis.probability});
   }
   return named;
 }
@@ -209,27 +207,6 @@ std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
 
 }  // namespace
 
-const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
-  std::map<std::multiset<std::size_t>, double> sums;
-  const auto causes = [&](const Hypothesis& hypothesis) {
-    std::multiset<std::size_t> same;
-    for (const std::size_t e : hypothesis.effects) same.insert(first_alike(e, set.pictures));
-    return same;
-  };
-  const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (names(hypothesis)) sums[causes(hypothesis)] += hypothesis.probability;
-  }
-  const Hypothesis* best = nullptr;  // of the likeliest cause the likeliest name: they come by falling probability
-  double most = -1.0;
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (!names(hypothesis) || sums[causes(hypothesis)] <= most) continue;
-    most = sums[causes(hypothesis)];
-    best = &hypothesis;
-  }
-  return best;
-}
-
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures) {
   Diagnosis diagnosis;
   diagnosis.notes = set.notes;
@@ -239,13 +216,13 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   const Hypothesis* best = best_named(set, comparison);
   const MotionFit& nominal = comparison.fits.front();
   diagnosis.limits = limits_of(set, nominal);
-  const bool driven = diagnosis.verdict == "none" && !diagnosis.limits.driving.empty();
+  const bool driven = diagnosis.verdict == Verdict::none && !diagnosis.limits.driving.empty();
   if (driven) {  // what drives the glider has no name
     diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
     diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
   }
   const MotionFit* fit = &nominal;
-  if (diagnosis.verdict == "effect" && best != nullptr) {
+  if (diagnosis.verdict == Verdict::effect && best != nullptr) {
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
     for (const std::size_t e : best->effects) {
       const EffectInfo& info = effect_list()[e];
@@ -262,13 +239,14 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
   add_ranking(set, comparison, diagnosis);
-  const bool beside_named = diagnosis.verdict == "unknown" && !comparison.all.front().effects.empty();
+  const bool beside_named = diagnosis.verdict == Verdict::unknown && !comparison.all.front().effects.empty();
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
-  const bool wrong_way = driven && diagnosis.verdict == "unknown";  // no function of anything is known to be missing
+  const bool wrong_way =
+      driven && diagnosis.verdict == Verdict::unknown;  // no function of anything is known to be missing
   if (wrong_way) {
     diagnosis.stage = "dynamics";
-  } else if (diagnosis.verdict != "none") {
-    if (diagnosis.verdict == "unknown") {
+  } else if (diagnosis.verdict != Verdict::none) {
+    if (diagnosis.verdict == Verdict::unknown) {
       diagnosis.stage = add_error_runs(set, comparison.frames, families, diagnosis) ? "tracking" : stage_of(families);
     }
     add_regions(set, nominal, families, diagnosis);
@@ -276,7 +254,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
-  if (diagnosis.verdict == "unknown" && !wrong_way && set.clips.size() > 1) {
+  if (diagnosis.verdict == Verdict::unknown && !wrong_way && set.clips.size() > 1) {
     // The likeliest function without a name stands in for what is missing.
     const UnnamedFamily* family = likeliest_shared(families);
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;
@@ -285,24 +263,22 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
       gap_fit = &with;
     }
   }
-  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.verdict == "unknown", diagnosis.notes);
+  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.verdict == Verdict::unknown, diagnosis.notes);
   if (fit != &nominal) diagnosis.limits = limits_of(set, *fit);
-  for (const auto* limits : {&diagnosis.limits.driving, &diagnosis.limits.contradicted}) {
-    diagnosis.notes.insert(diagnosis.notes.end(), limits->begin(), limits->end());
-  }
-  if (!diagnosis.limits.set_aside.empty()) diagnosis.notes.push_back(diagnosis.limits.set_aside);
+  for (const NegativeLoss& one : diagnosis.limits.driving) diagnosis.notes.emplace_back(one);
+  for (const ContradictedIncline& one : diagnosis.limits.contradicted) diagnosis.notes.emplace_back(one);
+  if (diagnosis.limits.set_aside) diagnosis.notes.emplace_back(*diagnosis.limits.set_aside);
   diagnosis.residuals = residuals_of(set, nominal, *gap_fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
-  Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == "unknown", pictures.filming);
+  Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == Verdict::unknown, pictures.filming);
   diagnosis.measured = measured_of(set, twin);
   diagnosis.twin = std::move(twin.toml);
   diagnosis.twin_lacks = std::move(twin.lacks);
   diagnosis.twin_from_m = twin.from_m;
-  diagnosis.next_experiment = next_experiment(set, comparison, diagnosis);
+  diagnosis.next = next_experiment(set, comparison, diagnosis);
   diagnosis.pictures = std::move(pictures.findings);
   diagnosis.picture_curves = std::move(pictures.curves);
   diagnosis.gap->domains = gap_domains(*diagnosis.gap, diagnosis.pictures, diagnosis.effects);
-  diagnosis.summary = summary_of(diagnosis);
   return diagnosis;
 }
 

@@ -1,58 +1,40 @@
 #include "diagnose/verdict/verdict_limits.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "base/text/size_text.h"
 #include "diagnose/gap/held_out.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kBelowZero = 5.0;      // standard deviations
-constexpr double kContradiction = 5.0;  // standard deviations of a statement from everything else
-constexpr double kLargePart = 0.2;      // of the motion
+constexpr double kBelowZero = 5.0;    // standard deviations from which on a drag or friction counts as negative
+constexpr double kContradicts = 5.0;  // standard deviations of a statement from everything else
+constexpr double kLargePart = 0.2;    // of the motion: from here on a reader must know that it is set aside
 
-std::vector<std::string> what_drives(const MotionFit& fit) {
-  std::vector<std::string> words;
+std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
+  std::vector<NegativeLoss> found;
   const Eigen::MatrixXd covariance = common_covariance(fit);
   for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
     const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
     if (!(value < -kBelowZero * sd)) continue;
-    words.push_back(
-        fmt::format("The fit has a {} below zero ({}), which would drive the glider: what is missing "
-                    "takes it there, or what is stated of the inclination, of downhill or of the masses is wrong.",
-                    g == 0 ? "drag" : "friction", base::size_and_sd_text(value, sd, g == 0 ? "N s/m" : "")));
+    found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, value, sd});
   }
-  return words;
+  return found;
 }
 
-/// To the first digit of a standard deviation, two at least.
-int decimals(double sd) {
-  return sd > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(sd))), 2, 9) : 2;
-}
-
-std::vector<std::string> contradicted_statements(const TrackSet& set, const MotionFit& fit) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  std::vector<std::string> words;
+std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, const MotionFit& fit) {
+  std::vector<ContradictedIncline> found;
   for (const StatementPull& pull : statement_pulls(set, fit)) {
-    if (!pull.z || std::abs(*pull.z) < kContradiction) continue;
-    words.push_back(fmt::format(
-        "The inclination of set-up \"{}\" is {:.2f} ± {:.2g}° as {}, and the motion says {:.{}f} ± {:.1g}° by the {} "
-        "({:.3g} standard deviations apart).",
-        pull.group, kDegrees * pull.stated_rad, kDegrees * pull.stated_sd_rad,
-        pull.against == "plumb" ? "the plumb line has it" : pull.against, kDegrees * pull.else_rad,
-        decimals(kDegrees * pull.else_sd_rad), kDegrees * pull.else_sd_rad,
-        fit.effects.empty() ? "usual model" : "model with what is named", std::abs(*pull.z)));
+    if (!pull.z || std::abs(*pull.z) < kContradicts) continue;
+    found.push_back({pull.group, pull.against, pull.stated_rad, pull.stated_sd_rad, pull.else_rad, pull.else_sd_rad,
+                     !fit.effects.empty(), std::abs(*pull.z)});
   }
-  return words;
+  return found;
 }
 
-/// Positions that no explanation answers for: hand or stop by their looks, or far off.
-std::string set_aside(const TrackSet& set) {
+/// Positions that no explanation answers for: those that look like a hand or a stop, or lie far off.
+std::optional<SetAside> set_aside(const TrackSet& set) {
   double points = 0.0, outliers = 0.0;
   for (const TrackedMotion& motion : set.motions) {
     points += static_cast<double>(motion.t_s.size());
@@ -63,11 +45,7 @@ std::string set_aside(const TrackSet& set) {
   if (!(moving > 0.0 && points > 0.0)) return {};
   const double part = (left_out + (moving - left_out) * outliers / points) / moving;
   if (part < kLargePart) return {};
-  return fmt::format(
-      "Of the {} positions of the motion {:.0f} % are set aside: they look like a hand or a stop, or lie far off, and "
-      "no effect of the "
-      "list explains them. What is said holds for the others.",
-      set.moving, 100.0 * part);
+  return SetAside{set.moving, part};
 }
 
 }  // namespace

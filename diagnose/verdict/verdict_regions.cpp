@@ -14,10 +14,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kNotable = 3.0;  // log evidence of an unnamed family that is worth a region
+constexpr double kNotable = 3.0;  // log evidence from which on an unnamed family is worth a region
 constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
-constexpr double kBelieved = 2.0;  // times what accelerations lack: drag and friction take up some of it
+constexpr double kBelieved = 2.0;  // times what accelerations lack, up to which a size is believed: a fit takes up some
 
 /// Place, speed and acceleration of what a fit leaves of a motion, each at its largest; the latter two by the parabola
 /// through nine neighbours at even times, none of them set aside.
@@ -104,7 +104,7 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
   std::set<std::pair<std::string, std::string>> shown;                               // variables and what acts there
   for (const UnnamedFamily* family : sorted) {
     // What a verdict rests on has its place named, however many looks there were.
-    const bool rests = diagnosis.verdict == "unknown" && diagnosis.regions.empty() && family == sorted.front();
+    const bool rests = diagnosis.verdict == Verdict::unknown && diagnosis.regions.empty() && family == sorted.front();
     if (family->log_evidence < (rests ? 0.0 : notable)) break;
     const auto what = std::pair(family->variable, family->what);
     if (shown.contains(what)) continue;  // the same at another width

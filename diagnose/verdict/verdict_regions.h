@@ -1,5 +1,5 @@
 /// Where a gap lies: the regions of each variable in which something unnamed would act, and those in which a named
-/// effect shows in the pictures.
+/// effect shows in the images.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 #include "diagnose/pictures/picture_evidence.h"
 #include "diagnose/result/diagnosis.h"
 #include "diagnose/tracks/track_set.h"
-#include "diagnose/unnamed/unnamed.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
 
@@ -18,15 +18,15 @@ namespace glidelab::diagnose {
 void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
                  Diagnosis& diagnosis);
 
-/// What the usual model lacks where it lacks most, of all motions the most, noise included. What is fitted takes up
-/// some of what acts; a size far beyond these is read off what is hardly seen.
+/// What the nominal model lacks where it lacks most, noise included; of all motions the largest. A fit takes up some of
+/// what acts; a size far beyond these is read off what hardly shows.
 struct Lacking {
   double position_m = 0.0;         ///< |r| of what the fit leaves of the positions
   double force_n = 0.0;            ///< m r'' + K r', as the accelerations show it
   double acceleration_m_s2 = 0.0;  ///< the same over the lightest mass
   double drag_n_s_m = 0.0;         ///< force_n over the top speed of the slowest motion
   double time_s = 0.0;             ///< position_m over that speed
-  double scale = 0.0;              ///< position_m over the shortest motion's way
+  double scale = 0.0;              ///< position_m over the distance of the shortest motion
   /// By a region's unit: m, N, m/s², N s/m, s; else a scale.
   double in(const std::string& unit) const;
 };
@@ -37,7 +37,7 @@ Lacking most_lacking(const TrackSet& set, const MotionFit& nominal);
 bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
                     const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis);
 
-/// Where in the data a named effect shows that only pictures tell.
+/// Where in the data a named effect shows that only images tell.
 void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

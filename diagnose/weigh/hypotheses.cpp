@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/weigh/hypothesis_fits.h"
+#include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
 #include "diagnose/weigh/losses_beside.h"
@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
 constexpr std::size_t kFitted = 9;    // effects of the short list that are fitted in full
-constexpr double kLeads = 3.0;        // log evidence from which something else is weighed beside an effect
+constexpr double kLeads = 3.0;        // log evidence from which on something else is weighed beside an effect
 constexpr double kNoLossSeen = -3.0;  // log evidence of lost frames where none is found
-constexpr double kTrifle = 6.0;       // log evidence
-constexpr double kTriflePart = 0.01;  // of that of the effects
+constexpr double kTrifle = 6.0;       // log evidence below which something unnamed shows weakly
+constexpr double kTriflePart = 0.01;  // of that of the effects, below which it leaves them their name
 
 bool moves(std::size_t effect) {
   const Search search = effect_list()[effect].search;
@@ -79,10 +79,10 @@ void add_frame_effects(Comparison& comparison) {
   }
 }
 
-/// Something unnamed that shows weakly beside effects of a hundred times its log evidence leaves them their name, in
-/// filmed experiments: a lens, a sensor and a tracker leave some micrometres that no list holds, and the better an
-/// effect shows, the better they show beside it. Their probability is that of the effects then. (A rest that shows well
-/// is none of this: an effect takes up most of many a thing that is not in the list.)
+/// In filmed experiments, effects keep their name beside something unnamed that shows weakly, with a hundredth of their
+/// log evidence: a lens, a sensor and a tracker leave some micrometres that no list holds, and the better an effect
+/// shows, the better they show beside it. Its probability then goes to the effects. (A rest that shows well is another
+/// matter: an effect takes up most of many a thing that is not in the list.)
 void give_trifles_to_their_effects(Comparison& comparison) {
   for (Hypothesis& with : comparison.all) {
     if (!with.unnamed || with.effects.empty()) continue;

@@ -11,8 +11,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kLeaders = 3;  // that are tried with a second one
-constexpr std::size_t kSeconds = 4;
+constexpr std::size_t kLeaders = 3;   // that are tried with a second one
+constexpr std::size_t kSeconds = 4;   // effects tried beside a leader
 constexpr std::size_t kTogether = 4;  // pairs that show together and that no leader found
 constexpr int kExchanges = 3;         // rounds in which the best pair's two lead in turn
 

@@ -11,10 +11,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWorthJoining =
-    -3.0;  // log evidence: what the pictures speak against any more is not weighed beside others
-constexpr std::size_t kMostTogether = 4;
-constexpr double kDoubt = 6.0;  // log evidence
+constexpr double kWorthJoining = -3.0;    // log evidence: what the images speak against more is not weighed with others
+constexpr std::size_t kMostTogether = 4;  // effects in one explanation
+constexpr double kMostByScatter = 6.0;    // log evidence that a stated codec may take over from scattered frames
 
 bool holds(const Hypothesis& hypothesis, std::size_t effect) {
   return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
@@ -25,7 +24,7 @@ bool same_effects(const Hypothesis& a, const Hypothesis& b) {
          std::set(a.effects.begin(), a.effects.end()) == std::set(b.effects.begin(), b.effects.end());
 }
 
-/// What the pictures say of a camera that sways as this fit has it.
+/// What the images say of a camera that sways as this fit has it.
 double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::size_t effect, double otherwise) {
   double amplitude_m = 0.0, f_hz = 0.0;
   const auto& globals = fit.layout->globals();
@@ -168,9 +167,9 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
           of_tracks = std::max(0.0, noise.log_evidence);
           with.gain += noise.gain;
         }
-        // Its errors grow with what changes in the picture, and single ones are large where its blocks are seen.
+        // Its errors grow with what changes in the image, and single ones are large where its blocks are seen.
         if (of_tracks > kSeenInPictures) {
-          of_tracks += std::max(std::min(kDoubt, scatter), finding->seen ? outliers : 0.0);
+          of_tracks += std::max(std::min(kMostByScatter, scatter), finding->seen ? outliers : 0.0);
         }
       }
       // A smeared marker is found less well the faster it moves: what the scatter shows of that is its own.

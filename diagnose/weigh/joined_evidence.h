@@ -1,16 +1,16 @@
-/// Tracks and pictures weighed together: a log likelihood of its own for each effect that pictures can speak for or
+/// Tracks and images weighed together: a log likelihood of its own for each effect that images can speak for or
 /// against.
 ///
-/// What the pictures show of an effect is independent of the positions' noise, so that logs add up. An effect that they
-/// show joins every explanation of the tracks, named or not, without competing with it: light may flicker beside any
-/// force. A camera that sways in the tracks must be seen to sway, by about as much, in what rests in the scene; a line
-/// time that tracks show must be the one that shears the marker.
+/// What the images show of an effect is independent of the positions' noise, so that logarithms add up. An effect that
+/// they show joins every explanation of the tracks, named or not, without competing with it: light may flicker beside
+/// any force. A camera that sways in the tracks must be seen to sway, by about as much, in what rests in the scene; a
+/// line time that tracks show must be the one that shears the marker.
 #pragma once
 
 #include <set>
 
 #include "diagnose/pictures/picture_evidence.h"
-#include "diagnose/weigh/hypotheses.h"
+#include "diagnose/weigh/hypothesis.h"
 
 namespace glidelab::diagnose {
 
@@ -18,7 +18,7 @@ namespace glidelab::diagnose {
 void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
                    Comparison& comparison);
 
-/// Log likelihood of a size that pictures measured (0: absent) under the one that tracks found, both with their
+/// Log likelihood of a size that images measured (0: absent) under the one that tracks found, both with their
 /// standard deviations, over that under its absence: log N(p; t, sp² + st²) - log N(p; 0, sp²).
 struct Measured {
   double value = 0.0, sd = 0.0;

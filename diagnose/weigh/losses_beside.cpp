@@ -11,7 +11,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kLeaders = 4;  // effects, of those alone and of those beside known losses
+constexpr std::size_t kLikeliest = 4;  // effects, of those alone and of those beside known losses
 
 /// An explanation, and where frames are missing beside it.
 struct Beside {
@@ -25,7 +25,7 @@ std::vector<Hypothesis> pairs_with(std::size_t dropped, const Comparison& compar
   std::erase_if(pairs, [&](const Hypothesis& pair) {
     return std::find(pair.effects.begin(), pair.effects.end(), dropped) == pair.effects.end();
   });
-  pairs.resize(std::min(pairs.size(), kLeaders));
+  pairs.resize(std::min(pairs.size(), kLikeliest));
   return pairs;
 }
 
@@ -37,7 +37,7 @@ std::vector<std::size_t> likeliest_beside(std::size_t dropped, const std::vector
     if (effect != dropped && std::find(effects.begin(), effects.end(), effect) == effects.end())
       effects.push_back(effect);
   };
-  for (const Hypothesis& one : leaders_of(comparison, 1, kLeaders + 1)) add(one.effects.front());
+  for (const Hypothesis& one : leaders_of(comparison, 1, kLikeliest + 1)) add(one.effects.front());
   for (const Hypothesis& pair : pairs) {
     for (const std::size_t effect : pair.effects) add(effect);
   }

@@ -103,7 +103,7 @@ Plot reliability_plot(const validate::BlindScore& score) {
                                  kGrey, kColors[0]);
   const std::vector<PlotData> all = {data};
   return {Drawing{script, all},
-          fmt::format("Stated probability of the verdict and how often it was right, with 95 % intervals; expected "
+          fmt::format("Stated probability of the verdict, and how often it was right, with 95 % intervals; expected "
                       "calibration error {}",
                       base::number_text(score.calibration_error, 2)),
           "Reliability diagram"};
@@ -129,7 +129,7 @@ Plot methods_plot(const validate::BlindScore& score) {
                           gnuplot_quoted(method.name));
     data.push_back(std::move(rows));
   }
-  return {Drawing{script, data, {480, 400}}, "How often each way of deciding is right, by kind of case",
+  return {Drawing{script, data, {480, 400}}, "How often each method of deciding is right, by kind of case",
           fmt::format("Share of right answers of {} methods", score.methods.size())};
 }
 
@@ -144,7 +144,7 @@ std::string methods_table(const validate::BlindScore& score) {
 }
 
 std::string cases_table(const BlindRun& run) {
-  HtmlTable table({"case", "truth", "gain", "verdict", "probability", "not to be told from"}, 6);
+  HtmlTable table({"case", "truth", "gain", "verdict", "probability", "indistinguishable from"}, 6);
   for (const validate::BlindOutcome& outcome : run.outcomes) {
     std::string truth = outcome.causes.empty() ? "none" : "", gain, said = escape(outcome.verdict.verdict), p, same;
     for (const auto& cause : outcome.causes) {
@@ -222,7 +222,7 @@ std::string blind_text(const BlindRun& run) {
   rows.push_back(
       {"expected calibration error", base::number_text(score.calibration_error, 2), wanted_calibration_text()});
   for (const auto& [word, share] : score.left_out)
-    rows.push_back({"true effect left out of the list: " + word, blind_percent(share), ""});
+    rows.push_back({"without the true effect in the list: " + word, blind_percent(share), ""});
   std::string text = text_table(rows, 1) + "\n";
   rows = {{"right", "none", "weak", "moderate", "strong", "two", "outside"}};
   for (const auto& method : score.methods) {
@@ -257,27 +257,29 @@ Page blind_page(const BlindRun& run) {
     body += fmt::format("<p class=\"note\">{} cases could not be diagnosed; they count as wrong.</p>\n", score.failed);
   }
   body += figures({methods_plot(score), reliability_plot(score)});
-  body += "<h2>Beside simpler ways of deciding</h2>\n" + methods_table(score);
+  body += "<h2>Compared with simpler methods</h2>\n" + methods_table(score);
   if (!score.left_out.empty()) {
-    HtmlTable left({"verdict with the true effect taken from the list", "cases"});
+    HtmlTable left({"verdict without the true effect in the list", "cases"});
     for (const auto& [word, share] : score.left_out) left.row({escape(word), blind_percent(share)});
-    left.row(
-        {"of the unknown: the first region lies over a variable of the effect", blind_percent(score.left_out_where)});
+    left.row({"of those called unknown: the first region lies over a variable of the effect",
+              blind_percent(score.left_out_where)});
     body += "<h2>Leave one effect out</h2>\n" + left.str();
   }
   HtmlTable confusion({"truth", "named first (times)"}, 2);
   for (const auto& row : score.confusion) confusion.row({escape(row.truth), escape(said_text(row))});
   body += "<h2>Confusions</h2>\n" + confusion.str();
   body +=
-      "<p class=\"soft\">A case's gain is the log likelihood that the true model wins over the nominal one fitted to "
-      "the same positions: weak below 15, moderate up to 50, strong above. ";
-  body += run.pictures
-              ? "What moves no position has half the square of its size over what pictures may show where nothing is "
-                "wrong. A wrong scale and a wrong frame rate are one thing. Where the file says itself that it is "
-                "compressed with loss, compression is no secret: a verdict that names it is neither better nor worse "
-                "for it.</p>\n"
-              : "A wrong scale and a wrong frame rate are one thing on tracks, and so are a camera and a table that "
-                "shake: each counts as the other.</p>\n";
+      "<p class=\"soft\">A case's gain is the log likelihood by which the true model beats the nominal one, fitted to "
+      "the "
+      "same positions: weak below 15, moderate up to 50, strong above. ";
+  body +=
+      run.pictures
+          ? "For an effect that moves no position, it is half the square of its size over what images may show where "
+            "nothing is wrong. A wrong scale and a wrong frame rate count as one. Where the file itself says that "
+            "it is lossily compressed, compression is no secret: naming it makes a verdict neither better nor "
+            "worse.</p>\n"
+          : "On tracks, a wrong scale and a wrong frame rate count as one, and so do a shaking camera and a shaking "
+            "table.</p>\n";
   body += "<h2>All cases</h2>\n" + cases_table(run);
   return page("Blind cases", body);
 }

@@ -58,12 +58,12 @@ std::vector<BlindTarget> blind_targets(const validate::BlindScore& score) {
             share_of(score.in_set, "strong").yes + share_of(score.in_set, "moderate").yes},
            0.97,
            false},
-          {"nothing: another verdict than none", score.false_alarm, 0.05, true},
-          {"outside the list, strong: unknown", share_of(score.recognised, "strong"), 0.85, false},
-          {"outside the list, all: unknown", all_of(score.recognised), 0.85, false},
-          {"outside the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
+          {"nothing wrong: a verdict other than none", score.false_alarm, 0.05, true},
+          {"not in the list, strong: unknown", share_of(score.recognised, "strong"), 0.85, false},
+          {"not in the list, all: unknown", all_of(score.recognised), 0.85, false},
+          {"not in the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
           {"two effects: both named", score.methods.front().pair, 0.75, false},
-          {"gap shrinks by 0.95 or more of what the true effect's own fit reaches", score.shrunk, 0.95, false}};
+          {"gap shrinks by 0.95 or more of what a fit of the true effect reaches", score.shrunk, 0.95, false}};
 }
 
 bool is_met(const BlindTarget& target) {
@@ -81,12 +81,12 @@ std::string blind_meaning(const validate::BlindScore& score) {
     if (share.of > 0) text += fmt::format("<li>{}: {} {}.</li>\n", when, what, with_interval(share));
   };
   add(share_of(single, "strong"), "One strong effect",
-      "its name, or that of what is the same on such data, comes first");
+      "its name, or that of an effect that is the same on such data, comes first");
   add(share_of(single, "moderate"), "One moderate effect", "its name comes first");
   add(score.methods.front().pair, "Two effects at once", "both are named");
-  add(score.false_alarm, "Nothing wrong", "another verdict than none");
-  add(all_of(score.recognised), "A cause that is in no list", "it is called unknown");
-  add(score.wrong_name, "A cause that is in no list", "some name gets a probability over 0.8");
+  add(score.false_alarm, "Nothing wrong", "the verdict is other than none");
+  add(all_of(score.recognised), "A cause that is not in the list", "it is called unknown");
+  add(score.wrong_name, "A cause that is not in the list", "some name gets a probability over 0.8");
   text = meaning_section("<p>How far a verdict on an experiment like these can be trusted:</p>\n<ul>\n" + text +
                          "</ul>\n");
   const bool calibrated = score.calibration_error < kWantedCalibration;

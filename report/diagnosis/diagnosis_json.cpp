@@ -6,7 +6,12 @@
 
 #include "base/math/normal95.h"
 #include "report/analysis/camera_plots.h"
+#include "report/diagnosis/explanation_text.h"
 #include "report/diagnosis/line_report.h"
+#include "report/diagnosis/line_words.h"
+#include "report/diagnosis/next_step_words.h"
+#include "report/diagnosis/note_words.h"
+#include "report/diagnosis/verdict_words.h"
 #include "report/text/json_numbers.h"
 
 namespace glidelab::report {
@@ -76,7 +81,7 @@ void put_interval(Json& object, const char* key, const std::optional<diagnose::G
 }
 
 Json intervals_json(const diagnose::GapIntervals& of) {
-  const auto why = [&](const char* otherwise) { return of.why_none.empty() ? otherwise : of.why_none; };
+  const auto why = [&](const char* otherwise) { return of.too_few ? too_few_words(of) : std::string(otherwise); };
   Json object;
   put_interval(object, "before", of.before, why("fewer than three clips have a gap"));
   put_interval(object, "after", of.after, why("fewer than three clips have a gap"));
@@ -87,7 +92,7 @@ Json intervals_json(const diagnose::GapIntervals& of) {
 
 Json acceleration_intervals_json(const diagnose::GapIntervals& of) {
   const std::string why =
-      of.why_none.empty() ? "fewer than three clips have accelerations that could be compared" : of.why_none;
+      of.too_few ? too_few_words(of) : "fewer than three clips have accelerations that could be compared";
   Json object;
   put_interval(object, "before", of.acceleration_before, why);
   put_interval(object, "after", of.acceleration_after, why);
@@ -194,9 +199,9 @@ Json rests_json(const diagnose::CalibrationRests& of) {
 std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   Json document;
   document["format"] = 1;
-  document["verdict"] = diagnosis.verdict;
+  document["verdict"] = verdict_id(diagnosis.verdict);
   document["points"] = diagnosis.points;
-  document["summary"] = diagnosis.summary;
+  document["summary"] = verdict_words(diagnosis);
   document["effects"] = Json::array();
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) document["effects"].push_back(effect_json(effect));
   put(document["probability"], "none", diagnosis.none);
@@ -204,14 +209,15 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   document["ranking"] = Json::array();
   for (const diagnose::RankedExplanation& ranked : diagnosis.ranking) {
     Json one;
-    one["id"] = ranked.id;
+    one["id"] = explanation_id(ranked.explanation);
     put(one, "probability", ranked.probability);
-    if (ranked.left_out.empty()) {
+    if (!ranked.left_out) {
       put(one, "log_evidence_gain", ranked.log_evidence_gain);
       put(one, "log_likelihood_gain", ranked.log_likelihood_gain);
     } else {
-      put(one, "log_evidence_gain", std::optional<double>(), ranked.left_out);
-      put(one, "log_likelihood_gain", std::optional<double>(), ranked.left_out);
+      const std::string why = impossible_words(*ranked.left_out);
+      put(one, "log_evidence_gain", std::optional<double>(), why);
+      put(one, "log_likelihood_gain", std::optional<double>(), why);
     }
     one["parameters"] = ranked.parameters;
     if (ranked.gap_after) put(one, "gap_after", *ranked.gap_after);
@@ -220,7 +226,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.lines) document["lines"] = lines_json(*diagnosis.lines);
   document["where"] = where_json(diagnosis);
   document["gap"] = diagnosis.gap ? gap_json(*diagnosis.gap) : Json(nullptr);
-  document["next_experiment"] = diagnosis.next_experiment;
+  document["next_experiment"] = next_step_words(diagnosis.next);
   document["isolability"] = {{"effects", diagnosis.isolability.ids}, {"cosine", diagnosis.isolability.cosine}};
   document["pictures"] = Json::array();
   for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
@@ -241,7 +247,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::CalibrationRests& of : diagnosis.calibrations) {
     document["calibration_rests"].push_back(rests_json(of));
   }
-  document["notes"] = diagnosis.notes;
+  document["notes"] = notes_words(diagnosis.notes);
   return json_text(document);
 }
 

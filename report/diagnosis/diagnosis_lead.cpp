@@ -4,6 +4,9 @@
 
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_list.h"
+#include "report/diagnosis/next_step_words.h"
+#include "report/diagnosis/note_words.h"
+#include "report/diagnosis/verdict_words.h"
 #include "report/html/html.h"
 
 namespace glidelab::report {
@@ -12,17 +15,18 @@ namespace {
 /// What the verdict says of K/m, µ and the inclination that an analysis of the same data gives; empty where they may be
 /// taken as they are, or where it is open.
 std::string consequence(const diagnose::Diagnosis& diagnosis) {
-  if (diagnosis.verdict == "effect") {
-    const bool lost_only = diagnosis.effects.size() == 1 &&
-                           diagnosis.effects.front().id == diagnose::ids::dropped_frames &&
+  if (diagnosis.verdict == diagnose::Verdict::effect) {
+    const bool lost_only = diagnosis.effects.size() == 1 && diagnosis.effects.front().id == diagnose::ids::dropped_frames &&
                            diagnosis.effects.front().equivalent_to.empty();
     if (lost_only)
-      return " An analysis of these data says which losses it finds, and puts the times behind them right.";
-    return " An analysis of these data leaves that out: its K/m, µ and inclination are those of a law without it, and "
-           "may be off by more than they state.";
+      return " An analysis of these data reports the losses that it finds, and corrects the times after them.";
+    return " An analysis of these data leaves this out: its K/m, µ and inclination are those of a law without it, and "
+           "may be "
+           "off by more than their stated errors.";
   }
-  if (diagnosis.verdict == "unknown") {
-    return " Until the cause is found, K/m, µ and inclination from an analysis of these data are numbers of a fit, and "
+  if (diagnosis.verdict == diagnose::Verdict::unknown) {
+    return " Until the cause is found, K/m, µ and the inclination from an analysis of these data are numbers of a fit; "
+           "they "
            "need not be properties of the track or the glider.";
   }
   return {};
@@ -35,7 +39,8 @@ std::string probability_text(double probability) {
 }
 
 bool one_model(const diagnose::Diagnosis& diagnosis) {
-  return diagnosis.verdict == "none" && (!diagnosis.gap || diagnosis.gap->before == diagnosis.gap->after);
+  return diagnosis.verdict == diagnose::Verdict::none &&
+         (!diagnosis.gap || diagnosis.gap->before == diagnosis.gap->after);
 }
 
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words) {
@@ -49,9 +54,11 @@ std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string
 
 std::string diagnosis_meaning(const diagnose::Diagnosis& diagnosis) {
   std::string text = meaning_section(fmt::format("<p>{}{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n",
-                                                 escape(diagnosis.summary), consequence(diagnosis),
-                                                 escape(diagnosis.next_experiment)));
-  for (const std::string& note : diagnosis.notes) text += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+                                                 escape(verdict_words(diagnosis)), consequence(diagnosis),
+                                                 escape(next_step_words(diagnosis.next))));
+  for (const std::string& note : notes_words(diagnosis.notes)) {
+    text += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  }
   return text;
 }
 

@@ -10,10 +10,10 @@ namespace glidelab::report {
 /// Three decimals, "> 0.999" and "< 0.001" beyond them.
 std::string probability_text(double probability);
 
-/// True where nothing is missing, so that there is the usual model alone and no second one to lay beside it: what pages
-/// show of before and after is then shown once.
+/// True where nothing is missing, so that there is the nominal model alone and no second one to lay beside it: what
+/// pages show of before and after is then shown once.
 bool one_model(const diagnose::Diagnosis& diagnosis);
-inline constexpr const char* kUsualModel = "usual model";  ///< as plots then call it
+inline constexpr const char* kNominalModel = "nominal model";  ///< as plots then call it
 
 /// Tiles for nothing, for something without a name, and for the gap, which is called `gap_words`; HTML.
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words);

@@ -9,6 +9,7 @@
 
 #include "report/analysis/camera_plots.h"
 #include "report/diagnosis/diagnosis_lead.h"
+#include "report/diagnosis/explanation_text.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot_axis.h"
 #include "report/html/plot_style.h"
@@ -29,8 +30,11 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
 
 Plot probabilities(const diagnose::Diagnosis& diagnosis) {
-  std::vector<std::pair<double, std::string>> bars = {{diagnosis.none, "none"}, {diagnosis.unknown, "unknown"}};
-  for (const auto& ranked : diagnosis.ranking) bars.emplace_back(ranked.probability, ranked.id);
+  std::vector<std::pair<double, std::string>> bars = {{diagnosis.none, effect_name("none")},
+                                                      {diagnosis.unknown, effect_name("unknown")}};
+  for (const auto& ranked : diagnosis.ranking) {
+    bars.emplace_back(ranked.probability, explanation_name(ranked.explanation));
+  }
   std::stable_sort(bars.begin(), bars.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   if (bars.size() > kBars) bars.resize(kBars);
   while (bars.size() > kFewestBars && bars.back().first < kNoBar) bars.pop_back();
@@ -39,7 +43,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   script += "unset key\nunset ytics\nset border 1\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
     // The name stands above its bar: beside it, three effects in one name would leave the bars no room.
-    const std::string name = effect_name(bars[i].second) + ": " + probability_text(bars[i].first);
+    const std::string name = bars[i].second + ": " + probability_text(bars[i].first);
     script += fmt::format("set label {} at 0, {} left{}\n", gnuplot_quoted(name), 0.26 - static_cast<double>(i),
                           name.size() > kLongName ? " font ',11'" : "");
     data.rows.push_back({-static_cast<double>(i), bars[i].first});
@@ -50,14 +54,14 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
       "'{}'\n",
       kColors[0]);
   return {Drawing{script, std::vector{data}, {620, 90 + 38 * static_cast<int>(bars.size())}},
-          "How probable each explanation is, given these data: what is named, and nothing else",
+          "Probability of each explanation, given these data: what is named acts, and nothing else",
           "Bar chart of the probabilities of the explanations"};
 }
 
 /// `of_lines`: what was held out are published lines, whose own scatter stands for the noise. `one`: of one model
 /// alone.
 Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
-  constexpr double kWide = 8.0, kLeft = 0.5;  // times the noise: from where on the axis is logarithmic, where it begins
+  constexpr double kLogAbove = 8.0, kLeft = 0.5;  // times the noise: above it the axis is logarithmic; its left end
   PlotData data{"gaps", {}, {"row", "gap before / noise", "gap after / noise"}};
   double most = 2.0, least = kLeft;
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
@@ -73,16 +77,16 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
       of_lines ? "off the prediction by the other lines / own scatter" : "residuals of the held-out clip / noise");
   script += chart_labels(gap.held_out) +
             fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
-  script += most > kWide ? fmt::format("set logscale x\nset xrange [{}:{}]\n", least, 1.5 * most)
-                         : fmt::format("set xrange [0:{}]\n", 1.1 * most);
+  script += most > kLogAbove ? fmt::format("set logscale x\nset xrange [{}:{}]\n", least, 1.5 * most)
+                             : fmt::format("set xrange [0:{}]\n", 1.1 * most);
   script += fmt::format(
       "set arrow from 1, graph 0 to 1, graph 1 nohead lw 1.5 lc rgb '{}'\n"
       "plot $gaps using 2:1 with points pt 6 ps 1.1 lw 2 lc rgb '{}' title '{}'",
-      kGrey, kColors[1], one ? kUsualModel : "before");
+      kGrey, kColors[1], one ? kNominalModel : "before");
   if (!one) script += fmt::format(", $gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'", kColors[0]);
   script += "\n";
   return {Drawing{script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}},
-          of_lines ? "How far each line is off the prediction by the others: 1 (grey line) is the lines' own scatter"
+          of_lines ? "How far each line lies off the prediction by the others: 1 (grey line) is the lines' own scatter"
                    : "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
           one ? "Dots for each clip's gap" : "Dots for each clip's gap before and after"};
 }
@@ -138,7 +142,7 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& vari
   script += fmt::format(
       "plot $before using 1:2 with points pt 7 ps 0.35 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
       "'{0}' title '{1}'",
-      kColors[1], one ? kUsualModel : "before");
+      kColors[1], one ? kNominalModel : "before");
   if (!one) {
     script += fmt::format(
         ", $after using 1:2 with points pt 7 ps 0.15 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
@@ -146,19 +150,21 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& vari
         kColors[0]);
   }
   script += "\n";
-  return {Drawing{script, std::vector{never_empty(before), never_empty(after)}},
-          fmt::format("What the fit leaves of all clips, over {}{}",
-                      variable == "x_m"     ? "the place"
-                      : variable == "v_m_s" ? "the speed"
-                                            : "the time",
-                      diagnosis.verdict == "unknown" ? "; after: with the likeliest curve without a name" : ""),
-          one ? "Residuals" : "Residuals before and after"};
+  return {
+      Drawing{script, std::vector{never_empty(before), never_empty(after)}},
+      fmt::format(
+          "Residuals of all clips against {}{}",
+          variable == "x_m"     ? "position"
+          : variable == "v_m_s" ? "speed"
+                                : "time",
+          diagnosis.verdict == diagnose::Verdict::unknown ? "; after: with the likeliest curve without a name" : ""),
+      one ? "Residuals" : "Residuals before and after"};
 }
 
 Plot lengthening_plot(const diagnose::PictureCurve& curve) {
   PlotData data{"seen",
                 {},
-                {"speed in the picture (px/s)", "lengthening (px²)", "standard deviation (px²)",
+                {"speed in the image (px/s)", "lengthening (px²)", "standard deviation (px²)",
                  "as by the exposure found (px²)", "as by the one stated (px²)"}};
   for (std::size_t p = 0; p < curve.at.size(); ++p) {
     data.rows.push_back(
@@ -166,7 +172,7 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
   }
   std::string script(kFrame);
   script +=
-      "set key top left\nset xlabel 'speed of the marker in the picture  (px/s)'\nset ylabel 'lengthening of its image "
+      "set key top left\nset xlabel 'speed of the marker in the image  (px/s)'\nset ylabel 'lengthening of its image "
       " (px²)'\n";
   script += fmt::format(
       "plot $seen using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{}' title 'seen', $seen using 1:4 with "
@@ -176,11 +182,11 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
     script += fmt::format(", $seen using 1:5 with lines lw 2 dt 2 lc rgb '{}' title 'as by the one stated'", kGrey);
   }
   return {Drawing{script + "\n", std::vector{data}},
-          "How much longer than high the marker's image gets the faster it moves: a long exposure smears it",
+          "Lengthening of the marker's image with its speed: a long exposure smears it",
           "Lengthening of the marker's image over its speed"};
 }
 
-/// One quantity of the pictures over time: a block of rows for each clip that has it.
+/// One quantity of the images over time: a block of rows for each clip that has it.
 struct OverTime {
   PlotData data;
   std::vector<std::string> clips;
@@ -226,7 +232,7 @@ std::string key_of(const OverTime& of) {
 }  // namespace
 
 std::string axis_of(const std::string& variable) {
-  if (variable == "x_m") return "place x (m)";
+  if (variable == "x_m") return "position x (m)";
   if (variable == "v_m_s") return "speed v (m/s)";
   if (variable == "t_s") return "time t (s)";
   if (variable == "mass_kg") return "mass (kg)";
@@ -285,8 +291,8 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
                                lines_of(light, 1, true) + "\n";
     plots.push_back(
         {Drawing{script, std::vector{light.data}},
-         "How bright what rests in the scene is, against each clip's first frames; light that flickers makes "
-         "a regular wave",
+         "Brightness of what rests in the scene, relative to each clip's first frames; light that flickers makes a "
+         "regular wave",
          "Brightness of the scene over time"});
   }
   const OverTime across = over_time(curves, "drift across", {"across", {}, {"t (s)", "to the right (px)"}}, 1.0);
@@ -294,13 +300,13 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
   if (across.data.rows.empty() || down.data.rows.empty()) return plots;
   const std::string script =
       std::string(kFrame) + kFromStart + key_of(across) +
-      "set xlabel 'time t (s)'\nset ylabel 'place of the fixed scene  (px)'\nplot " + lines_of(across, 1, true) + ", " +
-      lines_of(down, 3, false) +
+      "set xlabel 'time t (s)'\nset ylabel 'position of the fixed scene  (px)'\nplot " + lines_of(across, 1, true) +
+      ", " + lines_of(down, 3, false) +
       ", keyentry with lines lw 1.5 lc rgb '#000000' title 'to the right', keyentry with lines lw 1.5 dt 3 lc rgb "
       "'#000000' title 'downwards'\n";
   plots.push_back({Drawing{script, std::vector{across.data, down.data}},
-                   "Where what rests in the scene stands in the picture: a camera at rest keeps it at 0, up to noise",
-                   "Drift of the scene in the picture over time"});
+                   "Position in the image of what rests in the scene: a camera at rest keeps it at 0, up to noise",
+                   "Drift of the scene in the image over time"});
   return plots;
 }
 
@@ -332,8 +338,8 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
       rows, columns, static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {
       {Drawing{script, std::vector{data}, {600, 60 + 24 * std::max(6, static_cast<int>(n))}},
-       "How alike what two effects do to these clips is (a row's and a numbered column's), after everything else is "
-       "fitted: at 1 they cannot be told apart, at 0 they can",
+       "How alike two effects (a row and a numbered column) are in these clips, with everything else fitted: at 1 they "
+       "cannot be told apart, at 0 they can",
        "Matrix of likeness between effects"}};
 }
 

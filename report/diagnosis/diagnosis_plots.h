@@ -1,4 +1,4 @@
-/// The pictures of a diagnosis.
+/// The plots of a diagnosis.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis);
 /// What is missing as a function of place, speed or time; residuals before and after.
 std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis);
 
-/// What the pictures show: the rests of the calibration over the picture, the marker's lengthening over its speed,
+/// What the images show: the residuals of the calibration over the image, the marker's lengthening over its speed,
 /// pixels' noise over their brightness, the light and the scene's place over time. Nothing for tracks.
 std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis);
 

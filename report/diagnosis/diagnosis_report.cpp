@@ -9,9 +9,11 @@
 #include "diagnose/effects/effect_list.h"
 #include "report/diagnosis/diagnosis_lead.h"
 #include "report/diagnosis/diagnosis_plots.h"
+#include "report/diagnosis/explanation_text.h"
 #include "report/diagnosis/gap_plots.h"
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/twin_plots.h"
+#include "report/diagnosis/verdict_words.h"
 #include "report/html/html.h"
 #include "report/text/effect_names.h"
 #include "report/text/gap_text.h"
@@ -21,19 +23,19 @@
 namespace glidelab::report {
 namespace {
 
-constexpr std::size_t kRanked = 12;
+constexpr std::size_t kRankedRows = 12;
 
 /// The number on a tile is of the effect however it acts; the chart has each explanation by itself.
 std::string beside_others(const diagnose::Diagnosis& diagnosis, const diagnose::DiagnosedEffect& effect) {
   const bool joined = std::any_of(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const auto& ranked) {
-    return ranked.id != effect.id && (" + " + ranked.id + " + ").find(" + " + effect.id + " + ") != std::string::npos;
+    return ranked.explanation.effects.size() > 1 && ranked.explanation.holds(effect.id);
   });
   return joined ? ", alone or with another" : "";
 }
 
 std::string tiles(const diagnose::Diagnosis& diagnosis) {
   std::string text = "<div class=\"tiles\">";
-  if (diagnosis.verdict == "effect") {
+  if (diagnosis.verdict == diagnose::Verdict::effect) {
     for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
       std::string names;
       for (const diagnose::AlikeEffect& one : effect.alike)
@@ -42,13 +44,13 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
                    (names.empty() ? effect_name(effect.id) : names) + beside_others(diagnosis, effect));
     }
   } else {
-    text += tile(diagnosis.verdict, "verdict");
+    text += tile(verdict_id(diagnosis.verdict), "verdict");
   }
   return text + common_tiles(diagnosis, "gap of held-out clips (1: noise)") + "</div>\n";
 }
 
 std::string effect_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"effect", "stage", "probability", "size", "not to be told from", "one of these, together"}, 2);
+  HtmlTable table({"effect", "stage", "probability", "size", "indistinguishable from", "one of these, together"}, 2);
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     std::string size, same;
     for (const auto& p : effect.parameters) {
@@ -67,17 +69,17 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"explanation", "probability", "ln of the evidence over nothing", "over the likeliest here"});
+  HtmlTable table({"explanation", "probability", "ln evidence over the nominal model", "over the likeliest here"});
   double likeliest = 0.0;  // huge gains that print alike are told apart by how far they are below the largest
   for (const auto& ranked : diagnosis.ranking) {
-    if (ranked.left_out.empty()) likeliest = std::max(likeliest, ranked.log_evidence_gain);
+    if (!ranked.left_out) likeliest = std::max(likeliest, ranked.log_evidence_gain);
   }
   table.row({effect_html("none"), probability_text(diagnosis.none), "0", base::gain_text(0.0 - likeliest)});
   table.row({effect_html("unknown"), probability_text(diagnosis.unknown), "–", "–"});
-  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
+  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRankedRows; ++i) {
     const auto& ranked = diagnosis.ranking[i];
-    const bool weighed = ranked.left_out.empty();
-    table.row({effect_html(ranked.id), probability_text(ranked.probability),
+    const bool weighed = !ranked.left_out;
+    table.row({explanation_html(ranked.explanation), probability_text(ranked.probability),
                weighed ? base::gain_text(ranked.log_evidence_gain) : "not weighed",
                weighed ? base::gain_text(ranked.log_evidence_gain - likeliest) : "–"});
   }
@@ -96,7 +98,8 @@ std::string quantity_text(const std::optional<diagnose::DiagnosedParameter>& of)
 }
 
 std::string parameter_table(const diagnose::GapSizes& gap) {
-  HtmlTable table({"parameter", "of", "against", "alone", "together", "standard deviations off, before", "after"}, 3);
+  HtmlTable table({"parameter", "of", "compared with", "alone", "together", "standard deviations off, before", "after"},
+                  3);
   for (const auto& p : gap.parameters) {
     const std::string symbol = p.quantity == "k_n_s_m" ? "K" : symbol_of(p.quantity);
     table.row({escape(symbol), escape(p.group), escape(p.against), quantity_text(p.alone), quantity_text(p.together),
@@ -126,24 +129,24 @@ std::string gap_tables(const diagnose::GapSizes& gap, bool one) {
   }
   std::string text = clips.str();
   text += fmt::format(
-      "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it would be 1 "
-      "± {}. {} {}{}</p>\n",
+      "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it is 1 ± "
+      "{}. {} {}{}</p>\n",
       base::number_text(gap.standard_error, 2),
       gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of what is above the floor."
                  : std::string("It is at the floor."),
-      over_clips.why_none.empty()
-          ? "The intervals say how much these numbers would differ with other clips of the same kind (jackknife: each "
+      !over_clips.too_few
+          ? "The intervals tell how much these numbers would differ with other clips of the same kind (jackknife: each "
             "clip left out of the mean in turn)."
-          : escape(over_clips.why_none) + ".",
-      gap.acceleration_before ? " Accelerations are measured minus model, both smoothed as the analysis smooths, noise "
+          : too_few_words(over_clips) + ".",
+      gap.acceleration_before ? " Accelerations are measured minus modelled, both smoothed as in the analysis, noise "
                                 "included."
                               : "");
   return text + parameter_table(gap);
 }
 
-/// What was looked for in the pictures, what is there first.
+/// What was looked for in the images, what is there first.
 std::string picture_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"looked for", "seen", "what the pictures show"}, 3);
+  HtmlTable table({"looked for", "seen", "what the images show"}, 3);
   for (const bool seen : {true, false}) {
     for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
       if (finding.seen == seen) table.row({effect_html(finding.id), seen ? "yes" : "no", escape(finding.words)});
@@ -152,7 +155,7 @@ std::string picture_table(const diagnose::Diagnosis& diagnosis) {
   return table.str();
 }
 
-/// Of what pictures show, the unit is a parameter's key.
+/// Of what images show, the unit is a parameter's key.
 std::string region_size(const diagnose::GapRegion& region) {
   const NamedUnit of = name_and_unit(region.unit);
   const std::string& unit = of.unit.empty() ? region.unit : of.unit;
@@ -160,7 +163,7 @@ std::string region_size(const diagnose::GapRegion& region) {
 }
 
 std::string region_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, at its surest"}, 2);
+  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where surest"}, 2);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
     table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
                escape(region.what), base::number_text(region.from, 3), base::number_text(region.to, 3),
@@ -173,17 +176,17 @@ std::string region_table(const diagnose::Diagnosis& diagnosis) {
 
 Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<validate::TwinMotion>& twin) {
   Html text = std::string(
-      "<h2>The twin beside the data</h2>\n<p>The twin is the simulation with the fitted motions in it. Its positions "
-      "are exact but for noise as the data have it; of what a camera does to them only a wrong scale or perspective is "
-      "in them.</p>\n");
+      "<h2>The twin beside the data</h2>\n<p>The twin is a simulation of the fitted motions. Its positions are exact "
+      "but for noise like that of the data; of what a camera does to positions, it has only a wrong scale or "
+      "perspective.</p>\n");
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     if (effect.id != diagnose::ids::rolling_shutter && effect.id != diagnose::ids::camera_motion) continue;
-    text += fmt::format(
-        "<p class=\"note\">{} acts in the twin's pictures only: here the data lie off by what it does.</p>\n",
-        effect_html(effect.id));
+    text +=
+        fmt::format("<p class=\"note\">{} acts only in the twin's images: here the data are off by what it does.</p>\n",
+                    effect_html(effect.id));
   }
   return text + figures(twin_plots(twin));
 }
@@ -206,9 +209,8 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
   if (!twin.empty()) body += twin_section(diagnosis, twin);
   if (!diagnosis.pictures.empty()) {
     body +=
-        "<h2>What the pictures show</h2>\n<p>Some faults of a camera hardly move the positions that are found, and "
-        "show in the pictures "
-        "themselves. Each is looked for, whether or not the positions need it.</p>\n" +
+        "<h2>What the images show</h2>\n<p>Some faults of a camera hardly shift the positions and show in the images "
+        "themselves. Each is looked for, whether or not the positions call for it.</p>\n" +
         picture_table(diagnosis) + figures(picture_plots(diagnosis));
   }
   const std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
@@ -216,20 +218,15 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
   body += "<h2>Numbers</h2>\n" + ranking_table(diagnosis);
   if (diagnosis.gap) body += "<h3>The gap, clip by clip</h3>\n" + gap_tables(*diagnosis.gap, one_model(diagnosis));
   body +=
-      "<h2>Method</h2>\n<p>The usual model, m dv/dt = m g sin α − K v − sign(v) µ m g cos α, is fitted to all "
-      "positions of "
-      "all clips at once: one K and one µ, one inclination for each set-up, a start for each clip. The noise comes "
-      "from "
-      "neighbouring positions alone. Every effect of the list is added to the model, alone and in pairs; the evidence "
-      "for "
-      "each is its likelihood averaged over the sizes that it may have (equal odds for each factor of ten above what "
-      "can be "
-      "seen). Smooth forces and displacements without a name, over place, speed and time, and differences between "
-      "clips, "
-      "masses and set-ups compete with them, also beside them: where one of those explains more, the verdict is "
-      "“unknown”. For the gap each clip in turn is taken out of the fit to all clips, to first order: sizes are learnt "
-      "from the other clips. What was found by searching (which of several waves or places, which frames are lost, the "
-      "shape of a curve without a name) comes from all of them.</p>\n";
+      "<h2>Method</h2>\n<p>The nominal model, m dv/dt = m g sin α − K v − sign(v) µ m g cos α, is fitted to all "
+      "positions of all clips at once: one K and one µ, one inclination for each set-up, a start for each clip. The "
+      "noise is estimated from neighbouring positions alone. Every effect of the list is added to the model, alone and "
+      "in pairs. The evidence for each is its likelihood averaged over the sizes that it may have (equal odds for each "
+      "factor of ten above what can be seen). Smooth forces and displacements without a name (over position, speed and "
+      "time) and differences between clips, masses and set-ups compete with the effects, also beside them: where one "
+      "of those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all "
+      "clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
+      "waves or positions, which frames are lost, the shape of a curve without a name) comes from all clips.</p>\n";
   return page(title, body);
 }
 

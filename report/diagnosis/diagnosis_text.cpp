@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include "base/text/number_text.h"
+#include "report/diagnosis/explanation_text.h"
 #include "report/diagnosis/line_report.h"
+#include "report/diagnosis/next_step_words.h"
+#include "report/diagnosis/note_words.h"
+#include "report/diagnosis/verdict_words.h"
 #include "report/text/gap_text.h"
 #include "report/text/handy_units.h"
 #include "report/text/text_table.h"
@@ -34,11 +38,11 @@ std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
   std::string text;
   if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of what is above the floor\n";
-  if (over_clips.why_none.empty()) {
+  if (!over_clips.too_few) {
     text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
                         interval_text(over_clips.after));
   } else {
-    text += "  " + over_clips.why_none + "\n";
+    text += "  " + too_few_words(over_clips) + "\n";
   }
   if (!gap.acceleration_before || !gap.acceleration_after) return text;
   const auto acceleration = [&](double size, const std::optional<diagnose::GapInterval>& interval) {
@@ -52,14 +56,15 @@ std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
 }  // namespace
 
 std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
-  std::string text = fmt::format("verdict: {}\n\n{}\n", diagnosis.verdict, wrapped(diagnosis.summary));
+  std::string text =
+      fmt::format("verdict: {}\n\n{}\n", verdict_id(diagnosis.verdict), wrapped(verdict_words(diagnosis)));
   std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "ln evidence"}};
   rows.push_back({"none", fmt::format("{:.3f}", diagnosis.none), "0"});
   rows.push_back({"unknown", fmt::format("{:.3f}", diagnosis.unknown), ""});
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
     const auto& ranked = diagnosis.ranking[i];
-    rows.push_back({ranked.id, fmt::format("{:.3f}", ranked.probability),
-                    ranked.left_out.empty() ? base::gain_text(ranked.log_evidence_gain) : "not weighed"});
+    rows.push_back({explanation_id(ranked.explanation), fmt::format("{:.3f}", ranked.probability),
+                    ranked.left_out ? "not weighed" : base::gain_text(ranked.log_evidence_gain)});
   }
   text += text_table(diagnosis.lines ? line_rows(*diagnosis.lines) : rows, diagnosis.lines ? 2 : 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
@@ -75,8 +80,8 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
                         diagnosis.lines ? "lines" : "clips", diagnosis.gap->before, diagnosis.gap->after);
     text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips");
   }
-  text += "\nnext: " + wrapped(diagnosis.next_experiment);
-  for (const std::string& note : diagnosis.notes) text += "note: " + wrapped(note);
+  text += "\nnext: " + wrapped(next_step_words(diagnosis.next));
+  for (const std::string& note : notes_words(diagnosis.notes)) text += "note: " + wrapped(note);
   return text;
 }
 

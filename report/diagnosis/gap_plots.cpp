@@ -15,10 +15,10 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWide = 8.0;     // times the noise: from here on a logarithmic axis
-constexpr double kLogFrom = 0.5;  // where that begins
-constexpr std::size_t kCells = 60;
+constexpr double kEmptyCell = std::numeric_limits<double>::quiet_NaN();
+constexpr double kWide = 8.0;           // times the noise: from here on a logarithmic axis
+constexpr double kLogFrom = 0.5;        // where that begins
+constexpr std::size_t kCells = 60;      // of a row of the map
 constexpr double kDeepest = 5.0;        // standard deviations at which the colours end
 constexpr std::size_t kMostNamed = 40;  // rows with names that can be read
 
@@ -49,7 +49,7 @@ Plot phase_plot(const diagnose::PhaseGap& gap, bool one) {
       "plot 0 with lines lw 1 lc rgb '{1}' notitle, "
       "$bins using 1:($2-$3):($2+$3) with filledcurves fillcolor rgb '{2}' fillstyle transparent solid 0.25 notitle, "
       "$bins using 1:2 with linespoints lw 2 pt 6 ps 0.8 lc rgb '{2}' title '{3}'",
-      axis_of("v_m_s"), kGrey, kColors[1], one ? kUsualModel : "before");
+      axis_of("v_m_s"), kGrey, kColors[1], one ? kNominalModel : "before");
   if (!one) {
     script += fmt::format(
         ", $bins using 1:($4-$5):($4+$5) with filledcurves fillcolor rgb '{0}' fillstyle transparent solid 0.25 "
@@ -58,10 +58,10 @@ Plot phase_plot(const diagnose::PhaseGap& gap, bool one) {
   }
   script += "\n";
   return {Drawing{script, std::vector{data}},
-          "How much more the glider accelerates than the model at the same speed, both through the same smoothing: the "
-          "mean over stretches of speed, with the band in which the noise alone would put it 95 times in 100. A curve "
-          "beyond its band is a force that the model lacks",
-          "Measured less modelled acceleration over the speed"};
+          "How much more the glider accelerates than the model at the same speed, both smoothed alike: the mean over "
+          "intervals of speed, with the band in which noise alone would leave it 95 times in 100. A curve outside its "
+          "band is a force that the model lacks",
+          "Measured minus modelled acceleration against speed"};
 }
 
 Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps, bool one) {
@@ -83,9 +83,9 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps, bool one) {
   script +=
       fmt::format("set xlabel '{}'\nset ylabel 'a measured − a modelled  (m/s²)'\nplot {}\n", axis_of("v_m_s"), curves);
   return {Drawing{script, std::move(data)},
-          one ? "The same of each mass: where the masses differ, what is missing does not grow with the load"
-              : "The same of each mass, before: where the masses differ, what is missing does not grow with the load",
-          "Measured less modelled acceleration over the speed, by mass"};
+          one ? "The same for each mass: where the masses differ, what is missing does not grow with the load"
+              : "The same for each mass, before: where the masses differ, what is missing does not grow with the load",
+          "Measured minus modelled acceleration against speed, by mass"};
 }
 
 Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& cells, const std::string& variable,
@@ -112,8 +112,8 @@ Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& ce
       map.low, map.high, 0.5 - static_cast<double>(cells.size()), kDeepest, kDeepest);
   const int height = 110 + std::clamp(22 * static_cast<int>(cells.size()), 190, 700);
   return {Drawing{script, std::vector{data}, {520, height}},
-          fmt::format("What the fit leaves of each clip{1}: a few neighbouring positions together, over what their "
-                      "noise allows (0: nothing; {0:g} and -{0:g}: as many standard deviations or more)",
+          fmt::format("Residuals of each clip{1}: the sum of a few neighbouring positions over what their noise "
+                      "allows (0: none; {0:g} and -{0:g}: as many standard deviations or more)",
                       kDeepest, when),
           fmt::format("Map of the residuals by clip{}", when)};
 }
@@ -140,7 +140,7 @@ std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis) {
     const double middle = -static_cast<double>(d);
     before.rows.push_back(bar(left, domains[d].before, middle + (one ? 0.0 : 0.19), one ? 0.3 : 0.17));
     after.rows.push_back(domains[d].after ? bar(left, *domains[d].after, middle - 0.19, 0.17)
-                                          : std::vector<double>(6, kNan));
+                                          : std::vector<double>(6, kEmptyCell));
   }
   std::string script(kFrame);
   script += "set offsets 0,0,0,0\nset xlabel 'gap / noise'\n" + chart_labels(names);
@@ -150,14 +150,14 @@ std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis) {
   script += fmt::format(
       "set style fill solid 0.85 noborder\nset arrow from 1, graph 0 to 1, graph 1 nohead front lw 1.5 lc rgb '{}'\n"
       "plot $before using 1:2:3:4:5:6 with boxxyerror lc rgb '{}' title '{}'",
-      color(6), kColors[1], one ? kUsualModel : "before");
+      color(6), kColors[1], one ? kNominalModel : "before");
   if (!one) script += fmt::format(", $after using 1:2:3:4:5:6 with boxxyerror lc rgb '{}' title 'after'", kColors[0]);
   script += "\n";
   return {
       {Drawing{script, std::vector{before, after}, {620, std::max(240, 110 + 48 * static_cast<int>(domains.size()))}},
-       one ? "How many times what the noise alone would make (line at 1) the gap is in each domain"
-           : "How many times what the noise alone would make (line at 1) the gap is in each domain, with the usual "
-             "model and with what is missing. Where there is no bar, it cannot be said",
+       one ? "The gap in each domain, as a multiple of what the noise alone would make (line at 1)"
+           : "The gap in each domain, as a multiple of what the noise alone would make (line at 1): before, with the "
+             "nominal model, and after, with what is missing. Where there is no bar, it cannot be determined",
        one ? "Bars of the gap in each domain" : "Bars of the gap in each domain, before and after"}};
 }
 
@@ -198,7 +198,7 @@ ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, con
   }
   for (std::size_t r = 0; r < map.clips.size(); ++r) {
     for (std::size_t c = 0; c < cells; ++c) {
-      const double over = count[r][c] > 0.0 ? std::sqrt(count[r][c]) : kNan;
+      const double over = count[r][c] > 0.0 ? std::sqrt(count[r][c]) : kEmptyCell;
       map.before[r][c] /= over;
       map.after[r][c] /= over;
     }

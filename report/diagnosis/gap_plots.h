@@ -1,4 +1,4 @@
-/// The gap of a diagnosis as pictures: how large in each domain, where in which clip, and in the phase plane.
+/// The gap of a diagnosis as plots: how large in each domain, where in which clip, and in the phase plane.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace glidelab::report {
 /// Bars of each domain's gap over its noise, before and after; 1 is the noise. Nothing where there is no domain.
 std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis);
 
-/// Measured less modelled acceleration over the speed with its 95 % band, before and after; of several masses each as
+/// Measured minus modelled acceleration over the speed with its 95 % band, before and after; of several masses each as
 /// well. Nothing where no motion was compared.
 std::vector<Plot> phase_gap_plots(const diagnose::Diagnosis& diagnosis);
 

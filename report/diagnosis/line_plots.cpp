@@ -53,14 +53,14 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
       "set key font ',12' noenhanced\nset xlabel '{}'\n"
       "set ylabel 'friction left  (mm/s²)'\nset xzeroaxis lw 1 lc rgb '{}'\nplot {}\n",
       over_mass ? "1 / mass  (1/kg)" : "(K/m)²  (1/s²)", kGrey, plots);
-  return {
-      Drawing{script, std::move(data), {520, 470}},
-      fmt::format("What the usual model leaves of the intercepts, as friction, over {}: {}. Bars are the lines' own "
-                  "scatter",
-                  over_mass ? "1/m" : "(K/m)²",
-                  over_mass ? "a force that does not grow with the load is straight here"
-                            : "the smoothing's bias is straight here"),
-      over_mass ? "Friction left over 1/m" : "Friction left over (K/m)²"};
+  return {Drawing{script, std::move(data), {520, 470}},
+          fmt::format(
+              "What the nominal model leaves of the intercepts, as friction, against {}: {}. Bars are the lines' own "
+              "scatter",
+              over_mass ? "1/m" : "(K/m)²",
+              over_mass ? "a force that does not grow with the load is straight here"
+                        : "the smoothing's bias is straight here"),
+          over_mass ? "Friction left over 1/m" : "Friction left over (K/m)²"};
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// The pictures of a table of lines.
+/// The plots of a table of lines.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace glidelab::report {
 
-/// The friction that the usual model leaves in each line's intercept, over 1/m and over (K/m)², with what each effect
+/// The friction that the nominal model leaves in each line's intercept, over 1/m and over (K/m)², with what each effect
 /// that acts on intercepts makes of it.
 std::vector<Plot> line_plots(const diagnose::LineComparison& lines);
 

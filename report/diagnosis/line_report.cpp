@@ -8,7 +8,9 @@
 #include "base/text/number_text.h"
 #include "report/diagnosis/diagnosis_lead.h"
 #include "report/diagnosis/diagnosis_plots.h"
+#include "report/diagnosis/explanation_text.h"
 #include "report/diagnosis/line_plots.h"
+#include "report/diagnosis/line_words.h"
 #include "report/text/effect_names.h"
 #include "report/text/gap_text.h"
 #include "report/text/handy_units.h"
@@ -18,11 +20,11 @@ namespace {
 
 constexpr std::size_t kUnnamedRows = 3;
 
-std::string tiles(const diagnose::Diagnosis& diagnosis) {
+std::string line_tiles(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   std::string text = "<div class=\"tiles\">";
-  if (diagnosis.verdict != "effect") {
-    text += tile(diagnosis.verdict, "verdict");
+  if (diagnosis.verdict != diagnose::Verdict::effect) {
+    text += tile(verdict_id(diagnosis.verdict), "verdict");
   } else if (!lines.either_of.empty()) {
     text += tile(probability_text(lines.either_probability),
                  fmt::format("either of: {}", fmt::join(effect_names(lines.either_of), ", ")));
@@ -34,7 +36,8 @@ std::string tiles(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string name_of(const diagnose::LineCandidate& candidate) {
-  return candidate.words.empty() ? candidate.id : fmt::format("{}: {}", candidate.id, candidate.words);
+  const std::string id = explanation_id(candidate.explanation);
+  return candidate.unnamed ? fmt::format("{}: {}", id, unnamed_words(*candidate.unnamed)) : id;
 }
 
 std::string sizes_text(const diagnose::LineCandidate& candidate) {
@@ -45,8 +48,8 @@ std::string sizes_text(const diagnose::LineCandidate& candidate) {
   return text.empty() ? "–" : text;
 }
 
-std::string region_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"lines", "direction", "what", "off the usual model", "off / sd"}, 3);
+std::string line_region_table(const diagnose::Diagnosis& diagnosis) {
+  HtmlTable table({"lines", "direction", "what", "off the nominal model", "off / sd"}, 3);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
     const std::string which = region.variable == "group" ? fmt::format("all at {:.3g}°", region.from)
                                                          : fmt::format("all of {:.0f} g", 1e3 * region.from);
@@ -73,60 +76,66 @@ std::string gap_table(const diagnose::GapSizes& gap) {
   text += fmt::format(
       "<p class=\"soft\">Each line predicted by the others: root mean square of what its intercept and its slope are "
       "off, "
-      "over the lines' own scatter. At the floor it would be 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
+      "over the lines' own scatter. At the floor it is 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
       base::number_text(gap.standard_error, 2), interval_text(gap.interval95.before),
       interval_text(gap.interval95.after),
       gap.shrink ? fmt::format(" It shrinks by {} of what is above the floor.", shrink_text(gap)) : std::string());
   return text;
 }
 
-/// Of "unknown: in words" the words stand once, behind the name.
-std::string explanation_html(const std::string& text) {
-  const std::size_t colon = std::min(text.find(": "), text.size());
-  return effect_html(text.substr(0, colon)) + escape(text.substr(colon));
+/// Those that are shown: weighed, and of those without a name the likeliest few.
+std::vector<const diagnose::LineCandidate*> shown_candidates(const diagnose::LineComparison& lines) {
+  std::vector<const diagnose::LineCandidate*> shown;
+  std::size_t unnamed = 0;
+  for (const diagnose::LineCandidate& candidate : lines.candidates) {
+    if (candidate.left_out) continue;
+    if (candidate.unnamed && ++unnamed > kUnnamedRows) continue;
+    shown.push_back(&candidate);
+  }
+  return shown;
 }
 
 std::string candidate_table(const diagnose::LineComparison& lines) {
   const auto rows = line_rows(lines);
+  const std::vector<const diagnose::LineCandidate*> shown = shown_candidates(lines);
   HtmlTable table(rows.front(), 2);
   for (std::size_t r = 1; r < rows.size(); ++r) {
-    std::vector<std::string> cells;
-    for (const std::string& cell : rows[r])
-      cells.push_back(cells.empty() ? explanation_html(cell) : symbols_html(cell));
+    const diagnose::LineCandidate& candidate = *shown[r - 1];
+    std::vector<std::string> cells = {explanation_html(candidate.explanation)};
+    if (candidate.unnamed) cells.front() += ": " + unnamed_words(*candidate.unnamed);
+    for (std::size_t c = 1; c < rows[r].size(); ++c) cells.push_back(symbols_html(rows[r][c]));
     table.row(cells);
   }
   std::string text = table.str();
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
-    if (candidate.left_out.empty() || !candidate.words.empty()) continue;
-    text += fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", effect_html(candidate.id),
-                        escape(candidate.left_out));
+    if (!candidate.left_out || candidate.unnamed) continue;
+    text += fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", explanation_html(candidate.explanation),
+                        escape(impossible_words(*candidate.left_out)));
   }
   return text;
 }
 
-constexpr const char* kMethod =
-    "<h2>Method</h2>\n<p>The usual model says of every line that its slope is K/m with one K, and its intercept "
+constexpr const char* kLineMethod =
+    "<h2>Method</h2>\n<p>By the nominal model every line has the slope K/m with one K, and the intercept "
     "g sin α − sign(v) µ g cos α with one µ and one α for each set-up. Each effect that lines can show is added to it, "
-    "alone and in pairs; friction and drag of each mass, of each set-up, of each mass in each set-up and of each "
-    "direction compete with them, also beside them, as “unknown”. A table states no errors: they are fitted with each "
+    "alone and in pairs. A friction or drag of each mass, of each set-up, of each mass in each set-up, and of each "
+    "direction competes with them, also beside them, as “unknown”. A table states no errors: they are fitted with each "
     "explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and the gap are "
-    "over the lines' own scatter, into which no friction goes: of the mean intercept over both directions, and of the "
-    "slopes within each mass.</p>\n";
+    "relative to the lines' own scatter, which involves no friction: that of the mean intercept over both directions, "
+    "and of the slopes within each mass.</p>\n";
 
 }  // namespace
 
 std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& lines) {
   std::vector<std::vector<std::string>> rows = {
       {"explanation", "size", "probability", "chi²", "gap", "ln likelihood", "ln evidence"}};
-  std::size_t unnamed = 0;
-  for (const diagnose::LineCandidate& candidate : lines.candidates) {
-    if (!candidate.left_out.empty()) continue;
-    if (!candidate.words.empty() && ++unnamed > kUnnamedRows) continue;
+  for (const diagnose::LineCandidate* one : shown_candidates(lines)) {
+    const diagnose::LineCandidate& candidate = *one;
     rows.push_back({name_of(candidate), sizes_text(candidate), probability_text(candidate.probability),
                     candidate.chi2 ? base::digits_text(*candidate.chi2, 3) : "–",
                     candidate.gap ? fmt::format("{:.2f}", *candidate.gap) : "–",
-                    candidate.id == "none" ? "0" : base::gain_text(candidate.log_likelihood_gain),
-                    candidate.id == "none" ? "0" : base::gain_text(candidate.log_evidence_gain)});
+                    candidate.explanation.is_nothing() ? "0" : base::gain_text(candidate.log_likelihood_gain),
+                    candidate.explanation.is_nothing() ? "0" : base::gain_text(candidate.log_evidence_gain)});
   }
   return rows;
 }
@@ -145,11 +154,11 @@ Json lines_json(const diagnose::LineComparison& lines) {
   object["candidates"] = Json::array();
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
     Json one;
-    one["id"] = candidate.id;
-    if (!candidate.words.empty()) one["words"] = candidate.words;
+    one["id"] = explanation_id(candidate.explanation);
+    if (candidate.unnamed) one["words"] = unnamed_words(*candidate.unnamed);
     put(one, "probability", candidate.probability);
-    if (!candidate.left_out.empty()) {
-      one["not_weighed"] = candidate.left_out;
+    if (candidate.left_out) {
+      one["not_weighed"] = impossible_words(*candidate.left_out);
       object["candidates"].push_back(std::move(one));
       continue;
     }
@@ -175,23 +184,23 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   const diagnose::LineComparison& lines = *diagnosis.lines;
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n",
                           escape(title), lines.lines);
-  body += tiles(diagnosis);
+  body += line_tiles(diagnosis);
   body += diagnosis_meaning(diagnosis);
   body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));
   const std::vector<Plot> left = line_plots(lines);
   if (!left.empty() || !diagnosis.regions.empty()) {
-    body += "<h2>Where the gap lies</h2>\n" + figures(left) + region_table(diagnosis);
+    body += "<h2>Where the gap lies</h2>\n" + figures(left) + line_region_table(diagnosis);
   }
   std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
   if (!alike.empty()) {
     alike[0].caption =
-        "How alike what two effects do to these lines is (a row's and a numbered column's), with the usual model "
-        "fitted: at 1 they cannot be told apart, at 0 "
-        "they can";
+        "How alike two effects (a row and a numbered column) are in these lines, with the nominal model fitted: at 1 "
+        "they "
+        "cannot be told apart, at 0 they can";
     body += "<h2>What these lines can tell apart</h2>\n" + figures(alike);
   }
   if (diagnosis.gap) body += "<h2>The gap, line by line</h2>\n" + gap_table(*diagnosis.gap);
-  return page(title, body + kMethod);
+  return page(title, body + kLineMethod);
 }
 
 }  // namespace glidelab::report

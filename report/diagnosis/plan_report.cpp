@@ -6,6 +6,7 @@
 
 #include "base/text/number_text.h"
 #include "report/diagnosis/diagnosis_plots.h"
+#include "report/diagnosis/note_words.h"
 #include "report/html/html.h"
 #include "report/text/effect_names.h"
 #include "report/text/handy_units.h"
@@ -35,19 +36,19 @@ std::string lead(const diagnose::Plan& plan) {
     alone += effect.seen && effect.alike.empty() ? 1 : 0;
   }
   return fmt::format(
-      "{} clips, {} positions with {} µm of noise as found in them. Of {} effects that push or displace in one way, {} "
-      "can be seen in these "
-      "motions at all, and {} of those can be told from every other one.",
+      "{} clips, {} positions, with {} µm of noise found in them. Of {} effects with a single direction (a push or a "
+      "displacement), these motions can show {}, and tell {} of those from every other.",
       plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
 }
 
 /// What follows from what can be seen; plain text.
-std::string consequence(const diagnose::Plan& plan) {
+std::string what_follows(const diagnose::Plan& plan) {
   if (plan.effects.empty()) return {};
   const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
-  if (!any) return "Recorded like this, a diagnosis could not find any of them: its “none” would say nothing.";
-  return "Recorded like this, a diagnosis can find an effect from the size “seen from” on. If it then finds none, "
-         "smaller ones may still act, and those that are not seen may be of any size.";
+  if (!any) return "Recorded like this, a diagnosis could find none of them: its “none” would say nothing.";
+  return "Recorded like this, a diagnosis can find an effect from the size “seen from” on. If it finds none, smaller "
+         "ones "
+         "may still act, and those that are not seen may have any size.";
 }
 
 /// What to do about effects that look alike; empty where none do.
@@ -61,13 +62,12 @@ std::string advice(const diagnose::Plan& plan) {
   return {};
 }
 
-constexpr const char* kMethod =
+constexpr const char* kPlanMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
     "adjust "
-    "(K, µ, inclinations, starts) has been adjusted. Two are alike where the angle between what they then do is below "
-    "18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven times and outliers have no single "
-    "direction "
-    "and are not in the table.";
+    "(K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes that "
+    "remain is below 18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven frame times and outliers "
+    "have no single direction and are not in the table.";
 
 }  // namespace
 
@@ -85,18 +85,18 @@ std::string plan_json(const diagnose::Plan& plan) {
     document["effects"].push_back(std::move(one));
   }
   document["isolability"] = {{"effects", plan.isolability.ids}, {"cosine", plan.isolability.cosine}};
-  document["notes"] = plan.notes;
+  document["notes"] = notes_words(plan.notes);
   return json_text(document);
 }
 
 std::string plan_text(const diagnose::Plan& plan) {
-  std::vector<std::vector<std::string>> rows = {{"effect", "seen from", "not to be told from"}};
+  std::vector<std::vector<std::string>> rows = {{"effect", "seen from", "indistinguishable from"}};
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     rows.push_back({effect.id, seen_text(effect), alike_text(effect.alike)});
   }
   std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
   if (!advice(plan).empty()) text += fmt::format("\n{}\n", advice(plan));
-  for (const std::string& note : plan.notes) text += "\n" + note + "\n";
+  for (const std::string& note : notes_words(plan.notes)) text += "\n" + note + "\n";
   return text;
 }
 
@@ -104,18 +104,19 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">What this experiment will be able to tell apart.</p>\n"
       "{}",
-      escape(title), meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), consequence(plan))));
+      escape(title), meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), what_follows(plan))));
   if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
-  for (const std::string& note : plan.notes) body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  for (const std::string& note : notes_words(plan.notes))
+    body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   body += "<h2>What can be seen</h2>\n";
-  HtmlTable table({"effect", "what it is", "seen from", "not to be told from"}, 4);
+  HtmlTable table({"effect", "what it is", "seen from", "indistinguishable from"}, 4);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     const std::string meaning = effect_meaning(effect.id);
     table.row({effect_html(effect.id), escape(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning)),
                symbols_html(seen_text(effect)), escape(alike_text(effect_names(effect.alike)))});
   }
-  body +=
-      table.str() + figures(isolability_plots(plan.isolability)) + fmt::format("<p class=\"soft\">{}</p>\n", kMethod);
+  body += table.str() + figures(isolability_plots(plan.isolability)) +
+          fmt::format("<p class=\"soft\">{}</p>\n", kPlanMethod);
   return page(title, body);
 }
 

@@ -11,7 +11,7 @@
 namespace glidelab::report {
 namespace {
 
-constexpr std::size_t kPoints = 4000;  // of all clips
+constexpr std::size_t kTwinPoints = 4000;  // of all clips
 
 /// Two sets of points, the second one over the first.
 std::string points(const char* below, const char* above) {
@@ -35,7 +35,7 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
   PlotData data{"data", {}, {"v (m/s)", "a of the data (m/s²)"}}, twin{"twin", {}, {"v (m/s)", "a of the twin (m/s²)"}};
   std::size_t count = 0;
   for (const validate::TwinMotion& motion : motions) count += motion.t_s.size();
-  const std::size_t step = 1 + count / kPoints;
+  const std::size_t step = 1 + count / kTwinPoints;
   double largest_m = 0.0;
   for (const validate::TwinMotion& motion : motions) {
     for (const double x : motion.rest_m) largest_m = std::max(largest_m, std::abs(x));
@@ -53,12 +53,12 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
       {Drawing{std::string(kFrame) + "set offsets 0, graph 0.02, graph 0.06, graph 0.06\nset xlabel 'time t (s)'\n" +
                    fmt::format("set ylabel 'position  ({})'\n", unit) + points("data − twin", "noise of the twin"),
                std::vector{never_empty(rest), never_empty(noise)}},
-       "What the measured positions of all clips lie off the twin's: as much as noise alone, where nothing is missing",
-       "Measured positions less those of the twin over time, beside noise"},
+       "Measured positions of all clips minus those of the twin: where nothing is missing, as large as noise alone",
+       "Measured positions minus those of the twin over time, beside noise"},
       {Drawing{std::string(kFrame) + "set xlabel 'speed v (m/s)'\nset ylabel 'acceleration a (m/s²)'\n" +
                    points("data", "twin"),
                std::vector{never_empty(data), never_empty(twin)}},
-       "Acceleration over speed, of the data and of the twin, smoothed alike",
+       "Acceleration against speed, of the data and of the twin, smoothed alike",
        "Acceleration over speed of data and twin"}};
 }
 

@@ -55,10 +55,10 @@ TEST_CASE("errors of single frames are heavy tails, errors that last are none an
     CHECK(tails.run->size_m < 1.1e-3);
     CHECK(tails.run->excess > 10.0);
     const auto named = diagnose::diagnose_results(single.results, single.setups, {.without = {}, .jobs = 2});
-    REQUIRE(named.verdict == "effect");
+    REQUIRE(named.verdict == diagnose::Verdict::effect);
     CHECK(named.effects.front().id == "heavy_tailed_noise");
     const auto other = diagnose::diagnose_results(lasting.results, lasting.setups, {.without = {}, .jobs = 2});
-    CHECK(other.verdict == "unknown");
+    CHECK(other.verdict == diagnose::Verdict::unknown);
   }
 }
 

@@ -68,7 +68,7 @@ TEST_CASE("uneven times are named alone: what they scatter is no push and no for
   for (const unsigned seed : {3u, 4u, 5u}) {
     const auto made = uneven(kJitter, seed);
     const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
-    REQUIRE(diagnosis.verdict == "effect");
+    REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
     REQUIRE(diagnosis.effects.size() == 1);
     CHECK(diagnosis.effects.front().id == "timestamp_jitter");
     REQUIRE(diagnosis.effects.front().parameters.size() == 1);

@@ -43,15 +43,15 @@ TEST_CASE("interval over clips: clips that are alike leave nothing open, and a c
   CHECK(interval->high == Approx(std::sqrt(0.5)).epsilon(1e-12));
 }
 
-TEST_CASE("interval over clips: two clips have none and say so, nor has a gap that rests on one clip") {
+TEST_CASE("interval over clips: two clips have none, being too few, nor has a gap that rests on one clip") {
   const std::vector<ClipSquares> three = {{100.0, 100.0}, {90.0, 100.0}, {900.0, 100.0}};
   for (const std::size_t n : {0u, 1u, 2u}) {
     const std::vector<ClipSquares> few(three.end() - static_cast<std::ptrdiff_t>(n), three.end());
     CHECK_FALSE(diagnose::rms_interval(few));
     CHECK_FALSE(diagnose::shrink_interval(few, few));
-    CHECK_FALSE(diagnose::why_no_interval(n).empty());
+    CHECK(diagnose::too_few_clips(n) == n);
   }
-  CHECK(diagnose::why_no_interval(3).empty());
+  CHECK_FALSE(diagnose::too_few_clips(3));
   CHECK(diagnose::rms_interval(three));
   CHECK_FALSE(diagnose::shrink_interval(three, three));  // without the third, the gap is below the floor
 }

@@ -172,7 +172,7 @@ TEST_CASE("what an unknown leaves of the positions is what its likeliest curve l
       .force = [](double, double x, double, double) { return 0.03 * std::exp(-std::pow((x - 0.1) / 0.06, 2)); }};
   const auto made = tests::made_experiment(tests::made_launches(), magnet, 4, 2e-5, 150, 150.0);
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
-  REQUIRE(diagnosis.verdict == "unknown");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE(diagnosis.gap);
   REQUIRE(diagnosis.gap->after < 0.2 * diagnosis.gap->before);
   double before = 0.0, after = 0.0;

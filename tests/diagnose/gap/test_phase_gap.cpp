@@ -24,7 +24,7 @@ const diagnose::PhaseGap& all_of(const std::vector<diagnose::PhaseGap>& gaps) {
 }  // namespace
 
 TEST_CASE("measured less modelled acceleration and the model's own make up the true law, for each mass") {
-  // Level, one way and the other: a = -K v/m - sign(v) mu g - C v |v|/m is known at every v; the usual model's a is
+  // Level, one way and the other: a = -K v/m - sign(v) mu g - C v |v|/m is known at every v; the nominal model's a is
   // -K^ v/m - sign(v) mu^ g.
   constexpr double kDrag = 0.05;
   const tests::MadeEffect effect{.force = [](double, double, double v, double) { return -kDrag * v * std::abs(v); }};

@@ -51,19 +51,19 @@ TEST_CASE("a force that is recorded as a line moves the glider as the closed for
 
 TEST_CASE("a recorded force is no gap, and another effect beside it keeps its name") {
   const diagnose::Diagnosis nothing = diagnosed({.recorded = pull_n});
-  CHECK(nothing.verdict == "none");
+  CHECK(nothing.verdict == diagnose::Verdict::none);
   REQUIRE(nothing.gap);
   CHECK(nothing.gap->before == Approx(1.0).margin(0.1));
   const diagnose::Diagnosis drag = diagnosed(
       {.force = [](double, double, double v, double) { return -0.15 * v * std::abs(v); }, .recorded = pull_n});
-  REQUIRE(drag.verdict == "effect");
+  REQUIRE(drag.verdict == diagnose::Verdict::effect);
   CHECK(drag.effects.front().id == "quadratic_drag");
   CHECK(drag.effects.front().parameters.front().value == Approx(0.15).epsilon(0.1));
 }
 
 TEST_CASE("the same force is a gap where nobody recorded it") {
   const diagnose::Diagnosis hidden = diagnosed({.force = [](double, double, double, double t) { return pull_n(t); }});
-  CHECK(hidden.verdict != "none");
+  CHECK(hidden.verdict != diagnose::Verdict::none);
 }
 
 TEST_CASE("of very many positions some are weighed, spread over every motion") {

@@ -9,13 +9,15 @@
 #include "diagnose/next/expected_evidence.h"
 #include "diagnose/next/next_changes.h"
 #include "diagnose/next/next_clip.h"
-#include "diagnose/next/next_words.h"
+#include "diagnose/next/next_unnamed.h"
+
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
 using namespace glidelab;
 using diagnose::Change;
+using diagnose::ChangeKind;
 
 namespace {
 
@@ -39,10 +41,10 @@ diagnose::MotionFit with(const diagnose::TrackSet& set, const diagnose::MotionFi
   return diagnose::linearise_at(set, {effect}, at);
 }
 
-std::map<Change::Kind, double> most_of_each(const diagnose::TrackSet& set, const diagnose::MotionFit& nominal,
-                                            const diagnose::MotionFit& a, const diagnose::MotionFit& b) {
+std::map<ChangeKind, double> most_of_each(const diagnose::TrackSet& set, const diagnose::MotionFit& nominal,
+                                          const diagnose::MotionFit& a, const diagnose::MotionFit& b) {
   const Eigen::MatrixXd covariance = diagnose::common_covariance(b);
-  std::map<Change::Kind, double> most;
+  std::map<ChangeKind, double> most;
   for (const Change& change : diagnose::feasible_changes(set, nominal)) {
     double& of = most[change.kind];
     of = std::max(of, diagnose::expected_split(set, a, b, covariance, change));
@@ -75,10 +77,10 @@ TEST_CASE("an asymmetry of the friction hides in an inclination that is known ba
   const auto asymmetric = with(set, nominal, "direction_asymmetry", d, nominal.at.global[0], a);
   auto most = most_of_each(set, nominal, asymmetric, nominal);
   const double variance = std::pow(0.05 * kDegree, 2) + diagnose::common_covariance(nominal)(2, 2);
-  CHECK(most.at(Change::Kind::plumb) == Approx(0.5 * std::pow(a - alpha, 2) / variance).epsilon(1e-6));
-  CHECK(most.at(Change::Kind::plumb) > 5.0);
+  CHECK(most.at(ChangeKind::plumb) == Approx(0.5 * std::pow(a - alpha, 2) / variance).epsilon(1e-6));
+  CHECK(most.at(ChangeKind::plumb) > 5.0);
   for (const auto& [kind, gain] : most) {
-    if (kind != Change::Kind::plumb) CHECK(gain < 1.0);
+    if (kind != ChangeKind::plumb) CHECK(gain < 1.0);
   }
 }
 
@@ -90,7 +92,7 @@ TEST_CASE("after a plumb view the variance of an inclination is that of the two 
   const double plumb = 0.05 * kDegree;
   CHECK(std::sqrt(before(2, 2)) > 10.0 * plumb);
   for (const Change& change : diagnose::feasible_changes(set, nominal)) {
-    if (change.kind != Change::Kind::plumb) continue;
+    if (change.kind != ChangeKind::plumb) continue;
     const double after = diagnose::expected_covariance(set, fit, before, change)(2, 2);
     CHECK(after == Approx(1.0 / (1.0 / before(2, 2) + 1.0 / (plumb * plumb))).epsilon(1e-6));
   }
@@ -112,16 +114,16 @@ TEST_CASE("no clip splits a wrong scale from a wrong clock: a measured length or
     high = std::max(high, *std::max_element(motion.x_m.begin(), motion.x_m.end()));
   }
   const double half = 0.5 * (high - low);
-  CHECK(most.at(Change::Kind::pattern) == Approx(std::pow(e * half / 5e-4, 2)).epsilon(1e-6));  // 2 halves of 1/2 z²
+  CHECK(most.at(ChangeKind::pattern) == Approx(std::pow(e * half / 5e-4, 2)).epsilon(1e-6));  // 2 halves of 1/2 z²
   const double variance =
       std::pow(1.0 / (10.0 * 100.0), 2) +
       diagnose::common_covariance(clock)(
           static_cast<Eigen::Index>(clock.layout->first_of(diagnose::effect_index("frame_rate_error"))),
           static_cast<Eigen::Index>(clock.layout->first_of(diagnose::effect_index("frame_rate_error"))));
-  CHECK(most.at(Change::Kind::clock) == Approx(0.5 * c * c / variance).epsilon(1e-6));
-  CHECK(most.at(Change::Kind::pattern) > most.at(Change::Kind::clock));
+  CHECK(most.at(ChangeKind::clock) == Approx(0.5 * c * c / variance).epsilon(1e-6));
+  CHECK(most.at(ChangeKind::pattern) > most.at(ChangeKind::clock));
   for (const auto& [kind, gain] : most) {
-    if (kind != Change::Kind::pattern && kind != Change::Kind::clock) CHECK(gain < 0.1);
+    if (kind != ChangeKind::pattern && kind != ChangeKind::clock) CHECK(gain < 0.1);
   }
 }
 
@@ -144,7 +146,7 @@ TEST_CASE("twice the frame rate knows the drag better by the root of two, half t
   CHECK(sd_of_k(set, nominal, passing) / sd_of_k(set, nominal, sharper) == Approx(2.0).epsilon(0.02));
   const auto offered = [&] {
     const auto changes = diagnose::feasible_changes(set, nominal);
-    return std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.kind == Change::Kind::exposure; });
+    return std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.kind == ChangeKind::exposure; });
   };
   CHECK_FALSE(offered());  // tracks
   set.pictures = true;
@@ -209,18 +211,22 @@ TEST_CASE("what only images or single frames show has a sentence with its reason
 TEST_CASE("what has no name is followed into the speeds, places and masses in which it lies") {
   const diagnose::TrackSet set = inclined();
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
-  const auto words = [&](const char* variable, double from, double to, const char* what, const char* clip = "") {
+  const auto step = [&](const char* variable, double from, double to, const char* what, const char* clip = "") {
     diagnose::Diagnosis diagnosis;
-    diagnosis.verdict = "unknown";
+    diagnosis.verdict = diagnose::Verdict::unknown;
     diagnosis.regions = {{variable, from, to, 5.0, 0.01, "N", what, clip}};
     return diagnose::next_for_unnamed(set, nominal, diagnosis);
   };
   // Only a launch of 1.8 times 1.2 m/s gets there, and only downhill.
-  CHECK(words("v_m_s", 1.5, 2.1, "force").find("downhill at 2.2 m/s") != std::string::npos);
-  CHECK(words("v_m_s", -2.1, -1.5, "force").find("uphill at 2") != std::string::npos);
-  CHECK(words("x_m", 0.0, 0.1, "force").find("Move the camera") != std::string::npos);
-  CHECK(words("mass_kg", 0.335, 0.335, "friction").find(" 435 g") != std::string::npos);
-  CHECK(words("t_s", 0.0, 1.0, "displacement", "clip2").find("clip clip2 three times") != std::string::npos);
+  const auto fast = std::get<diagnose::CoverRegion>(step("v_m_s", 1.5, 2.1, "force"));
+  CHECK(fast.over == diagnose::CoverRegion::Over::speeds);
+  CHECK(fast.launch.clip.value().v0_m_s == Approx(1.8 * 1.2).epsilon(0.02));
+  const auto back = std::get<diagnose::CoverRegion>(step("v_m_s", -2.1, -1.5, "force"));
+  CHECK(back.launch.clip.value().v0_m_s < -1.95);
+  CHECK(std::get<diagnose::CoverRegion>(step("x_m", 0.0, 0.1, "force")).over == diagnose::CoverRegion::Over::places);
+  CHECK(std::get<diagnose::AddMass>(step("mass_kg", 0.335, 0.335, "friction")).mass_kg == Approx(0.435));
+  CHECK(std::get<diagnose::RepeatClip>(step("t_s", 0.0, 1.0, "displacement", "clip2")).clip == "clip2");
+  CHECK(std::get<diagnose::Routine>(step("u_px", 0.0, 1.0, "displacement")) == diagnose::Routine::move_camera);
 }
 
 TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and nothing is told from nothing") {
@@ -229,13 +235,15 @@ TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and not
   const auto advice = [](const std::vector<tests::MadeLaunch>& launches, const tests::MadeEffect& effect) {
     const auto made = tests::made_experiment(launches, effect, 3, 2e-5, 120, 100.0, 0.01);
     const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
-    INFO(diagnosis.verdict << ": " << diagnosis.next_experiment);
-    CHECK(diagnosis.next_experiment.find("nothing") == std::string::npos);
-    return diagnosis.next_experiment;
+    return diagnosis.next;
   };
-  CHECK(advice(tests::made_launches(), drag).find("known least is c of quadratic_drag") != std::string::npos);
+  const auto weakest = std::get<diagnose::SharpenParameter>(advice(tests::made_launches(), drag));
+  CHECK(weakest.key == "c_n_s2_m2");
+  CHECK(weakest.effect == "quadratic_drag");
   const tests::MadeEffect scale{{}, [](double x, double) { return 1.02 * x; }};
-  const std::string alike = advice(tests::made_launches(), scale);
-  INFO(alike);
-  CHECK((alike.starts_with("Lay the pattern") || alike.starts_with("Film a running stop-watch")));
+  const auto alike = std::get<diagnose::SettleDoubt>(advice(tests::made_launches(), scale));
+  REQUIRE_FALSE(alike.doubt.empty());
+  for (const diagnose::Alternative& of : alike.doubt) CHECK_FALSE(of.one.is_nothing());  // never told from nothing
+  REQUIRE(alike.by);
+  CHECK((alike.by->kind == ChangeKind::pattern || alike.by->kind == ChangeKind::clock));
 }

@@ -160,7 +160,7 @@ TEST_CASE("pixels that differ from each other are noise that slow frames share, 
   // Of 1160 points a standard deviation of 0.04, and as much again for the noise, which is found from the same points.
   CHECK(std::abs(chi2_of(set) - 1.0) < 0.2);
   CHECK(white > 1.12);  // what neighbours show of it by themselves is too little, by three of them
-  CHECK(diagnose::diagnose_results(made.results, made.setups, {}).verdict == "none");
+  CHECK(diagnose::diagnose_results(made.results, made.setups, {}).verdict == diagnose::Verdict::none);
 }
 
 TEST_CASE("white noise of filmed positions stays white") {
@@ -234,7 +234,7 @@ TEST_CASE("a step in the picture beside uneven times is not given to these") {
   const tests::MadeExperiment made =
       filmed([&](double u, double v) { return 0.15 * std::tanh((u - 440.0) / 12.0) + v * normal(random); }, 14);
   const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
-  CHECK(diagnosis.verdict == "unknown");
+  CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   CHECK(diagnosis.unknown > 0.9);
 }
 
@@ -270,14 +270,15 @@ TEST_CASE("tracks whose errors last for frames have no gap, and keep no effect f
     }
     CHECK(std::abs(mean) < 0.25);
     const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(nothing.results, nothing.setups, {});
-    CHECK(diagnosis.verdict == "none");
-    CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(),
-                      [](const std::string& note) { return note.find("follow each other") != std::string::npos; }));
+    CHECK(diagnosis.verdict == diagnose::Verdict::none);
+    CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const diagnose::Note& note) {
+      return std::holds_alternative<diagnose::LastingErrors>(note);
+    }));
   }
   // A track that is bent: 2 milliradians over half a metre.
   const auto bow = [](double mass_kg, double x_m, double, double) { return mass_kg * 9.80665 * 0.004 * x_m; };
   const tests::MadeExperiment bent = made_of({.force = bow}, 24);
   const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(bent.results, bent.setups, {});
-  REQUIRE(diagnosis.verdict == "effect");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(diagnosis.effects.front().id == "track_bow");
 }

@@ -6,7 +6,6 @@
 
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/model/track_model.h"
-#include "diagnose/result/verdict_words.h"
 #include "diagnose/verdict/diagnose.h"
 #include "diagnose/verdict/verdict_regions.h"
 #include "tests/catch.h"
@@ -127,7 +126,7 @@ TEST_CASE("of very many pieces 40 are weighed, from beginning to end") {
 TEST_CASE("a long motion that stops and starts at every turn lacks nothing where nothing is missing") {
   const auto made = to_and_fro(0.06);
   const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
-  CHECK(diagnosis.verdict == "none");
+  CHECK(diagnosis.verdict == diagnose::Verdict::none);
   REQUIRE(diagnosis.gap);
   CHECK(diagnosis.gap->before == Approx(1.0).margin(0.1));
   CHECK(diagnosis.gap->held_out.size() > 10);
@@ -137,7 +136,7 @@ TEST_CASE("a drag beside a force that turns the glider dozens of times keeps its
   const auto made =
       to_and_fro(0.5, {.force = [](double, double, double v, double) { return -0.15 * v * std::abs(v); }});
   const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
-  REQUIRE(diagnosis.verdict == "effect");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(diagnosis.effects.front().id == "quadratic_drag");
   CHECK(diagnosis.effects.front().parameters.front().value == Approx(0.15).epsilon(0.1));
 }
@@ -153,7 +152,7 @@ TEST_CASE("a motion whose first positions are all set aside is fitted from those
 }
 
 TEST_CASE("the force that a model lacks is seen in the accelerations") {
-  // A push of 0.1 N from 0.6 to 0.9 s that the usual model has not: the fit spreads some of it, and noise of 1 um adds
+  // A push of 0.1 N from 0.6 to 0.9 s that the nominal model has not: the fit spreads some of it, and noise of 1 um adds
   // 0.4 kg 0.11 1 um / (10 ms)² = 0.5 mN.
   const auto made = tests::made_experiment(
       tests::made_launches(),
@@ -165,17 +164,4 @@ TEST_CASE("the force that a model lacks is seen in the accelerations") {
   const auto whole = tests::made_experiment(tests::made_launches(), {}, 3, 1e-6, 150, 100.0);
   const diagnose::TrackSet nothing = diagnose::track_set(whole.results, whole.setups, true);
   CHECK(diagnose::most_lacking(nothing, diagnose::fit_nominal(nothing)).force_n < 0.005);
-}
-
-TEST_CASE("a size far beyond what the accelerations lack is not stated as one") {
-  diagnose::Diagnosis diagnosis;
-  diagnosis.verdict = "unknown";
-  diagnosis.unknown = 0.99;
-  diagnosis.regions.push_back({"v_m_s", 0.0, 0.2, 5.0, 190.0, "N", "force", "", 30.0});
-  CHECK(diagnose::summary_of(diagnosis).find("these data do not tell") != std::string::npos);
-  diagnosis.regions.front().lacking.reset();
-  CHECK(diagnose::summary_of(diagnosis).find("force of up to 190 N.") != std::string::npos);
-  diagnosis.regions.front().at = 0.15;
-  diagnosis.regions.front().size_sd = 20.0;
-  CHECK(diagnose::summary_of(diagnosis).find("force of up to 190 ± 20 N at 0.15 m/s.") != std::string::npos);
 }

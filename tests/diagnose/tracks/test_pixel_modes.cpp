@@ -72,7 +72,7 @@ TEST_CASE("rows that are late are named with their line time from the tracks alo
     const tests::MadeExperiment made = filmed({line_s, 0.0}, 4);
     const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
     INFO("line time " << line_s);
-    REQUIRE(diagnosis.verdict == "effect");
+    REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
     CHECK(diagnosis.effects.front().id == "rolling_shutter");
     const auto& line = diagnosis.effects.front().parameters.front();
     CHECK(line.key == "line_s");
@@ -99,7 +99,7 @@ TEST_CASE("an error that goes with the place between two pixels is no effect") {
     CHECK(std::abs(fit.at.global[at] - truth) < 5.0 * std::sqrt(covariance(at, at)));
     CHECK(std::sqrt(covariance(at, at)) < 0.04);  // so that 0.4 is ten of them
   }
-  CHECK(diagnose::diagnose_results(made.results, made.setups, {}).verdict == "none");
+  CHECK(diagnose::diagnose_results(made.results, made.setups, {}).verdict == diagnose::Verdict::none);
 }
 
 TEST_CASE("errors between pixels are four for each place, none for tracks or a marker that rests") {

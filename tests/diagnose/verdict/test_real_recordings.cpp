@@ -24,7 +24,7 @@ std::optional<diagnose::Diagnosis> diagnose_real(const std::string& name) {
 TEST_CASE("carts whose positions are rounded to 1 cm lack a displacement that swings with the place", "[slow]") {
   const auto diagnosis = diagnose_real("incline-cart");
   if (!diagnosis) return;
-  CHECK(diagnosis->verdict == "unknown");
+  CHECK(diagnosis->verdict == diagnose::Verdict::unknown);
   REQUIRE_FALSE(diagnosis->regions.empty());
   const diagnose::GapRegion& first = diagnosis->regions.front();
   CHECK(first.variable == "x_m");
@@ -40,7 +40,7 @@ TEST_CASE("three half seconds of a block that slides on wood carry no name", "[s
   const auto diagnosis = diagnose_real("sliding-block");
   if (!diagnosis) return;
   // Friction of wood differs from place to place: no effect of the list, and no clean experiment either.
-  CHECK(diagnosis->verdict == "unknown");
+  CHECK(diagnosis->verdict == diagnose::Verdict::unknown);
   CHECK(diagnosis->effects.empty());
   REQUIRE(diagnosis->gap);
   CHECK(diagnosis->gap->before > 1.5);

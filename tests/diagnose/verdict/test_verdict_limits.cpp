@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <numbers>
-#include <sstream>
 
 #include "base/errors.h"
 #include "diagnose/gap/held_out.h"
-#include "diagnose/result/verdict_words.h"
 #include "diagnose/verdict/derived_parameters.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
@@ -94,19 +92,20 @@ TEST_CASE("a stated inclination that the motion contradicts is said first, with 
   tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 3);
   for (core::ClipSetup& setup : made.setups) state(setup, 14.0, 0.05);
   const auto diagnosis = diagnosed(made);
-  INFO(diagnosis.summary);
-  CHECK(diagnosis.verdict == "unknown");
-  const std::string begin = "The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated, and the motion says ";
-  REQUIRE(diagnosis.summary.starts_with(begin));
-  std::istringstream numbers(diagnosis.summary.substr(begin.size()));
-  double degrees = 0.0, sd = 0.0;
-  std::string sign;
-  numbers >> degrees >> sign >> sd;
-  CHECK(sd < 0.01);
-  CHECK(std::abs(degrees - 4.0) < 6.0 * sd);  // five, and a digit that is rounded
+  CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE(diagnosis.limits.contradicted.size() == 1);
-  CHECK(std::count(diagnosis.notes.begin(), diagnosis.notes.end(), diagnosis.limits.contradicted[0]) == 1);
-  CHECK(contains(diagnosis.next_experiment, "Measure the inclination again"));
+  const diagnose::ContradictedIncline& incline = diagnosis.limits.contradicted.front();
+  CHECK(incline.group == "inclined");
+  CHECK(incline.against == "stated");
+  CHECK(std::abs(incline.stated_rad - 14.0 * kDegree) < 1e-12);
+  CHECK(std::abs(incline.stated_sd_rad - 0.05 * kDegree) < 1e-12);
+  CHECK(incline.motion_sd_rad < 0.01 * kDegree);
+  CHECK(std::abs(incline.motion_rad - 4.0 * kDegree) < 5.0 * incline.motion_sd_rad);
+  CHECK(only_statements_fail(diagnosis));
+  CHECK(std::count_if(diagnosis.notes.begin(), diagnosis.notes.end(), [](const diagnose::Note& note) {
+          return std::holds_alternative<diagnose::ContradictedIncline>(note);
+        }) == 1);
+  CHECK(std::get<diagnose::Routine>(diagnosis.next) == diagnose::Routine::measure_inclination);
 }
 
 TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
@@ -116,42 +115,40 @@ TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
       (0.006 * std::cos(4.0 * kDegree) - std::sin(4.0 * kDegree) + std::sin(3.0 * kDegree)) / std::cos(3.0 * kDegree);
   tests::MadeExperiment made = tests::made_experiment(
       {{0.335, 4.0, -0.6, 1.2}, {0.335, 4.0, -0.6, 0.6}, {0.535, 4.0, -0.6, 1.0}, {0.535, 4.0, -0.6, 0.5}}, {}, 4);
-  CHECK(diagnosed(made).verdict == "none");
+  CHECK(diagnosed(made).verdict == diagnose::Verdict::none);
   for (core::ClipSetup& setup : made.setups) state(setup, 3.0, 0.05);
   const auto diagnosis = diagnosed(made);
-  INFO(diagnosis.summary);
-  CHECK(diagnosis.verdict == "unknown");
+  CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   CHECK(diagnosis.none == 0.0);
   double sum = diagnosis.unknown;
   for (const auto& ranked : diagnosis.ranking) sum += ranked.probability;
   CHECK(std::abs(sum - 1.0) < 1e-9);
-  CHECK(diagnosis.summary.starts_with("The fit has a friction below zero (" + std::to_string(mu).substr(0, 6)));
+  REQUIRE(diagnosis.limits.driving.size() == 1);
+  CHECK(diagnosis.limits.driving.front().of == diagnose::NegativeLoss::Of::friction);
+  CHECK(std::abs(diagnosis.limits.driving.front().value - mu) < 1e-4);  // as many digits as its error has
   CHECK(diagnosis.regions.empty());
   REQUIRE(diagnosis.gap);
   CHECK(diagnosis.gap->before < 1.16);  // as of a nominal experiment: the positions tell nothing
   CHECK(diagnosis.gap->after == diagnosis.gap->before);
-  CHECK(contains(diagnosis.next_experiment, "which way is downhill"));
+  CHECK(std::get<diagnose::Routine>(diagnosis.next) == diagnose::Routine::check_statements);
 }
 
-TEST_CASE("where a fifth of the motion is set aside, the summary begins with it") {
+TEST_CASE("where a fifth of the motion is set aside, a reader is told how much") {
   const auto made = tests::made_experiment(inclined_launches(), {}, 5, 3e-5, 60);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   CHECK(set.left_out == 0);
   const diagnose::MotionFit fit = diagnose::fit_nominal(set);
   set.moving = 1000;
   set.left_out = 190;
-  CHECK(diagnose::limits_of(set, fit).set_aside.empty());
+  CHECK_FALSE(diagnose::limits_of(set, fit).set_aside);
   set.left_out = 210;
-  diagnose::Diagnosis diagnosis;
-  diagnosis.verdict = "none";
-  diagnosis.none = 0.9;
-  diagnosis.limits = diagnose::limits_of(set, fit);
-  CHECK(diagnose::summary_of(diagnosis).starts_with("Of the 1000 positions of the motion 21 % are set aside"));
-  CHECK(contains(diagnose::summary_of(diagnosis), "Nothing is missing"));
+  REQUIRE(diagnose::limits_of(set, fit).set_aside);
+  CHECK(diagnose::limits_of(set, fit).set_aside->positions == 1000);
+  CHECK(std::abs(diagnose::limits_of(set, fit).set_aside->part - 0.21) < 1e-12);
   // Outliers count with what is left out: 0.19 + 0.81 * 0.05 = 0.23.
   set.left_out = 190;
   for (diagnose::TrackedMotion& motion : set.motions) std::fill_n(motion.outlier.begin(), motion.t_s.size() / 20, 1);
-  CHECK(contains(diagnose::limits_of(set, fit).set_aside, "23 %"));
+  CHECK(std::abs(diagnose::limits_of(set, fit).set_aside.value().part - 0.2305) < 0.001);
 }
 
 TEST_CASE("too little motion is told clip by clip, with their files") {

@@ -34,10 +34,10 @@ TEST_CASE("frames that are lost beside a force are named with it") {
   const auto air = [](double, double, double v, double) { return -0.08 * v * std::abs(v); };
   const auto bow = [](double mass_kg, double x_m, double, double) { return mass_kg * 9.80665 * 0.003 * x_m; };
   const auto with_air = diagnosed({.force = air, .lost = lost}, 31, 2e-4);
-  CHECK(with_air.verdict == "effect");
+  CHECK(with_air.verdict == diagnose::Verdict::effect);
   CHECK(named(with_air) == std::set<std::string>{"dropped_frames", "quadratic_drag"});
   const auto with_bow = diagnosed({.force = bow, .lost = lost}, 31, 2e-4);
-  CHECK(with_bow.verdict == "effect");
+  CHECK(with_bow.verdict == diagnose::Verdict::effect);
   CHECK(named(with_bow) == std::set<std::string>{"dropped_frames", "track_bow"});
   for (const auto& effect : with_bow.effects) {
     if (effect.id != "dropped_frames") continue;
@@ -52,6 +52,6 @@ TEST_CASE("frames that are lost beside a force that no list holds leave it unnam
     return 0.06 * std::exp(-0.5 * std::pow((x_m + 0.1) / 0.03, 2));
   };
   const auto diagnosis = diagnosed({.force = post, .lost = lost}, 33, 1e-4);
-  CHECK(diagnosis.verdict == "unknown");
+  CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   CHECK(diagnosis.unknown > 0.9);
 }

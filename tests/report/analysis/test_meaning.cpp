@@ -98,7 +98,7 @@ TEST_CASE("what blind cases mean is told of what was there, with intervals, and 
   // Clopper and Pearson, all of n: the lower end is 0.025^(1/n), 0.398 of 4.
   CHECK(has("in 100 % (4 of 4; 95 %: 40 to 100 %)"));
   CHECK(has("can be taken at its word"));
-  CHECK(has("Missed: nothing: another verdict than none"));  // 10 % of at most 5
+  CHECK(has("Missed: nothing wrong: a verdict other than none"));  // 10 % of at most 5
   CHECK_FALSE(has("moderate"));
   score.false_alarm = {20, 1};
   CHECK(has("All 3 targets"));  // one strong effect, nothing wrong, the calibration
@@ -129,16 +129,24 @@ bool tells(const report::Page& page, const std::string& part) {
 
 TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict means for the numbers of an analysis") {
   diagnose::Diagnosis of;
-  of.summary = "The data show <a drag>.";
+  of.none = 0.9;
+  of.effects = {{"quadratic_drag", "dynamics", "<a drag>", 0.9, {}, {}, 0.9, {}}};
+  of.ranking = {{{{"quadratic_drag"}}, 0.5, 1.0, 1.0, 1, {}}};
   diagnose::Diagnosis lines = of;
   lines.lines.emplace();
+  lines.lines->lines = 12;
+  lines.lines->candidates = {{{}, {}, 0.9, 0.0, 0.0, 0, {}, {}, {}, {}},
+                             {{{"quadratic_drag"}}, {}, 0.05, 1.0, 1.0, 1, {{"force_n", 1.0, 0.1}}, {}, {}, {}},
+                             {{{}, true}, diagnose::UnnamedInLines{}, 0.05, 1.0, 1.0, 1, {}, {}, {}, {}}};
   for (diagnose::Diagnosis* diagnosis : {&of, &lines}) {
-    diagnosis->verdict = "effect";
-    CHECK(tells(report::diagnosis_report("d", *diagnosis), "The data show &lt;a drag&gt;. An analysis of these data"));
-    diagnosis->verdict = "unknown";
+    diagnosis->verdict = diagnose::Verdict::effect;
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), " show &lt;a drag&gt; (quadratic_drag, 90 %)"));
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data leaves this out"));
+    diagnosis->verdict = diagnose::Verdict::unknown;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), "need not be properties of the track"));
-    diagnosis->verdict = "none";
-    CHECK(meaning_on(report::diagnosis_report("d", *diagnosis)) == "The data show &lt;a drag&gt;.");
+    diagnosis->verdict = diagnose::Verdict::none;
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "Nothing is missing that these"));
+    CHECK_FALSE(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data"));
   }
 }
 
@@ -193,12 +201,12 @@ TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and 
 
 TEST_CASE("an analysis leaves an effect out, but puts lost frames right") {
   diagnose::Diagnosis diagnosis;
-  diagnosis.verdict = "effect";
+  diagnosis.verdict = diagnose::Verdict::effect;
   diagnosis.effects.emplace_back().id = "quadratic_drag";
-  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") != std::string::npos);
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves this out") != std::string::npos);
   diagnosis.effects[0].id = "dropped_frames";
-  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") == std::string::npos);
-  CHECK(report::diagnosis_meaning(diagnosis).find("puts the times behind them right") != std::string::npos);
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves this out") == std::string::npos);
+  CHECK(report::diagnosis_meaning(diagnosis).find("corrects the times after them") != std::string::npos);
   diagnosis.effects.emplace_back().id = "quadratic_drag";
-  CHECK(report::diagnosis_meaning(diagnosis).find("leaves that out") != std::string::npos);
+  CHECK(report::diagnosis_meaning(diagnosis).find("leaves this out") != std::string::npos);
 }

@@ -6,7 +6,7 @@ using namespace glidelab;
 
 TEST_CASE("a parameter that is a word has a value and no standard deviation") {
   diagnose::Diagnosis diagnosis;
-  diagnosis.verdict = "effect";
+  diagnosis.verdict = diagnose::Verdict::effect;
   diagnosis.effects.push_back({"compression", "sensor", "", 0.9, {}, {{"codec", 0.0, 0.0, "MJPG"}, {"e", 2.0, 0.5}}});
   std::string json = report::diagnosis_json(diagnosis);
   std::erase_if(json, [](unsigned char c) { return c == ' ' || c == '\n'; });

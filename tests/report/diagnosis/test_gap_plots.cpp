@@ -22,7 +22,7 @@ bool has(const std::string& text, const std::string& part) {
 
 diagnose::Diagnosis two_masses() {
   diagnose::Diagnosis of;
-  of.verdict = "unknown";
+  of.verdict = diagnose::Verdict::unknown;
   diagnose::GapSizes gap;
   gap.before = 6.0;
   gap.after = 1.1;
@@ -112,9 +112,9 @@ TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curve
   CHECK(report::residual_maps(lines).empty());
 }
 
-TEST_CASE("where nothing is missing a page shows the usual model once, not the same twice as before and after") {
+TEST_CASE("where nothing is missing a page shows the nominal model once, not the same twice as before and after") {
   diagnose::Diagnosis none = two_masses();
-  none.verdict = "none";
+  none.verdict = diagnose::Verdict::none;
   none.gap->before = none.gap->after = 1.1;
   none.gap->held_out = {"up"};
   none.gap->before_by_clip = none.gap->after_by_clip = {1.1};
@@ -163,15 +163,15 @@ TEST_CASE("the table of a gap's places gives the largest size with its own devia
 
 TEST_CASE("a tile says that its effect may act with others, and the chart prints what each explanation alone has") {
   diagnose::Diagnosis of;
-  of.verdict = "effect";
+  of.verdict = diagnose::Verdict::effect;
   diagnose::DiagnosedEffect effect{};
   effect.id = "tether";
   effect.probability = effect.joint_probability = 0.998;
   of.effects = {effect};
   of.ranking.resize(2);
-  of.ranking[0].id = "tether";
+  of.ranking[0].explanation.effects = {"tether"};
   of.ranking[0].probability = 0.99;
-  of.ranking[1].id = "rolling_shutter + tether";
+  of.ranking[1].explanation.effects = {"rolling_shutter", "tether"};
   of.ranking[1].probability = 0.008;
   CHECK(has(report::diagnosis_report("tile", of).html, "0.998</b><span>cable that tightens, alone or with another"));
   const report::Plot chart = report::verdict_plots(of).front();

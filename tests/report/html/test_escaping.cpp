@@ -77,7 +77,7 @@ std::vector<core::Preview> evil_previews() {
 
 diagnose::Diagnosis evil_diagnosis() {
   diagnose::Diagnosis of;
-  of.verdict = "effect";
+  of.verdict = diagnose::Verdict::effect;
   of.points = 100;
   of.effects = {{kEvil,
                  kEvil,
@@ -87,13 +87,17 @@ diagnose::Diagnosis evil_diagnosis() {
                  {{kEvil, 1.0, 0.1, "", ""}, {"codec", 0.0, 0.0, kEvil, ""}},
                  0.95,
                  {{kEvil, kEvil, 0.5}}}};
-  of.ranking = {{kEvil, 0.9, 10.0, 12.0, 1, 1.0, ""}, {kEvil, 0.0, 0.0, 0.0, 1, {}, kEvil}};
+  of.ranking = {{{{kEvil}}, 0.9, 10.0, 12.0, 1, 1.0, {}},
+                {{{kEvil}}, 0.0, 0.0, 0.0, 1, {}, diagnose::ImpossibleSize{kEvil, -1.0, {}}}};
   of.none = 0.05;
   of.unknown = 0.05;
-  of.stage = of.next_experiment = of.summary = kEvil;
+  of.stage = kEvil;
+  of.next = diagnose::RecordForEffect{kEvil, diagnose::Alternative{{{kEvil}}, {{kEvil}}}};
   of.regions = {{"t_s", 0.0, 1.0, 5.0, 1e-3, kEvil, kEvil, kEvil, {}, 1e-4, 0, 0.5}};
-  of.limits = {{kEvil}, {kEvil}, kEvil};
-  of.notes = {kEvil};
+  of.limits.contradicted = {{kEvil, kEvil, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
+  of.notes = {diagnose::NoFreeMotion{kEvil, 12},       diagnose::StatementsDisagree{kEvil, kEvil, kEvil, 7.0},
+              diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
+              diagnose::LaunchedOtherWay{kEvil, true}, of.limits.contradicted.front()};
   of.pictures = {{kEvil, kEvil, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
   of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
   of.residuals = {{kEvil,
@@ -112,7 +116,7 @@ diagnose::Diagnosis evil_diagnosis() {
   gap.held_out = {kEvil, kEvil};
   gap.before_by_clip = {5.0, 4.0};
   gap.after_by_clip = {1.0, 1.1};
-  gap.interval95.why_none = kEvil;
+  gap.interval95.too_few = 1;
   gap.parameters = {{kEvil, kEvil, kEvil, 4.0, 0.3, diagnose::DiagnosedParameter{kEvil, 1.0, 0.1, "", ""}, {}}};
   gap.domains = {{"positions", 5.0, 1.0}};
   of.gap = gap;
@@ -158,7 +162,7 @@ TEST_CASE("the page of a diagnosis has every name from a file as text, for each 
   const validate::TwinMotion twin{kEvil,      {0.0, 1.0}, {0.0, 1e-4}, {1e-5, 1e-5},
                                   {1.0, 0.9}, {0.0, 0.1}, {1.0, 0.9},  {0.0, 0.1}};
   check_is_text(report::diagnosis_report(kEvil, of, {twin}));
-  for (const std::string verdict : {"none", "unknown"}) {
+  for (const diagnose::Verdict verdict : {diagnose::Verdict::none, diagnose::Verdict::unknown}) {
     of.verdict = verdict;
     check_is_text(report::diagnosis_report(kEvil, of, {}));
   }
@@ -169,8 +173,11 @@ TEST_CASE("the page of a diagnosed table of lines has every name from a file as 
   diagnose::LineComparison lines;
   lines.lines = 2;
   lines.either_of = {kEvil, kEvil};
-  lines.candidates = {{kEvil, kEvil, 0.5, 1.0, 1.0, 1, {{kEvil, 1.0, 0.1}}, 3.0, 1.0, ""},
-                      {kEvil, "", 0.0, 0.0, 0.0, 1, {}, {}, {}, kEvil}};
+  lines.candidates = {
+      {{{kEvil}}, {}, 0.5, 1.0, 1.0, 1, {{kEvil, 1.0, 0.1}}, 3.0, 1.0, {}},
+      {{{kEvil}, true}, diagnose::UnnamedInLines{}, 0.4, 1.0, 1.0, 1, {{kEvil, 1.0, 0.1}}, 3.0, 1.0, {}},
+      {{}, {}, 0.1, 0.0, 0.0, 0, {}, 9.0, 3.0, {}},
+      {{{kEvil, kEvil}}, {}, 0.0, 0.0, 0.0, 1, {}, {}, {}, diagnose::ImpossibleSize{kEvil, -1.0, {}}}};
   lines.off = {{0.335, 4.0, 1, 2.7, 0.01, 0.0}, {0.335, 4.0, -1, 2.7, -0.01, 0.0}};
   lines.curves = {{kEvil, {0.335, 0.435}, {2.7, 2.1}, {0.01, 0.01}}};
   of.lines = lines;
@@ -185,7 +192,7 @@ TEST_CASE("the page of a plan has every name from a file as text") {
   plan.points = 100;
   plan.noise_m = 1e-5;
   plan.effects = {{kEvil, kEvil, kEvil, 0.1, true, {kEvil}}, {kEvil, kEvil, kEvil, 0.0, false, {}}};
-  plan.notes = {kEvil};
+  plan.notes = {diagnose::NoFreeMotion{kEvil, 12}};
   plan.isolability = evil_diagnosis().isolability;
   check_is_text(report::plan_page(kEvil, plan));
 }

@@ -32,7 +32,7 @@ TEST_CASE("every effect with a size says what the letters of its size mean, on t
   CHECK(report::effect_meaning("smoothing_bias") == "intercepts are off by this for each 1/s² of (K/m)²");
   CHECK(report::effect_meaning("none").empty());
   diagnose::Diagnosis of;
-  of.verdict = "effect";
+  of.verdict = diagnose::Verdict::effect;
   diagnose::DiagnosedEffect effect{};
   effect.id = "eddy_rolloff";
   effect.parameters = {{"v_c_m_s", 2.0, 0.1, "", ""}};
@@ -54,18 +54,18 @@ TEST_CASE("effects that act together are named together, and a cause without a n
 
 TEST_CASE("the page of a diagnosis tells an effect by its name, and its id beside it") {
   diagnose::Diagnosis of;
-  of.verdict = "effect";
+  of.verdict = diagnose::Verdict::effect;
   diagnose::DiagnosedEffect effect{};
   effect.id = "load_independent_friction";
   effect.stage = "dynamics";
   effect.probability = effect.joint_probability = 0.9;
   of.effects = {effect};
   diagnose::RankedExplanation ranked{};
-  ranked.id = "load_independent_friction + tether";
+  ranked.explanation.effects = {"load_independent_friction", "tether"};
   ranked.probability = 0.05;
   ranked.log_evidence_gain = 123456789.123456;
   of.ranking = {ranked, ranked};
-  of.ranking[1].id = "tether";
+  of.ranking[1].explanation.effects = {"tether"};
   of.ranking[1].log_evidence_gain -= 5.84;
   const std::string page = report::diagnosis_report("named", of, {}).html;
   const auto has = [&](const char* part) { return page.find(part) != std::string::npos; };

@@ -12,7 +12,7 @@ namespace {
 
 diagnose::Diagnosis with_gap() {
   diagnose::Diagnosis diagnosis;
-  diagnosis.verdict = "unknown";
+  diagnosis.verdict = diagnose::Verdict::unknown;
   diagnose::GapSizes gap;
   gap.before = 5.0;
   gap.after = 1.2;

@@ -61,7 +61,7 @@ Filmed film(const Kind& kind, const std::string& forces, std::uint64_t seed) {
   return {validate::read_truth(temp / "truth"), diagnose::diagnose({temp / "experiment"}, options)};
 }
 
-/// Whether the truth holds what the usual model says, and no more: one K and one mu for all masses.
+/// Whether the truth holds what the nominal model says, and no more: one K and one mu for all masses.
 bool usual(const validate::Truth& truth) {
   return std::all_of(truth.configurations.begin(), truth.configurations.end(), [&](const auto& c) {
     const auto& first = truth.configurations.front();
@@ -96,9 +96,9 @@ TEST_CASE("a film with nothing wrong is found to lack nothing, whatever the came
     REQUIRE(usual(clean.truth));
     INFO(clean.diagnosis.summary);
     // What a file says of itself withholds nothing.
-    const bool told = clean.diagnosis.verdict == "effect" && clean.diagnosis.effects.size() == 1 &&
+    const bool told = clean.diagnosis.verdict == diagnose::Verdict::effect && clean.diagnosis.effects.size() == 1 &&
                       clean.diagnosis.effects.front().id == "compression";
-    CHECK((clean.diagnosis.verdict == "none" || told));
+    CHECK((clean.diagnosis.verdict == diagnose::Verdict::none || told));
     // Lengths are known to 1.5e-4 of 1.2 m/s; a second of H.264's positions, 0.03 px of 600 a metre that last for five
     // frames, give a speed to 0.1 mm/s. Five of both together. The marker's row is read by up to
     // half a readout off the middle row's time, which the truth counts from; it slows down by 4 m/s² at most.
@@ -107,6 +107,6 @@ TEST_CASE("a film with nothing wrong is found to lack nothing, whatever the came
   // 0.03 kg/m takes 0.04 N of 1.1 N at 1.2 m/s: thousands of standard deviations without loss.
   const Filmed dragged = film(kIndustrial, "[[configuration.force]]\nlaw = \"quadratic\"\nc_kg_m = 0.03\n", 52);
   CHECK(!usual(dragged.truth));
-  REQUIRE(dragged.diagnosis.verdict == "effect");
+  REQUIRE(dragged.diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(dragged.diagnosis.effects.front().id == "quadratic_drag");
 }

@@ -27,7 +27,7 @@ TEST_CASE("a twin moves as the data do, to their noise") {
   const double noise = 3e-5;
   const auto made = tests::made_experiment(tests::made_launches(), kDrag, 11, noise);
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
-  REQUIRE(diagnosis.verdict == "effect");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(diagnosis.twin_lacks.empty());
   tests::TempDir temp;
   base::write_file(temp / "twin.toml", diagnosis.twin);
@@ -84,7 +84,7 @@ TEST_CASE("a twin says which effect a scenario cannot express") {
   const tests::MadeEffect bow = {[](double m, double x, double, double) { return m * 9.8 * 0.01 * x; }, {}};
   const auto made = tests::made_experiment(tests::made_launches(), bow, 7);
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
-  REQUIRE(diagnosis.verdict == "effect");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(diagnosis.twin_lacks.front().what == "track_bow");
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("a twin with a wrong scale lies on the data beside it, and one without
   const tests::MadeEffect longer = {{}, [](double x, double) { return 1.03 * x; }};
   const auto made = tests::made_experiment(tests::made_launches(), longer, 3, 3e-5, 150, 100.0, 0.005);
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
-  REQUIRE(diagnosis.verdict == "effect");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   // 1200 positions each: a ratio of two such is 1 to 2.9 %; five of those.
   CHECK(std::abs(rms(diagnosis) - 1.0) < 0.15);
   auto without = diagnosis;

@@ -71,7 +71,7 @@ void check_camera(const render::Scenario& twin) {
 
 TEST_CASE("a twin of a film has the line time that was withheld, before the camera that filmed", "[slow]") {
   const auto diagnosis = film("[shutter]\nkind = \"rolling\"\nline_readout_s = 3e-5\n", 3);
-  REQUIRE(diagnosis.verdict == "effect");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(diagnosis.twin_lacks.empty());
   const render::Scenario twin = render::read_scenario(diagnosis.twin, "twin.toml");  // with all checks
   const diagnose::DiagnosedParameter line = size(diagnosis, "rolling_shutter", "line_s");
@@ -83,7 +83,7 @@ TEST_CASE("a twin of a film has the line time that was withheld, before the came
 
 TEST_CASE("a twin of a film has the flicker that was withheld, and moves as the film does", "[slow]") {
   const auto diagnosis = film("[light]\nflicker_depth = 0.05\nflicker_hz = 100.0\n", 22);
-  REQUIRE(diagnosis.verdict == "effect");
+  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(diagnosis.twin_lacks.empty());
   const render::Scenario twin = render::read_scenario(diagnosis.twin, "twin.toml");
   CHECK(twin.light.flicker_depth ==

@@ -1,13 +1,36 @@
-/// What the families of unnamed.h are made of: bumps over a range, and the evidence of their sizes.
+/// A family of explanations without a name, and what it is made of: bumps over a range, and the evidence of their
+/// sizes.
 #pragma once
 
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "diagnose/unnamed/unnamed.h"
+#include "diagnose/fit/score_space.h"
 
 namespace glidelab::diagnose {
+
+struct UnnamedRegion {
+  double from = 0.0, to = 0.0;
+  double excess = 0.0;  ///< size over its standard deviation, where that is largest
+  double size = 0.0;    ///< the largest, in the family's unit
+  double sd = 0.0;      ///< of that size
+  double at = 0.0;      ///< where it is
+};
+
+struct UnnamedFamily {
+  std::string variable;  ///< x_m, v_m_s, t_s, mass_kg, direction, group, clip
+  std::string what;      ///< "force", "friction", "displacement", "acceleration", "lateness", "viscous drag", "scale"
+  std::string unit;      ///< of the sizes
+  double log_evidence = 0.0;
+  double gain = 0.0;
+  std::vector<double> at, size, sd;  ///< the unnamed function over its variable
+  std::vector<std::string> names;    ///< of members (clips, groups); empty for a variable
+  std::vector<UnnamedRegion> regions;
+  Eigen::MatrixXd columns;  ///< of the likeliest family that clips share only: its bumps over the noise, own parameters
+                            ///< projected out
+  double tau = 0.0;         ///< standard deviation of their sizes
+};
 
 /// Places from low to high, as many as there are bumps.
 struct Grid {

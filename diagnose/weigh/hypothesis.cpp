@@ -1,7 +1,8 @@
-#include "diagnose/weigh/hypothesis_fits.h"
+#include "diagnose/weigh/hypothesis.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "base/parallel.h"
@@ -9,7 +10,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWorthFitting = 1.0;  // log likelihood gained
+constexpr double kWorthFitting = 1.0;  // log likelihood that a scan must gain to be fitted in full
 
 }  // namespace
 
@@ -80,6 +81,27 @@ const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>
     if (std::set<std::size_t>(one.effects.begin(), one.effects.end()) == effects) return &one;
   }
   return nullptr;
+}
+
+const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
+  std::map<std::multiset<std::size_t>, double> sums;
+  const auto causes = [&](const Hypothesis& hypothesis) {
+    std::multiset<std::size_t> same;
+    for (const std::size_t e : hypothesis.effects) same.insert(first_alike(e, set.pictures));
+    return same;
+  };
+  const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (names(hypothesis)) sums[causes(hypothesis)] += hypothesis.probability;
+  }
+  const Hypothesis* best = nullptr;  // of the likeliest cause the likeliest name: they come by falling probability
+  double most = -1.0;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (!names(hypothesis) || sums[causes(hypothesis)] <= most) continue;
+    most = sums[causes(hypothesis)];
+    best = &hypothesis;
+  }
+  return best;
 }
 
 }  // namespace glidelab::diagnose

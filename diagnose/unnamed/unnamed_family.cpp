@@ -1,4 +1,4 @@
-#include "diagnose/unnamed/unnamed_shape.h"
+#include "diagnose/unnamed/unnamed_family.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kSure = 2.0;      // standard deviations at which a place is named
-constexpr double kUnseen = 1e-10;  // of the largest square: taken up by what is fitted
+constexpr double kUnseen = 1e-10;  // of the largest square: what is less is taken up by what is fitted
 constexpr double kMostSeen = 2e4;  // standard deviations of one bump: four decades from what begins to show
 
 /// Products of columns with each other and with the residual.

@@ -1,0 +1,18 @@
+#include "diagnose/result/explanation.h"
+
+#include <algorithm>
+
+namespace glidelab::diagnose {
+
+bool Explanation::holds(const std::string& id) const {
+  return std::find(effects.begin(), effects.end(), id) != effects.end();
+}
+
+Verdict verdict_by(double none, double unknown) {
+  constexpr double kNotRuledOut = 0.25;  // probability of nothing from which on nothing else is claimed
+  const double named = std::max(0.0, 1.0 - none - unknown);
+  if (none >= kNotRuledOut) return Verdict::none;
+  return named >= unknown ? Verdict::effect : Verdict::unknown;
+}
+
+}  // namespace glidelab::diagnose

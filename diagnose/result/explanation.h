@@ -1,0 +1,25 @@
+/// What may explain the data: nothing beyond the nominal model, effects with a name, something without a name, or both.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace glidelab::diagnose {
+
+enum class Verdict { none, effect, unknown };
+
+/// Ids and words of it are made in report/diagnosis/explanation_text.h.
+struct Explanation {
+  std::vector<std::string> effects = {};  ///< ids, each once
+  bool unnamed = false;                   ///< something without a name acts, alone or beside them
+
+  bool is_nothing() const { return effects.empty() && !unnamed; }
+  bool holds(const std::string& id) const;
+  bool operator==(const Explanation&) const = default;
+};
+
+/// By the probabilities of nothing and of something without a name. Something is claimed only where it is three times
+/// as likely as nothing.
+Verdict verdict_by(double none, double unknown);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,118 @@
+/// What a reader of a diagnosis should know besides the verdict, as data; report/diagnosis/note_words.h puts it into
+/// words.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace glidelab::diagnose {
+
+// Which part of the data took part.
+
+/// A clip holds no free motion of so many points.
+struct NoFreeMotion {
+  std::string clip;
+  std::size_t fewest = 0;
+};
+
+/// One position in `every` is weighed; of the pieces of driven motions, or of all others.
+struct ThinnedPositions {
+  std::size_t points = 0, every = 1;
+  bool driven = false;
+};
+
+/// A recorded force turns the motion so often that it is cut into pieces.
+struct CutAtTurns {
+  std::size_t turns = 0, turns_of_piece = 0;
+};
+
+/// Of the pieces of driven motions only some are weighed.
+struct SomePieces {
+  std::size_t pieces = 0, kept = 0;
+};
+
+/// Frames that look like a hand or a stop are left out.
+struct HandLeftOut {
+  std::size_t frames = 0;
+};
+
+/// A large part of the positions takes no part: left out, or outliers.
+struct SetAside {
+  std::size_t positions = 0;  ///< of the motion, all
+  double part = 0.0;
+};
+
+/// Of a single clip, pieces or quarters are held out in place of clips.
+struct PiecesHeldOut {};
+struct QuartersHeldOut {};
+
+/// Errors of successive positions are correlated.
+struct LastingErrors {
+  double next = 0.0, fourth = 0.0;  ///< correlation from one frame to the next, and to the fourth
+};
+
+// What is stated.
+
+/// Two statements of one set-up's inclination contradict each other.
+struct StatementsDisagree {
+  std::string group, one, other;
+  double z = 0.0;  ///< standard deviations apart
+};
+
+/// Set-ups without a plumb line or an inclination with its uncertainty.
+struct NoInclination {
+  std::vector<std::string> groups;
+};
+
+/// Clips of one set-up state different inclinations.
+struct SplitSetUps {
+  std::vector<std::string> groups;
+};
+
+/// A clip begins the other way than it is stated to be launched.
+struct LaunchedOtherWay {
+  std::string clip;
+  bool stated_up = false;
+};
+
+/// A fit with a drag or a friction below zero, which would drive the glider.
+struct NegativeLoss {
+  enum class Of { drag, friction } of = Of::drag;
+  double value = 0.0, sd = 0.0;  ///< N s/m of drag
+};
+
+/// A stated inclination that the motion contradicts.
+struct ContradictedIncline {
+  std::string group, against;  ///< against: "plumb", "stated"
+  double stated_rad = 0.0, stated_sd_rad = 0.0;
+  double motion_rad = 0.0, motion_sd_rad = 0.0;
+  bool named = false;  ///< by the model with what is named, not by the nominal model
+  double z = 0.0;
+};
+
+// Of a table of lines.
+
+/// Lines whose mean intercept is larger than gravity.
+struct BeyondGravity {
+  double stated_deg = 0.0, intercept_m_s2 = 0.0, gravity_m_s2 = 0.0;
+};
+
+/// The inclination that the mean intercept of lines makes.
+struct MeanIncline {
+  double stated_deg = 0.0, intercept_deg = 0.0;
+  double read_deg = 0.0;  ///< how well the stated one is taken to be read
+};
+
+/// A table states neither errors nor speeds.
+struct TableOfLines {
+  std::size_t lines = 0;
+};
+
+using Note =
+    std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
+                 QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps, LaunchedOtherWay,
+                 NegativeLoss, ContradictedIncline, BeyondGravity, MeanIncline, TableOfLines>;
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,80 @@
+/// Hypotheses that are compared, and the steps that every search among them is made of: scans are ranked, the best are
+/// fitted in full, and what was fitted joins the comparison.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <set>
+#include <vector>
+
+#include "diagnose/frames/frame_effects.h"
+#include "diagnose/frames/missing_frames.h"
+#include "diagnose/scan/effect_scan.h"
+#include "diagnose/unnamed/unnamed_family.h"
+
+namespace glidelab::diagnose {
+
+struct Hypothesis {
+  std::vector<std::size_t> effects;  ///< none, one or two, in the order found; more where pictures show them
+  bool unnamed = false;              ///< and something besides
+  double gain = 0.0;                 ///< log likelihood, against nothing
+  double log_evidence = 0.0;         ///< against nothing, sizes averaged over their priors
+  double probability = 0.0;
+  int fit = -1;                       ///< index in Comparison::fits
+  double unnamed_log_evidence = 0.0;  ///< the part of it that something unnamed has, beside effects or alone
+};
+
+struct Comparison {
+  std::vector<MotionFit> fits;      ///< the nominal one first
+  std::vector<Hypothesis> all;      ///< by falling probability
+  std::vector<EffectScan> scans;    ///< around the nominal fit, as effect_list()
+  std::vector<FrameEffect> frames;  ///< jitter, tails
+  MissingFrames missing;
+  std::vector<UnnamedFamily> unnamed;       ///< around nothing
+  int left_fit = 0;                         ///< index of the best named explanation's fit
+  std::vector<UnnamedFamily> unnamed_left;  ///< beside that named explanation with which they are likeliest
+  int beside_fit = 0;                       ///< index of its fit
+  std::set<std::size_t> in_pictures;        ///< effects that the pictures speak for or against
+  double none = 0.0, unknown = 0.0;
+  std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another
+};
+
+/// How many fits run at a time, and whom to tell how far the comparison is; an exception from there ends it.
+struct Work {
+  int jobs = 1;
+  const std::function<void(double)>& done;
+  double part = 0.0;
+
+  void look() const { done(part); }
+  Work at(double now) const { return {jobs, done, now}; }
+};
+
+struct Found {
+  Hypothesis hypothesis;
+  MotionFit fit;
+};
+
+/// The full fit of one more effect, and its evidence.
+Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside);
+
+/// Joins those compared; of the same effects the likelier stays.
+void add(Comparison& comparison, Found found);
+
+/// Those that are worth a full fit, by falling evidence.
+std::vector<const EffectScan*> best_of(const std::vector<EffectScan>& scans, std::size_t most);
+
+/// Explanations of so many effects that were fitted, by falling evidence.
+std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t size, std::size_t most);
+
+/// Full fits of the best scans around a fit.
+void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best,
+              const Hypothesis& beside, const Work& work, Comparison& comparison);
+
+/// One explanation among those fitted; null: none.
+const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects);
+
+/// The likeliest hypothesis that names something, or null; causes that no experiment of tracks tells apart count
+/// together (first_alike()), so that two names for one cause are not beaten by a less likely one with a single name.
+const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,25 @@
+/// Explanations and verdicts as ids (for files and terminals) and as names (for people).
+#pragma once
+
+#include <string>
+
+#include "diagnose/result/diagnosis.h"
+
+namespace glidelab::report {
+
+/// "none", "effect", "unknown", as diagnosis.json has it.
+std::string verdict_id(diagnose::Verdict verdict);
+
+/// "none", "scale_error", "scale_error + tether", "unknown", "scale_error + unknown".
+std::string explanation_id(const diagnose::Explanation& explanation);
+
+/// The same in the short names of effects: "wrong scale + something without a name".
+std::string explanation_name(const diagnose::Explanation& explanation);
+
+/// The name, and the id small beside it. HTML.
+std::string explanation_html(const diagnose::Explanation& explanation);
+
+/// A probability for a person: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
+std::string percent(double probability);
+
+}  // namespace glidelab::report

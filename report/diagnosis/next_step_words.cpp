@@ -1,0 +1,235 @@
+#include "report/diagnosis/next_step_words.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/text/number_text.h"
+#include "base/text/size_text.h"
+#include "report/diagnosis/explanation_text.h"
+
+namespace glidelab::report {
+namespace {
+
+using diagnose::Change;
+using diagnose::ChangeKind;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which its figure means no more
+constexpr const char* kMoveCamera =
+    "what belongs to the track stays at its place on it, what belongs to the image moves with the camera.";
+
+const char* kind_words(ChangeKind kind) {
+  switch (kind) {
+    case ChangeKind::launch:
+      return "launches";
+    case ChangeKind::mass:
+      return "masses";
+    case ChangeKind::inclination:
+      return "inclinations";
+    case ChangeKind::frame_rate:
+      return "frame rates";
+    case ChangeKind::exposure:
+      return "exposures";
+    case ChangeKind::plumb:
+      return "a plumb view";
+    case ChangeKind::pattern:
+      return "a pattern check";
+    case ChangeKind::clock:
+      return "a stop-watch";
+  }
+  return "";
+}
+
+/// "62 changes weighed (launches, masses, …)"
+std::string weighed_words(const diagnose::ChangesWeighed& of) {
+  std::string kinds;
+  for (const ChangeKind kind : of.kinds) kinds += (kinds.empty() ? "" : ", ") + std::string(kind_words(kind));
+  return fmt::format("{} changes weighed ({})", of.count, kinds);
+}
+
+/// An order: "Record a launch uphill at 1.2 m/s with 535 g".
+std::string change_words(const Change& change) {
+  const std::string on = change.on.empty() ? "" : fmt::format(" on set-up \"{}\"", change.on);
+  std::string launch, grams;
+  if (change.clip) {
+    launch = fmt::format("Record a launch {} at {:.2g} m/s", change.clip->v0_m_s < 0.0 ? "uphill" : "downhill",
+                         std::abs(change.clip->v0_m_s));
+    grams = fmt::format("{:.0f} g", 1000.0 * change.clip->mass_kg);
+  }
+  switch (change.kind) {
+    case ChangeKind::launch:
+      return fmt::format("{}{} with {}", launch, on, grams);
+    case ChangeKind::mass:
+      return fmt::format("{}{} with the mass changed to {}", launch, on, grams);
+    case ChangeKind::inclination:
+      return fmt::format("{} with {} on the track {}", launch, grams,
+                         change.set_up->alpha_rad == 0.0
+                             ? "made level"
+                             : fmt::format("tilted to {:.1f}°", change.set_up->alpha_rad / kDegree));
+    case ChangeKind::frame_rate:
+      return fmt::format("{}{} with {} at {:.4g} frames per second instead of {:.4g}", launch, on, grams,
+                         change.clip->rate_hz, change.rate_so_far_hz);
+    case ChangeKind::exposure:
+      return fmt::format("{}{} with {} with half the exposure (it halves the blur)", launch, on, grams);
+    case ChangeKind::plumb:
+      return fmt::format("Film a plumb line{} (it states the inclination to {:.2g}°)", on,
+                         change.statements.front().sd / kDegree);
+    case ChangeKind::pattern:
+      return fmt::format(
+          "Lay the pattern (or a ruler) in the plane of motion on each half of the track, and compare its length there "
+          "({:.1f} mm in {:.2g} m)",
+          1000.0 * change.statements.front().sd, change.statements.front().to_m - change.statements.front().from_m);
+    case ChangeKind::clock:
+      return fmt::format("Film a running stop-watch for {:.0f} s (it shows the frame rate)",
+                         1.0 / (change.statements.front().sd * change.rate_so_far_hz));
+  }
+  return {};
+}
+
+/// "whether it is scale_error or direction_asymmetry or frame_rate_error, and whether stribeck acts".
+std::string doubt_words(const std::vector<diagnose::Alternative>& doubt) {
+  std::string between, acts;
+  for (const diagnose::Alternative& of : doubt) {
+    const std::string one = explanation_id(of.one);
+    if (of.other.is_nothing()) {
+      acts += (acts.empty() ? "" : " or ") + one;
+      continue;
+    }
+    if (between.find(one) == std::string::npos) between += (between.empty() ? "" : " or ") + one;
+    between += " or " + explanation_id(of.other);
+  }
+  std::string words = between.empty() ? "" : "whether it is " + between;
+  if (!acts.empty()) words += (words.empty() ? "" : ", and ") + fmt::format("whether {} acts", acts);
+  return words;
+}
+
+std::string likelihood_words(double gain) {
+  if (gain > kMostStated) return fmt::format("more than {:.0f}", kMostStated);
+  return gain < 10.0 ? fmt::format("{:.1f}", gain) : fmt::format("{:.0f}", gain);
+}
+
+std::string routine_words(diagnose::Routine routine) {
+  using diagnose::Routine;
+  switch (routine) {
+    case Routine::repeat_each_kind:
+      return "Repeat one launch of each kind: more clips make it surer.";
+    case Routine::repeat_launch:
+      return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
+             "is "
+             "no law of motion.";
+    case Routine::start_later:
+      return "Repeat one of the launches three times, each one second later after the start of the camera: what "
+             "belongs to the clip's time (a clock, something that warms or settles) stays at that time, what acts on "
+             "the glider comes later with it.";
+    case Routine::turn_glider:
+      return "Turn the glider round on the track and record the same launches each way: what belongs to the glider "
+             "turns with it, what belongs to the track does not.";
+    case Routine::set_up_again:
+      return "Take the track down, set it up again at the same inclination, and record the same launches: what differs "
+             "then comes from setting it up, not from the inclination.";
+    case Routine::move_camera:
+      return std::string(
+                 "Move the camera along the track by a third of the view and record the same launches again: ") +
+             kMoveCamera;
+    case Routine::other_speeds:
+      return "Record launches at two further speeds, with one mass and at one inclination: the missing force depends "
+             "on "
+             "the speed, and its shape tells what it is.";
+    case Routine::measure_inclination:
+      return "Measure the inclination again, with a level on the track or a plumb line in the image: the motion and "
+             "the "
+             "statement cannot both be right.";
+    case Routine::check_statements:
+      return "Check the stated downhill direction, inclinations and masses, then launch one glider both ways: friction "
+             "slows it whichever way it goes, an inclination does not.";
+    case Routine::second_mass:
+      return "Record a second mass: with one, a friction force is simply mu.";
+  }
+  return {};
+}
+
+/// Words for every kind of step; a kind without them does not compile.
+struct Words {
+  std::string operator()(std::monostate) const { return {}; }
+
+  std::string operator()(diagnose::Routine of) const { return routine_words(of); }
+
+  std::string operator()(const diagnose::RepeatClip& of) const {
+    return fmt::format(
+        "Repeat clip {} three times without changing anything: what is its own does not come back, what its launch, "
+        "mass or set-up does to it comes back each time.",
+        of.clip);
+  }
+
+  std::string operator()(const diagnose::CoverRegion& of) const {
+    const bool places = of.over == diagnose::CoverRegion::Over::places;
+    const std::string launch =
+        fmt::format("{}: of {} launches it has most positions ({} of {}) at {} from {} to {} {}, where the excess lies",
+                    change_words(of.launch), of.launches, of.inside, of.positions, places ? "places" : "speeds",
+                    base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
+    if (!places) return launch + ", and its shape over the speed tells what it is.";
+    return fmt::format("Move the camera along the track by a third of the view. {}; {}", launch, kMoveCamera);
+  }
+
+  std::string operator()(const diagnose::AddMass& of) const {
+    return fmt::format(
+        "Record a further mass of {:.0f} g both ways, and the lightest one again: what depends on the mass then has a "
+        "third point on its curve, what differed by chance does not come back.",
+        1000.0 * of.mass_kg);
+  }
+
+  std::string operator()(const diagnose::RecordForEffect& of) const {
+    return of.doubt ? fmt::format("It is in doubt {}. {}", doubt_words({*of.doubt}), of.words) : of.words;
+  }
+
+  std::string operator()(const diagnose::SettleDoubt& of) const {
+    if (!of.by) {
+      return fmt::format(
+          "None of {} would settle {} (expected log likelihood {:.2g} at most): less noise (a longer lens, a larger "
+          "marker) or many more clips would.",
+          weighed_words(of.weighed), doubt_words(of.doubt), of.log_likelihood);
+    }
+    return fmt::format("{}: of {} this one would best settle {} (expected log likelihood {}).", change_words(*of.by),
+                       weighed_words(of.weighed), doubt_words(of.doubt), likelihood_words(of.log_likelihood));
+  }
+
+  std::string operator()(const diagnose::SharpenParameter& of) const {
+    const base::NamedUnit named =
+        of.effect.empty() ? base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""} : base::name_and_unit(of.key);
+    std::string text =
+        fmt::format("Nothing else is likely. The least known parameter is {}{} ({}).", named.name,
+                    of.effect.empty() ? "" : " of " + of.effect, base::size_and_sd_text(of.value, of.sd, named.unit));
+    if (of.by) {
+      text += fmt::format(" {}: of {} this one sharpens it most, to ± {}.", change_words(*of.by),
+                          weighed_words(of.weighed), base::size_text(of.sd_after, 2, named.unit));
+    } else {
+      text += fmt::format(
+          " None of {} would sharpen it by a twentieth: more clips of each kind would, by the square root of their "
+          "number.",
+          weighed_words(of.weighed));
+    }
+    if (of.one_mass) {
+      text += " With one mass, a friction that does not grow with the load counts as mu: a second mass tells.";
+    }
+    return text;
+  }
+
+  std::string operator()(const diagnose::TellLinesApart& of) const {
+    return fmt::format(
+        "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its square, "
+        "a friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} moves its "
+        "intercepts by {} each, the smoothing bias by {}.",
+        1000.0 * of.mass_kg, base::size_text(of.force_n, 2, "N"), base::size_text(of.by_force_m_s2, 2, "m/s²"),
+        base::size_text(of.by_bias_m_s2, 2, "m/s²"));
+  }
+};
+
+}  // namespace
+
+std::string next_step_words(const diagnose::NextStep& step) {
+  return std::visit(Words{}, step);
+}
+
+}  // namespace glidelab::report
