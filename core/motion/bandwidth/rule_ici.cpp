@@ -120,12 +120,11 @@ std::optional<BandwidthPick> by_intersection(const BandwidthProblem& problem) {
 }  // namespace
 
 extern const BandwidthRule kEmpiricalBias = {
-    "ebbs", "empirical bias: watches how a at each point drifts as h grows, and takes that for the bias",
-    "the bias goes as h²", by_empirical_bias};
+    "ebbs", "empirical bias: takes the drift of a at each point, as h grows, for the bias", "the bias goes as h²",
+    by_empirical_bias};
 extern const BandwidthRule kIntersectionOfIntervals = {
     "ici",
-    "at each point widens h until the confidence intervals of a no longer agree; here the median over the points is "
-    "taken",
+    "widens h at each point until the confidence intervals of a no longer agree; takes the median over the points",
     "the noise is known", by_intersection};
 
 }  // namespace glidelab::core

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
 
+#include "base/files/staged_output.h"
 #include "core/motion/smoothing/kernel_constants.h"
 #include "core/motion/smoothing/local_cubic.h"
+#include "test_paths.h"
 #include "tests/catch.h"
 
 using namespace glidelab::core;
@@ -247,4 +250,27 @@ TEST_CASE("where x'''' drowns in the noise the plug-in rule says so and takes th
   const auto pick = find_bandwidth_rule("plug-in")->choose(problem_of(of, noisy(of, 2)));
   REQUIRE(pick);
   CHECK(pick->method.find("does not stand out") != std::string::npos);
+}
+
+TEST_CASE("every rule states what it does and assumes, is found by its name, and has its row in the guide") {
+  const std::string guide =
+      glidelab::base::read_file(std::filesystem::path(glidelab::tests::kSourceDir) / "docs/guide/bandwidth.md");
+  const std::vector<std::string> choices = bandwidth_choices();
+  REQUIRE(choices.size() == bandwidth_rules().size() + 1);
+  CHECK(choices.front() == kLinesRule);
+  for (std::size_t i = 0; i < bandwidth_rules().size(); ++i) {
+    const BandwidthRule& rule = bandwidth_rules()[i];
+    INFO(rule.name);
+    CHECK(choices[i + 1] == rule.name);
+    CHECK(find_bandwidth_rule(rule.name) == &rule);
+    REQUIRE(rule.choose != nullptr);
+    CHECK_FALSE(rule.words.empty());
+    const std::string row = "\n| `" + std::string(rule.name) + "` | ";
+    const std::size_t at = guide.find(row);
+    REQUIRE(at != std::string::npos);
+    const std::string told = guide.substr(at + row.size(), guide.find('\n', at + 1) - at - row.size());
+    CHECK(told.find(rule.words) == 0);
+    CHECK(told.find("| " + std::string(rule.assumes) + " |") != std::string::npos);
+  }
+  CHECK(guide.find("\n| `" + std::string(kLinesRule) + "`") != std::string::npos);
 }
