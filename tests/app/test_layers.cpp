@@ -40,7 +40,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "validate/study/sweep/sweep_summary.h", "validate/study/requirement/requirement.h",
       "validate/study/coverage/interval_coverage.h", "validate/blind/blind_score.h", "diagnose/result/diagnosis.h",
       "diagnose/result/next_step.h", "diagnose/result/note.h", "diagnose/effects/effect_library.h",
-      "diagnose/effects/effect_list.h", "validate/film/twin_motions.h", "diagnose/next/plan.h"}},  // the result types
+      "diagnose/effects/effect_list.h", "validate/film/twin_motions.h",
+      "diagnose/next/plan.h"}},  // the result types, and what effects are called
     {"app", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
 };
 

@@ -2,7 +2,7 @@
 #include "validate/study/baseline/baseline.h"
 #include "validate/study/baseline/baseline_file.h"
 
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

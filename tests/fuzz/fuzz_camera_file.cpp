@@ -2,7 +2,7 @@
 #include "render/scenario/camera_catalogue.h"
 
 #include "render/scenario/scenario.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/one_glider.h"
 
 using namespace glidelab;

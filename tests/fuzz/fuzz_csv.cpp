@@ -1,6 +1,6 @@
 /// The table of numbers that Glidelab writes itself, with a wanted, an optional and other columns.
 #include "base/text/csv.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

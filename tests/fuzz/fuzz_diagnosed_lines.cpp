@@ -1,6 +1,6 @@
 /// A table of fitted lines, read and diagnosed: any finite numbers may stand in it.
 #include "diagnose/lines/line_diagnosis.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

@@ -1,6 +1,6 @@
 /// experiment.toml, in a folder in which the files of the seeds exist.
 #include "core/experiment/experiment.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

@@ -1,6 +1,6 @@
 /// characterize.toml, in a folder with the least sets of frames.
 #include "core/characterize/flat_field_folder.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

@@ -1,6 +1,6 @@
 /// A table of fitted lines, read only: what is made of the numbers is diagnosed_lines.cpp.
 #include "diagnose/lines/line_table.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

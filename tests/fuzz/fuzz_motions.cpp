@@ -2,7 +2,7 @@
 /// the whole scenario.
 #include "base/toml/strict_toml.h"
 #include "sim/motion/motion_scenario.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

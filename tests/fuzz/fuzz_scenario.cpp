@@ -1,7 +1,7 @@
 /// A scenario with all its checks, among them the motion that decides whether the marker is seen: a solver that breaks
 /// down under absurd forces is an outcome.
 #include "render/scenario/scenario.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

@@ -2,7 +2,7 @@
 /// NumericalError.
 #include "validate/study/sweep/design/read_sweep.h"
 
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/one_glider.h"
 
 using namespace glidelab;

@@ -1,8 +1,8 @@
 /// Values put into a document at dotted paths: the path is the first line, the document is the rest. What comes out is
 /// TOML again.
-#include "base/toml/toml_set.h"
 #include "base/toml/strict_toml.h"
-#include "tests/fuzz/target.h"
+#include "base/toml/toml_set.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

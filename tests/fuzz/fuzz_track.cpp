@@ -1,7 +1,7 @@
 /// A track: our own `t_s,x_m`, and what Tracker, Logger Pro, Vernier, PASCO Capstone, phyphox and spreadsheets export.
 /// The first byte chooses how the column is asked for.
 #include "core/track/track_csv.h"
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

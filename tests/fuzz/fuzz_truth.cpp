@@ -1,7 +1,7 @@
 /// truth.json with the trajectory that the seed names.
 #include "validate/truth/truth_folder.h"
 
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

@@ -1,7 +1,7 @@
 /// A diagnosis.json, as a blind study reads what another process has written.
 #include "validate/blind/blind_score.h"
 
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;
 

@@ -1,7 +1,7 @@
 /// Runs one target over the files and folders named on the command line; what an input does wrong ends the program.
 #include <cstdio>
 
-#include "tests/fuzz/target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;

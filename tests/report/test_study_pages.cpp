@@ -88,7 +88,7 @@ TEST_CASE("the numbers in the plot of require are those of its tables, the cheap
   CHECK(has(plotted, "e-05,2.600"));
   CHECK(has(plotted, "# missed\n10,0.002,2,"));
   CHECK(has(page.html, "1 of 2 reach the target. <b>1. webcam</b> is the one with the fewest pixels"));
-  CHECK(has(page.html, "its rms error of µ is (19.8\u00a0±\u00a05.4) · 10⁻⁶, 25 times within the target"));
+  CHECK(has(page.html, "its rms error of µ is (19.8\u00a0±\u00a05.4) · 10⁻⁶, 25 times below the target"));
 }
 
 TEST_CASE("points of require that lie close together share one label") {

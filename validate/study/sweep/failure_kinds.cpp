@@ -12,7 +12,7 @@ namespace glidelab::validate {
 namespace {
 
 constexpr int kAsTheyAre = 6;  // significant digits that a person still reads
-constexpr int kShown = 4;
+constexpr int kShownDigits = 4;
 
 bool is_digit(std::string_view text, std::size_t at) {
   return at < text.size() && text[at] >= '0' && text[at] <= '9';
@@ -86,7 +86,7 @@ std::string with_rounded_numbers(std::string_view text) {
   return rewritten(text, [](std::string_view number) {
     const bool whole = number.find_first_of(".eE") == std::string_view::npos;
     if (whole || significant_digits(number) <= kAsTheyAre) return std::string(number);
-    return base::number_text(std::strtod(std::string(number).c_str(), nullptr), kShown);
+    return base::number_text(std::strtod(std::string(number).c_str(), nullptr), kShownDigits);
   });
 }
 

@@ -65,7 +65,7 @@ std::vector<AccelerationError> accelerations_of(Database& database, const std::v
 /// "6 runs with camera.frame_rate_hz = 120: …": what is wrong with a scenario names it at first. Of runs whose reasons
 /// differ in their numbers the first is shown.
 std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
-  constexpr std::size_t kShown = 5;
+  constexpr std::size_t kShownKinds = 5;
   FailureKinds reasons;
   SqlStatement select = database.prepare("SELECT why FROM run WHERE status = 'failed' ORDER BY run");
   while (select.step()) reasons.add(select.text(0));
@@ -73,7 +73,7 @@ std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std
   const std::string file = sweep.scenario_file.string() + " with ";
   std::vector<std::string> failures;
   std::uint64_t others = failed;
-  for (std::size_t k = 0; k < std::min(kinds.size(), kShown); ++k) {
+  for (std::size_t k = 0; k < std::min(kinds.size(), kShownKinds); ++k) {
     const FailureKind& kind = kinds[k];
     const bool names = kind.example.starts_with(file);
     const std::string why = with_rounded_numbers(names ? kind.example.substr(file.size()) : kind.example);

@@ -82,9 +82,9 @@ std::string run_table(const Sweep& sweep) {
 }
 
 std::string shorten(const std::string& text) {
-  constexpr std::size_t kShown = 60;
+  constexpr std::size_t kShownLength = 60;
   if (text.find('\n') != std::string::npos) return "another text";
-  return fmt::format("\"{}\"", text.size() > kShown ? text.substr(0, kShown) + "…" : text);
+  return fmt::format("\"{}\"", text.size() > kShownLength ? text.substr(0, kShownLength) + "…" : text);
 }
 
 }  // namespace
