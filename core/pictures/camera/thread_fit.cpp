@@ -102,7 +102,8 @@ std::optional<LeastSquaresFit<kParameters>> fit_best(const std::vector<ThreadRow
     Vector start;
     start << 0.0, 0.0, std::log(setting.width_px), std::log(blur);
     const auto found = fit_from(rows, setting, start);
-    if (found.stop != FitStop::converged && found.stop != FitStop::iterations) continue;
+    // A valley along width or blur may be walked for long; the shift and the turn stand before.
+    if (found.stop == base::FitStop::singular || found.stop == base::FitStop::out_of_range) continue;
     if (!(found.rms > 0.0) || (best && best->rms <= found.rms)) continue;
     best = found;
   }

@@ -154,8 +154,8 @@ LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const
   const Eigen::Matrix<double, N, 1> step = steps_of<N>(guess, amplitude);
   LeastSquaresFit<N> found =
       fit_least_squares<N>(model, start_of<N>(guess, contrast), step, kMaxIterations, is_hopeless);
-  if (found.stop == FitStop::iterations && found.parameters[kLogBlur] < std::log(kSharpEdge_px) &&
-      found.rms < kLargestResidual * amplitude) {
+  const bool unsettled = found.stop == base::FitStop::iterations || found.stop == base::FitStop::no_descent;
+  if (unsettled && found.parameters[kLogBlur] < std::log(kSharpEdge_px) && found.rms < kLargestResidual * amplitude) {
     found = fit_least_squares<N>(model, found.parameters, step, kMoreIterations);
   }
   return found;
@@ -227,7 +227,7 @@ std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& gues
   if (!contrast) return std::nullopt;
   MarkerModel<N> pixels(window);
   const LeastSquaresFit<N> found = solve<N>(pixels, guess, *contrast);
-  if (found.stop != FitStop::converged) return std::nullopt;
+  if (!base::is_settled(found.stop)) return std::nullopt;
   double total_weight = 0.0;
   for (const double w : window.weight()) total_weight += w;
   if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;
