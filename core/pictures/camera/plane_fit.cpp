@@ -221,8 +221,8 @@ std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, 
   const double expected_px = std::hypot(noise.white_px, noise.correlated_px);
   if (fit.rms_px <= std::max(kLeastOffPx, kOff * expected_px)) return {};
   return fmt::format(
-      "the plane {} of group \"{}\" {} not agree with the camera: the pattern's corners are {:.2g} px (rms) from where "
-      "the camera of all views and {} plane put them, and {:.2g} px is what the corners' noise explains",
+      "the plane {} of group \"{}\" {} not agree with the camera: the pattern's corners lie {:.2g} px (rms) from where "
+      "the camera and {} plane place them; their noise explains {:.2g} px",
       views == 1 ? "view" : "views", group, views == 1 ? "does" : "do", fit.rms_px, views == 1 ? "a" : "one",
       expected_px);
 }

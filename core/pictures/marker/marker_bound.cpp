@@ -22,7 +22,7 @@ double pixel_of(const Vector& p, double u, double v) {
 
 }  // namespace
 
-double least_centre_sd_px(const DiscPicture& disc, double reach_px) {
+double least_centre_sd_px(const DiscImage& disc, double reach_px) {
   Vector p;
   p << disc.u, disc.v, disc.radius_px, disc.blur_px, disc.amplitude, 0.0, 0.0, 0.0;
   Eigen::Matrix<double, kParameters, kParameters> information;
