@@ -126,7 +126,7 @@ std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quali
         100.0 * *bright.successive_ratio);
   }
   const std::string curve =
-      ": the codes are not proportional to the light (gamma, tone curve, video range), or the light is not constant; "
+      ": the codes are not linear in the light (gamma, tone curve, video range), or the light is not constant; "
       "linear or raw images are needed";
   if (!(line.gain > 0.0)) return "the variance does not rise with the mean" + curve;
   if (quality.bend > kBendRefused) {

@@ -272,7 +272,7 @@ TEST_CASE("codes that are not linear in light give no gain but the reason") {
     const core::CameraMeasurement found = measure(camera, usual_plan(camera));
     INFO(name << ", " << bits << " bits: gain " << found.gain_dn_per_e.value.value_or(0.0));
     CHECK_FALSE(found.gain_dn_per_e.value);
-    CHECK(contains(found.gain_dn_per_e.why, "not proportional to the light"));
+    CHECK(contains(found.gain_dn_per_e.why, "not linear in the light"));
     CHECK_FALSE(found.read_noise_e.value);
     CHECK_FALSE(found.full_well_e.value);
     CHECK_FALSE(found.prnu.value);
