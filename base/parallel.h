@@ -1,7 +1,7 @@
-/// Pieces of work on a few threads, with errors that come out where they were started.
+/// Pieces of work on several threads, with errors that are thrown where the work was started.
 ///
-/// The exception that is thrown again is that of the piece with the smallest number among those that failed; once one
-/// has failed no new piece is begun.
+/// Of the pieces that failed, the exception of the one with the smallest number is rethrown; once one has failed, no
+/// new piece is begun.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace glidelab::base {
 
-/// Sets a flag where its scope is left by an exception.
+/// Sets a flag if its scope is left by an exception.
 class FlagOnThrow {
  public:
   explicit FlagOnThrow(std::atomic<bool>& flag) : flag_(flag) {}

@@ -1,4 +1,4 @@
-/// How long work tells how far it is, and how it is stopped.
+/// How a long computation reports its progress, and how it is stopped.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@ namespace glidelab::base {
 /// May throw Interrupted, which ends the work and cleans up.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
-/// Says nothing and never stops.
+/// Reports nothing and never stops.
 inline void no_progress(std::string_view, double) {}
 
 }  // namespace glidelab::base

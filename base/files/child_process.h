@@ -11,15 +11,15 @@
 
 namespace glidelab::base {
 
-/// What waitpid tells. `program` is looked for in PATH where it has no slash; `environment` holds NAME=value, and where
-/// it is empty the child gets this program's own. EnvironmentError where it cannot be started; `hint` completes the
-/// message. Where `stop` is given it is asked every 20 ms; once it says so the child's group gets SIGTERM, and SIGKILL
-/// half a second later.
+/// The status of waitpid. `program` is looked up in PATH if it has no slash; `environment` holds NAME=value; if it
+/// is empty, the child gets this program's own. EnvironmentError if it cannot be started; `hint` completes the message.
+/// `stop`, if given, is asked every 20 ms; once it returns true, the child's group gets SIGTERM, and SIGKILL half a
+/// second later.
 int run_program(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
                 std::vector<std::string> environment = {}, const std::string& hint = {},
                 const std::function<bool()>& stop = {});
 
-/// "" where it ended with status 0, else how it ended.
+/// "" if it ended with status 0, else how it ended.
 std::string how_it_failed(int status);
 
 }  // namespace glidelab::base

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 
 namespace glidelab::base {
 namespace {

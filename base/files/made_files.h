@@ -1,10 +1,10 @@
-/// Which files of a folder this program made, so that it replaces these and nobody's own.
+/// Which files of a folder this program made, so that it replaces these and no file of the user's own.
 ///
 /// A folder that is replaced as a whole (an experiment that `render` made, its truth, a page's plots) holds a list of
-/// its files, each with its size and a sum over its bytes (FNV-1a, 64 bits): what is not in the list, or is not as the
-/// list says, is somebody's own. StagedOutput::publish_files takes such files on into the folder that takes its place:
-/// one that was made and changed since as NAME.changed, where there is a new NAME. The list lies in the folder, so that
-/// the two are put in place at once.
+/// its files, each with its size and a checksum of its bytes (FNV-1a, 64 bits): what is not in the list, or differs
+/// from it, is the user's own. StagedOutput::publish_files carries such files over into the folder that replaces it: a
+/// file that was made and changed since becomes NAME.changed if there is a new NAME. The list lies in the folder, so
+/// that both are put in place at once.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,8 @@ struct OwnFile {
   bool changed = false;        ///< made, and changed since
 };
 
-/// What in `dir` (which exists) and below is somebody's own, by name. Everything where there is no list; links always.
-/// InputError where a file cannot be read, or the list is none.
+/// The user's own files in `dir` (which exists) and below, by name: all if there is no list; links always. InputError
+/// if a file cannot be read, or the list is not such a list.
 std::vector<OwnFile> own_files(const std::filesystem::path& dir);
 
 }  // namespace glidelab::base

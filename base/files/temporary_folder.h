@@ -1,4 +1,4 @@
-/// A new folder among the system's temporary ones, removed with its contents at the end of its life.
+/// A new temporary folder, removed with its contents at the end of the object's life.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@ namespace glidelab::base {
 
 class TemporaryFolder {
  public:
-  /// Makes `glidelab-<purpose>-XXXXXX`; EnvironmentError where there is no place for temporary files or it is full.
+  /// Makes `glidelab-<purpose>-XXXXXX`; EnvironmentError if there is no folder for temporary files or it is full.
   explicit TemporaryFolder(const std::string& purpose);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

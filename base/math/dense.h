@@ -32,8 +32,8 @@ Eigen::MatrixXd solve_lower(const MatrixView& lower, const MatrixView& b);
 /// X that minimises |A X - B|, by Householder's QR with column pivoting.
 Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b);
 
-/// An orthonormal basis of what A's columns span, by the same QR: a column that the others make up to `alike` of the
-/// longest adds nothing. Rows of A, and as many columns as A has rank.
+/// An orthonormal basis of the span of A's columns, by the same QR; a column whose remainder is below `alike` times the
+/// longest adds nothing. As many rows as A, and as many columns as its rank.
 Eigen::MatrixXd orthonormal_columns(const MatrixView& a, double alike);
 
 /// A = V diag(values) V' of a symmetric A (its lower triangle), values ascending, vectors in columns.

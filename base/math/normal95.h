@@ -1,9 +1,9 @@
-/// The normal distribution's 95 %.
+/// The 95 % interval of the normal distribution.
 #pragma once
 
 namespace glidelab::base {
 
-/// Standard deviations to either side that hold 95 % of a normal distribution: the quantile of 0.975.
+/// Half its width in standard deviations: the 0.975 quantile.
 inline constexpr double kNormal95 = 1.959963984540054;
 
 }  // namespace glidelab::base

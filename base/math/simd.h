@@ -1,13 +1,13 @@
-/// Which vector instructions a loop takes where there is a choice.
+/// Which vector instructions a loop uses if there is a choice.
 #pragma once
 
 namespace glidelab::base {
 
 /// All give the same results to the last bit (tests of each loop compare them).
 enum class Simd {
-  best,      ///< the widest that this machine has
-  baseline,  ///< what every machine of this architecture has
-  portable   ///< none by name
+  best,      ///< the widest of this machine
+  baseline,  ///< those that every machine of this architecture has
+  portable   ///< none explicitly
 };
 
 /// Whether `simd` means AVX2 on this machine.

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 
 namespace glidelab::base {
 namespace {

@@ -1,7 +1,7 @@
 /// Comma-separated tables of numbers with a header line; lines that start with '#' are comments.
 ///
-/// The file may end lines with LF or CRLF and may start with a UTF-8 byte-order mark. A decimal comma shows as a wrong
-/// number of fields and is named as such.
+/// Lines may end with LF or CRLF, and the file may start with a UTF-8 byte-order mark. A decimal comma shows up as a
+/// wrong number of fields, and the message says so.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@ struct CsvTable {
   std::string file;
   std::vector<std::string> header;
   std::vector<std::vector<double>> columns;  ///< columns[c][row], all of one length; every value finite
-  std::vector<double> last_digit;            ///< of a column: the least that a last digit is worth, 0.001 for "2.310"
+  std::vector<double> last_digit;            ///< of a column: the smallest value of a last digit, 0.001 for "2.310"
   std::vector<int> line;                     ///< line[row], 1-based
 
   bool has(std::string_view name) const;
-  /// The column of this name; InputError where there is none.
+  /// The column of this name; InputError if there is none.
   const std::vector<double>& column(std::string_view name) const { return columns[place(name)]; }
   double last_digit_of(std::string_view name) const { return last_digit[place(name)]; }
 
@@ -28,8 +28,8 @@ struct CsvTable {
   std::size_t place(std::string_view name) const;
 };
 
-/// Reads the columns named in `wanted` (required) and `optional`; other columns are ignored where `allow_others`,
-/// errors otherwise. InputError (up to ten issues, with line and column) for anything that is no finite number.
+/// Reads the columns named in `wanted` (required) and `optional`; other columns are ignored if `allow_others`, errors
+/// otherwise. InputError (up to ten issues, with line and column) for anything that is not a finite number.
 CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::string>& wanted,
                   const std::vector<std::string>& optional = {}, bool allow_others = false);
 

@@ -9,7 +9,7 @@ namespace glidelab::base {
 /// below 1e-7 and from 1e6 on; "–" for what is not finite.
 std::string number_text(double value, int digits = 4);
 
-/// The same with the zeros at the end, for columns of numbers that are known alike: "1.10" below "1.04", "10.0"; "0".
+/// The same with the zeros at the end, for columns of numbers of equal precision: "1.10" below "1.04", "10.0"; "0".
 std::string digits_text(double value, int digits);
 
 /// The value with as many decimals as two significant digits of its standard deviation have: (2.77913, 0.0062) gives
@@ -25,7 +25,7 @@ std::string value_and_sd_text(double value, double sd);
 /// An error with its sign and the decimals of the sd: "+0.0031"; without a sign where it rounds to zero: "0.0000".
 std::string error_text(double error, double sd);
 
-/// The power of ten of a formatted number as it is written by hand: "1.957e-05" is "1.957·10⁻⁵"; others stay.
+/// The power of ten of a formatted number in typographic form: "1.957e-05" is "1.957·10⁻⁵"; other texts stay.
 std::string with_raised_power(const std::string& number);
 
 /// A gain in log likelihood or evidence, with its sign: "+3.2", "-0.4", from a thousand on "+139521", from a million on

@@ -4,11 +4,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/nearest_word.h"
 #include "base/toml/toml_node.h"
 
@@ -24,43 +23,7 @@ std::string list_of_known(std::string_view key, const std::set<std::string, std:
 
 }  // namespace
 
-bool Range::contains(double value) const {
-  if (!std::isfinite(value)) return false;
-  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-}
-
-std::string Range::describe() const {
-  const bool has_low = std::isfinite(low);
-  const bool has_high = std::isfinite(high);
-  if (has_low && has_high) {
-    if (low_open || high_open) {
-      return fmt::format("a number {} {} and {} {}", low_open ? "above" : "of at least", low,
-                         high_open ? "below" : "at most", high);
-    }
-    return fmt::format("a number from {} to {}", low, high);
-  }
-  if (has_low) return fmt::format("a number {} {}", low_open ? "above" : "of at least", low);
-  if (has_high) return fmt::format("a number {} {}", high_open ? "below" : "of at most", high);
-  return "a finite number";
-}
-
-Range any_number() {
-  return {};
-}
-Range above(double low) {
-  return {.low = low, .low_open = true};
-}
-Range at_least(double low) {
-  return {.low = low};
-}
-Range between(double low, double high) {
-  return {.low = low, .high = high};
-}
-Range between_open(double low, double high) {
-  return {.low = low, .high = high, .low_open = true, .high_open = true};
-}
-
-TomlFile::TomlFile(std::shared_ptr<Document> document) : document_(std::move(document)) {}
+TomlFile::TomlFile(std::shared_ptr<TomlDocument> document) : document_(std::move(document)) {}
 TomlFile::~TomlFile() = default;
 TomlFile::TomlFile(TomlFile&&) noexcept = default;
 TomlFile& TomlFile::operator=(TomlFile&&) noexcept = default;
@@ -70,11 +33,10 @@ TomlFile TomlFile::load(const std::filesystem::path& path) {
 }
 
 TomlFile TomlFile::parse(std::string_view text, std::string shown_as) {
-  auto document = std::make_shared<Document>();
+  auto document = std::make_shared<TomlDocument>();
   document->name = std::move(shown_as);
   document->tree = parsed_toml(text, document->name);
-  document->nodes.push_back(
-      std::make_shared<TomlTable::Node>(TomlTable::Node{document.get(), &document->tree, "", 1, {}, {}, {}}));
+  document->nodes.push_back(std::make_shared<TomlNode>(TomlNode{document.get(), &document->tree, "", 1, {}, {}, {}}));
   return TomlFile(std::move(document));
 }
 

@@ -1,7 +1,7 @@
 /// TOML files read strictly: unknown keys, wrong types and values out of range are errors that name file, line and key.
 ///
 /// All of a file's errors are collected and thrown together by finish(). Until then a value that is missing or wrong
-/// reads as NaN, zero or an empty text, which nobody may use before finish() has returned.
+/// reads as NaN, zero or an empty text, which must not be used before finish() has returned.
 ///
 ///     TomlFile file = TomlFile::load(path);
 ///     TomlTable camera = file.root().table("camera");
@@ -10,90 +10,20 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-#include "base/toml/toml_set.h"
+#include "base/toml/toml_table.h"
 
 namespace glidelab::base {
 
-/// The values that are allowed, with how a message calls them. Not-finite numbers are never allowed.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;
-  bool high_open = false;
-  bool contains(double value) const;
-  std::string describe() const;
-};
-Range any_number();
-Range above(double low);
-Range at_least(double low);
-Range between(double low, double high);       ///< both ends allowed
-Range between_open(double low, double high);  ///< neither end allowed
-
-class TomlFile;
-
-/// One table of the file, which remembers the keys that were asked for. Cheap to copy; lives as long as its TomlFile.
-class TomlTable {
- public:
-  bool has(std::string_view key) const;
-  int line() const;                              ///< where the table starts
-  int line(std::string_view key) const;          ///< where the key stands; the table's line where it does not
-  std::string path(std::string_view key) const;  ///< "camera.frame_rate_hz", for messages
-
-  double number(std::string_view key, Range range = {}) const;
-  double number_or(std::string_view key, double otherwise, Range range = {}) const;
-  std::optional<double> maybe_number(std::string_view key, Range range = {}) const;
-  /// A whole number in [low, high].
-  long integer(std::string_view key, long low, long high) const;
-  long integer_or(std::string_view key, long otherwise, long low, long high) const;
-  bool boolean_or(std::string_view key, bool otherwise) const;
-  std::string text(std::string_view key) const;  ///< not empty
-  std::string text_or(std::string_view key, std::string_view otherwise) const;
-  std::optional<std::string> maybe_text(std::string_view key) const;
-  /// One of the words given; `otherwise`, where it is not empty, stands for a missing key.
-  std::string word(std::string_view key, const std::vector<std::string>& allowed,
-                   std::string_view otherwise = {}) const;
-  /// One of the words given, required; nothing where it is missing or another, which is recorded. For a word on which
-  /// depends what else is asked.
-  std::optional<std::string> one_of(std::string_view key, const std::vector<std::string>& allowed) const;
-  /// An array of exactly `count` numbers (any length where count is 0).
-  std::vector<double> numbers(std::string_view key, std::size_t count, Range range = {}) const;
-  std::optional<std::vector<double>> maybe_numbers(std::string_view key, std::size_t count, Range range = {}) const;
-  std::vector<std::string> texts_or_none(std::string_view key) const;
-  /// All numbers, switches and texts of this table and those within it, by their path from here ("shutter.kind",
-  /// written as one quoted key or as keys with a dot between). Anything else, an array or a date, is recorded as wrong.
-  std::vector<std::pair<std::string, TomlScalar>> scalars() const;
-
-  TomlTable table(std::string_view key) const;  ///< required
-  std::optional<TomlTable> maybe_table(std::string_view key) const;
-  std::vector<TomlTable> tables(std::string_view key) const;  ///< [[key]], one or more
-  std::vector<TomlTable> tables_or_none(std::string_view key) const;
-
-  std::vector<std::string> keys() const;  ///< all that stand here, known or not
-
-  /// Everything below this key is the user's own and is not looked at.
-  void ignore(std::string_view key) const;
-
-  /// Records an error that the caller found (a name used twice), unless the key's value could not be read anyway.
-  void reject(std::string_view key, std::string found, std::string expected) const;
-
- private:
-  friend class TomlFile;
-  struct Node;
-  explicit TomlTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
-  std::shared_ptr<Node> node_;
-};
+struct TomlDocument;
 
 class TomlFile {
  public:
-  /// InputError with line and column where the file is missing or is no TOML. `shown_as` is the name in messages.
+  /// InputError with line and column if the file is missing or not valid TOML. `shown_as` is the name in messages.
   static TomlFile load(const std::filesystem::path& path);
   static TomlFile parse(std::string_view text, std::string shown_as);
   ~TomlFile();
@@ -108,15 +38,13 @@ class TomlFile {
   TomlTable root() const;
   const std::string& name() const;
 
-  /// Throws InputError with everything that was rejected, and every key that nobody asked for (with the nearest known
-  /// name).
+  /// Throws InputError with everything that was rejected, and every key that was never asked for (with the nearest
+  /// known name).
   void finish() const;
 
  private:
-  struct Document;
-  explicit TomlFile(std::shared_ptr<Document> document);
-  std::shared_ptr<Document> document_;
-  friend class TomlTable;
+  explicit TomlFile(std::shared_ptr<TomlDocument> document);
+  std::shared_ptr<TomlDocument> document_;
 };
 
 }  // namespace glidelab::base

@@ -1,11 +1,10 @@
-/// What lies behind a TomlFile and its TomlTables: the parsed document, and of each table that was handed out which
-/// keys were asked for; and the parse of its text. Private to base/: strict_toml.cpp, toml_table.cpp and toml_set.cpp
-/// include it.
+/// What lies behind a TomlFile and its TomlTables: the parsed document, and for each table that was handed out the keys
+/// that were asked for. Private to base/toml, for it includes the TOML parser.
 #pragma once
 
-#include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -14,25 +13,26 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/toml/strict_toml.h"
 
 namespace glidelab::base {
 
-struct TomlFile::Document {
+struct TomlNode;
+
+struct TomlDocument {
   std::string name;
   toml::table tree;
   std::vector<Issue> issues;
-  std::vector<std::shared_ptr<TomlTable::Node>> nodes;  // every table that was handed out
+  std::vector<std::shared_ptr<TomlNode>> nodes;  // every table that was handed out
 };
 
-struct TomlTable::Node {
-  TomlFile::Document* document;  // nodes live in the document, so this never dangles
-  const toml::table* table;      // null: a table that was required and is missing
-  std::string prefix;            // "camera." or "clip[2]."
+struct TomlNode {
+  TomlDocument* document;    // nodes live in the document, so this never dangles
+  const toml::table* table;  // null: a table that was required and is missing
+  std::string prefix;        // "camera." or "clip[2]."
   int line;
   std::set<std::string, std::less<>> known;
   std::set<std::string, std::less<>> ignored;
-  std::map<std::string, std::shared_ptr<Node>, std::less<>> children;
+  std::map<std::string, std::shared_ptr<TomlNode>, std::less<>> children;
   std::set<std::string, std::less<>> unread = {};  // keys whose value is not what was asked for
 
   const toml::node* find(std::string_view key) {
@@ -46,15 +46,7 @@ struct TomlTable::Node {
 };
 
 /// InputError, in the file `shown_as`, where the text is no TOML.
-inline toml::table parsed_toml(std::string_view text, const std::string& shown_as) {
-  try {
-    return toml::parse(text, shown_as);
-  } catch (const toml::parse_error& error) {
-    const auto at = error.source().begin;
-    throw InputError(Issue{shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
-                           fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
-  }
-}
+toml::table parsed_toml(std::string_view text, const std::string& shown_as);
 
 /// The file that a value comes from.
 inline std::string file_of(const toml::node& node, const std::string& otherwise) {

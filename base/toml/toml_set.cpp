@@ -40,7 +40,7 @@ class Setter {
   }
 
   Step parse_step(std::string_view part) const {
-    constexpr const char* kForm = "a path as camera.exposure_s, configuration[1].mass_kg or force[law=viscous].mu";
+    constexpr const char* kForm = "a path such as camera.exposure_s, configuration[1].mass_kg or force[law=viscous].mu";
     Step step;
     const std::size_t open = part.find('[');
     step.key = std::string(part.substr(0, open));
@@ -134,7 +134,7 @@ class Setter {
   /// Of a path through several tables, at least one has to take the value.
   void into(toml::table& table, const std::vector<Step>& steps, std::vector<std::string>& places) const {
     if (through(table, steps, 0, "", places) == 0) {
-      fail("nothing that it picks", "a path that leads to one key of the scenario or more");
+      fail("nothing at this path", "a path that leads to one or more keys of the scenario");
     }
   }
 
@@ -157,14 +157,14 @@ class Setter {
         fail(fmt::format("\"{}\", of which there are {}", step.key, inner->as_array()->size()),
              fmt::format("which one: {0}[1], {0}[*] or {0}[name=…]", step.key));
       }
-      if (!inner->is_table()) fail(fmt::format("\"{}\", which is no table", step.key), "a table");
+      if (!inner->is_table()) fail(fmt::format("\"{}\", which is not a table", step.key), "a table");
       return through(*inner->as_table(), steps, at + 1, here, places);
     }
     toml::node* inner = table.get(step.key);
     toml::array* array = inner == nullptr ? nullptr : inner->as_array();
     if (array == nullptr) fail(fmt::format("no array \"{}\"", step.key), "an array or tables [[…]] of this name");
     if (step.pick == Step::Pick::index && step.index >= array->size()) {
-      fail(fmt::format("number {} of {}", step.index + 1, array->size()), "one that is there");
+      fail(fmt::format("number {} of {}", step.index + 1, array->size()), "one that exists");
     }
     std::size_t count = 0;
     for (const std::size_t i : picked(*array, step)) {
@@ -176,7 +176,7 @@ class Setter {
       } else if (toml::table* element = array->get(i)->as_table()) {
         count += through(*element, steps, at + 1, element_here, places);
       } else {
-        fail(fmt::format("\"{}\", whose elements are no tables", step.key), "tables");
+        fail(fmt::format("\"{}\", whose elements are not tables", step.key), "tables");
       }
     }
     return count;

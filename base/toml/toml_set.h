@@ -1,37 +1,36 @@
-/// Values put into a TOML document at dotted paths, before anybody reads it.
+/// Sets values in a TOML document at dotted paths, before it is read.
 ///
 ///     camera.exposure_s                               a key, made with its table where it is missing
 ///     configuration[2].mass_kg                        of the second [[configuration]]; [N] counts from 1
 ///     configuration[*].force[law=viscous].k_over_m_1_s   of all, and of those whose `law` is "viscous"
 ///     camera.position_m[3]                            an element of an array
 ///
-/// Keys are of letters, digits, - and _. A key that nobody knows is found by whoever reads the document
-/// (strict_toml.h), not here.
+/// Keys consist of letters, digits, - and _. Unknown keys are found when the document is read (strict_toml.h), not
+/// here.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
+
+#include "base/toml/toml_scalar.h"
 
 namespace glidelab::base {
 
-using TomlScalar = std::variant<double, bool, std::string>;
-
 struct TomlAssignment {
   std::string path;
-  std::optional<TomlScalar> value;  ///< nothing: the key is taken out, wherever it stands
+  std::optional<TomlScalar> value;  ///< nothing: the key is removed
 };
 
-/// A TOML basic string of UTF-8 text: in quotes, with what must not stand in one escaped.
+/// A TOML basic string of UTF-8 text: in quotes, with escapes where needed.
 std::string toml_string(std::string_view text);
 
 /// "0.001", "true", "\"global\"": a whole number has no decimal point, so that it serves for integers as well.
 std::string toml_text(const TomlScalar& value);
 
-/// The document with the values put in, as TOML. InputError, named `shown_as`, where the text is no TOML, a path is not
-/// of the form above, leads through something that is no table, or an array has no such element.
+/// The document with the values put in, as TOML. InputError, named `shown_as`, if the text is not valid TOML, a path is
+/// not of the form above or leads through something that is not a table, or an array has no such element.
 std::string with_values(std::string_view toml, const std::string& shown_as,
                         const std::vector<TomlAssignment>& assignments);
 

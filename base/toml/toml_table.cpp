@@ -1,4 +1,5 @@
-// TomlTable: the values of one table, each checked as it is asked for.
+#include "base/toml/toml_table.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,17 +12,6 @@
 namespace glidelab::base {
 namespace {
 
-std::string show(const toml::node* node) {
-  if (node == nullptr) return "nothing";
-  if (const auto* value = node->as_string()) return fmt::format("text \"{}\"", value->get());
-  if (const auto* value = node->as_integer()) return fmt::format("{}", value->get());
-  if (const auto* value = node->as_floating_point()) return fmt::format("{}", value->get());
-  if (const auto* value = node->as_boolean()) return value->get() ? "true" : "false";
-  if (const auto* value = node->as_array()) return fmt::format("an array of {}", value->size());
-  if (node->is_table()) return "a table";
-  return "a date or time";
-}
-
 std::optional<double> as_number(const toml::node& node) {
   if (const auto* value = node.as_floating_point()) return value->get();
   if (const auto* value = node.as_integer()) return static_cast<double>(value->get());
@@ -32,14 +22,40 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-void TomlTable::Node::reject(std::string_view key, const toml::node* at, std::string found, std::string expected) {
-  document->issues.push_back({at == nullptr ? document->name : file_of(*at, document->name),
-                              at == nullptr ? line : line_of(*at), prefix + std::string(key), std::move(found),
-                              std::move(expected)});
+bool Range::contains(double value) const {
+  if (!std::isfinite(value)) return false;
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
 }
-void TomlTable::Node::reject(std::string_view key, const toml::node* found, std::string expected) {
-  unread.emplace(key);
-  reject(key, found, show(found), std::move(expected));
+
+std::string Range::describe() const {
+  const bool has_low = std::isfinite(low);
+  const bool has_high = std::isfinite(high);
+  if (has_low && has_high) {
+    if (low_open || high_open) {
+      return fmt::format("a number {} {} and {} {}", low_open ? "above" : "of at least", low,
+                         high_open ? "below" : "at most", high);
+    }
+    return fmt::format("a number from {} to {}", low, high);
+  }
+  if (has_low) return fmt::format("a number {} {}", low_open ? "above" : "of at least", low);
+  if (has_high) return fmt::format("a number {} {}", high_open ? "below" : "of at most", high);
+  return "a finite number";
+}
+
+Range any_number() {
+  return {};
+}
+Range above(double low) {
+  return {.low = low, .low_open = true};
+}
+Range at_least(double low) {
+  return {.low = low};
+}
+Range between(double low, double high) {
+  return {.low = low, .high = high};
+}
+Range between_open(double low, double high) {
+  return {.low = low, .high = high, .low_open = true, .high_open = true};
 }
 
 bool TomlTable::has(std::string_view key) const {
@@ -200,7 +216,8 @@ std::optional<TomlTable> TomlTable::maybe_table(std::string_view key) const {
   if (const auto child = node_->children.find(key); child != node_->children.end()) return TomlTable(child->second);
   const toml::table* inner = found->as_table();
   if (inner == nullptr) node_->reject(key, found, fmt::format("a table [{}]", path(key)));
-  auto node = std::make_shared<Node>(Node{node_->document, inner, path(key) + ".", line_of(*found), {}, {}, {}});
+  auto node =
+      std::make_shared<TomlNode>(TomlNode{node_->document, inner, path(key) + ".", line_of(*found), {}, {}, {}});
   node_->document->nodes.push_back(node);
   node_->children.emplace(key, node);
   return TomlTable(node);
@@ -212,9 +229,10 @@ TomlTable TomlTable::table(std::string_view key) const {
   // What is asked of a missing table is missing too, but one message is enough: a document that nobody reads takes the
   // rest.
   static const toml::table kEmpty;
-  auto orphanage = std::make_shared<TomlFile::Document>();
-  auto node = std::shared_ptr<Node>(new Node{orphanage.get(), &kEmpty, path(key) + ".", node_->line, {}, {}, {}},
-                                    [orphanage](Node* orphan) { delete orphan; });
+  auto orphanage = std::make_shared<TomlDocument>();
+  auto node =
+      std::shared_ptr<TomlNode>(new TomlNode{orphanage.get(), &kEmpty, path(key) + ".", node_->line, {}, {}, {}},
+                                [orphanage](TomlNode* orphan) { delete orphan; });
   return TomlTable(node);
 }
 
@@ -235,8 +253,8 @@ std::vector<TomlTable> TomlTable::tables_or_none(std::string_view key) const {
       continue;
     }
     const toml::node& element = *array->get(i);
-    auto node = std::make_shared<Node>(
-        Node{node_->document, element.as_table(), path(child_key) + ".", line_of(element), {}, {}, {}});
+    auto node = std::make_shared<TomlNode>(
+        TomlNode{node_->document, element.as_table(), path(child_key) + ".", line_of(element), {}, {}, {}});
     node_->document->nodes.push_back(node);
     node_->children.emplace(child_key, node);
     tables.push_back(TomlTable(node));

@@ -14,7 +14,7 @@
 #include "core/experiment/bare_track.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/analyze_motion.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {

@@ -7,7 +7,7 @@
 
 #include "base/progress.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "core/pictures/marker/marker.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"

@@ -12,7 +12,7 @@
 #include "base/files/staged_output.h"
 #include "base/files/temporary_folder.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {

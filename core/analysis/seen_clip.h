@@ -12,7 +12,7 @@
 #include "base/progress.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/camera_and_planes.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "core/pictures/marker/marker_track.h"
 #include "core/result/picture_record.h"
 

@@ -12,9 +12,9 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLinearRange = 0.7;    // of saturation; EMVA 1288
-constexpr double kClippedPart = 1e-3;   // of the samples: changes a variance by less than its error
-constexpr double kEnoughPixels = 0.25;  // of the picture, for a level to count
+constexpr double kLinearRange = 0.7;          // of saturation; EMVA 1288
+constexpr double kMostClippedPart = 1e-3;     // of the samples: changes a variance by less than its error
+constexpr double kLeastShareOfPixels = 0.25;  // of the image, for a level to count
 // Where rounding may change a variance by more than this part, the set does not show its noise. The limit of EMVA 1288
 // (0.24 DN², quantisation included) comes to 0.2 without a spread of the means.
 constexpr double kRoundingAllowed = 0.2;
@@ -46,7 +46,7 @@ class Gatherer {
   void read_darks() {
     form_ = form_of(folder_.darks.front().files.front());
     if (form_.depth == CV_8U && folder_.bit_depth > 8) {
-      throw base::InputError(base::Issue{form_.named, 0, "", "a picture of 8 bits",
+      throw base::InputError(base::Issue{form_.named, 0, "", "an image of 8 bits",
                                          fmt::format("16 bits for codes of bit_depth = {}", folder_.bit_depth)});
     }
     out_.grid = TileGrid(form_.size);
@@ -57,7 +57,7 @@ class Gatherer {
       evidence().exposure_s.push_back(set.exposure_s);
       out_.frames += set.files.size();
     }
-    out_.dark_clipped = dark().all.at_zero > kClippedPart;
+    out_.dark_clipped = dark().all.at_zero > kMostClippedPart;
   }
 
   const FlatFieldStack& dark() { return evidence().darks.front(); }
@@ -95,11 +95,11 @@ class Gatherer {
       throw base::InputError(
           base::Issue{where, 0, "flat-…",
                       fmt::format("no light: the brightest level is {:.3g} DN above the dark frames", brightest_dn),
-                      "levels of light up into saturation"});
+                      "levels of light up to saturation"});
     }
     if (least_saturated > 0.5) {
       throw base::InputError(base::Issue{where, 0, "flat-…",
-                                         fmt::format("all levels saturated: {:.0f} % of the least one is at code {}",
+                                         fmt::format("all levels saturated: {:.0f} % of the darkest one is at code {}",
                                                      100.0 * least_saturated, folder_.largest_code()),
                                          "levels of light from dark to saturation"});
     }
@@ -126,13 +126,13 @@ class Gatherer {
       double pixels = 0.0;
       for (std::size_t c = 0; c < flat.cells.size(); ++c) {
         const CellStatistics& cell = flat.cells[c];
-        if (cell.pixels == 0.0 || cell.at_zero > kClippedPart || cell.at_largest > kClippedPart) continue;
+        if (cell.pixels == 0.0 || cell.at_zero > kMostClippedPart || cell.at_largest > kMostClippedPart) continue;
         if (cell.mean_dn - dark().cells[c].mean_dn > kLinearRange * evidence().saturation.level_dn) continue;
         counts[c] = 1;
         pixels += cell.pixels;
       }
       all.counts.push_back(std::move(counts));
-      const bool used = pixels >= kEnoughPixels * flat.all.pixels && shows_noise(flat.all);
+      const bool used = pixels >= kLeastShareOfPixels * flat.all.pixels && shows_noise(flat.all);
       all.weight.push_back(used ? weight_of(level_point(all, level, std::nullopt).sampling_dn4, flat.all) : 0.0);
     }
     const CellStatistics& dark_all = dark().all;

@@ -1,5 +1,5 @@
-/// Reads the frames of a flat-field folder and takes the decisions on which the numbers rest: which pixels stand out,
-/// which cells are saturated, which levels belong to the linear range, what the quantisation hides.
+/// Reads the frames of a flat-field folder and takes the decisions behind the numbers: which pixels are outliers, which
+/// cells are saturated, which levels lie in the linear range, what the quantisation hides.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -19,7 +19,7 @@ struct CameraEvidence {
   TileGrid grid{cv::Size(kSmallestFlatFieldPx, kSmallestFlatFieldPx)};
   std::size_t frames = 0;
   bool mosaic = false;
-  bool dark_clipped = false;  ///< dark frames hold code 0, so that their mean and noise are cut
+  bool dark_clipped = false;  ///< dark frames contain code 0, so that their mean and noise are clipped
   std::size_t hot_pixels = 0;
   std::size_t dead_pixels = 0;
   std::size_t outlying_pixels = 0;

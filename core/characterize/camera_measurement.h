@@ -1,7 +1,5 @@
-/// What photon transfer finds of a camera, as plain data. report/ writes it as JSON, table and page.
+/// The result of photon transfer, as plain data. report/ writes it as JSON, table and page.
 #pragma once
-
-#include <opencv2/core.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -16,9 +14,9 @@ namespace glidelab::core {
 struct Measured {
   std::optional<double> value;
   double sd = 0.0;
-  std::string how;              ///< by which way; empty where there is only one
-  std::string why;              ///< empty where there is a value
-  std::optional<double> limit;  ///< where there is no value: the upper or lower limit that `why` speaks of
+  std::string how;              ///< the method; empty if there is only one
+  std::string why;              ///< why there is no value; empty if there is one
+  std::optional<double> limit;  ///< if there is no value: the upper or lower limit mentioned in `why`
 };
 
 /// One level of light in the photon-transfer diagram.
@@ -26,7 +24,7 @@ struct TransferPoint {
   std::string set;
   std::optional<double> exposure_s;
   double mean_dn = 0.0;       ///< above the dark frames; of a level in the fit over the cells that count, else over all
-  double picture_dn = 0.0;    ///< above the dark frames, over the whole picture
+  double image_dn = 0.0;      ///< above the dark frames, over the whole image
   double variance_dn2 = 0.0;  ///< quantisation (1/12) subtracted
   double sd_dn2 = 0.0;        ///< of the variance
   double at_largest = 0.0;    ///< part of the samples at the largest code
@@ -35,13 +33,13 @@ struct TransferPoint {
 
 struct CameraMeasurement {
   FlatFieldFolder folder;
-  cv::Size picture;
+  int width_px = 0, height_px = 0;  ///< of a frame
   std::size_t frames = 0;
   bool mosaic = false;  ///< raw codes of a colour sensor
 
   Measured gain_dn_per_e;
   Measured read_noise_e;
-  Measured offset_dn;              ///< of the dark frames; at zero exposure, where several exposures are there
+  Measured offset_dn;              ///< of the dark frames; extrapolated to zero exposure if there are several exposures
   Measured full_well_e;            ///< electrons at which the output stops rising, in the pixel or in the converter
   Measured saturation_capacity_e;  ///< EMVA 1288: where the variance is largest
   Measured dark_signal_e_s;
@@ -50,13 +48,13 @@ struct CameraMeasurement {
   Measured linearity_error;  ///< mean of the relative deviations from a line, 0.01 is 1 %
 
   std::size_t hot_pixels = 0;   ///< far above their neighbourhood in the dark
-  std::size_t dead_pixels = 0;  ///< answer light by less than half of what their neighbourhood does
+  std::size_t dead_pixels = 0;  ///< respond to light less than half as much as their neighbourhood
   std::size_t outlying_pixels =
-      0;  ///< all that stand out of the pattern, hot and dead ones among them; not in the numbers
+      0;  ///< all outliers of the pattern, including hot and dead pixels; excluded from the numbers
 
   std::vector<TransferPoint> curve;     ///< by rising mean
   std::optional<double> intercept_dn2;  ///< of the line, at the dark level
-  double saturation_dn = 0.0;           ///< above dark, that the 70 % refer to
+  double saturation_dn = 0.0;           ///< above dark; the 70 % refer to it
   std::vector<std::string> notes;       ///< what a reader should know
 };
 

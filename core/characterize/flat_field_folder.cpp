@@ -30,20 +30,20 @@ class SetReader {
   explicit SetReader(fs::path folder) : folder_(std::move(folder)) {}
 
   FrameSet read(const std::string& name) {
-    static const std::set<std::string> kOtherPictures{".jpg",  ".jpeg", ".tif", ".tiff", ".pgm", ".bmp",
-                                                      ".webp", ".mp4",  ".mov", ".avi",  ".mkv"};
+    static const std::set<std::string> kOtherFormats{".jpg",  ".jpeg", ".tif", ".tiff", ".pgm", ".bmp",
+                                                     ".webp", ".mp4",  ".mov", ".avi",  ".mkv"};
     FrameSet set{name, {}, std::nullopt};
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / name)) {
       const std::string ending = lower_extension(entry.path());
       if (entry.path().filename().string().starts_with('.') || !entry.is_regular_file()) continue;
       if (ending == ".png") set.files.push_back(entry.path());
-      if (kOtherPictures.contains(ending)) reject(entry.path(), "a file " + ending, "grey PNG frames only");
+      if (kOtherFormats.contains(ending)) reject(entry.path(), "a file " + ending, "grey PNG frames only");
     }
     std::sort(set.files.begin(), set.files.end(),
               [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
     if (set.files.size() < 2) {
       reject(folder_ / name, set.files.empty() ? "no PNG frame" : "a single PNG frame",
-             "two or more frames under the same light (noise is what differs between them)");
+             "two or more frames under the same light (their differences are the noise)");
     }
     return set;
   }
@@ -62,7 +62,7 @@ void read_sets(FlatFieldFolder& result, const fs::path& folder) {
   SetReader reader(folder);
   const std::vector<std::string> names = folder_names(folder);
   if (std::find(names.begin(), names.end(), "dark") == names.end()) {
-    reader.reject(folder / "dark", "no such folder", "dark frames: the lens covered, the exposure of the flat fields");
+    reader.reject(folder / "dark", "no such folder", "dark frames: lens covered, same exposure as the flat fields");
   } else {
     result.darks.push_back(reader.read("dark"));
   }
@@ -77,7 +77,7 @@ void read_sets(FlatFieldFolder& result, const fs::path& folder) {
   }
   if (result.flats.size() < 2) {
     reader.reject(folder, fmt::format("{} folder{} flat-…", result.flats.size(), result.flats.size() == 1 ? "" : "s"),
-                  "flat fields of at least two levels of light, better of ten or more");
+                  "flat fields of at least two levels of light, preferably ten or more");
   }
   if (!reader.issues.empty()) throw base::InputError(std::move(reader.issues));
 }
@@ -96,7 +96,7 @@ void read_exposures(FlatFieldFolder& result, const base::TomlTable& root) {
   for (const FrameSet& dark : result.darks) {
     if (dark.exposure_s) continue;
     root.reject("exposures_s", fmt::format("no exposure of {}", dark.name),
-                "the exposure of every dark set, where there are several");
+                "the exposure of every dark set if there are several");
   }
 }
 

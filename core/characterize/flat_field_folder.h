@@ -26,7 +26,7 @@ struct FrameSet {
 
 struct FlatFieldFolder {
   std::string name;   ///< of the camera
-  int bit_depth = 8;  ///< of the codes in the pictures, 8 to 16; their largest is 2^bit_depth - 1
+  int bit_depth = 8;  ///< of the codes in the images, 8 to 16; their largest is 2^bit_depth - 1
   std::optional<double> frame_rate_hz;
   std::optional<double> pixel_pitch_m;
   std::string price_class;
@@ -37,8 +37,8 @@ struct FlatFieldFolder {
 };
 
 /// Reads characterize.toml and lists the frames; opens none of them. InputError with everything that is wrong: keys,
-/// sets that are missing or hold a single frame, other pictures than PNG among the frames, exposures of sets that are
-/// not there, and dark-* sets without exposures.
+/// sets that are missing or hold a single frame, images other than PNG, exposures of sets that do not exist, and
+/// dark-* sets without exposures.
 FlatFieldFolder read_flat_field_folder(const std::filesystem::path& folder);
 
 }  // namespace glidelab::core

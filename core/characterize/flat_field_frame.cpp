@@ -29,13 +29,13 @@ std::string bits(int depth) {
 
 /// Grey codes; a colour file counts as grey where its three channels are equal.
 cv::Mat read_codes(const fs::path& file) {
-  const cv::Mat picture = read_picture(file);
-  if (picture.channels() == 1) return picture;
+  const cv::Mat image = read_image(file);
+  if (image.channels() == 1) return image;
   std::vector<cv::Mat> channels;
-  cv::split(picture, channels);
+  cv::split(image, channels);
   if (cv::norm(channels[0], channels[1], cv::NORM_INF) > 0.0 ||
       cv::norm(channels[0], channels[2], cv::NORM_INF) > 0.0) {
-    fail(file, "a picture with colours", "a grey picture: raw codes (a mosaic is fine), or one channel of them");
+    fail(file, "an image with colours", "a grey image: raw codes (a mosaic is fine), or one channel of them");
   }
   return channels[0];
 }
@@ -82,7 +82,7 @@ cv::Mat read_flat_field_frame(const fs::path& file, const FrameForm& form, int l
 
 void reject_copy(const fs::path& file, const cv::Mat& frame, const fs::path& last_file, const cv::Mat& last) {
   if (cv::norm(frame, last, cv::NORM_INF) > 0.0 || spread(frame) <= kSpreadThatShowsNoise) return;
-  fail(file, "the same picture as " + last_file.filename().string(), "another frame, with noise of its own");
+  fail(file, "the same image as " + last_file.filename().string(), "another frame, with noise of its own");
 }
 
 }  // namespace glidelab::core

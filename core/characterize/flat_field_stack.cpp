@@ -24,10 +24,10 @@ class Accumulator {
       : grid_(grid),
         mask_(std::move(mask)),
         largest_code_(largest_code),
-        sum_(grid.picture(), CV_64F, cv::Scalar(0)),
-        sum2_(grid.picture(), CV_64F, cv::Scalar(0)),
-        codes_(grid.picture(), CV_64F, cv::Scalar(0)),
-        contrast_(grid.picture(), CV_64F, cv::Scalar(0)),
+        sum_(grid.size(), CV_64F, cv::Scalar(0)),
+        sum2_(grid.size(), CV_64F, cv::Scalar(0)),
+        codes_(grid.size(), CV_64F, cv::Scalar(0)),
+        contrast_(grid.size(), CV_64F, cv::Scalar(0)),
         even_weight_(contrast_weight(frames / 2, (frames + 1) / 2)),
         odd_weight_(-contrast_weight((frames + 1) / 2, frames / 2)),
         cells_(grid.cells()) {}
@@ -35,7 +35,7 @@ class Accumulator {
   void add(const cv::Mat& frame) {
     cv::Mat wide;
     frame.convertTo(wide, CV_16U);
-    cv::Mat residual(grid_.picture(), CV_32F);
+    cv::Mat residual(grid_.size(), CV_32F);
     double total = 0.0;
     double pixels = 0.0;
     for (std::size_t tile = 0; tile < grid_.tiles(); ++tile) {
@@ -228,17 +228,17 @@ FlatFieldStack Accumulator::finish() const {
 
 }  // namespace
 
-TileGrid::TileGrid(cv::Size picture)
-    : picture_(picture),
-      columns_(std::clamp(picture.width / kSmallestTilePx, 1, kMostTilesAcross)),
-      rows_(std::clamp(picture.height / kSmallestTilePx, 1, kMostTilesAcross)) {}
+TileGrid::TileGrid(cv::Size size)
+    : size_(size),
+      columns_(std::clamp(size.width / kSmallestTilePx, 1, kMostTilesAcross)),
+      rows_(std::clamp(size.height / kSmallestTilePx, 1, kMostTilesAcross)) {}
 
 cv::Rect TileGrid::tile(std::size_t index) const {
   const int column = static_cast<int>(index) % columns_;
   const int row = static_cast<int>(index) / columns_;
-  const int left = picture_.width * column / columns_;
-  const int top = picture_.height * row / rows_;
-  return {left, top, picture_.width * (column + 1) / columns_ - left, picture_.height * (row + 1) / rows_ - top};
+  const int left = size_.width * column / columns_;
+  const int top = size_.height * row / rows_;
+  return {left, top, size_.width * (column + 1) / columns_ - left, size_.height * (row + 1) / rows_ - top};
 }
 
 FlatFieldStack stack_frames(const FrameSet& set, const FrameForm& form, int largest_code, const TileGrid& grid,

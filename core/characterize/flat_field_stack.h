@@ -1,6 +1,6 @@
-/// What the frames of one set have in common and how they differ: mean and temporal variance, tile by tile.
+/// The statistics of the frames of one set: mean and temporal variance, tile by tile.
 ///
-/// A picture is cut into tiles, and the pixels of a tile into four cells by their place in the 2 x 2 mosaic of a colour
+/// An image is cut into tiles, and the pixels of a tile into four cells by their place in the 2 x 2 mosaic of a colour
 /// sensor (on a monochrome one the four are alike). With y_pf the code of pixel p in frame f, and m_f the mean of the
 /// cell in frame f,
 ///
@@ -22,11 +22,11 @@
 
 namespace glidelab::core {
 
-/// How a picture is cut: about 50 to 150 tiles, at least 16 pixels wide and high.
+/// How an image is cut: about 50 to 150 tiles, at least 16 pixels wide and high.
 class TileGrid {
  public:
-  explicit TileGrid(cv::Size picture);
-  cv::Size picture() const { return picture_; }
+  explicit TileGrid(cv::Size size);
+  cv::Size size() const { return size_; }
   std::size_t tiles() const { return static_cast<std::size_t>(columns_ * rows_); }
   std::size_t cells() const { return 4 * tiles(); }
   cv::Rect tile(std::size_t index) const;
@@ -36,7 +36,7 @@ class TileGrid {
   }
 
  private:
-  cv::Size picture_;
+  cv::Size size_;
   int columns_;
   int rows_;
 };
@@ -53,8 +53,8 @@ struct CellStatistics {
 struct FlatFieldStack {
   std::size_t frames = 0;
   std::vector<CellStatistics> cells;
-  CellStatistics all;                  ///< over the whole picture; variances are means over the cells
-  std::vector<double> frame_means_dn;  ///< of the whole picture, frame by frame
+  CellStatistics all;                  ///< over the whole image; variances are means over the cells
+  std::vector<double> frame_means_dn;  ///< of the whole image, frame by frame
   cv::Mat mean_dn;                     ///< CV_32F, mean of the frames
   cv::Mat contrast_dn;  ///< CV_32F, even frames minus odd ones, as noisy as the mean and without its pattern
   /// Correlation of the noise (difference of the first two frames) of pixels side by side and one above the other;
@@ -67,7 +67,7 @@ struct FlatFieldStack {
 };
 
 /// Reads the frames of a set one after the other (never more than three at once). `mask`, CV_8U, is 255 where a pixel
-/// counts; empty: all count. InputError (file, found, expected) for a file that is no picture, one with colours, one of
+/// counts; empty: all count. InputError (file, found, expected) for a file that is no image, one with colours, one of
 /// another size or depth, a code above `largest_code`, and a frame that repeats the one before.
 FlatFieldStack stack_frames(const FrameSet& set, const FrameForm& form, int largest_code, const TileGrid& grid,
                             const cv::Mat& mask);

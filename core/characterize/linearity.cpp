@@ -9,9 +9,9 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kFrom = 0.05;  // of saturation
-constexpr double kTo = 0.95;
-constexpr double kClippedPart = 1e-3;
+constexpr double kLinearityFrom = 0.05;  // of saturation
+constexpr double kLinearityTo = 0.95;
+constexpr double kMostClippedForLinearity = 1e-3;
 
 struct ExposedLevel {
   double exposure_s;
@@ -36,8 +36,8 @@ Measured linearity_error(const Evidence& evidence, const FlatFieldFolder& folder
   for (std::size_t i = 0; i < evidence.flats.size(); ++i) {
     const FlatFieldStack& flat = evidence.flats[i];
     const double mean_dn = flat.all.mean_dn - dark_dn;
-    if (!folder.flats[i].exposure_s || flat.all.at_largest > kClippedPart) continue;
-    if (mean_dn < kFrom * saturation_dn || mean_dn > kTo * saturation_dn) continue;
+    if (!folder.flats[i].exposure_s || flat.all.at_largest > kMostClippedForLinearity) continue;
+    if (mean_dn < kLinearityFrom * saturation_dn || mean_dn > kLinearityTo * saturation_dn) continue;
     levels.push_back({*folder.flats[i].exposure_s, mean_dn, scatter(flat)});
   }
   Measured result;
@@ -47,7 +47,7 @@ Measured linearity_error(const Evidence& evidence, const FlatFieldFolder& folder
   }
   if (levels.size() < 3 || !line.is_regular(1e-9)) {
     result.why =
-        "it needs three or more levels, 5 to 95 % of saturation, made by different exposures to one light "
+        "it requires three or more levels, 5 to 95 % of saturation, taken with different exposures to the same light "
         "(exposures_s)";
     return result;
   }

@@ -47,20 +47,20 @@ std::string dark_signal(const Measured& measured) {
   if (!measured.value) return fmt::format("# dark_signal_e_s: not measured: {}\n", in_comment(measured.why));
   if (*measured.value > 0.0) return entry("dark_signal_e_s", measured);
   return line("dark_signal_e_s", "0.0",
-              fmt::format("measured as {:.2g}, sd {:.2g}: none was seen", *measured.value, measured.sd));
+              fmt::format("measured as {:.2g}, sd {:.2g}: not significant", *measured.value, measured.sd));
 }
 
 std::string head(const CameraMeasurement& camera) {
   const FlatFieldFolder& folder = camera.folder;
   std::string text = fmt::format("# {}\n# Measured by photon transfer (EMVA 1288) on {} frames of {} x {} pixels.\n",
-                                 in_comment(folder.name), camera.frames, camera.picture.width, camera.picture.height);
+                                 in_comment(folder.name), camera.frames, camera.width_px, camera.height_px);
   if (folder.frame_rate_hz) text += fmt::format("# Frame rate: {:.6g} Hz\n", *folder.frame_rate_hz);
   if (folder.pixel_pitch_m) text += fmt::format("# Pixel pitch: {:.4g} um\n", *folder.pixel_pitch_m * 1e6);
   if (!folder.price_class.empty()) text += fmt::format("# Price class: {}\n", in_comment(folder.price_class));
-  text += fmt::format("# Pixels that stand out: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
+  text += fmt::format("# Outlying pixels: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
                       camera.outlying_pixels);
   for (const std::string& note : camera.notes) text += fmt::format("# Note: {}\n", in_comment(note));
-  text += "# No quantum efficiency: it needs a calibrated light.\n";
+  text += "# No quantum efficiency: it requires a calibrated light.\n";
   return text;
 }
 

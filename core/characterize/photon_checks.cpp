@@ -16,17 +16,13 @@ constexpr double kBendNoted = 0.02;
 constexpr double kBendRefused = 0.10;
 constexpr double kLinearityNoted = 0.01;
 constexpr double kLinearityRefused = 0.05;
-constexpr double kSignificant = 5.0;  // standard deviations; there may be a hundred levels
-constexpr double kSeen = 3.0;
-constexpr double kGainTooUncertain = 0.2;
+constexpr double kLevelSignificance = 5.0;  // standard deviations; there may be a hundred levels
+constexpr double kMisfitSignificance = 3.0;
+constexpr double kMostRelativeGainSd = 0.2;
 constexpr double kFlickerNoted = 0.01;
 constexpr double kKneeFrom = 0.75;  // of saturation: above the linear range
 constexpr double kKneeTo = 0.90;    // from here on a full well of a few hundred electrons cuts the noise itself
 constexpr double kKneeVariance = 0.5;
-
-double square(double value) {
-  return value * value;
-}
 
 double neighbour_correlation(const FlatFieldStack& stack) {
   return std::max(std::abs(stack.correlation_right), std::abs(stack.correlation_below));
@@ -53,17 +49,17 @@ std::optional<double> variance_below_saturation(const CameraEvidence& gathered, 
 TransferPoint point_of(const Evidence& evidence, const FrameSet& set, std::size_t level) {
   const FlatFieldStack& flat = evidence.flats[level];
   LevelPoint point = level_point(evidence, level, std::nullopt);
-  const double picture_dn = flat.all.mean_dn - evidence.darks.front().all.mean_dn;
+  const double image_dn = flat.all.mean_dn - evidence.darks.front().all.mean_dn;
   const bool used = evidence.weight[level] > 0.0;
   if (!used) {
-    point.mean_dn = picture_dn;
+    point.mean_dn = image_dn;
     point.variance_dn2 = flat.all.temporal_dn2 - kQuantisation;
     point.sampling_dn4 = 2.0 * square(flat.all.temporal_dn2) / (flat.all.pixels * static_cast<double>(flat.frames - 1));
   }
   return {set.name,
           set.exposure_s,
           point.mean_dn,
-          picture_dn,
+          image_dn,
           point.variance_dn2,
           std::sqrt(point.sampling_dn4),
           flat.all.at_largest,
@@ -85,7 +81,7 @@ LineQuality line_quality(const CameraEvidence& gathered, const FlatFieldFolder& 
     const double line = numbers.intercept_dn2 + numbers.gain * point.mean_dn;
     const double off2 = square(point.variance_dn2 - line);
     chi2 += off2 * evidence.weight[level];
-    if (off2 * evidence.weight[level] > square(kSignificant)) {
+    if (off2 * evidence.weight[level] > square(kLevelSignificance)) {
       quality.bend = std::max(quality.bend, std::sqrt(off2) / std::max(line, point.sd_dn2));
     }
   }
@@ -95,7 +91,8 @@ LineQuality line_quality(const CameraEvidence& gathered, const FlatFieldFolder& 
         square(evidence.darks.front().all.temporal_dn2 - kQuantisation - numbers.intercept_dn2) * evidence.dark_weight;
   }
   const double degrees = quality.points - 2.0;
-  if (degrees > 0.0 && chi2 > degrees + kSeen * std::sqrt(2.0 * degrees)) quality.misfit = std::sqrt(chi2 / degrees);
+  if (degrees > 0.0 && chi2 > degrees + kMisfitSignificance * std::sqrt(2.0 * degrees))
+    quality.misfit = std::sqrt(chi2 / degrees);
   std::sort(quality.curve.begin(), quality.curve.end(),
             [](const TransferPoint& a, const TransferPoint& b) { return a.mean_dn < b.mean_dn; });
   const std::optional<double> ratio = variance_below_saturation(gathered, numbers);
@@ -109,7 +106,7 @@ std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quali
   const bool dark_in_line = evidence.dark_weight > 0.0;
   if (quality.points < 3) {
     return fmt::format(
-        "{} usable point{} in the diagram, at least 3 are needed: levels above the quantisation noise and below 70 % "
+        "{} usable point{} in the diagram; at least 3 are needed: levels above the quantisation noise and below 70 % "
         "of saturation{}",
         quality.points, quality.points == 1 ? "" : "s",
         dark_in_line ? "" : " (the dark frames show no noise beyond the quantisation)");
@@ -117,25 +114,27 @@ std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quali
   const FlatFieldStack& bright = evidence.flats[*gathered.middle_level];
   if (neighbour_correlation(bright) > kCorrelationRefused) {
     return fmt::format(
-        "the noise of neighbouring pixels is correlated ({:.2f}), as demosaicing, denoising, scaling and lossy "
-        "compression do; raw pictures are needed",
+        "the noise of neighbouring pixels is correlated ({:.2f}), an effect of demosaicing, denoising, scaling or "
+        "lossy "
+        "compression; raw images are needed",
         neighbour_correlation(bright));
   }
   if (bright.successive_ratio && *bright.successive_ratio < kSuccessiveRefused) {
     return fmt::format(
-        "the noise of successive frames is correlated (their differences have {:.0f} % of the variance of those two "
-        "apart), as denoising over time does; raw pictures are needed",
+        "the noise of successive frames is correlated (their differences have {:.0f} % of the variance of frames two "
+        "apart), an effect of denoising over time; raw images are needed",
         100.0 * *bright.successive_ratio);
   }
   const std::string curve =
-      ": the codes are not linear in the light (gamma, tone curve, video range), or the light is not constant; linear "
-      "or raw pictures are needed";
+      ": the codes are not linear in the light (gamma, tone curve, video range), or the light is not constant; "
+      "linear or raw images are needed";
   if (!(line.gain > 0.0)) return "the variance does not rise with the mean" + curve;
   if (quality.bend > kBendRefused) {
-    return fmt::format("the variance departs from a line over the mean by {:.0f} %{}", 100.0 * quality.bend, curve);
+    return fmt::format("the variance departs from a straight line over the mean by {:.0f} %{}", 100.0 * quality.bend,
+                       curve);
   }
   const double at_half = 0.5 * line.gain * quality.most_dn;
-  const double slack = kBendRefused * at_half + kSeen * line.intercept_sd_dn2;
+  const double slack = kBendRefused * at_half + kMisfitSignificance * line.intercept_sd_dn2;
   if (!dark_in_line && !gathered.dark_clipped && line.intercept_dn2 > square(kHiddenNoise_dn) + slack) {
     return "the line of variance over mean meets the dark level far above the dark frames' noise" + curve;
   }
@@ -143,12 +142,12 @@ std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quali
     return "the line of variance over mean meets the dark level below zero" + curve;
   }
   if (linearity.value && *linearity.value > kLinearityRefused) {
-    return fmt::format("the mean departs from a line over the exposure by {:.0f} %{}", 100.0 * *linearity.value, curve);
+    return fmt::format("the mean departs from a straight line over the exposure by {:.0f} %{}",
+                       100.0 * *linearity.value, curve);
   }
-  if (line.gain_sd > kGainTooUncertain * line.gain) {
-    return fmt::format(
-        "it comes out as {:.2g} with a standard deviation of {:.2g}: more light, frames or pixels are needed",
-        line.gain, line.gain_sd);
+  if (line.gain_sd > kMostRelativeGainSd * line.gain) {
+    return fmt::format("it is {:.2g} with a standard deviation of {:.2g}: more light, frames or pixels are needed",
+                       line.gain, line.gain_sd);
   }
   return {};
 }
@@ -168,13 +167,13 @@ std::string flicker_note(const Evidence& evidence) {
   if (levels == 0) return {};
   return fmt::format(
       "The light changes from frame to frame by up to {:.1f} %, in {} of {} levels: the lamp flickers, or the exposure "
-      "is automatic. The gain does not mind.",
+      "is automatic. The gain is not affected.",
       100.0 * most, levels, evidence.flats.size());
 }
 
 std::string correlation_note(const FlatFieldStack& bright) {
   const double correlation = neighbour_correlation(bright);
-  if (correlation <= std::max(kCorrelationNoted, kSignificant / std::sqrt(bright.all.pixels))) return {};
+  if (correlation <= std::max(kCorrelationNoted, kLevelSignificance / std::sqrt(bright.all.pixels))) return {};
   return fmt::format(
       "The noise of neighbouring pixels is correlated by {:.3f}: the gain may be too small by a few per cent.",
       correlation);
@@ -192,40 +191,40 @@ std::vector<std::string> condition_notes(const CameraEvidence& gathered, const L
   };
   if (gathered.mosaic) {
     note(
-        "The places of the 2 x 2 mosaic see different brightness: raw codes of a colour sensor. PRNU is measured "
-        "colour by colour.");
+        "The pixels of the 2 x 2 mosaic differ in brightness: these are raw codes of a colour sensor. PRNU is measured "
+        "for each colour.");
   }
   if (gain_known) {
     const FlatFieldStack& bright = evidence.flats[*gathered.middle_level];
     if (quality.bend > kBendNoted) {
-      note(
-          fmt::format("The variance departs from a line over the mean by up to {:.1f} %: the sensor is not quite "
-                      "linear, or the light not constant.",
-                      100.0 * quality.bend));
+      note(fmt::format(
+          "The variance departs from a straight line over the mean by up to {:.1f} %: the sensor is not quite "
+          "linear, or the light is not constant.",
+          100.0 * quality.bend));
     }
     if (linearity.value && *linearity.value > kLinearityNoted) {
-      note(
-          fmt::format("The mean departs from a line over the exposure by {:.1f} %: where that is a tone curve and not "
-                      "the lamp or the shutter, the gain is off by several times as much.",
-                      100.0 * *linearity.value));
+      note(fmt::format(
+          "The mean departs from a straight line over the exposure by {:.1f} %: if a tone curve causes this, and "
+          "not the lamp or the shutter, the gain is wrong by several times as much.",
+          100.0 * *linearity.value));
     }
     note(correlation_note(bright));
     if (bright.successive_ratio && *bright.successive_ratio < kSuccessiveNoted) {
-      note(fmt::format("Differences of successive frames have {:.1f} % of the variance of those two apart.",
+      note(fmt::format("Differences of successive frames have {:.1f} % of the variance of frames two apart.",
                        100.0 * *bright.successive_ratio));
     }
   }
   note(flicker_note(evidence));
-  if (neighbour_correlation(dark) > std::max(kCorrelationRefused, kSignificant / std::sqrt(dark.all.pixels))) {
+  if (neighbour_correlation(dark) > std::max(kCorrelationRefused, kLevelSignificance / std::sqrt(dark.all.pixels))) {
     note(
         fmt::format("The noise of the dark frames is correlated by {:.2f} between neighbouring pixels: rows or columns "
-                    "are read out with a noise of their own.",
+                    "have readout noise of their own.",
                     neighbour_correlation(dark)));
   }
-  if (static_cast<double>(gathered.outlying_pixels) > 0.01 * gathered.grid.picture().area()) {
+  if (static_cast<double>(gathered.outlying_pixels) > 0.01 * gathered.grid.size().area()) {
     note(
-        "More than 1 % of the pixels stand out of the pattern: the patterns are not normal, PRNU and DSNU describe "
-        "their cores.");
+        "More than 1 % of the pixels are outliers: the fixed patterns are not normally distributed, and PRNU and DSNU "
+        "describe their cores.");
   }
   return notes;
 }

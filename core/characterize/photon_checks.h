@@ -1,5 +1,5 @@
-/// Whether pictures are what photon transfer assumes: codes in proportion to light, noise that is new in every pixel
-/// and frame. What is not so is said, in place of a gain that would be wrong, or as a note.
+/// Do the images satisfy the assumptions of photon transfer: codes proportional to the light, noise independent from
+/// pixel to pixel and frame to frame? Violations are reported in place of a gain that would be wrong, or as a note.
 #pragma once
 
 #include <optional>
@@ -30,11 +30,11 @@ struct FittedLine {
   double intercept_sd_dn2 = 0.0;
 };
 
-/// Why the variance over the mean does not give the gain; empty where it does.
+/// Why the variance over the mean does not give the gain; empty if it does.
 std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quality, const FittedLine& line,
                         const Measured& linearity);
 
-/// What a reader should know of how the pictures were taken.
+/// What a reader should know about how the images were taken.
 std::vector<std::string> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,
                                          const Measured& linearity, bool gain_known);
 

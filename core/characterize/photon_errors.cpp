@@ -6,10 +6,6 @@
 namespace glidelab::core {
 namespace {
 
-double square(double value) {
-  return value * value;
-}
-
 /// How far the dark level moves from frame to frame beyond its pixels' noise, as a variance of the mean of the frames.
 double drift_variance(const FlatFieldStack& stack) {
   const auto frames = static_cast<double>(stack.frames);

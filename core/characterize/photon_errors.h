@@ -1,5 +1,5 @@
-/// Errors that all tiles of the pictures share, so that the jackknife over tiles does not see them: the drift of the
-/// dark level from frame to frame and from set to set, and what rounding to whole codes hides.
+/// Errors common to all tiles of the images, which the jackknife over tiles cannot see: the drift of the dark level
+/// from frame to frame and from set to set, and what rounding to whole codes hides.
 #pragma once
 
 #include "core/characterize/photon_numbers.h"

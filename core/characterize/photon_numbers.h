@@ -1,4 +1,4 @@
-/// The arithmetic of photon transfer: from the statistics of the frames, and the decisions taken on them, to numbers;
+/// The arithmetic of photon transfer, from the statistics of the frames and the decisions about them to the numbers,
 /// and the jackknife that repeats it without one tile at a time.
 #pragma once
 
@@ -13,10 +13,15 @@
 
 namespace glidelab::core {
 
+inline double square(double value) {
+  return value * value;
+}
+
 /// Variance of rounding to whole codes.
 inline constexpr double kQuantisation = 1.0 / 12.0;
 
-/// Dark noise up to this is not told from rounding: EMVA standard 1288 asks for a variance of 0.24 DN², with the 1/12.
+/// Dark noise up to this cannot be distinguished from rounding: EMVA standard 1288 asks for a variance of 0.24 DN²,
+/// with the 1/12.
 inline constexpr double kHiddenNoise_dn = 0.40;
 
 /// What rounding can do to a variance beyond adding 1/12: the amplitude of the first harmonic over where the mean lies
@@ -28,7 +33,7 @@ double rounding_of_variance(double variance_dn2, double spread_dn2);
 /// nothing.
 double rounding_of_mean(double spread_dn2);
 
-/// Everything that the numbers rest on. Choices are frozen here, so that the jackknife does not change them.
+/// Everything that the numbers depend on. Choices are frozen here, so that the jackknife does not change them.
 struct Evidence {
   std::vector<FlatFieldStack> darks;              ///< the first one belongs to the flat fields
   std::vector<std::optional<double>> exposure_s;  ///< of the darks

@@ -14,11 +14,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kSeen = 3.0;  // standard deviations from which on a quantity is not just noise
-
-double square(double value) {
-  return value * value;
-}
+constexpr double kLeastSignificance = 3.0;  // standard deviations from which on a quantity is not just noise
 
 class Measurer {
  public:
@@ -30,7 +26,8 @@ class Measurer {
         shared_(shared_errors(evidence_, numbers_)),
         quality_(line_quality(gathered_, folder, numbers_)) {
     result_.folder = folder;
-    result_.picture = gathered_.grid.picture();
+    result_.width_px = gathered_.grid.size().width;
+    result_.height_px = gathered_.grid.size().height;
     result_.frames = gathered_.frames;
     result_.mosaic = gathered_.mosaic;
     result_.saturation_dn = evidence_.saturation.level_dn;
@@ -55,7 +52,7 @@ class Measurer {
     } else {
       for (Measured* missing : {&result_.read_noise_e, &result_.full_well_e, &result_.saturation_capacity_e,
                                 &result_.dark_signal_e_s, &result_.dsnu_e, &result_.prnu}) {
-        missing->why = "it needs the gain, which is not known";
+        missing->why = "it requires the gain, which is not known";
       }
     }
     result_.notes =
@@ -120,31 +117,31 @@ class Measurer {
     }
     const double sd =
         std::hypot(with_gain_error(variance, sd_.read_variance_e2, 2.0), std::sqrt(shared_dn4) / square(numbers_.gain));
-    if (variance > kSeen * sd) {
+    if (variance > kLeastSignificance * sd) {
       read.value = std::sqrt(variance);
       read.sd = sd / (2.0 * *read.value);
       read.how = evidence_.read_noise_from_dark
                      ? "from the dark frames"
-                     : "from where the line meets the dark level; the dark frames show none above the quantisation";
+                     : "from the line extrapolated to the dark level; the dark frames show none above the quantisation";
       return;
     }
-    const double limit = std::sqrt(std::max(0.0, variance) + kSeen * sd);
+    const double limit = std::sqrt(std::max(0.0, variance) + kLeastSignificance * sd);
     const double most = gathered_.dark_clipped ? limit : std::min(kHiddenNoise_dn / numbers_.gain, dark_spread_e());
     read.limit = std::min(limit, most);
-    read.why = fmt::format("below what the quantisation shows: less than {:.3g} e-", *read.limit);
+    read.why = fmt::format("hidden by the quantisation: less than {:.3g} e-", *read.limit);
   }
 
   void saturation_capacity() {
     Measured& capacity = result_.saturation_capacity_e;
     if (!evidence_.saturation.peak) {
-      capacity.why = "no light is brighter than that of the largest variance";
+      capacity.why = "no level is brighter than that of the largest variance";
       return;
     }
     capacity.value = numbers_.saturation_capacity_e;
     // The largest variance may lie anywhere between the neighbours of where it was seen.
     capacity.sd = std::hypot(with_gain_error(*capacity.value, sd_.saturation_capacity_e, 1.0),
                              evidence_.saturation.peak->step_dn / std::sqrt(12.0) / numbers_.gain);
-    capacity.how = "light with the largest variance, known to the steps between the levels";
+    capacity.how = "the level of largest variance, known to within the steps between levels";
   }
 
   void full_well() {
@@ -165,8 +162,8 @@ class Measurer {
       well.sd = std::hypot(with_gain_error(*well.value, sd_.full_well_e, 1.0),
                            std::hypot(rounding, shared_.offset_dn) / numbers_.gain);
       well.how = evidence_.saturation.converter_clips
-                     ? "the converter's largest code is reached; the pixel may hold more, which the codes never show"
-                     : "from the level at which the output stays";
+                     ? "the converter reaches its largest code; the pixel may hold more, which the codes cannot show"
+                     : "from the level at which the output stops rising";
       return;
     }
     if (result_.saturation_capacity_e.value) {
@@ -176,13 +173,13 @@ class Measurer {
     double most = 0.0;
     for (const TransferPoint& point : result_.curve) most = std::max(most, point.mean_dn);
     well.limit = most / numbers_.gain;
-    well.why = fmt::format("no level reaches saturation: more than {:.4g} e-, of the brightest level", *well.limit);
+    well.why = fmt::format("no level reaches saturation: more than {:.4g} e-, the brightest level", *well.limit);
   }
 
   void dark_signal() {
     Measured& signal = result_.dark_signal_e_s;
     if (!std::isfinite(numbers_.dark_signal_e_s)) {
-      signal.why = "it needs dark frames at two or more exposures (folders dark-…, exposures_s)";
+      signal.why = "it requires dark frames at two or more exposures (folders dark-…, exposures_s)";
       return;
     }
     if (gathered_.dark_clipped) {
@@ -192,18 +189,18 @@ class Measurer {
     signal.value = numbers_.dark_signal_e_s;
     signal.sd =
         std::hypot(with_gain_error(*signal.value, sd_.dark_signal_e_s, 1.0), shared_.dark_slope_dn_s / numbers_.gain);
-    if (*signal.value < kSeen * signal.sd) signal.how = "not seen beyond its error";
+    if (*signal.value < kLeastSignificance * signal.sd) signal.how = "not significant";
   }
 
   /// A pattern's standard deviation from its variance; a limit where it does not stand out of its error. `most` is an
   /// upper limit known by other ways.
   static void set_pattern(Measured& result, double variance, double sd, double most, const std::string& unit) {
-    if (variance > kSeen * sd) {
+    if (variance > kLeastSignificance * sd) {
       result.value = std::sqrt(variance);
       result.sd = sd / (2.0 * *result.value);
       return;
     }
-    result.limit = std::min(most, std::sqrt(std::max(variance, 0.0) + kSeen * sd));
+    result.limit = std::min(most, std::sqrt(std::max(variance, 0.0) + kLeastSignificance * sd));
     result.why = fmt::format("not seen above noise and quantisation: less than {:.2g}{}", *result.limit, unit);
   }
 

@@ -6,13 +6,13 @@
 ///
 /// So the slope of variance over mean is the gain K, with no light meter. The line is fitted by weighted least squares
 /// to all levels up to 70 % of saturation, the dark frames among them where their noise shows above the quantisation.
-/// Quantum efficiency is not among the results: it needs a calibrated light.
+/// Quantum efficiency is not among the results: it requires a calibrated light.
 ///
-/// Where the pictures are not what the model says, a number is missing and says why, rather than wrong: pictures with a
-/// gamma or tone curve (variance over mean is no line, mean over exposure is none), demosaiced, denoised or compressed
-/// ones (noise of neighbouring pixels or successive frames is correlated).
+/// If the images violate the model, a number is missing, with the reason, rather than wrong: images with a gamma or
+/// tone curve (variance over mean or mean over exposure is not a straight line), demosaiced, denoised or compressed
+/// images (noise of neighbouring pixels or successive frames is correlated).
 ///
-/// Standard deviations: jackknife over the tiles of the picture, widened by the misfit of the line where that is
+/// Standard deviations: jackknife over the tiles of the image, widened by the misfit of the line where that is
 /// significant, plus what quantisation may hide. A dark signal's also holds the drift of the dark level from set to
 /// set. They include the sampling of patterns: PRNU, DSNU and offset as parameters of the sensor's make, seen through
 /// the pixels of this one.

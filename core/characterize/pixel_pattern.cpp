@@ -15,15 +15,15 @@ constexpr double kFewestInCell = 4.0;
 constexpr double kMosaicContrast = 0.05;
 constexpr int kFilterReach = 9;  // half width of box 7, box 11 and binomial 3 in sequence: 3 + 5 + 1
 
-/// Applies `work` to the picture, or to each of the four pictures that a mosaic is made of.
-cv::Mat by_color(const cv::Mat& picture, bool mosaic, const std::function<cv::Mat(const cv::Mat&)>& work) {
-  if (!mosaic) return work(picture);
-  cv::Mat result(picture.size(), CV_32F);
+/// Applies `work` to the image, or to each of the four images that a mosaic is made of.
+cv::Mat by_color(const cv::Mat& image, bool mosaic, const std::function<cv::Mat(const cv::Mat&)>& work) {
+  if (!mosaic) return work(image);
+  cv::Mat result(image.size(), CV_32F);
   for (int oy = 0; oy < 2; ++oy) {
     for (int ox = 0; ox < 2; ++ox) {
-      cv::Mat_<float> plane((picture.rows - oy + 1) / 2, (picture.cols - ox + 1) / 2);
+      cv::Mat_<float> plane((image.rows - oy + 1) / 2, (image.cols - ox + 1) / 2);
       for (int y = 0; y < plane.rows; ++y) {
-        for (int x = 0; x < plane.cols; ++x) plane(y, x) = picture.at<float>(2 * y + oy, 2 * x + ox);
+        for (int x = 0; x < plane.cols; ++x) plane(y, x) = image.at<float>(2 * y + oy, 2 * x + ox);
       }
       const cv::Mat done = work(plane);
       for (int y = 0; y < plane.rows; ++y) {
@@ -34,13 +34,13 @@ cv::Mat by_color(const cv::Mat& picture, bool mosaic, const std::function<cv::Ma
   return result;
 }
 
-cv::Mat high_pass(const cv::Mat& picture) {
+cv::Mat high_pass(const cv::Mat& image) {
   cv::Mat smooth;
   cv::Mat smoother;
-  cv::blur(picture, smooth, {7, 7}, {-1, -1}, cv::BORDER_REFLECT_101);
+  cv::blur(image, smooth, {7, 7}, {-1, -1}, cv::BORDER_REFLECT_101);
   cv::blur(smooth, smoother, {11, 11}, {-1, -1}, cv::BORDER_REFLECT_101);
   cv::GaussianBlur(smoother, smooth, {3, 3}, 0.0, 0.0, cv::BORDER_REFLECT_101);  // for a width of 3: 1/4, 1/2, 1/4
-  return picture - smooth;
+  return image - smooth;
 }
 
 /// Part of a white pattern's variance that the filter leaves: the sum of the squares of its answer to one bright pixel.
@@ -59,14 +59,14 @@ struct CellSquares {
 };
 
 /// n / (n - 1) times the squares of a cell's high-passed pixels about their mean.
-CellSquares squares(const cv::Mat& picture, const TileGrid& grid, const cv::Mat& mask, bool mosaic) {
-  cv::Mat filled = picture.clone();
-  if (!mask.empty()) neighbourhood_median(picture, mosaic).copyTo(filled, mask == 0);
+CellSquares squares(const cv::Mat& image, const TileGrid& grid, const cv::Mat& mask, bool mosaic) {
+  cv::Mat filled = image.clone();
+  if (!mask.empty()) neighbourhood_median(image, mosaic).copyTo(filled, mask == 0);
   filled -= cv::mean(filled)[0];  // near zero single precision keeps more digits
   const cv::Mat pattern = by_color(filled, mosaic, high_pass);
   const int reach = mosaic ? 2 * kFilterReach : kFilterReach;
-  const cv::Rect inside = cv::Rect(cv::Point(0, 0), picture.size()) &
-                          cv::Rect(reach, reach, picture.cols - 2 * reach, picture.rows - 2 * reach);
+  const cv::Rect inside =
+      cv::Rect(cv::Point(0, 0), image.size()) & cv::Rect(reach, reach, image.cols - 2 * reach, image.rows - 2 * reach);
   const std::vector<double> zeros(grid.cells(), 0.0);
   CellSquares cells{zeros, zeros, zeros};
   std::vector<double> sums = zeros;
@@ -78,7 +78,7 @@ CellSquares squares(const cv::Mat& picture, const TileGrid& grid, const cv::Mat&
         const std::size_t cell = TileGrid::cell(tile, x, y);
         const double value = pattern.at<float>(y, x);
         cells.pixels[cell] += 1.0;
-        cells.mean_dn[cell] += picture.at<float>(y, x);
+        cells.mean_dn[cell] += image.at<float>(y, x);
         cells.sum_dn2[cell] += value * value;
         sums[cell] += value;
       }

@@ -1,10 +1,10 @@
-/// The fixed pattern of a sensor: what is left of a mean of frames when shading is taken out, and the pixels that stand
-/// out of it.
+/// The fixed pattern of a sensor, which is what remains of a mean of frames without the shading, and its outlying
+/// pixels.
 ///
 /// Shading is removed by the high-pass of EMVA standard 1288, release 3.1 (a box of 7 x 7, then one of 11 x 11, then
-/// the binomial 3 x 3, subtracted from the picture), colour by colour where the sensor has a mosaic. White patterns
+/// the binomial 3 x 3, subtracted from the image), colour by colour where the sensor has a mosaic. White patterns
 /// keep the part sum h² of their variance (h: kernel of the filter), which is divided out here, so that the variances
-/// below are those of the pattern itself. Patterns with structure wider than about 10 pixels are taken for shading.
+/// below are those of the pattern itself. Patterns with structure wider than about 10 pixels count as shading.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -36,8 +36,8 @@ cv::Mat neighbourhood_median(const cv::Mat& mean_dn, bool mosaic);
 /// kSdOverMedian times the median of the absolute values: the standard deviation, as outliers do not move it.
 double robust_sd(const cv::Mat& deviations, const cv::Mat& mask);
 
-/// Pixels further than this many robust standard deviations off their neighbourhood stand out: of a normal pattern,
-/// 2 in 10^9 do.
+/// Pixels that differ from their neighbourhood by more than this many robust standard deviations are outliers: 2 in
+/// 10^9 of a normal pattern.
 inline constexpr double kOutlierSd = 6.0;
 
 /// Whether the four places of the 2 x 2 mosaic see different brightness (by more than 5 %).

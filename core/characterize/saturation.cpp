@@ -9,12 +9,12 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kCollapsedVariance = 0.1;  // of its largest: nearly every electron above is cut
-constexpr double kSeenSaturated = 0.2;      // of the picture: some tiles more than one, also in small pictures
-constexpr double kTopSeen = 0.05;           // of the samples at the largest code: the output is clipped there
-constexpr double kPeakBin = 0.02;           // of saturation
-constexpr double kPeakPixels = 0.02;        // of the picture: enough that a bin's variance is not off by chance
-constexpr double kFallenVariance = 0.7;     // of its largest, where light rises on: more than noise and shading do
+constexpr double kCollapsedVariance = 0.1;     // of its largest: nearly every electron above is cut
+constexpr double kLeastSaturatedShare = 0.2;   // of the image: some tiles more than one, also in small images
+constexpr double kLeastShareAtLargest = 0.05;  // of the samples at the largest code: the output is clipped there
+constexpr double kPeakBinWidth = 0.02;         // of saturation
+constexpr double kLeastPeakPixels = 0.02;      // of the image: enough that a bin's variance is not off by chance
+constexpr double kFallenVariance = 0.7;        // of its largest, where light rises on: more than noise and shading do
 
 /// The level with the largest value of `variance_dn2(level)`.
 template <typename Variance>
@@ -64,13 +64,13 @@ std::optional<VariancePeak> find_peak(const FlatFieldStack& dark, const std::vec
     for (std::size_t c = 0; c < flat.cells.size(); ++c) {
       const CellStatistics& cell = flat.cells[c];
       const double light = cell.mean_dn - dark.cells[c].mean_dn;
-      Bin& bin = bins[std::lround(light / (kPeakBin * saturation_dn))];
+      Bin& bin = bins[std::lround(light / (kPeakBinWidth * saturation_dn))];
       bin.pixels += cell.pixels;
       bin.light += cell.pixels * light;
       bin.variance += cell.pixels * cell.temporal_dn2;
     }
   }
-  std::erase_if(bins, [&](const auto& bin) { return bin.second.pixels < kPeakPixels * dark.all.pixels; });
+  std::erase_if(bins, [&](const auto& bin) { return bin.second.pixels < kLeastPeakPixels * dark.all.pixels; });
   const auto variance = [](const auto& bin) { return bin.second.variance / bin.second.pixels; };
   const auto light = [](const auto& bin) { return bin.second.light / bin.second.pixels; };
   const auto peak = std::max_element(bins.begin(), bins.end(),
@@ -100,8 +100,8 @@ Saturation find_saturation(const FlatFieldStack& dark, const std::vector<FlatFie
   Plateau plateau = plateau_at(dark, flats, top);
   Saturation saturation;
   saturation.level_dn = largest_code - dark.all.mean_dn;
-  saturation.converter_clips = at_largest >= kTopSeen;
-  if (plateau.pixels >= kSeenSaturated * flats[top].all.pixels) {
+  saturation.converter_clips = at_largest >= kLeastShareAtLargest;
+  if (plateau.pixels >= kLeastSaturatedShare * flats[top].all.pixels) {
     saturation.plateau_level = top;
     saturation.plateau_cells = std::move(plateau.cells);
     saturation.level_dn = plateau.mean_dn;

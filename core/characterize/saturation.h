@@ -1,9 +1,9 @@
 /// Where the output of a camera stops rising: in a plateau of the pixel itself, or at the converter's largest code.
 ///
-/// A cell (flat_field_stack.h) is saturated at the brightest level where its temporal variance has all but vanished
-/// beside that of a darker level: nearly every electron above the full well is cut. Where no plateau is seen and the
-/// codes reach the largest one, the converter limits. Apart from that EMVA standard 1288, release 3.1, takes the light
-/// with the largest variance as the saturation capacity.
+/// A cell (flat_field_stack.h) is saturated at the brightest level if its temporal variance has all but vanished
+/// compared with a darker level: nearly every electron above the full well is lost. If no plateau is seen and the codes
+/// reach the largest one, the converter limits. EMVA standard 1288, release 3.1, also takes the level of largest
+/// variance as the saturation capacity.
 #pragma once
 
 #include <cstddef>

@@ -12,15 +12,15 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kTopSpeed = 0.99;        // quantile: single frames may be wrong
-constexpr std::size_t kSpeedLag = 4;      // frames over which a speed is taken
-constexpr std::size_t kPathPlaces = 200;  // of the marker's path that are kept
-constexpr double kEdgeRadii = 3.0;        // of the marker: nearer to the picture's edge it may have come from outside
-constexpr double kBeyondTone = 2.0;       // times the stated exposure
-constexpr double kBeyondPlace = 0.5;      // marker diameters: less a marker may lengthen by where it is (perspective)
-// A step counts as a stall where the two on either side lie within an eighth of a straight line, and the rest of it is
-// six standard deviations of its noise: a clip has thousands of steps, and a codec's errors are no bell.
-constexpr double kAgree = 0.125, kStall = 0.4, kClearOfNoise = 15.0;
+constexpr double kTopSpeedQuantile = 0.99;  // not the largest: single frames may be wrong
+constexpr std::size_t kSpeedLag = 4;        // frames over which a speed is taken
+constexpr std::size_t kPathPlaces = 200;    // of the marker's path that are kept
+constexpr double kEdgeRadii = 3.0;  // of the marker: closer to the edge of the image it may have come from outside
+constexpr double kLeastOverExposure = 2.0;  // times the stated exposure
+constexpr double kLeastOverDiameter = 0.5;  // marker diameters: perspective may lengthen a marker by less
+// A step counts as a stall if the two steps on either side lie within an eighth of a straight line and its deficit is
+// six standard deviations of its noise: a clip has thousands of steps, and a codec's errors are not normal.
+constexpr double kMostUneven = 0.125, kLongestStall = 0.4, kLeastOverNoise = 15.0;
 
 struct Speeds {
   double px_s = 0.0, m_s = 0.0;
@@ -34,16 +34,16 @@ Speeds speeds_of(const TrackData& track) {
     const std::size_t k = i - kSpeedLag;
     const double dt_s = track.t_s[i] - track.t_s[k];
     if (track.frame[i] - track.frame[k] != kSpeedLag) continue;
-    const double way_m = std::abs(track.x_m[i] - track.x_m[k]);
-    m_s.push_back(way_m / dt_s);
+    const double distance_m = std::abs(track.x_m[i] - track.x_m[k]);
+    m_s.push_back(distance_m / dt_s);
     if (track.sightings.empty()) continue;
-    const double way_px = std::hypot(track.sightings[i].u_px - track.sightings[k].u_px,
-                                     track.sightings[i].v_px - track.sightings[k].v_px);
-    px_s.push_back(way_px / dt_s);
-    px += way_px;
-    m += way_m;
+    const double distance_px = std::hypot(track.sightings[i].u_px - track.sightings[k].u_px,
+                                          track.sightings[i].v_px - track.sightings[k].v_px);
+    px_s.push_back(distance_px / dt_s);
+    px += distance_px;
+    m += distance_m;
   }
-  return {quantile(px_s, kTopSpeed), quantile(m_s, kTopSpeed), m > 0.0 ? px / m : 0.0};
+  return {quantile(px_s, kTopSpeedQuantile), quantile(m_s, kTopSpeedQuantile), m > 0.0 ? px / m : 0.0};
 }
 
 /// Steps from frame to frame that are far shorter than their neighbours, of which two on either side agree.
@@ -61,26 +61,26 @@ std::size_t stalls_of(const std::vector<MarkerSighting>& sightings, double noise
     const std::array<double, 4> place = {-2.0, -1.0, 1.0, 2.0};
     double off = 0.0;
     for (std::size_t k = 0; k < 4; ++k) off = std::max(off, std::abs(around[k] - middle - rise * place[k]));
-    if (middle < kClearOfNoise * noise_px || off > kAgree * middle) continue;
-    stalls += step(i) < kStall * middle ? 1 : 0;
+    if (middle < kLeastOverNoise * noise_px || off > kMostUneven * middle) continue;
+    stalls += step(i) < kLongestStall * middle ? 1 : 0;
   }
   return stalls;
 }
 
-/// Closer to the picture's edge than a marker's diameter and a half, and its smear: it may have come from outside.
+/// Closer to the edge of the image than a diameter and a half plus the smear: the marker may have come from outside.
 bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip) {
   const double margin_px = kEdgeRadii * sighting.radius_px + clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
   return std::min({sighting.u_px, sighting.v_px, clip.width_px - 1.0 - sighting.u_px,
                    clip.height_px - 1.0 - sighting.v_px}) < margin_px;
 }
 
-/// By how the marker lengthens with its speed, where that is more than the stated exposure explains.
+/// The exposure from the lengthening of the marker with speed, if it exceeds what the stated exposure explains.
 void measure_smear(const CameraSettings& camera, const ClipAttempt& attempt, ClipCheck& clip) {
   const auto smear = marker_smear(attempt.track.sightings, attempt.fits, camera.frame_rate_hz);
   if (!smear) return;
   const double blur_px = clip.top_speed_px_s * smear->exposure_s;
-  const bool longer = !camera.exposure_s || smear->exposure_s > kBeyondTone * *camera.exposure_s;
-  if (!longer || blur_px <= kBeyondPlace * clip.marker_px) return;
+  const bool longer = !camera.exposure_s || smear->exposure_s > kLeastOverExposure * *camera.exposure_s;
+  if (!longer || blur_px <= kLeastOverDiameter * clip.marker_px) return;
   clip.measured_exposure_s = smear->exposure_s;
   clip.measured_blur_px = blur_px;
 }
@@ -100,8 +100,8 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
   clip.pixel_noise = look.pixel_noise;
 }
 
-void check_pictures(const Experiment& experiment, const ClipAttempt& attempt, const ClipWatch& watch, double px_per_m,
-                    ClipCheck& clip) {
+void check_images(const Experiment& experiment, const ClipAttempt& attempt, const ClipWatch& watch, double px_per_m,
+                  ClipCheck& clip) {
   const TrackData& track = attempt.track;
   MarkerSetup marker = *experiment.marker;
   if (track.dark_marker) marker.color_bgr = {0, 0, 0};
@@ -155,7 +155,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;
   if (clip.pictures && !track.sightings.empty()) {
-    check_pictures(experiment, attempt, watches.of(setup.file), speeds.px_per_m, clip);
+    check_images(experiment, attempt, watches.of(setup.file), speeds.px_per_m, clip);
   }
   return clip;
 }

@@ -1,5 +1,5 @@
-/// One clip of a recording as its track and its pictures show it: speeds, the marker's size and smear, light, steps
-/// that came out too short.
+/// The measurements of one clip, from its track and its images: speeds, size and smear of the marker, light, steps that
+/// are too short.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct ClipAttempt {
   std::string failure;
 };
 
-/// What can be said of the clip alone; `watches` have seen its pictures, where it has any and they could be tracked.
+/// `watches` have seen the clip's images if it has any and they could be tracked.
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const ClipAttempt& attempt,
                      const ClipWatches& watches);
 

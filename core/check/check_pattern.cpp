@@ -13,7 +13,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kAcross = 8, kDown = 6;  // parts of the picture
+constexpr int kAcross = 8, kDown = 6;  // parts of the image
 
 double share_covered(const PatternCheck& pattern) {
   std::set<int> parts;
@@ -27,7 +27,7 @@ double share_covered(const PatternCheck& pattern) {
   return static_cast<double>(parts.size()) / (kAcross * kDown);
 }
 
-/// The pictures of the planes of motion.
+/// The images of the planes of motion.
 std::set<std::filesystem::path> all_planes(const Experiment& experiment) {
   std::set<std::filesystem::path> planes(experiment.calibration->planes.begin(), experiment.calibration->planes.end());
   for (const GroupSetup& group : experiment.groups) planes.insert(group.planes.begin(), group.planes.end());
@@ -50,8 +50,8 @@ CheckedPattern check_pattern(const Experiment& experiment, int jobs) {
   } catch (const base::InputError& error) {
     pattern.failure = error.what();
   }
-  pattern.width_px = boards.picture_size.width;
-  pattern.height_px = boards.picture_size.height;
+  pattern.width_px = boards.image_size.width;
+  pattern.height_px = boards.image_size.height;
   for (const std::filesystem::path& file : boards.without) pattern.without.push_back(file.filename().string());
   for (const BoardView& board : boards.views) {
     PatternView view;

@@ -1,5 +1,5 @@
-/// The pictures of the pattern, looked at before any analysis: in which it is seen, how well one camera explains them,
-/// how much of the picture they cover.
+/// The images of the pattern before any analysis: in which of them it is found, how well one camera explains them, how
+/// much of the image they cover.
 #pragma once
 
 #include <optional>
@@ -16,11 +16,11 @@ struct CheckedPattern {
   std::optional<SeenPattern> seen;  ///< the corners and the camera, where there is one
 };
 
-/// For an experiment with [calibration]; pictures are read `jobs` at a time. What is wrong with them is check.failure.
+/// For an experiment with [calibration]; images are read `jobs` at a time. check.failure says what is wrong with them.
 CheckedPattern check_pattern(const Experiment& experiment, int jobs);
 
-/// How much of a path lies within the outline of all corners seen, where the lens is known; nothing of no path, or
-/// where fewer than three corners are seen.
+/// The share of a path that lies within the convex hull of all corners, where the lens is known; nothing for an empty
+/// path or fewer than three corners.
 std::optional<double> share_inside(const PatternCheck& pattern, const std::vector<PixelPlace>& path);
 
 }  // namespace glidelab::core

@@ -8,6 +8,7 @@
 #include "core/analysis/clip_to_track.h"
 #include "core/check/check_clip.h"
 #include "core/check/check_pattern.h"
+#include "core/check/recording_findings.h"
 #include "core/motion/analyze_motion.h"
 #include "core/motion/join_configurations.h"
 #include "core/pictures/scene/clip_look.h"

@@ -1,16 +1,15 @@
-/// A look at a recording before any analysis: is the pattern found, is the marker, are the pictures and times fit for
-/// it?
+/// A check of a recording before any analysis: are pattern and marker found, are the images and times good enough?
 ///
-/// The pictures pass through the analysis's own functions once (tracks_of: calibration, tracking, restitution); a clip
-/// in which no marker of the stated diameter is found is read again for one of another. The tracks
-/// pass through its lines a(v), for the direction of the launch and for the inclination, which are laid beside what is
-/// stated (statement_findings.h). What cannot be used is a finding here, not an error.
+/// The images pass once through the functions of the analysis (tracks_of: calibration, tracking, restitution); a clip
+/// in which no marker of the stated diameter is found is read again for other sizes. The lines a(v) of the tracks give
+/// the direction of the launch and the inclination, which are compared with what is stated (statement_findings.h). What
+/// cannot be used is a finding here, not an error.
 #pragma once
 
 #include "base/progress.h"
 #include "core/check/recording_check.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 
 namespace glidelab::core {
 
@@ -18,8 +17,5 @@ namespace glidelab::core {
 RecordingCheck check_recording(const Experiment& experiment, int jobs,
                                const base::Progress& progress = base::no_progress,
                                const FrameOpener& open = open_frames);
-
-/// What the measurements of `check` say, the gravest first; the limits stand in docs/reference/check.md.
-std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check);
 
 }  // namespace glidelab::core

@@ -1,4 +1,4 @@
-/// What the findings of a check share: words, and a book for those about one thing.
+/// Wording that the findings of a check share, and a collector for the findings about one subject.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ inline std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
 }
 
-/// At most six of them.
+/// At most six names, and how many more there are.
 inline std::string list_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
   const std::size_t shown = std::min(kMost, names.size());
@@ -26,7 +26,7 @@ inline std::string list_of(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Collects what is found about one thing; `findings` outlive it.
+/// Collects the findings about one subject; `findings` outlive it.
 class FindingBook {
  public:
   FindingBook(std::vector<Finding>& findings, std::string about) : findings_(findings), about_(std::move(about)) {}

@@ -1,75 +1,244 @@
-// findings_of() of check_recording.h: of the pattern here, of clips in clip_findings.h, of what is stated in
-// statement_findings.h.
+#include "core/check/recording_findings.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
-#include "core/check/check_recording.h"
-#include "core/check/clip_findings.h"
 #include "core/check/finding_words.h"
 #include "core/check/statement_findings.h"
+#include "core/pictures/frames/frame_source.h"
 
 namespace glidelab::core {
 namespace {
 
-// What each limit rests on is in docs/reference/check.md.
-constexpr std::size_t kEnoughViews = 8;
-constexpr double kFinePatternPx = 0.3, kWorstPatternPx = 1.0;  // rms of the camera's fit, per corner
-constexpr double kFinePlanePx = 0.05, kPlaneRatio = 3.0, kWorstPlanePx = 1.0;
-constexpr double kCovered = 0.5;  // of the picture's parts
+// docs/reference/check.md gives the reason for each limit.
+constexpr std::size_t kFewViews = 8;
+constexpr double kMostPatternRmsPx = 0.3, kUnusablePatternRmsPx = 1.0;  // rms of the camera's fit, per corner
+constexpr double kLeastPlaneRmsPx = 0.05, kMostPlaneOverNoise = 3.0, kUnusablePlaneRmsPx = 1.0;
+constexpr double kLeastCovered = 0.5;  // of the image's parts
 constexpr double kLeastTiltDeg = 20.0;
 
 void judge_pattern(const PatternCheck& pattern, FindingBook book) {
   const std::size_t asked = pattern.views.size() + pattern.without.size();
   if (!pattern.failure.empty()) {
-    book.add(Severity::unusable, pattern.failure,
-             fmt::format("the pattern was found in {} of {} pictures; take them anew: the whole board in sight, sharp, "
-                         "evenly lit, with white around it, and inner_corners as printed",
-                         pattern.views.size(), asked));
+    book.add(
+        Severity::unusable, pattern.failure,
+        fmt::format("the pattern was found in {} of {} images; retake them: the whole board in view, sharp, evenly "
+                    "lit, with a white border, and inner_corners as printed",
+                    pattern.views.size(), asked));
     return;
   }
   if (!pattern.without.empty()) {
-    book.add(Severity::change, "no pattern is seen in " + list_of(pattern.without),
-             "take those again with all inner corners in sight and the board evenly lit, or remove them");
+    book.add(Severity::change, "no pattern is found in " + list_of(pattern.without),
+             "retake these with all inner corners in view and the board evenly lit, or remove them");
   }
   if (!pattern.calibration) return;
   const CalibrationResult& camera = *pattern.calibration;
-  if (camera.views_used < kEnoughViews) {
-    book.add(Severity::change, fmt::format("the camera rests on {} views", camera.views_used),
-             "take a dozen, tilted to all sides, near and far");
+  if (camera.views_used < kFewViews) {
+    book.add(Severity::change, fmt::format("the calibration uses {} views", camera.views_used),
+             "take a dozen, tilted in all directions, near and far");
   }
-  if (camera.rms_px > kFinePatternPx) {
-    book.add(
-        camera.rms_px > kWorstPatternPx ? Severity::unusable : Severity::change,
-        fmt::format("corners lie {:.2g} px (rms) from where the camera's model puts them", camera.rms_px),
-        "glue the board to something flat, keep it still and sharp in every picture, and leave zoom and focus alone");
+  if (camera.rms_px > kMostPatternRmsPx) {
+    book.add(camera.rms_px > kUnusablePatternRmsPx ? Severity::unusable : Severity::change,
+             fmt::format("corners lie {:.2g} px (rms) from where the camera model places them", camera.rms_px),
+             "glue the board to a flat plate, keep it still and sharp in every image, and leave zoom and focus alone");
   }
-  if (pattern.covered < kCovered) {
-    book.add(Severity::change, fmt::format("the views cover {} of the picture", percent(pattern.covered)),
-             "hold the board into the picture's edges and corners as well: the lens is known only where it was seen");
+  if (pattern.covered < kLeastCovered) {
+    book.add(Severity::change, fmt::format("the views cover {} of the image", percent(pattern.covered)),
+             "hold the board near the edges and corners of the image as well: the lens is known only where the board "
+             "was seen");
   }
   double tilt_deg = 0.0;
   for (const PatternView& view : pattern.views) tilt_deg = std::max(tilt_deg, view.tilt_deg);
   if (tilt_deg < kLeastTiltDeg) {
-    book.add(Severity::change, fmt::format("the board is tilted by no more than {:.0f} degrees", tilt_deg),
-             "tilt it by 30 to 45 degrees in some views: without that the focal length is hardly known");
+    book.add(Severity::change, fmt::format("the board is tilted by at most {:.0f} degrees", tilt_deg),
+             "tilt it by 30 to 45 degrees in some views; otherwise the focal length is hardly determined");
   }
-  if (camera.plane_rms_px > std::max(kFinePlanePx, kPlaneRatio * camera.plane_expected_px)) {
-    book.add(camera.plane_rms_px > kWorstPlanePx ? Severity::unusable : Severity::change,
-             fmt::format(
-                 "the plane views' corners lie {:.2g} px (rms) from where the camera puts them; their noise explains "
-                 "{:.2g} px",
-                 camera.plane_rms_px, camera.plane_expected_px),
-             "take the plane view with the same focus, zoom and picture size as all others, the board flat and still");
+  if (camera.plane_rms_px > std::max(kLeastPlaneRmsPx, kMostPlaneOverNoise * camera.plane_expected_px)) {
+    book.add(camera.plane_rms_px > kUnusablePlaneRmsPx ? Severity::unusable : Severity::change,
+             fmt::format("the corners of the plane views lie {:.2g} px (rms) from where the camera places them; their "
+                         "noise explains "
+                         "{:.2g} px",
+                         camera.plane_rms_px, camera.plane_expected_px),
+             "retake the plane view with the same focus, zoom and image size as all others, the board flat and still");
   }
   for (const std::string& note : camera.notes) {
-    if (!note.starts_with("no pattern in sight")) book.add(Severity::note, note);  // said above, with advice
+    if (!note.starts_with("no pattern in sight")) book.add(Severity::note, note);  // reported above, with advice
   }
 }
 
-/// What is the same of several clips is said once.
-std::vector<Finding> said_once(std::vector<Finding> findings) {
+// Of clips.
+
+constexpr std::size_t kUnusableSightings = 20, kFewSightings = 60;
+constexpr double kLeastSeenShare = 0.95, kUnusableSeenShare = 2.0 / 3.0;
+constexpr std::size_t kMostUnseenAtEnd = 3;  // frames at a clip's start or end
+constexpr double kLeastPathInside = 0.95;    // of the marker's path
+constexpr double kSmallMarkerPx = 6.0, kUnusableMarkerPx = 3.0;
+constexpr double kLeastContrast = 0.15, kLeastSignalToNoise = 20.0, kUnusableSignalToNoise = 5.0;
+constexpr double kSaturatedLevel = 0.985, kLeastBrightLevel = 0.25, kMostSaturatedShare = 0.05;
+constexpr double kMostBlur = 0.5, kUnusableBlur = 2.0;                        // marker diameters
+constexpr double kUnusableMissingShare = 0.01, kUnusableRepeatedShare = 0.1;  // shares of the frames
+constexpr double kMostDriftFrames = 0.75;                                     // frames
+
+std::string times(std::size_t count) {
+  return count == 1 ? "once" : fmt::format("{} times", count);
+}
+
+void judge_times(const Experiment& experiment, const ClipCheck& clip, FindingBook& book) {
+  const auto frames = static_cast<double>(std::max<std::size_t>(clip.frames, 1));
+  const bool by_rate = experiment.camera->time == TimeSource::rate;
+  if (clip.container_rate_hz && std::abs(*clip.container_rate_hz / clip.frame_rate_hz - 1.0) > kRateRounding) {
+    book.add(
+        by_rate ? Severity::change : Severity::note,
+        fmt::format("the file states {:.6g} frames per second, experiment.toml {:.6g}", *clip.container_rate_hz,
+                    clip.frame_rate_hz),
+        fmt::format("check that the clip was filmed at {:.6g} frames per second: a wrong rate scales every speed{}",
+                    clip.frame_rate_hz, by_rate ? "; a slow-motion file states its playback rate" : ""));
+  }
+  if (clip.drift_frames > kMostDriftFrames) {
+    book.add(
+        by_rate ? Severity::unusable : Severity::note,
+        fmt::format("the file's time stamps depart from even spacing by {:.3g} frames; {} steps are irregular",
+                    clip.drift_frames, clip.irregular_steps),
+        by_rate
+            ? "set time = \"container\" in [camera] if the camera films at a varying rate; otherwise find out which "
+              "program dropped frames"
+            : "");
+  }
+  if (clip.jumps > 0 && by_rate) {
+    const double share = static_cast<double>(clip.jumps) / static_cast<double>(std::max<std::size_t>(clip.seen, 1));
+    book.add(
+        share > kUnusableMissingShare ? Severity::unusable : Severity::change,
+        fmt::format("the marker jumps {} by the distance of one or more frames: frames are missing", times(clip.jumps)),
+        "record to a faster disk or in a smaller format; set time = \"container\" if the file's time stamps are true");
+  }
+  if (clip.repeated + clip.stalls > 0) {
+    const double share = static_cast<double>(std::max(clip.repeated, clip.stalls)) / frames;
+    book.add(share > kUnusableRepeatedShare ? Severity::unusable : Severity::change,
+             clip.stalls > 0
+                 ? fmt::format(
+                       "the marker stands still for a frame {} in mid-motion, and {} of {} frames are identical to the "
+                       "frame before: frames are duplicated",
+                       times(clip.stalls), clip.repeated, clip.frames)
+                 : fmt::format("{} of {} frames are identical to the frame before", clip.repeated, clip.frames),
+             "export the clip at the rate at which it was filmed, with a converter that adds no frames");
+  }
+}
+
+void judge_light(const ClipCheck& clip, FindingBook& book) {
+  if (clip.marker_level && *clip.marker_level > kSaturatedLevel) {
+    book.add(Severity::change, "the marker is saturated",
+             "shorten the exposure until it is grey: saturation displaces its edge");
+  }
+  if (clip.saturated > kMostSaturatedShare) {
+    book.add(Severity::change, fmt::format("{} of the pixels are saturated", percent(clip.saturated)),
+             "shorten the exposure, or cover bright surfaces");
+  }
+  if (clip.bright_level < kLeastBrightLevel) {
+    book.add(Severity::change,
+             fmt::format("the brightest parts reach only {} of the camera's range", percent(clip.bright_level)),
+             "use more light: dark images are noisy");
+  }
+  if (clip.contrast && *clip.contrast < kLeastContrast) {
+    book.add(Severity::change,
+             fmt::format("the marker differs from its surroundings by only {} of the camera's range",
+                         percent(*clip.contrast)),
+             "put a darker (or brighter) sheet behind it, or use a retroreflective marker with a lamp at the camera");
+  }
+  if (clip.contrast && *clip.contrast < kLeastSignalToNoise * clip.pixel_noise) {
+    const double signal = *clip.contrast / clip.pixel_noise;
+    book.add(signal < kUnusableSignalToNoise ? Severity::unusable : Severity::change,
+             fmt::format("the marker's contrast is {:.3g} times the noise of a pixel", signal),
+             "use more light and less gain (ISO)");
+  }
+}
+
+/// A marker that is smeared away where the glider is fastest is missing at a clip's start or end.
+void judge_ends(const ClipCheck& clip, FindingBook& book) {
+  const std::size_t before = clip.first, after = clip.frames - clip.first - clip.spanned;
+  const auto judge = [&](std::size_t unseen, bool edge, const std::string& found) {
+    if (unseen <= kMostUnseenAtEnd) return;
+    const double share = static_cast<double>(unseen) / static_cast<double>(clip.frames);
+    book.add(
+        edge                               ? Severity::note
+        : share > 1.0 - kUnusableSeenShare ? Severity::unusable
+                                           : Severity::change,
+        found,
+        edge ? ""
+             : "the marker is not at the edge of the image there: if the glider is fast, shorten the exposure and use "
+               "more light; otherwise cut the clip where the hand lets go");
+  };
+  judge(before, clip.entered, fmt::format("the marker is first seen in frame {} of {}", clip.first + 1, clip.frames));
+  judge(after, clip.left,
+        fmt::format("the marker is last seen in frame {} of {}", clip.first + clip.spanned, clip.frames));
+}
+
+void judge_marker(const ClipCheck& clip, FindingBook& book) {
+  const double share = static_cast<double>(clip.seen) / static_cast<double>(std::max<std::size_t>(clip.spanned, 1));
+  if (clip.seen < kFewSightings) {
+    book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change,
+             fmt::format("the marker is seen in only {} frames", clip.seen),
+             "film at a higher rate, or let the glider run a longer distance in the image");
+  }
+  if (share < kLeastSeenShare) {
+    book.add(share < kUnusableSeenShare ? Severity::unusable : Severity::change,
+             fmt::format("the marker is seen in {} of the {} frames between its first and its last sighting", clip.seen,
+                         clip.spanned),
+             "let nothing hide it; increase the contrast, reduce the blur");
+  }
+  judge_ends(clip, book);
+  if (clip.marker_px < kSmallMarkerPx) {
+    book.add(clip.marker_px < kUnusableMarkerPx ? Severity::unusable : Severity::change,
+             fmt::format("the marker is {:.2g} px wide", clip.marker_px), "move closer or use a bigger one");
+  }
+  if (clip.measured_exposure_s) {
+    book.add(Severity::change,
+             fmt::format("the marker lengthens with its speed as it would with an exposure of {:.2g} ms{}",
+                         1e3 * *clip.measured_exposure_s, clip.blur_px ? "; exposure_s is less than half of that" : ""),
+             "read the exposure from the camera, and shorten it");
+  }
+  const double blur_px = likely_blur_px(clip);
+  if (blur_px > kMostBlur * clip.marker_px) {
+    const bool stated = clip.blur_px.has_value() || clip.measured_blur_px.has_value();
+    book.add(stated && blur_px > kUnusableBlur * clip.marker_px ? Severity::unusable : Severity::change,
+             fmt::format("at its top speed, {:.3g} m/s, the marker is smeared by {}{:.3g} px; it is {:.3g} px wide",
+                         clip.top_speed_m_s, stated ? "" : "up to ", blur_px, clip.marker_px),
+             stated ? "shorten the exposure and use more light"
+                    : "state exposure_s in [camera] (this is the smear of an exposure as long as the frame time)");
+  }
+  if (clip.inside_pattern < kLeastPathInside) {
+    book.add(Severity::change,
+             fmt::format("{} of the marker's path lies outside the region in which the pattern was seen",
+                         percent(1.0 - clip.inside_pattern)),
+             "take views of the pattern that cover the region in which the glider runs");
+  }
+}
+
+void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook book) {
+  if (!clip.failure.empty()) {
+    book.add(Severity::unusable, clip.failure,
+             "check that the file plays, that the marker is in the image and moves, and that [marker] describes it");
+    return;
+  }
+  if (clip.pictures) {
+    judge_marker(clip, book);
+    judge_light(clip, book);
+    judge_times(experiment, clip, book);
+  } else if (clip.seen < kFewSightings) {
+    book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change,
+             fmt::format("the track has {} points", clip.seen), "record at a higher rate");
+  }
+  for (const std::string& note : clip.notes) {
+    const bool reported = note.find("identical to the frame before") != std::string::npos ||
+                          (note.starts_with("the marker looks ") && size_disagrees(clip));  // above, with advice
+    if (!reported) book.add(Severity::note, note);
+  }
+}
+
+/// A finding that several clips share is reported once.
+std::vector<Finding> merged(std::vector<Finding> findings) {
   std::vector<Finding> once;
   std::vector<std::vector<std::string>> about;
   for (Finding& finding : findings) {
@@ -98,7 +267,7 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return static_cast<int>(a.severity) > static_cast<int>(b.severity);
   });
-  return said_once(std::move(findings));
+  return merged(std::move(findings));
 }
 
 }  // namespace glidelab::core

@@ -13,12 +13,12 @@
 namespace glidelab::core {
 namespace {
 
-// What each limit rests on is in docs/reference/check.md.
-constexpr double kSizeAgrees = 0.15;       // of the logarithm
-constexpr double kSizeContradicts = 0.26;  // 30 %
-constexpr double kSharp = 0.5;             // marker diameters of smear, above which an outline is no measure of size
-constexpr double kAgainstLaunch = 0.25;    // share of the points that move freely
-constexpr double kBeyondTrack = 1.05;      // of length_m
+// docs/reference/check.md gives the reason for each limit.
+constexpr double kMostSizeDifference = 0.15;      // of the logarithm
+constexpr double kUnusableSizeDifference = 0.26;  // 30 %
+constexpr double kMostSmearForSize = 0.5;  // marker diameters of smear, above which an outline is no measure of size
+constexpr double kLeastShareAgainstLaunch = 0.25;  // share of the points that move freely
+constexpr double kMostDistanceOverLength = 1.05;   // of length_m
 
 double size_off(const ClipCheck& clip) {
   return clip.marker_expected_px > 0.0 && clip.marker_px > 0.0
@@ -38,7 +38,7 @@ std::string lengths_of(const Experiment& experiment) {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
-/// Gliders of one track do not differ so; grams and kilograms do.
+/// Gliders of one track do not differ that much; grams and kilograms do.
 void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) {
   const auto lighter = [](const ClipSetup& a, const ClipSetup& b) { return a.mass_kg < b.mass_kg; };
   const auto least = std::min_element(experiment.clips.begin(), experiment.clips.end(), lighter);
@@ -51,7 +51,7 @@ void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) 
   findings.push_back({Severity::unusable, "masses",
                       fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", list_of(heavy), kMassRatio,
                                   least->name, least->mass_kg),
-                      "state every mass in kilograms: one looks like grams"});
+                      "state every mass in kilograms: one of them looks like grams"});
 }
 
 /// One finding for all clips: they share the marker and the scale.
@@ -63,37 +63,39 @@ void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clip
     if (!size_disagrees(clip)) continue;
     names.push_back(clip.name);
     if (worst == nullptr || size_off(clip) > size_off(*worst)) worst = &clip;
-    contradicts = contradicts || (size_off(clip) > kSizeContradicts && likely_blur_px(clip) <= kSharp * clip.marker_px);
+    contradicts = contradicts || (size_off(clip) > kUnusableSizeDifference &&
+                                  likely_blur_px(clip) <= kMostSmearForSize * clip.marker_px);
   }
   if (worst == nullptr) return;
   const std::string length = experiment.scale ? "[scale]" : "square_m";
   findings.push_back(
       {contradicts ? Severity::unusable : Severity::change, list_of(names),
-       fmt::format("the marker is {:.3g} px wide, and diameter_m and {} make it {:.3g} px: {:.0f} % off",
-                   worst->marker_px, length, worst->marker_expected_px, 100.0 * std::expm1(size_off(*worst))),
-       fmt::format("measure diameter_m and {} again: one length is wrong, and if it is not diameter_m all speeds and "
-                   "accelerations are with it",
-                   length)});
+       fmt::format("the marker is {:.3g} px wide; diameter_m and {} predict {:.3g} px: {:.0f} % off", worst->marker_px,
+                   length, worst->marker_expected_px, 100.0 * std::expm1(size_off(*worst))),
+       fmt::format(
+           "measure diameter_m and {} again: one of these lengths is wrong; if it is not diameter_m, all speeds and "
+           "accelerations are wrong too",
+           length)});
 }
 
 /// A marker cannot run farther than the track is long.
-void judge_way(const Experiment& experiment, const std::vector<ClipCheck>& clips, std::vector<Finding>& findings) {
+void judge_distance(const Experiment& experiment, const std::vector<ClipCheck>& clips, std::vector<Finding>& findings) {
   if (!experiment.track.length_m) return;
   std::vector<std::string> names;
-  double way_m = 0.0;
+  double distance_m = 0.0;
   for (const ClipCheck& clip : clips) {
-    if (clip.way_m <= kBeyondTrack * *experiment.track.length_m) continue;
+    if (clip.way_m <= kMostDistanceOverLength * *experiment.track.length_m) continue;
     names.push_back(clip.name);
-    way_m = std::max(way_m, clip.way_m);
+    distance_m = std::max(distance_m, clip.way_m);
   }
   if (names.empty()) return;
   findings.push_back({Severity::unusable, list_of(names),
-                      fmt::format("the glider runs over {:.3g} m, and length_m in [track] says {:.3g} m", way_m,
+                      fmt::format("the glider runs {:.3g} m, but length_m in [track] is {:.3g} m", distance_m,
                                   *experiment.track.length_m),
-                      fmt::format("measure the track again, and see {}", lengths_of(experiment))});
+                      fmt::format("measure the track again, and check {}", lengths_of(experiment))});
 }
 
-/// The configuration of a group that is farthest off what is stated, and by what.
+/// The configuration of a group that contradicts the stated inclination most.
 struct Worst {
   const ConfigurationResult* configuration = nullptr;
   InclineContradiction contradiction;
@@ -126,23 +128,23 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
   }
   for (const auto* worst_of : {&by_key, &by_plumb}) {
     for (const auto& [group, worst] : *worst_of) {
-      if (worst_of == &by_plumb && by_key.contains(group)) continue;  // said
+      if (worst_of == &by_plumb && by_key.contains(group)) continue;  // reported above
       findings.push_back({worst.contradiction.gross ? Severity::unusable : Severity::change,
                           list_of(worst.configuration->clips), worst.contradiction.sentence,
-                          fmt::format("one of these is not as on the bench: {}, gravity_m_s2, {}{}",
+                          fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}",
                                       worst_of == &by_key ? "incline_deg" : "the plumb line", lengths_of(experiment),
-                                      experiment.camera ? ", frame_rate_hz (it counts twice)" : "")});
+                                      experiment.camera ? ", frame_rate_hz (its square enters)" : "")});
     }
   }
 }
 
-/// A hand rests or pushes before the glider goes its way; free motion turns.
+/// A hand rests or pushes before it releases the glider; free motion turns.
 bool moves_against_launch(const ClipCheck& clip) {
-  if (!clip.against_launch || clip.against_launch->share < kAgainstLaunch) return false;
+  if (!clip.against_launch || clip.against_launch->share < kLeastShareAgainstLaunch) return false;
   return !clip.against_launch->until_s || clip.against_launch->at_a_turn;
 }
 
-/// The two keys that say where the launch went, of one clip.
+/// The two keys of one clip that state the direction of the launch.
 struct StatedLaunch {
   bool own_downhill = false;  ///< of its [group], not of [track]
   std::string sentence;       ///< "launched = "up" and downhill = "+X""
@@ -186,8 +188,8 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
       {Severity::unusable, list_of(names),
        fmt::format("{}{}, as {} say; that is {} of its free motion", whose, sentence(*worst->against_launch),
                    of_worst.sentence, percent(worst->against_launch->share)),
-       fmt::format("see which of the two is wrong: launched of {}, or downhill in {}; if neither is, "
-                   "start_s says where the hand lets go",
+       fmt::format("check which of the two is wrong: launched of {}, or downhill in {}; if neither is, "
+                   "state with start_s when the hand lets go",
                    many ? "these clips" : "this clip",
                    own && shared ? "[track] or [group]"
                    : own         ? "[group]"
@@ -197,7 +199,7 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
 }  // namespace
 
 bool size_disagrees(const ClipCheck& clip) {
-  return size_off(clip) > kSizeAgrees;
+  return size_off(clip) > kMostSizeDifference;
 }
 
 double likely_blur_px(const ClipCheck& clip) {
@@ -209,7 +211,7 @@ std::vector<Finding> statement_findings(const Experiment& experiment, const Reco
   std::vector<Finding> findings;
   judge_masses(experiment, findings);
   judge_size(experiment, check.clips, findings);
-  judge_way(experiment, check.clips, findings);
+  judge_distance(experiment, check.clips, findings);
   judge_incline(experiment, check, findings);
   judge_launch(experiment, check.clips, findings);
   return findings;

@@ -1,6 +1,7 @@
-/// Where experiment.toml contradicts the recording, or itself: masses, the launch, lengths, the inclination.
+/// Contradictions between experiment.toml and the recording, or within experiment.toml: masses, launch, lengths,
+/// inclination.
 ///
-/// Each contradiction is told once, with the clips that show it, and with the keys of which one is wrong.
+/// Each is reported once, with the clips that show it and the keys of which one is wrong.
 #pragma once
 
 #include <vector>
@@ -10,10 +11,11 @@
 
 namespace glidelab::core {
 
-/// Whether the marker's size in the picture differs from what its diameter and the scale make it by more than 15 %.
+/// Whether the marker's size in the image differs by more than 15 % from what its diameter and the scale predict.
 bool size_disagrees(const ClipCheck& clip);
 
-/// The highest speed's smear, px: measured, or by the stated exposure, or by an exposure as long as a frame.
+/// The smear at the top speed, px: measured, or from the stated exposure, or from an exposure as long as the frame
+/// time.
 double likely_blur_px(const ClipCheck& clip);
 
 std::vector<Finding> statement_findings(const Experiment& experiment, const RecordingCheck& check);

@@ -1,10 +1,11 @@
 /// Levenberg-Marquardt for small dense problems: minimise sum_i w_i r_i(p)^2 over N parameters.
 ///
 /// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
-/// nothing of the size of the data is stored. Units are the caller's. Stops when a step changes every parameter by less
-/// than its `step` (an absolute measure, one for each parameter), or changes the cost by less than 1e-7 of itself (with
-/// n data that is a step of sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels). So small a step is
-/// taken without another evaluation where it is hardly damped: the cost after it is that of the linear residuals.
+/// nothing of the size of the data is stored. Units are the caller's. The loop is base/math/levenberg_marquardt.h's;
+/// it stops when a step changes every parameter by less than its `step` (an absolute measure, one for each parameter),
+/// or changes the cost by less than 1e-7 of itself (with n data that is a step of sqrt(1e-7 n) standard deviations: a
+/// hundredth for a thousand pixels). So small a step is taken without another evaluation where it is hardly damped: the
+/// cost after it is that of the linear residuals.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -15,6 +16,8 @@
 #include <limits>
 #include <optional>
 #include <utility>
+
+#include "base/math/levenberg_marquardt.h"
 
 namespace glidelab::core {
 
@@ -39,8 +42,6 @@ struct NormalEquations {
   void complete() { jtj.template triangularView<Eigen::StrictlyUpper>() = jtj.transpose(); }
 };
 
-enum class FitStop { converged, iterations, singular, out_of_range, hopeless };
-
 template <int N>
 struct LeastSquaresFit {
   Eigen::Matrix<double, N, 1> parameters;
@@ -48,77 +49,88 @@ struct LeastSquaresFit {
   Eigen::Matrix<double, N, N> covariance;    ///< (J^T W J)^-1 times the residual variance
   double rms = 0.0;                          ///< sqrt(cost / (weight - N)): the residual standard deviation
   int iterations = 0;
-  FitStop stop = FitStop::iterations;
+  base::FitStop stop = base::FitStop::iterations;
 };
 
 /// `evaluate(p)` gives the NormalEquations at p, or nothing where p is outside the model's range (the step is then
 /// shortened). A residual is model minus datum. `is_hopeless(fit, equations)` is asked before each step, with the
-/// parameters and iterations so far, and ends the fit.
+/// parameters and iterations so far, and ends the fit. The fit is singular where J^T W J has no inverse at its end.
 template <int N, class Evaluate, class IsHopeless>
 LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matrix<double, N, 1>& start,
                                      const Eigen::Matrix<double, N, 1>& step, int max_iterations,
                                      const IsHopeless& is_hopeless) {
   using Vector = Eigen::Matrix<double, N, 1>;
+  struct Point {
+    Vector parameters, evaluated_at;
+    NormalEquations<N> equations;
+  };
+  constexpr double kHardlyDamped = 1e-3;
+  base::FitOptions options;
+  options.most_iterations = max_iterations;
+  options.damping_start = kHardlyDamped;
+  options.lower = 0.2;
+  options.raise = 8.0;
+  options.cost_relative = 1e-7;
+  options.refused_may_settle = true;
+
   LeastSquaresFit<N> fit;
   fit.parameters = fit.evaluated_at = start;
   fit.covariance.setZero();
-  std::optional<NormalEquations<N>> here = evaluate(start);
-  if (!here) {
-    fit.stop = FitStop::out_of_range;
+  std::optional<NormalEquations<N>> at_start = evaluate(start);
+  if (!at_start) {
+    fit.stop = base::FitStop::out_of_range;
     return fit;
   }
-  here->complete();
-  constexpr double kFlat = 1e-7;
-  constexpr double kHardlyDamped = 1e-3;
-  double damping = kHardlyDamped;
-  for (; fit.iterations < max_iterations; ++fit.iterations) {
-    if (is_hopeless(std::as_const(fit), std::as_const(*here))) {
-      fit.stop = FitStop::hopeless;
-      return fit;
+  at_start->complete();
+  Point here{start, start, *at_start};
+  const auto try_step = [&](const Point& from, double damping) {
+    base::FitTrial<Point> trial;
+    fit.parameters = from.parameters;
+    fit.evaluated_at = from.evaluated_at;
+    if (is_hopeless(std::as_const(fit), from.equations)) {
+      trial.why_none = base::FitStop::hopeless;
+      return trial;
     }
-    Eigen::Matrix<double, N, N> damped = here->jtj;
+    ++fit.iterations;
+    Eigen::Matrix<double, N, N> damped = from.equations.jtj;
     damped.diagonal() *= 1.0 + damping;
-    damped.diagonal().array() += 1e-12 * here->jtj.diagonal().maxCoeff();
-    const Vector delta = -damped.ldlt().solve(here->jtr);
-    if (!delta.allFinite()) {
-      fit.stop = FitStop::singular;
-      return fit;
+    damped.diagonal().array() += 1e-12 * from.equations.jtj.diagonal().maxCoeff();
+    const Vector delta = -damped.ldlt().solve(from.equations.jtr);
+    if (!delta.allFinite()) return trial;
+    const Vector to = from.parameters + delta;
+    trial.is_small = (delta.array().abs() < step.array()).all();
+    if (trial.is_small && damping <= kHardlyDamped) {
+      const double change = delta.dot(2.0 * from.equations.jtr + from.equations.jtj * delta);
+      trial.cost = std::min(std::max(from.equations.cost + change, 0.0), from.equations.cost);
+      trial.point = Point{to, from.evaluated_at, from.equations};
+      trial.point->equations.cost = trial.cost;
+      return trial;
     }
-    const Vector trial = fit.parameters + delta;
-    const bool small = (delta.array().abs() < step.array()).all();
-    if (small && damping <= kHardlyDamped) {
-      fit.parameters = trial;
-      here->cost = std::max(here->cost + delta.dot(2.0 * here->jtr + here->jtj * delta), 0.0);
-      fit.stop = FitStop::converged;
-      break;
+    std::optional<NormalEquations<N>> there = evaluate(to);
+    if (there) {
+      there->complete();
+      trial.cost = there->cost;
     }
-    std::optional<NormalEquations<N>> there = evaluate(trial);
-    if (there) there->complete();
-    const bool flat = there && std::abs(here->cost - there->cost) <= kFlat * here->cost;
-    if (there && there->cost <= here->cost) {
-      fit.parameters = fit.evaluated_at = trial;
-      here = there;
-      damping = std::max(damping * 0.2, 1e-9);
-    } else {
-      damping *= 8.0;
-      if (damping > 1e8 && !small) break;
-    }
-    if (small || flat) {
-      fit.stop = FitStop::converged;
-      break;
-    }
-  }
-  const double freedom = here->weight - N;
+    trial.point = Point{to, to, there ? *there : NormalEquations<N>{}};
+    return trial;
+  };
+  const base::FitSummary summary = base::levenberg_marquardt(here, here.equations.cost, options, try_step);
+  fit.parameters = here.parameters;
+  fit.evaluated_at = here.evaluated_at;
+  fit.iterations = summary.iterations;
+  fit.stop = summary.stop;
+  if (fit.stop == base::FitStop::hopeless || fit.stop == base::FitStop::singular) return fit;
+  const double freedom = here.equations.weight - N;
   if (freedom <= 0.0) {
-    fit.stop = FitStop::singular;
+    fit.stop = base::FitStop::singular;
     return fit;
   }
-  fit.rms = std::sqrt(here->cost / freedom);
+  fit.rms = std::sqrt(here.equations.cost / freedom);
   // What has no inverse, as FullPivLU says it: of a matrix without negative eigenvalues both take the same pivots.
-  const Eigen::LDLT<Eigen::Matrix<double, N, N>> factor(here->jtj);
+  const Eigen::LDLT<Eigen::Matrix<double, N, N>> factor(here.equations.jtj);
   const auto pivots = factor.vectorD().cwiseAbs();
   if (!(pivots.minCoeff() > N * std::numeric_limits<double>::epsilon() * pivots.maxCoeff())) {
-    fit.stop = FitStop::singular;
+    fit.stop = base::FitStop::singular;
     return fit;
   }
   fit.covariance = factor.solve(Eigen::Matrix<double, N, N>::Identity()) * (fit.rms * fit.rms);

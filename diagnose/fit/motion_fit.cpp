@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "base/math/dense.h"
+#include "base/math/levenberg_marquardt.h"
 #include "diagnose/fit/common_limits.h"
 
 namespace glidelab::diagnose {
@@ -84,21 +85,19 @@ MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
   return next;
 }
 
-/// How much a step is held back. Where one has failed, the next few are held back as much as succeeded last, so that
-/// not every other step is lost.
-struct Damping {
-  double value = 1e-6;
-  double least = 1e-9;
-
-  void lower() {
-    value = std::max({1e-9, 0.1 * value, least});
-    least *= 0.3;
-  }
-  void raise() {
-    least = 3.0 * value;
-    value *= 10.0;
-  }
-};
+/// Where a step has failed, the next few are held back as much as succeeded last, so that not every other step is lost.
+base::FitOptions descent_options() {
+  base::FitOptions options;
+  options.most_iterations = kMostIterations;
+  options.damping_start = 1e-6;
+  options.damping_most = 1e6;
+  options.floor_after_refusal = 3.0;
+  options.floor_decay = 0.3;
+  options.cost_absolute = kConvergedChange;
+  options.cost_relative = 1e-5 * kConvergedChange;
+  options.damping_settled = 1e-2;
+  return options;
+}
 
 /// x0 and v0 by a parabola through the first points, of those that were not set aside where there are enough.
 Eigen::VectorXd start_of(const TrackedMotion& motion) {
@@ -221,32 +220,38 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
   fit.at = start;
   fit.late = late;
   fit.statements = statements_of(set, *fit.layout);
-  linearise_all(set, fit, Derivatives::forward);
+  linearise_all(set, fit, Derivatives::none);
   fit.cost = cost_of(fit);
-  Damping damping;
+  struct Point {
+    MotionFit fit;
+    bool has_derivatives = false;
+  };
   int vain_returns = 0;
-  while (std::isfinite(fit.cost) && !fit.converged && fit.iterations < kMostIterations) {
-    ++fit.iterations;
-    MotionFit next = moved_to(set, fit, step_from(fit, damping.value));
-    if (!(next.cost <= fit.cost) && vain_returns < kMostVainReturns) {
-      for (int back = 0; back < kMostStepsBack && std::isfinite(next.cost) && !(next.cost <= fit.cost); ++back) {
+  const auto try_step = [&](Point& here, double damping) {
+    if (!here.has_derivatives) linearise_all(set, here.fit, Derivatives::forward);
+    here.has_derivatives = true;
+    const double cost = here.fit.cost;
+    MotionFit next = moved_to(set, here.fit, step_from(here.fit, damping));
+    if (!(next.cost <= cost) && vain_returns < kMostVainReturns) {
+      for (int back = 0; back < kMostStepsBack && std::isfinite(next.cost) && !(next.cost <= cost); ++back) {
         linearise_all(set, next, Derivatives::forward);
         next = moved_to(set, next, step_from(next, 0.0));
       }
-      vain_returns += next.cost <= fit.cost ? -1 : 1;
+      vain_returns += next.cost <= cost ? -1 : 1;
     }
-    if (next.cost <= fit.cost) {
-      next.converged = fit.cost - next.cost <= kConvergedChange * (1.0 + 1e-5 * fit.cost) && damping.value <= 1e-2;
-      linearise_all(set, next, Derivatives::forward);
-      fit = std::move(next);
-      damping.lower();
-    } else {
-      damping.raise();
-      fit.converged = damping.value > 1e6;  // rounding, or the edge of what is allowed
-    }
-  }
-  linearise_all(set, fit, Derivatives::central);
-  return fit;
+    base::FitTrial<Point> trial;
+    trial.cost = next.cost;
+    trial.point = Point{std::move(next)};
+    return trial;
+  };
+  Point here{std::move(fit)};
+  const double start_cost = here.fit.cost;
+  const base::FitSummary summary = base::levenberg_marquardt(here, start_cost, descent_options(), try_step);
+  here.fit.iterations = summary.iterations;
+  // Where nothing descends, rounding is all that is left, or the fit stands at the edge of what is allowed.
+  here.fit.converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
+  linearise_all(set, here.fit, Derivatives::central);
+  return std::move(here.fit);
 }
 
 MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at) {

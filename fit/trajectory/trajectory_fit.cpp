@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/math/dense.h"
+#include "base/math/levenberg_marquardt.h"
 #include "core/math/quantile.h"
 #include "fit/trajectory/trajectory_uncertainty.h"
 #include "sim/sensitivity/track_sensitivity.h"
@@ -145,22 +146,23 @@ struct Found : Evaluated {
 };
 
 Found minimise(const Problem& problem, Point at) {
-  Found found{problem.evaluate(std::move(at))};
-  double damping = 1e-4;
-  while (std::isfinite(found.cost) && found.iterations < kMostIterations && !found.converged) {
-    ++found.iterations;
-    Evaluated next = problem.evaluate(problem.step(found, damping));
-    if (next.cost <= found.cost) {
-      found.converged = found.cost - next.cost <= kConverged * found.cost;
-      static_cast<Evaluated&>(found) = std::move(next);
-      damping = std::max(1e-12, 0.1 * damping);
-    } else {
-      damping *= 10.0;
-      // No step goes down any more: rounding is all that is left.
-      found.converged = damping > 1e8;
-    }
-  }
-  return found;
+  base::FitOptions options;
+  options.most_iterations = kMostIterations;
+  options.damping_start = 1e-4;
+  options.damping_least = 1e-12;
+  options.cost_relative = kConverged;
+  const auto try_step = [&](const Evaluated& here, double damping) {
+    base::FitTrial<Evaluated> trial;
+    trial.point = problem.evaluate(problem.step(here, damping));
+    trial.cost = trial.point->cost;
+    return trial;
+  };
+  Evaluated here = problem.evaluate(std::move(at));
+  const double start_cost = here.cost;
+  const base::FitSummary summary = base::levenberg_marquardt(here, start_cost, options, try_step);
+  // Where no step goes down any more, rounding is all that is left.
+  const bool converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
+  return {std::move(here), converged, summary.iterations};
 }
 
 /// The only direction that occurs, or 0.

@@ -71,8 +71,8 @@ std::string camera_json(const core::CameraMeasurement& camera) {
   document["format"] = 1;
   document["name"] = camera.folder.name;
   document["bit_depth"] = camera.folder.bit_depth;
-  document["width_px"] = camera.picture.width;
-  document["height_px"] = camera.picture.height;
+  document["width_px"] = camera.width_px;
+  document["height_px"] = camera.height_px;
   document["frames"] = camera.frames;
   document["mosaic"] = camera.mosaic;
   Json sensor;
@@ -95,7 +95,7 @@ std::string camera_text(const core::CameraMeasurement& camera) {
     if (!row.measured->how.empty()) below += fmt::format("{}: {}\n", row.name, row.measured->how);
   }
   std::string text = fmt::format("{}, {} bits, {} x {} pixels, {} frames\n\n", camera.folder.name,
-                                 camera.folder.bit_depth, camera.picture.width, camera.picture.height, camera.frames);
+                                 camera.folder.bit_depth, camera.width_px, camera.height_px, camera.frames);
   text += text_table(rows, 1);
   text += fmt::format("\nOutlying pixels: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
                       camera.outlying_pixels);

@@ -62,7 +62,7 @@ Plot transfer_plot(const core::CameraMeasurement& camera) {
 std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
   PlotData data{"levels", {}, {"exposure (ms)", "mean above dark (DN)"}};
   for (const core::TransferPoint& point : camera.curve) {
-    if (point.exposure_s) data.rows.push_back({*point.exposure_s * 1e3, point.picture_dn});
+    if (point.exposure_s) data.rows.push_back({*point.exposure_s * 1e3, point.image_dn});
   }
   const auto same = [&](const std::vector<double>& row) { return row[0] == data.rows.front()[0]; };
   if (data.rows.size() < 3 || std::all_of(data.rows.begin(), data.rows.end(), same)) return {};
@@ -115,7 +115,7 @@ Page camera_report(const core::CameraMeasurement& camera) {
   Html body = fmt::format(
       "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} × {} pixels, {} bits, by photon "
       "transfer (EMVA 1288).</p>\n",
-      escape(camera.folder.name), camera.frames, camera.picture.width, camera.picture.height, camera.folder.bit_depth);
+      escape(camera.folder.name), camera.frames, camera.width_px, camera.height_px, camera.folder.bit_depth);
   body += camera_meaning(camera);
   body += "<h2>Numbers</h2>\n" + numbers_table(camera);
   body += camera.outlying_pixels == 0

@@ -67,7 +67,7 @@ inline core::BoardCorners known_corners(const KnownCamera& camera, const KnownPl
 /// A dozen poses that fill the picture, as a person holds a board of 40 mm squares.
 inline core::BoardViews known_views(const KnownCamera& camera, double noise_px, cv::RNG& random) {
   core::BoardViews boards;
-  boards.picture_size = camera.size;
+  boards.image_size = camera.size;
   int k = 0;
   for (const double ay : {-0.5, -0.15, 0.2, 0.55}) {
     for (const double ax : {-0.4, 0.05, 0.45}) {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "render/film/clip_set.h"
 #include "validate/film/canvas_pool.h"
 

@@ -42,7 +42,7 @@ double rms(const std::vector<double>& values) {
 }
 
 /// Mean information of four places of the centre within a pixel.
-double centre_sd_px(core::DiscPicture disc) {
+double centre_sd_px(core::DiscImage disc) {
   double information = 0.0;
   const double reach_px = disc.radius_px + 3.0 * disc.blur_px + 2.0;
   for (const double u : {0.1, 0.4}) {
@@ -74,7 +74,7 @@ std::vector<double> predicted_noise_m(const render::Scenario& scenario, const Tr
     const Eigen::Vector3d marker_C =
         scenario.camera.X_WC.inverse() * render::marker_position_W(scenario, configuration->body.incline_rad, middle_m);
     const double px_per_m = without.finer * scenario.camera.focal_px.x() / marker_C.z();
-    core::DiscPicture disc;
+    core::DiscImage disc;
     disc.radius_px = 0.5 * scenario.marker.diameter_m * px_per_m;
     if (!(pixel.amplitude_e > 0.0) || disc.radius_px < kSmallest_px) {
       noise_m.push_back(kNever);

@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/levenberg_marquardt.h"
 #include "core/motion/smoothing/noise.h"
 
 namespace glidelab::core {
 namespace {
 
 constexpr int kSteps = 40;
-constexpr double kSettled = 1e-9;  // of the window
+constexpr double kSettled = 1e-9;        // a step of t*, of the window
+constexpr double kAlmostSettled = 1e-4;  // will do after kSteps
+constexpr double kFarthest = 0.8;        // t* from the window's middle
 constexpr std::ptrdiff_t kFewestOnASide = 5;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -95,29 +98,42 @@ std::optional<EventTime> estimate_event(std::span<const double> t_s, std::span<c
     const Fit fit = linear_fit(u, x, 0.05 * i, kind);
     if (fit.squares < best.squares) best = fit;
   }
-  Vector6 p = best.parameters;
-  Matrix6 normal;
-  double last = 1.0;
-  for (int step = 0; step < kSteps && last > kSettled; ++step) {
-    normal.setZero();
+  struct Point {
+    Vector6 p;
+    Matrix6 normal;  // before the step that led here
+    double moved;    // by that step, of t*
+  };
+  base::FitOptions options;
+  options.most_iterations = kSteps;
+  options.take_every_step = true;  // the coarse walk ends so close by that no step needs to be held back
+  const auto try_step = [&](const Point& here, double) {
+    Matrix6 normal = Matrix6::Zero();
     Vector6 right = Vector6::Zero();
     for (std::size_t i = 0; i < u.size(); ++i) {
-      const Vector6 d = design_at(p, u[i] - p[1], kind);
+      const Vector6 d = design_at(here.p, u[i] - here.p[1], kind);
       normal += d * d.transpose();
-      right += d * (x[i] - place_at(p, u[i] - p[1], kind));
+      right += d * (x[i] - place_at(here.p, u[i] - here.p[1], kind));
     }
     pin(normal, kind);
     const Vector6 change = normal.ldlt().solve(right);
-    if (!change.allFinite()) return {};
-    p += change;
-    last = std::abs(change[1]);
-    if (std::abs(p[1]) > 0.8) return {};
-  }
-  if (last > 1e-4) return {};
+    base::FitTrial<Point> trial;
+    if (!change.allFinite()) return trial;
+    const Vector6 next = here.p + change;
+    trial.why_none = base::FitStop::out_of_range;
+    if (std::abs(next[1]) > kFarthest) return trial;
+    trial.point = Point{next, normal, std::abs(change[1])};
+    trial.cost = 0.0;  // not compared
+    trial.is_small = trial.point->moved <= kSettled;
+    return trial;
+  };
+  Point found{best.parameters, Matrix6::Identity(), 1.0};
+  const base::FitStop stop = base::levenberg_marquardt(found, 0.0, options, try_step).stop;
+  if (stop == base::FitStop::singular || stop == base::FitStop::out_of_range || found.moved > kAlmostSettled) return {};
+  const Vector6& p = found.p;
   const bool right_signs = kind == EventKind::stops ? p[2] != 0.0 : p[2] * p[4] > 0.0;
   if (!right_signs) return {};
   const double variance = sum_over_lags(autocovariance);
-  const Matrix6 inverse = normal.ldlt().solve(Matrix6::Identity());
+  const Matrix6 inverse = found.normal.ldlt().solve(Matrix6::Identity());
   EventTime event;
   event.t_s = near_s + window_s * p[1];
   event.sd_s = window_s * std::sqrt(std::max(0.0, variance * inverse(1, 1)));

@@ -43,18 +43,18 @@ BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_c
   std::vector<std::optional<BoardCorners>> corners(unique.size());
   std::vector<cv::Size> sizes(unique.size());
   base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
-    const cv::Mat grey = read_grey_picture(unique[i]);
+    const cv::Mat grey = read_grey_image(unique[i]);
     sizes[i] = grey.size();
     corners[i] = find_board(grey, inner_corners);
   });
   BoardViews found;
   for (std::size_t i = 0; i < unique.size(); ++i) {
-    if (i == 0) found.picture_size = sizes[0];
-    if (sizes[i] != found.picture_size) {
+    if (i == 0) found.image_size = sizes[0];
+    if (sizes[i] != found.image_size) {
       throw base::InputError(base::Issue{unique[i].string(), 0, "",
                                          fmt::format("{} x {} pixels", sizes[i].width, sizes[i].height),
-                                         fmt::format("{} x {} pixels, as {}", found.picture_size.width,
-                                                     found.picture_size.height, unique[0].filename().string())});
+                                         fmt::format("{} x {} pixels, as {}", found.image_size.width,
+                                                     found.image_size.height, unique[0].filename().string())});
     }
     if (corners[i]) {
       found.views.push_back({unique[i], std::move(*corners[i])});
@@ -71,7 +71,7 @@ std::vector<const BoardView*> checked_views(const BoardViews& boards) {
         boards.views.empty() ? boards.without.empty() ? fs::path() : boards.without.front() : boards.views.front().file;
     throw base::InputError(
         base::Issue{any.parent_path().string(), 0, "calibration.views",
-                    fmt::format("{} pictures with a visible pattern{}", boards.views.size(),
+                    fmt::format("{} images with a visible pattern{}", boards.views.size(),
                                 boards.without.empty() ? "" : fmt::format(" (none in {})", names_of(boards.without))),
                     "at least 3, with all inner corners in sight"});
   }
@@ -90,9 +90,9 @@ KeptViews without_outliers(const std::vector<const BoardView*>& views, const std
     const bool is_off = !(errors_px[i] <= limit_px);
     if (!is_off || !enough) kept.views.push_back(views[i]);
     if (!is_off) continue;
-    kept.notes.push_back(fmt::format("{} is off the fit of the camera by {:.3g} px and {}",
+    kept.notes.push_back(fmt::format("{} departs from the fitted camera by {:.3g} px and is {}",
                                      views[i]->file.filename().string(), errors_px[i],
-                                     enough ? "left out" : "kept all the same: without it there are fewer than three"));
+                                     enough ? "left out" : "kept all the same: fewer than three views would be left"));
   }
   return kept;
 }

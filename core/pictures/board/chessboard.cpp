@@ -13,11 +13,11 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kLargestForDetection = 1600;  // px; larger pictures are halved for finding, not for refining
-constexpr int kLeastSide = 20;        // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
-constexpr double kNoisy = 8.0;        // codes
-constexpr int kMostBlurs = 5;         // by 1 px
-constexpr double kWindowShare = 0.7;  // of the distance to the next edge
+constexpr int kLargestForDetection = 1600;  // px; larger images are halved for finding, not for refining
+constexpr int kSmallestSide = 20;  // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
+constexpr double kLeastNoiseToBlur = 8.0;  // codes
+constexpr int kMostBlurs = 5;              // by 1 px
+constexpr double kWindowShare = 0.7;       // of the distance to the next edge
 constexpr double kLargestWindowPx = 14.0;
 
 /// 8 bits for the detectors, the darkest and brightest half per cent clipped.
@@ -39,12 +39,12 @@ cv::Mat to_8_bits(const cv::Mat& grey) {
 }
 
 /// The detectors look through the outlines of all dark spots, pairs of them too: noise makes so many that they take
-/// hours. Blurred until it is below kNoisy; the corners' places are refined in the picture itself.
+/// hours. Blurred until it is below kLeastNoiseToBlur; the corners' places are refined in the image itself.
 cv::Mat without_specks(const cv::Mat& eight) {
   cv::Mat seen = eight, values;
   for (int pass = 0; pass < kMostBlurs; ++pass) {
     seen.convertTo(values, CV_32F);
-    if (noise_of(values) < kNoisy) break;
+    if (noise_of(values) < kLeastNoiseToBlur) break;
     cv::Mat softer;
     cv::GaussianBlur(seen, softer, {}, 1.0);
     seen = softer;
@@ -52,9 +52,9 @@ cv::Mat without_specks(const cv::Mat& eight) {
   return seen;
 }
 
-std::vector<cv::Point2f> detect(const cv::Mat& picture, cv::Size inner_corners, BoardDetector detector) {
-  if (std::min(picture.cols, picture.rows) < kLeastSide) return {};
-  const cv::Mat eight = without_specks(picture);
+std::vector<cv::Point2f> detect(const cv::Mat& image, cv::Size inner_corners, BoardDetector detector) {
+  if (std::min(image.cols, image.rows) < kSmallestSide) return {};
+  const cv::Mat eight = without_specks(image);
   std::vector<cv::Point2f> corners;
   bool found = false;
   if (detector != BoardDetector::sector_based) {

@@ -114,7 +114,7 @@ std::optional<FittedCorner> fit_corner(const cv::Mat& grey, cv::Point2d start, c
     const double contrast = std::abs(parameters[kAmplitude]);
     const auto model = [&](const Vector& p) { return evaluate(window, contrast, p); };
     const auto fit = fit_least_squares<kParameters>(model, parameters, step, 50);
-    if (fit.stop != FitStop::converged) return std::nullopt;
+    if (!base::is_settled(fit.stop)) return std::nullopt;
     const cv::Point2d point(fit.parameters[kU], fit.parameters[kV]);
     const bool stayed = cv::norm(point - start) < std::min(0.5 * around.window_px, 3.0);
     // A crossing of two edges leaves a small residual; a quarter of the contrast is something else.

@@ -1,12 +1,12 @@
-/// One corner of a chessboard in a picture, to a hundredth of a pixel: a least-squares fit of two crossing edges to the
+/// One corner of a chessboard in an image, to a hundredth of a pixel: a least-squares fit of two crossing edges to the
 /// pixels around it.
 ///
 ///     I(p) = (1 + h . d) (b + a (2 E1 - 1) (2 E2 - 1)),   d = p - c,   Ei = pixel_edge(ni . d, ni, s)
 ///
 /// with the corner c, the edges' normals n1, n2, the lens's blur s, and the light's slope h. The pixel's square is
-/// averaged over exactly for each edge alone (core/pixel_edge.h), so that a sharp picture does not pull the corner
-/// towards some phases of the pixels; where both edges cross one pixel it is exact to second order for right angles. A
-/// blur of another shape keeps the picture point-symmetric about c and so does not move it. Pixels; the centre of the
+/// averaged over exactly for each edge alone (image/pixel_edge.h), so that a sharp image does not pull the corner
+/// towards certain phases of the pixels; where both edges cross one pixel it is exact to second order for right angles.
+/// A blur of another shape keeps the image point-symmetric about c and so does not move it. Pixels; the centre of the
 /// first pixel is (0, 0).
 #pragma once
 
@@ -18,7 +18,7 @@ namespace glidelab::core {
 
 /// What is known of a corner before the fit.
 struct CornerSurroundings {
-  double window_px = 0.0;  ///< how far pixels count, short of the nearest edge that is not the corner's own
+  double window_px = 0.0;  ///< radius of the pixels used, short of the nearest edge of another corner
   double angle_x = 0.0;    ///< directions of its two edges, radians from u towards v
   double angle_y = 0.0;
 };
@@ -28,8 +28,8 @@ struct FittedCorner {
   double sd_px = 0.0;  ///< of one coordinate, from the fit's residuals
 };
 
-/// `grey` has 8 or 16 bits. Nothing where the window is smaller than 2.5 px, the fit does not converge, moves by half
-/// the window or 3 px, or leaves a quarter of the contrast.
+/// `grey` has 8 or 16 bits. Nothing if the window is smaller than 2.5 px, or the fit does not converge, moves by half
+/// the window or 3 px, or leaves residuals of a quarter of the contrast.
 std::optional<FittedCorner> fit_corner(const cv::Mat& grey, cv::Point2d start, const CornerSurroundings& around);
 
 }  // namespace glidelab::core

@@ -6,7 +6,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kLongSide = 8;  // cells
+constexpr int kCellsAlongLongSide = 8;  // cells
 
 struct Sums {
   cv::Point2d at, off;
@@ -23,25 +23,25 @@ void add_rests(const std::vector<cv::Point2d>& corners, const Eigen::VectorXd& r
   }
 }
 
-CornerMap corner_map(cv::Size picture, const std::vector<CornerRest>& rests) {
-  const double side = static_cast<double>(std::max(picture.width, picture.height)) / kLongSide;
-  const int columns = std::max(1, static_cast<int>(picture.width / side));
-  const int rows = std::max(1, static_cast<int>(picture.height / side));
+CornerMap corner_map(cv::Size image, const std::vector<CornerRest>& rests) {
+  const double side = static_cast<double>(std::max(image.width, image.height)) / kCellsAlongLongSide;
+  const int columns = std::max(1, static_cast<int>(image.width / side));
+  const int rows = std::max(1, static_cast<int>(image.height / side));
   std::vector<Sums> sums(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   const auto cell = [](double at, int size, int cells) {
     return static_cast<std::size_t>(std::clamp(static_cast<int>(std::floor((at + 0.5) * cells / size)), 0, cells - 1));
   };
   for (const CornerRest& rest : rests) {
-    Sums& of = sums[cell(rest.at.y, picture.height, rows) * static_cast<std::size_t>(columns) +
-                    cell(rest.at.x, picture.width, columns)];
+    Sums& of = sums[cell(rest.at.y, image.height, rows) * static_cast<std::size_t>(columns) +
+                    cell(rest.at.x, image.width, columns)];
     of.at += rest.at;
     of.off += rest.off;
     of.squares += rest.off.dot(rest.off);
     of.count += 1.0;
   }
   CornerMap map;
-  map.width_px = picture.width;
-  map.height_px = picture.height;
+  map.width_px = image.width;
+  map.height_px = image.height;
   double scatter = 0.0, free = 0.0, means = 0.0;
   for (const Sums& of : sums) {
     if (of.count < 2.0) continue;

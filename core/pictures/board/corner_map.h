@@ -1,9 +1,10 @@
-/// What a camera's fit leaves of the pattern's corners, over the picture: where a lens does what its model does not,
-/// corners of all views lie off the same way.
+/// A map of the corners' residuals over the image: where a lens departs from its model, the corners of all views are
+/// displaced in the same direction.
 ///
-/// The picture is cut into cells of equal size. Of the n corners in a cell the mean rest is known to s / sqrt(n), s the
-/// scatter of all corners' rests about their cells' means (u and v together; n - 1 of each cell's are free). `excess`
-/// is the root mean square of the cells' means over that: 1 where errors are independent, larger where they are smooth.
+/// The image is cut into cells of equal size. The mean residual of the n corners in a cell is known to s / sqrt(n), s
+/// the scatter of all residuals about the means of their cells (u and v together; n - 1 degrees of freedom a cell).
+/// `excess` is the root mean square of the cells' means over that: 1 where errors are independent, larger where they
+/// are smooth.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,16 +16,16 @@
 
 namespace glidelab::core {
 
-/// Measured less modelled, pixels.
+/// Measured minus modelled, pixels.
 struct CornerRest {
   cv::Point2d at, off;
 };
 
-/// Rests of one view from its corners and the residuals u, v of corner 0, 1, …
+/// Adds the residuals of one view, given u, v of corner 0, 1, …
 void add_rests(const std::vector<cv::Point2d>& corners, const Eigen::VectorXd& residual,
                std::vector<CornerRest>& rests);
 
-/// A picture of at least 1 x 1 pixels; the longer side has eight cells, the other as many as make them square or wider.
-CornerMap corner_map(cv::Size picture, const std::vector<CornerRest>& rests);
+/// An image of at least 1 x 1 pixels; the longer side has eight cells, the other as many as make them square or wider.
+CornerMap corner_map(cv::Size image, const std::vector<CornerRest>& rests);
 
 }  // namespace glidelab::core

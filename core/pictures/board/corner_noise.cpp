@@ -8,12 +8,12 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLength = 2.0;  // squares
+constexpr double kCorrelationLength = 2.0;  // squares
 
 Eigen::MatrixXd gaussian(int size) {
   Eigen::MatrixXd k(size, size);
   for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) k(i, j) = std::exp(-0.5 * std::pow((i - j) / kLength, 2));
+    for (int j = 0; j < size; ++j) k(i, j) = std::exp(-0.5 * std::pow((i - j) / kCorrelationLength, 2));
   }
   return k;
 }
@@ -72,7 +72,7 @@ void add_view(const ViewResiduals& view, Moments& moments) {
   moments.white_squares += coordinates - 6.0;
   moments.white_products -= (g * pwp).trace();
   moments.correlated_squares += coordinates - (g * pkp).trace();
-  moments.correlated_products += pairs * std::exp(-0.5 / (kLength * kLength)) -
+  moments.correlated_products += pairs * std::exp(-0.5 / (kCorrelationLength * kCorrelationLength)) -
                                  2.0 * (g * (kp.transpose() * wp)).trace() + (g * pkp * g * pwp).trace();
   moments.products_variance +=
       2.0 * (0.5 * pairs - 2.0 * (g * (wp.transpose() * wp)).trace() + (g * pwp * g * pwp).trace());

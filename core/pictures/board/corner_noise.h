@@ -1,17 +1,17 @@
-/// The errors of a pattern's corners: independent ones, and ones that neighbouring corners have in common.
+/// The errors of a pattern's corners: independent errors, and errors that neighbouring corners share.
 ///
-/// What makes a corner finder err smoothly over a board (the phase of the pixels, which drifts slowly where squares are
-/// nearly a whole number of pixels; the lens where the model does not follow it) counts far more for the pose than
-/// noise of the same size, and the pose takes most of it up, so that little is left in the residuals. The model for
+/// Errors that vary smoothly over a board (from the phase of the pixels, which drifts slowly if squares are nearly a
+/// whole number of pixels; from a lens that departs from its model) affect the pose far more than independent noise of
+/// the same size. The pose absorbs most of them, so that little is left in the residuals. The model for
 /// each view's u and v is
 ///
 ///     V = white^2 I + correlated^2 K,     K_ij = exp(-|i - j|^2 / (2 l^2)),   l = 2 squares.
 ///
-/// Both sizes follow from two moments of the residuals r = M e left by fitting the views' poses (M takes out what a
-/// pose can): the sum of squares, and the sum of products of neighbours along rows and columns. The correlated part
-/// counts where the products exceed those of white noise by two standard deviations, and never below
-/// kLeastCorrelatedPx: on painted, sharp boards 0.0016 px of smooth error was seen to remain where they lie along the
-/// pixels' rows, and less than 0.0005 px elsewhere.
+/// Both sizes follow from two moments of the residuals r = M e left by fitting the views' poses (M removes what a
+/// pose can absorb): the sum of squares, and the sum of products of neighbours along rows and columns. The correlated
+/// part counts where the products exceed those of white noise by two standard deviations, and never below
+/// kLeastCorrelatedPx: on painted, sharp boards 0.0016 px of smooth error remained where they lie along the rows of
+/// pixels, and less than 0.0005 px elsewhere.
 #pragma once
 
 #include <Eigen/Core>

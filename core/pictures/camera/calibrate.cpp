@@ -16,9 +16,9 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kSignificantOne = 9.0;      // chi^2 of one degree of freedom at 0.27 %: three standard deviations
-constexpr double kSignificantPair = 11.829;  // the same of two: -2 log(0.0027)
-constexpr double kUncertainFocal = 0.02;     // of the focal length: a standard deviation that is worth a note
+constexpr double kSignificantOne = 9.0;        // chi^2 of one degree of freedom at 0.27 %: three standard deviations
+constexpr double kSignificantPair = 11.829;    // the same of two: -2 log(0.0027)
+constexpr double kMostRelativeFocalSd = 0.02;  // of the focal length: a standard deviation that is worth a note
 
 struct OpenCvCalibration {
   cv::Mat matrix;
@@ -102,7 +102,7 @@ struct Term {
   std::vector<Eigen::Index> places;  // of fx fy cx cy k1 k2 p1 p2 k3
   int fixing;                        // OpenCV's flag
   int power;                         // of r², of a radial term
-  double usual;                      // by which part lenses move a picture's corner with it: a standard deviation
+  double usual;                      // by which part lenses move an image's corner with it: a standard deviation
 };
 
 /// The part of a radial term's size that is left where lenses' sizes are N(0, usual²) at the corner: usual² /
@@ -167,7 +167,7 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
   for (const Term& term : terms) {
     if ((flags & term.fixing) == 0) kept.insert(kept.begin(), term.name);
   }
-  fit.model = fmt::format("distortion: {} (χ² of each term tested, and what it takes to be kept: {})",
+  fit.model = fmt::format("distortion: {} (χ² of each term tested, and the threshold to keep it: {})",
                           kept.empty() ? "none" : fmt::format("{}", fmt::join(kept, ", ")), fmt::join(tests, "; "));
   return fit;
 }
@@ -188,17 +188,17 @@ std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vec
   for (const BoardView* view : used) unrefined += view->corners.unrefined;
   if (unrefined > 0) {
     notes.push_back(unrefined == 1
-                        ? "one corner could not be refined and keeps the detector's place"
-                        : fmt::format("{} corners could not be refined and keep the detector's place", unrefined));
+                        ? "one corner could not be refined and keeps the detector's position"
+                        : fmt::format("{} corners could not be refined and keep the detector's position", unrefined));
   }
   if (follows_badly(calibration.noise)) {
     notes.push_back(fmt::format(
-        "neighbouring corners are off together by {:.2g} px (each alone by {:.2g} px): a bent pattern, or a "
-        "lens that the model does not follow; the uncertainties allow for it",
+        "neighbouring corners share an error of {:.2g} px (each has {:.2g} px of its own): the pattern is bent, or "
+        "the model does not describe the lens; the uncertainties allow for it",
         calibration.noise.correlated_px, calibration.noise.white_px));
   }
   const double sd_fx = std::sqrt(calibration.covariance(0, 0));
-  if (sd_fx > kUncertainFocal * calibration.camera.fx) {
+  if (sd_fx > kMostRelativeFocalSd * calibration.camera.fx) {
     notes.push_back(
         fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
                     calibration.camera.fx, sd_fx));
@@ -209,18 +209,18 @@ std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vec
 Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   Calibration calibration;
   std::vector<const BoardView*> used = checked_views(boards);
-  SupportedFit fit = fit_supported_terms(used, boards.picture_size, square_m);
+  SupportedFit fit = fit_supported_terms(used, boards.image_size, square_m);
   const std::vector<double> errors(fit.found.view_error.begin<double>(), fit.found.view_error.end<double>());
   KeptViews kept = without_outliers(used, errors);
   calibration.notes = std::move(kept.notes);
   if (kept.views.size() < used.size()) {
     used = std::move(kept.views);
-    fit = fit_supported_terms(used, boards.picture_size, square_m);
+    fit = fit_supported_terms(used, boards.image_size, square_m);
   }
   const OpenCvCalibration& found = fit.found;
 
   CameraModel& camera = calibration.camera;
-  camera.size = boards.picture_size;
+  camera.size = boards.image_size;
   camera.fx = found.matrix.at<double>(0, 0);
   camera.fy = found.matrix.at<double>(1, 1);
   camera.cx = found.matrix.at<double>(0, 2);
@@ -228,7 +228,7 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   for (int i = 0; i < 5; ++i) camera.distortion[static_cast<std::size_t>(i)] = found.distortion.at<double>(i);
   calibration.covariance = fit.uncertainty.covariance;
   calibration.noise = fit.uncertainty.noise;
-  calibration.rests = corner_map(boards.picture_size, fit.uncertainty.rests);
+  calibration.rests = corner_map(boards.image_size, fit.uncertainty.rests);
   calibration.model = fit.model;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();

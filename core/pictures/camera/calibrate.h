@@ -1,23 +1,23 @@
 /// The camera from views of the calibration pattern, by least squares over all corners (Zhang 2000;
 /// cv::calibrateCamera).
 ///
-/// Which parameters: fx, fy, cx, cy always; of the distortion only the terms that the views support. From all five
-/// (k1, k2, p1, p2, k3) on, k3, then the pair p1, p2, then k2, then k1 are tested: v' C^-1 v of the term with its
+/// Parameters: fx, fy, cx, cy always; of the distortion only the terms that the views support. Starting from all five
+/// (k1, k2, p1, p2, k3), k3, then the pair p1, p2, then k2, then k1 are tested: v' C^-1 v of the term with its
 /// covariance C (of correlated corner errors, as below) against 9 for one term and 11.8 for the pair (three standard
 /// deviations, 0.27 %; with white errors that is the F-test of the nested models). A term below it is fixed to zero and
 /// the rest fitted again; k2 is tested only without k3, k1 only without k2. So a lens without distortion gets none, and
-/// no undetermined term is amplified outside the place where the pattern was seen.
+/// no undetermined term is amplified outside the region in which the pattern was seen.
 ///
-/// Lenses move the picture's corner by a part of N(0, 0.3²) with k1, N(0, 0.2²) with k2, N(0, 0.1²) with k3. That is an
+/// Lenses move the image's corner by a part of N(0, 0.3²) with k1, N(0, 0.2²) with k2, N(0, 0.1²) with k3. That is an
 /// assumption, two to four times the largest of the three measured calibrations in scenarios/cameras (a C920: 0.07,
 /// -0.10, 0.02), for wider lenses are in use. A radial term counts as far as that leaves it: with the sd s of its part
 /// at the corner, v' C^-1 v and the term's value times usual² / (usual² + s²). What the views know ten times better
-/// loses 1 %; noise that would bend the picture's sides by half is no term.
+/// loses 1 %; noise that would bend the image's sides by half is no term.
 ///
-/// A term that was left out may still be there, and a fit without it then errs by more than its own covariance: what
-/// the term's uncertainty did to all terms, C_a C^-1 C_a' (C_a the covariance of all with it; as far as it is believed
-/// that is), and the part of its value that is more than noise, (1 - q / (v' C^-1 v)) for q terms, are added to the
-/// covariance. So leaving terms out makes no result look surer.
+/// A term that was left out may still be real, and the fit without it then errs by more than its own covariance. So the
+/// effect of its uncertainty on all terms, C_a C^-1 C_a' (C_a the covariance of all terms with it, to the extent that
+/// the term is believed), and the part of its value beyond noise, (1 - q / (v' C^-1 v)) for q terms, are added to the
+/// covariance. Leaving terms out thus makes no result look more certain.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,24 +36,24 @@ struct Calibration {
   CameraModel camera;
   /// Of fx, fy, cx, cy, k1, k2, p1, p2, k3 (the views' poses are fitted with them); rows of fixed terms are 0.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
-  CornerNoise noise;    ///< what the covariance assumes of the corners
-  CornerMap rests;      ///< what the fit leaves, over the picture
-  std::string model;    ///< the distortion's terms, and the tests of those that were looked at
+  CornerNoise noise;    ///< of the corners, as the covariance assumes
+  CornerMap rests;      ///< residuals of the fit over the image
+  std::string model;    ///< the terms of the distortion, and the tests of those considered
   double rms_px = 0.0;  ///< per corner (distance), over the views used
   std::size_t views_used = 0;
   std::vector<std::string> notes;
 };
 
-/// Whether neighbouring corners are off together by more than their own noise explains: a bent pattern, or a lens that
-/// the model does not follow.
+/// Whether neighbouring corners share larger errors than their own noise explains: a bent pattern, or a lens that the
+/// model does not describe.
 bool follows_badly(const CornerNoise& noise);
 
-/// What a reader should know of the views that were used, and of how they fit.
+/// What a reader should know about the views used and how well they fit.
 std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
                                         const Calibration& calibration);
 
-/// At least three views with a visible board; else InputError that names the pictures without one. A view whose error
-/// is above 0.2 px and five times the median's is left out (with a note).
+/// Needs at least three views with a visible board; otherwise InputError, naming the images without one. A view whose
+/// error is above 0.2 px and five times the median is left out (with a note).
 Calibration calibrate_camera(const BoardViews& boards, double square_m);
 
 }  // namespace glidelab::core

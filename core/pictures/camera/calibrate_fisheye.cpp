@@ -130,9 +130,9 @@ std::vector<double> view_errors_px(const Fit& fit, const std::vector<const Board
 std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m) {
   std::vector<const BoardView*> views = checked_views(boards);
   const auto fit_of = [&](const std::vector<const BoardView*>& some, const CameraModel* guess) {
-    return run_opencv(some, boards.picture_size, square_m, 0, guess);
+    return run_opencv(some, boards.image_size, square_m, 0, guess);
   };
-  // From OpenCV's own guess a tilted board near the picture's edge may end in a false pose; the camera of the others
+  // From OpenCV's own guess a tilted board near the image's edge may end in a false pose; the camera of the others
   // puts it right.
   const std::optional<Fit> first = fit_of(views, nullptr);
   if (!first) return std::nullopt;
@@ -145,7 +145,7 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
   KeptViews kept = without_outliers(views, view_errors_px(*all, views, square_m));
   views = std::move(kept.views);
   for (int fixed = 0;; ++fixed) {
-    const std::optional<Fit> found = run_opencv(views, boards.picture_size, square_m, fixed, &guess);
+    const std::optional<Fit> found = run_opencv(views, boards.image_size, square_m, fixed, &guess);
     if (!found) return std::nullopt;
     const Fit& fit = *found;
     const int free_terms = kTerms - fixed;
@@ -163,7 +163,7 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     calibration.camera = fit.camera;
     calibration.rms_px = fit.rms_px;
     calibration.noise = uncertainty.noise;
-    calibration.rests = corner_map(boards.picture_size, rests);
+    calibration.rests = corner_map(boards.image_size, rests);
     calibration.covariance.topLeftCorner(free_terms, free_terms) = uncertainty.covariance;
     calibration.views_used = views.size();
     calibration.notes = std::move(kept.notes);
@@ -186,7 +186,7 @@ Calibration calibrate_any_lens(const BoardViews& boards, double square_m) {
   const double coordinates = 2.0 * static_cast<double>(found.views_used * boards.views.front().corners.points.size());
   if (coordinates * 2.0 * std::log(found.rms_px / fisheye->rms_px) < kDecisive) return found;
   fisheye->notes.push_back(fmt::format(
-      "the lens is taken as a fisheye (equidistant): that leaves {:.2g} px of the corners, Brown-Conrady {:.2g} px",
+      "the lens is modelled as a fisheye (equidistant): corners fit to {:.2g} px, to {:.2g} px with Brown-Conrady",
       fisheye->rms_px, found.rms_px));
   return std::move(*fisheye);
 }

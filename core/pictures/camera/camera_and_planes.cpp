@@ -26,7 +26,7 @@ std::vector<fs::path> planes_of(const Experiment& experiment, const std::string&
 
 namespace {
 
-std::set<std::string> groups_with_pictures(const Experiment& experiment) {
+std::set<std::string> filmed_groups(const Experiment& experiment) {
   std::set<std::string> names;
   for (const ClipSetup& clip : experiment.clips) {
     if (!clip.file.empty()) names.insert(clip.group);
@@ -40,7 +40,7 @@ std::vector<fs::path> pattern_files(const Experiment& experiment) {
   const CalibrationSetup& setup = *experiment.calibration;
   std::vector<fs::path> files = setup.views;
   files.insert(files.end(), setup.planes.begin(), setup.planes.end());
-  for (const std::string& name : groups_with_pictures(experiment)) {
+  for (const std::string& name : filmed_groups(experiment)) {
     const std::vector<fs::path> planes = planes_of(experiment, name);
     files.insert(files.end(), planes.begin(), planes.end());
   }
@@ -66,7 +66,7 @@ CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPat
 
   CameraAndPlanes setting;
   std::vector<std::pair<std::string, std::vector<BoardCorners>>> planes;
-  for (const std::string& name : groups_with_pictures(experiment)) {
+  for (const std::string& name : filmed_groups(experiment)) {
     planes.emplace_back(name, std::vector<BoardCorners>{});
     for (const fs::path& file : planes_of(experiment, name)) planes.back().second.push_back(corners_in(file));
   }
@@ -110,7 +110,7 @@ CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPat
 CameraAndPlanes camera_and_planes_of(const Experiment& experiment, int jobs, const SeenPattern* seen) {
   if (experiment.calibration) return calibrated(experiment, jobs, seen);
   CameraAndPlanes setting;
-  for (const std::string& name : groups_with_pictures(experiment)) {
+  for (const std::string& name : filmed_groups(experiment)) {
     setting.restitutions.emplace(name, Restitution::from_scale(*experiment.scale, experiment.marker->diameter_m));
   }
   return setting;

@@ -1,4 +1,4 @@
-/// What the pictures of the pattern say: the camera, and for each group the way from pixels to its plane of motion.
+/// From the images of the pattern to the camera and, for each group, the mapping from pixels to its plane of motion.
 #pragma once
 
 #include <filesystem>
@@ -21,23 +21,22 @@ struct SeenPattern {
 };
 
 struct CameraAndPlanes {
-  std::optional<cv::Size> size;  ///< of the pictures; nothing by a scale alone
+  std::optional<cv::Size> size;  ///< of the images; nothing with a scale alone
   std::optional<CalibrationResult> calibration;
-  std::map<std::string, Restitution> restitutions;  ///< of the groups that have clips made of pictures
+  std::map<std::string, Restitution> restitutions;  ///< of the groups that have filmed clips
 };
 
-/// The table of a group, or null where the file has none.
+/// The table of a group, or null if the file has none.
 const GroupSetup* group_of(const Experiment& experiment, const std::string& name);
 
-/// The pictures of the plane of motion, of a group or else of [calibration].
+/// The images of the plane of motion, of a group or else of [calibration].
 std::vector<std::filesystem::path> planes_of(const Experiment& experiment, const std::string& group);
 
-/// All pictures of the pattern: views, then planes, those of groups that have clips made of pictures. Some may stand
-/// twice.
+/// All images of the pattern: views, then planes, then those of groups that have filmed clips. Some may occur twice.
 std::vector<std::filesystem::path> pattern_files(const Experiment& experiment);
 
-/// For an experiment with clips made of pictures. `seen`: what is known of the pattern already; null: its pictures are
-/// read, `jobs` at a time. InputError for pictures that cannot be used.
+/// For an experiment with filmed clips. `seen`: the pattern, if it was found before; null: its images are read, `jobs`
+/// at a time. InputError for images that cannot be used.
 CameraAndPlanes camera_and_planes_of(const Experiment& experiment, int jobs, const SeenPattern* seen = nullptr);
 
 }  // namespace glidelab::core

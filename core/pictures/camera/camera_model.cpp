@@ -5,7 +5,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kMaxIterations = 40;
+constexpr int kMostNewtonSteps = 40;
 constexpr double kTolerancePx = 1e-10;  // a double carries 1e-13 px at 1000 px
 
 struct Distorted {
@@ -25,7 +25,7 @@ Distorted along_radius(cv::Point2d n, double at_radius, double slope) {
 
 Distorted fisheye(const std::array<double, 5>& d, cv::Point2d n) {
   const double r = std::hypot(n.x, n.y);
-  // On the axis the picture is that of a pinhole, up to r^2.
+  // On the axis the image is that of a pinhole, up to r^2.
   if (r < 1e-8) return along_radius(n, 1.0, 1.0);
   const double theta = std::atan(r);
   const double t2 = theta * theta;
@@ -86,7 +86,7 @@ std::optional<cv::Point2d> CameraModel::to_normalised(cv::Point2d pixel) const {
   const double tolerance = kTolerancePx / std::max(fx, fy);
   cv::Point2d here = start_from(lens, wanted);
   double error = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kMaxIterations; ++i) {
+  for (int i = 0; i < kMostNewtonSteps; ++i) {
     const Distorted distorted = distort(*this, here);
     const cv::Point2d off = distorted.at - wanted;
     error = std::sqrt(off.dot(off));

@@ -33,7 +33,7 @@ struct CameraModel {
   double cx = 0.0;
   double cy = 0.0;
   std::array<double, 5> distortion{};  ///< k1, k2, p1, p2, k3; of a fisheye k1, k2, k3, k4, 0
-  cv::Size size;                       ///< of the pictures
+  cv::Size size;                       ///< of the images
   LensKind lens = LensKind::brown_conrady;
 
   /// The camera with these changes of fx, fy, cx, cy and the distortion.

@@ -5,7 +5,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kEnough = 1500;  // places say how a smooth displacement turns the line
+constexpr std::size_t kMostPlacesUsed = 1500;  // places say how a smooth displacement turns the line
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::vector<double> ModeAxis::displacement(const Restitution& restitution, const
 
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
                                 const std::vector<cv::Point2d>& places, int downhill) {
-  const std::size_t stride = places.size() / kEnough + 1;
+  const std::size_t stride = places.size() / kMostPlacesUsed + 1;
   std::vector<cv::Point2d> some, pixels;
   for (std::size_t i = 0; i < places.size(); i += stride) {
     some.push_back(places[i]);

@@ -1,5 +1,5 @@
-/// What an error of the camera or the plane does to the motion of one group: the line of motion is fitted anew through
-/// the displaced places, and x counted along it.
+/// The effect of an error of the camera or the plane on the motion of one group: the line of motion is refitted through
+/// the displaced positions, and x is measured along it.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -20,8 +20,8 @@ struct ModeAxis {
                                    const std::vector<cv::Point2d>& places) const;
 };
 
-/// One for each of the restitution's modes, in its order; `places` are those of all clips of the group. Of many places
-/// some, evenly, say how a mode turns the line.
+/// One for each of the restitution's modes, in its order; `places` are those of all clips of the group. If there are
+/// many, an even selection of them determines how a mode turns the line.
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
                                 const std::vector<cv::Point2d>& places, int downhill);
 

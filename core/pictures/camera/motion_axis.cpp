@@ -13,8 +13,8 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kMaxIterations = 30;
-constexpr double kTukey = 6.0;  // scaled median deviations; 99 % efficient for Gaussian residuals
+constexpr int kMostReweightings = 30;
+constexpr double kTukeyCutoff = 6.0;  // scaled median deviations; 99 % efficient for Gaussian residuals
 // Anything above zero keeps exact data's weights defined; a tenth of a micrometre is below any camera.
 constexpr double kLeastScale = 1e-7;
 
@@ -58,7 +58,7 @@ std::optional<PlaneLine> least_median_line(const std::vector<cv::Point2d>& point
 }
 
 /// Variance of the direction by the scatter of ten blocks of points along the line, which holds also where the points'
-/// errors are correlated (a picture's sampling, a track that is not straight): (sum of w l e over a block)^2 over the
+/// errors are correlated (an image's sampling, a track that is not straight): (sum of w l e over a block)^2 over the
 /// lever arms' square, as a multiple of what independent points give. 1 where it is not significantly above that.
 double excess_of_blocks(const PlaneLine& line, const std::vector<cv::Point2d>& points,
                         const std::vector<double>& weights) {
@@ -96,10 +96,10 @@ PlaneLine fit_from(const std::optional<PlaneLine>& start, const std::vector<cv::
     for (const cv::Point2d& point : points) distances.push_back(std::abs(start->across(point)));
     // A generous scale: the line through two noisy points is itself off by some noise.
     const double scale = std::max(3.0 * kSdOverMedian * median_of(distances), least_scale);
-    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = distances[i] < kTukey * scale ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) weights[i] = distances[i] < kTukeyCutoff * scale ? 1.0 : 0.0;
   }
   PlaneLine line;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMostReweightings; ++iteration) {
     double sum = 0.0;
     cv::Point2d mean;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -131,7 +131,7 @@ PlaneLine fit_from(const std::optional<PlaneLine>& start, const std::vector<cv::
     const double scale = std::max(kSdOverMedian * median_of(distances), least_scale);
     line.used = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double share = distances[i] / (kTukey * scale);
+      const double share = distances[i] / (kTukeyCutoff * scale);
       weights[i] = share < 1.0 ? std::pow(1.0 - share * share, 2) : 0.0;
       if (weights[i] > 0.5) ++line.used;
     }

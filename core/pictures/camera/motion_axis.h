@@ -1,4 +1,4 @@
-/// The line along which something lies or moves, by total least squares; and x as the distance along it.
+/// The line of a motion (or of a thread) by total least squares, and x as the distance along it.
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "base/math/dense.h"
+#include "base/math/levenberg_marquardt.h"
 
 namespace glidelab::core {
 namespace {
@@ -119,24 +120,34 @@ Eigen::MatrixXd jacobian_of(const CameraModel& camera, const std::vector<BoardCo
   return jacobian;
 }
 
-/// Gauss-Newton from a start that is already good (solvePnP's); a step that does not lower the cost is halved.
+/// Gauss and Newton's steps from a start that is already good (solvePnP's), by QR: the damping is what a step is
+/// divided by, and doubles where the cost does not fall.
 Eigen::VectorXd fit_poses(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
-                          Eigen::VectorXd parameters) {
-  double cost = residuals_of(camera, views, square_m, parameters).squaredNorm();
-  for (int iteration = 0; iteration < 50; ++iteration) {
-    const Eigen::VectorXd residuals = residuals_of(camera, views, square_m, parameters);
-    const Eigen::VectorXd step = base::least_squares(jacobian_of(camera, views, square_m, parameters), -residuals);
-    double share = 1.0;
-    for (; share > 1e-4; share *= 0.5) {
-      const double trial = residuals_of(camera, views, square_m, parameters + share * step).squaredNorm();
-      if (!(trial <= cost)) continue;
-      parameters += share * step;
-      cost = trial;
-      break;
+                          const Eigen::VectorXd& start) {
+  struct Point {
+    Eigen::VectorXd parameters;
+    Eigen::VectorXd step;  // from here, undivided; empty until it is asked for
+  };
+  base::FitOptions options;
+  options.most_iterations = 100;
+  options.damping_start = options.damping_least = 1.0;
+  options.damping_most = 1e4;
+  options.lower = 0.0;
+  options.raise = 2.0;
+  const auto try_step = [&](Point& here, double damping) {
+    if (here.step.size() == 0) {
+      here.step = base::least_squares(jacobian_of(camera, views, square_m, here.parameters),
+                                      -residuals_of(camera, views, square_m, here.parameters));
     }
-    if (step.lpNorm<Eigen::Infinity>() < 1e-11 || share <= 1e-4) break;
-  }
-  return parameters;
+    base::FitTrial<Point> trial;
+    trial.point = Point{here.parameters + 1.0 / damping * here.step, {}};
+    trial.cost = residuals_of(camera, views, square_m, trial.point->parameters).squaredNorm();
+    trial.is_small = here.step.lpNorm<Eigen::Infinity>() < 1e-11;  // radians and metres
+    return trial;
+  };
+  Point here{start, {}};
+  base::levenberg_marquardt(here, residuals_of(camera, views, square_m, start).squaredNorm(), options, try_step);
+  return here.parameters;
 }
 
 Eigen::VectorXd pose_parameters(const PlanePose& pose) {
@@ -210,8 +221,8 @@ std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, 
   const double expected_px = std::hypot(noise.white_px, noise.correlated_px);
   if (fit.rms_px <= std::max(kLeastOffPx, kOff * expected_px)) return {};
   return fmt::format(
-      "the plane {} of group \"{}\" {} not agree with the camera: the pattern's corners are {:.2g} px (rms) from where "
-      "the camera of all views and {} plane put them, and {:.2g} px is what the corners' noise explains",
+      "the plane {} of group \"{}\" {} not agree with the camera: the pattern's corners lie {:.2g} px (rms) from where "
+      "the camera and {} plane place them; their noise explains {:.2g} px",
       views == 1 ? "view" : "views", group, views == 1 ? "does" : "do", fit.rms_px, views == 1 ? "a" : "one",
       expected_px);
 }

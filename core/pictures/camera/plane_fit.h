@@ -31,7 +31,7 @@ struct PlaneFit {
   std::vector<Eigen::Vector3d> in_plane;   ///< each view's pattern in the first one's frame: turn [rad], X, Y [m]
   Eigen::Matrix<double, 6, 6> covariance;  ///< of (turn vector, shift) of `pose`, the camera held
   double rms_m = 0.0;                      ///< of the corners, restituted, against the pattern (one coordinate)
-  double rms_px = 0.0;                     ///< the same in the picture
+  double rms_px = 0.0;                     ///< the same in the image
 };
 
 /// Pose of the pattern in one or more plane views, with the camera held. `correlated_px`: of the corners' errors, what
@@ -39,9 +39,9 @@ struct PlaneFit {
 PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
                    double correlated_px = 0.0);
 
-/// A sentence where the plane views' corners lie further from where the camera of all views and one plane put them than
-/// three times the corners' own noise (views differ in sharpness and tilt, and their noise with them), and than 0.05 px
-/// (what is below is small beside it); `group` names the views.
+/// A sentence if the corners of the plane views lie further from where the camera and one plane place them than three
+/// times their own noise (views differ in sharpness and tilt, and so in noise) and than 0.05 px (less is harmless);
+/// `group` names the views.
 std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
                                         const std::string& group);
 

@@ -30,22 +30,22 @@ double inclination(const MotionAxis& axis, const PlaneLine& down) {
 }  // namespace
 
 Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
-                     std::optional<cv::Size> picture_size, const std::vector<ModeAxis>& modes) {
-  const cv::Mat grey = read_grey_picture(setup.view);
+                     std::optional<cv::Size> image_size, const std::vector<ModeAxis>& modes) {
+  const cv::Mat grey = read_grey_image(setup.view);
   const auto fail = [&](std::string found, std::string expected) {
     throw base::InputError(base::Issue{setup.view.string(), 0, "plumb", std::move(found), std::move(expected)});
   };
-  if (picture_size && grey.size() != *picture_size) {
+  if (image_size && grey.size() != *image_size) {
     fail(fmt::format("{} x {} pixels", grey.cols, grey.rows),
-         fmt::format("{} x {} pixels, as the pattern's views", picture_size->width, picture_size->height));
+         fmt::format("{} x {} pixels, as the views of the pattern", image_size->width, image_size->height));
   }
   const cv::Rect region(setup.region.x, setup.region.y, setup.region.width, setup.region.height);
   if ((region & cv::Rect(0, 0, grey.cols, grey.rows)) != region) {
     fail(fmt::format("the region [{}, {}, {}, {}]", region.x, region.y, region.width, region.height),
-         fmt::format("a region inside the picture of {} x {} pixels", grey.cols, grey.rows));
+         fmt::format("a region inside the image of {} x {} pixels", grey.cols, grey.rows));
   }
   const auto straight = [&](cv::Point2d pixel) { return restitution.undistorted(pixel); };
-  const ThreadInPicture thread = find_thread(grey, region, straight);
+  const ThreadInImage thread = find_thread(grey, region, straight);
   std::vector<cv::Point2d> places, turned, centres;
   for (std::size_t i = 0; i < thread.points.size(); ++i) {
     const auto place = restitution.to_plane(thread.points[i]), other = restitution.to_plane(thread.turned[i]);

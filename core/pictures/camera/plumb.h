@@ -1,7 +1,7 @@
-/// The plumb line in a picture, and the inclination of the line of motion against it.
+/// The plumb line in an image, and the inclination of the line of motion against it.
 ///
-/// A plumb line (found by core/thread_search.h) is parallel to the plane of motion, so that its direction, restituted
-/// to that plane, does not depend on how far before or behind the plane it hangs.
+/// A plumb line (found by thread_search.h) is parallel to the plane of motion, so that its direction, restituted to
+/// that plane, does not depend on how far in front of or behind the plane it hangs.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -17,11 +17,11 @@
 
 namespace glidelab::core {
 
-/// alpha = asin(axis . down), positive downhill, down being the thread's direction towards the picture's lower edge.
-/// Its standard deviation joins the thread's, the axis's and what the modes, each an error of one standard deviation of
-/// camera or plane, make of the angle between them. InputError where the region leaves the picture or holds no
-/// thread; undetermined where the marker does not move.
+/// alpha = asin(axis . down), positive downhill, down being the thread's direction towards the image's lower edge.
+/// Its standard deviation combines those of the thread and the axis with the effect of the modes (each an error of one
+/// standard deviation of camera or plane) on the angle between them. InputError if the region leaves the image or holds
+/// no thread; undetermined if the marker does not move.
 Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
-                     std::optional<cv::Size> picture_size, const std::vector<ModeAxis>& modes = {});
+                     std::optional<cv::Size> image_size, const std::vector<ModeAxis>& modes = {});
 
 }  // namespace glidelab::core

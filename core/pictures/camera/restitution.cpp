@@ -131,7 +131,7 @@ std::optional<double> Restitution::marker_radius_px(cv::Point2d pixel) const {
   if (scale_) return radius_m_ * scale_->px_per_m;
   const auto plane = intersect(pixel);
   if (!plane) return std::nullopt;
-  // Mean of the radii along the picture's two axes, from the scale along and across the plane.
+  // Mean of the radii along the image's two axes, from the scale along and across the plane.
   const cv::Point2d centre = project({plane->x, plane->y, -height_m_});
   const cv::Vec3d c = plane_->pose.rotation * cv::Vec3d(plane->x, plane->y, -height_m_) + plane_->pose.shift;
   const cv::Point2d right = calibration_.camera.to_pixel({(c[0] + radius_m_) / c[2], c[1] / c[2]});

@@ -6,7 +6,7 @@
 /// of a sphere is not centred on the projection of its centre (its image is nearly an ellipse, shifted away from the
 /// axis); that is corrected from the marker's diameter. With one scale: X = u / px_per_m, Y = v / px_per_m.
 ///
-/// How sure it is: the camera's covariance and, with the camera held, that of the plane's pose are each split into
+/// Uncertainty: the camera's covariance and, with the camera held, that of the plane's pose are each split into
 /// independent modes (the columns of a square root of the covariance). A mode is the camera and the pose as an error of
 /// some standard deviations would have made them, the pose following the camera by a new fit of the plane views. Places
 /// restituted with it, minus those restituted without, are the signed displacements that such an error causes.
@@ -24,7 +24,7 @@
 
 namespace glidelab::core {
 
-/// The way from pixels to the plane with an error of `sds` standard deviations in one independent direction.
+/// The mapping from pixels to the plane with an error of `sds` standard deviations in one independent direction.
 struct RestitutionMode {
   CameraModel camera;
   PlanePose pose;
@@ -32,7 +32,7 @@ struct RestitutionMode {
   double sds = 0.0;
   bool of_camera = false;  ///< else of this plane's pose alone
 
-  /// Where the marker's centre is whose projection is this pixel (Restitution::centre_pixel).
+  /// The position of a marker's centre that is projected onto this pixel (Restitution::centre_pixel).
   std::optional<cv::Point2d> to_plane(cv::Point2d centre_pixel) const;
 };
 
@@ -42,8 +42,8 @@ class Restitution {
                                   double square_m, double marker_height_m, double marker_diameter_m);
   static Restitution from_scale(const ScaleSetup& scale, double marker_diameter_m);
 
-  /// Where the marker's centre is that is seen centred on this pixel; metres in P. Nothing where no ray belongs to the
-  /// pixel or it does not meet the plane before the camera.
+  /// The position, metres in P, of the centre of a marker that is seen centred on this pixel. Nothing if no ray belongs
+  /// to the pixel or it does not meet the plane in front of the camera.
   std::optional<cv::Point2d> to_plane(cv::Point2d pixel) const;
 
   /// The pixel on which a marker at this place is seen centred; the inverse of to_plane.
@@ -55,14 +55,14 @@ class Restitution {
   /// Radius of the marker's image there, in pixels; nothing where to_plane gives nothing.
   std::optional<double> marker_radius_px(cv::Point2d pixel) const;
 
-  /// Onto which pixel the marker's centre is projected, which is not where its outline is centred.
+  /// The pixel onto which the marker's centre is projected, which is not where its outline is centred.
   cv::Point2d centre_pixel(cv::Point2d plane) const;
 
   /// Relative standard deviation of px_per_m, as stated with the scale; 0 with a pattern, whose scale is in the modes.
   double relative_scale_sd() const { return scale_ ? scale_->px_per_m_sd / scale_->px_per_m : 0.0; }
 
-  /// Those of the camera come first and are the same (and in the same order) for every plane of one calibration. None
-  /// with a scale.
+  /// The camera's modes come first and are the same, in the same order, for every plane of one calibration. None with a
+  /// scale.
   std::vector<RestitutionMode> modes() const;
 
   /// What the plane views gave; nothing for a scale.

@@ -17,11 +17,11 @@ enum Parameter { kShift, kTurn, kLogWidth, kLogBlur, kParameters };
 using Vector = Eigen::Matrix<double, kParameters, 1>;
 
 constexpr double kPriorSd = 1.5;  // of ln(width) and ln(blur)
-constexpr std::size_t kFewestRows = 10;
-constexpr int kMaxIterations = 60;
+constexpr std::size_t kFewestRowsToFit = 10;
+constexpr int kMostIterations = 60;
 
 struct Setting {
-  double nu, nv;  // the thread's normal in the picture
+  double nu, nv;  // the thread's normal in the image
   double mean_row;
   double lever;     // rows; the turn is fitted as the shift at this distance from the mean row
   double width_px;  // first guess
@@ -92,7 +92,7 @@ LeastSquaresFit<kParameters> fit_from(const std::vector<ThreadRow>& rows, const 
   Vector step;
   step << 1e-4, 1e-4, 1e-3, 1e-2;
   return fit_least_squares<kParameters>([&](const Vector& p) { return evaluate(rows, setting, p); }, start, step,
-                                        kMaxIterations);
+                                        kMostIterations);
 }
 
 /// The best of several starts: width and blur make two valleys where the thread is sharp.
@@ -102,7 +102,8 @@ std::optional<LeastSquaresFit<kParameters>> fit_best(const std::vector<ThreadRow
     Vector start;
     start << 0.0, 0.0, std::log(setting.width_px), std::log(blur);
     const auto found = fit_from(rows, setting, start);
-    if (found.stop != FitStop::converged && found.stop != FitStop::iterations) continue;
+    // A valley along width or blur may be walked for long; the shift and the turn stand before.
+    if (found.stop == base::FitStop::singular || found.stop == base::FitStop::out_of_range) continue;
     if (!(found.rms > 0.0) || (best && best->rms <= found.rms)) continue;
     best = found;
   }
@@ -130,7 +131,7 @@ double excess_of_blocks(const std::vector<ThreadRow>& rows, const Setting& setti
 }  // namespace
 
 std::optional<ThreadFit> fit_thread(const std::vector<ThreadRow>& all, double slant, double width_px) {
-  if (all.size() < kFewestRows) return std::nullopt;
+  if (all.size() < kFewestRowsToFit) return std::nullopt;
   const double length = std::hypot(1.0, slant);
   Setting setting{1.0 / length, -slant / length, 0.0, 1.0, std::max(width_px, 1.0), 1.0};
   std::vector<ThreadRow> rows = all;
@@ -156,7 +157,7 @@ std::optional<ThreadFit> fit_thread(const std::vector<ThreadRow>& all, double sl
     for (std::size_t k = 0; k < rows.size(); ++k) {
       if (costs[k] <= limit) kept.push_back(rows[k]);
     }
-    if (kept.size() < std::max(kFewestRows, rows.size() / 2)) return std::nullopt;
+    if (kept.size() < std::max(kFewestRowsToFit, rows.size() / 2)) return std::nullopt;
     rows = kept;
   }
   const double excess = excess_of_blocks(rows, setting, *found);

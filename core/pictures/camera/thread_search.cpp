@@ -9,14 +9,14 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kNear = 1.5;               // pixels from a straight line, for a row's place to lie on it
-constexpr double kShareOfRows = 0.3;        // in which a thread must be seen
-constexpr double kFewestRows = 6.0;         // the same
-constexpr std::size_t kPlacesARow = 4;      // that stand out most
-constexpr std::size_t kPlacesPaired = 160;  // of all, evenly: every pair of them proposes a line
-constexpr double kFarApart = 0.25;          // of the rows, that the two of a pair are at least
-constexpr double kStronger = 1.05;          // times, that a line must be to stand before one found earlier
-constexpr int kCourseRounds = 5;            // of Newton's method
+constexpr double kMostOffLine = 1.5;         // pixels from a straight line, for a row's place to lie on it
+constexpr double kLeastShareOfRows = 0.3;    // in which a thread must be seen
+constexpr double kFewestRowsSeen = 6.0;      // the same
+constexpr std::size_t kPlacesARow = 4;       // that stand out most
+constexpr std::size_t kPlacesPaired = 160;   // of all, evenly: every pair of them proposes a line
+constexpr double kLeastPairDistance = 0.25;  // of the rows, that the two of a pair are at least
+constexpr double kLeastGain = 1.05;          // times, that a line must be to stand before one found earlier
+constexpr int kCourseRounds = 5;             // of Newton's method
 
 using Straight = std::function<std::optional<cv::Point2d>(cv::Point2d)>;
 
@@ -57,7 +57,7 @@ double excess_at(const std::vector<double>& values, int i, int width) {
 class Proposal {
  public:
   Proposal(const Place& a, const Place& b)
-      : from_(a), direction_(b.straight - a.straight), near_(kNear * cv::norm(direction_)) {}
+      : from_(a), direction_(b.straight - a.straight), near_(kMostOffLine * cv::norm(direction_)) {}
 
   template <typename Visit>
   void for_each(const std::vector<Place>& places, Visit visit) const {
@@ -82,13 +82,13 @@ class Search {
   Search(const cv::Mat& grey, cv::Rect region, bool turned, const Straight& straight)
       : grey_(grey), region_(region), turned_(turned), straight_(straight) {}
 
-  ThreadInPicture find() const {
+  ThreadInImage find() const {
     Thread best;
     for (const int width : {1, 3, 5, 9}) {
       const std::vector<Place> places = places_of(width);
-      if (static_cast<double>(places.size()) >= kFewestRows) best = stronger(best, places, width);
+      if (static_cast<double>(places.size()) >= kFewestRowsSeen) best = stronger(best, places, width);
     }
-    return best.places.empty() ? ThreadInPicture{} : fitted(best);
+    return best.places.empty() ? ThreadInImage{} : fitted(best);
   }
 
  private:
@@ -146,7 +146,7 @@ class Search {
     const std::size_t stride = std::max<std::size_t>(1, places.size() / kPlacesPaired);
     for (std::size_t a = 0; a < places.size(); a += stride) {
       for (std::size_t b = a + 1; b < places.size(); b += stride) {
-        if (places[b].along - places[a].along < kFarApart * rows()) continue;
+        if (places[b].along - places[a].along < kLeastPairDistance * rows()) continue;
         if (places[a].excess * places[b].excess < 0.0) continue;
         const Proposal line(places[a], places[b]);
         double strength = 0.0, seen = 0.0;
@@ -154,7 +154,8 @@ class Search {
           strength += std::sqrt(std::abs(place.excess));  // a few strong places do not outweigh many
           seen += 1.0;
         });
-        if (seen < std::max(kFewestRows, kShareOfRows * rows()) || strength <= kStronger * best.strength) continue;
+        if (seen < std::max(kFewestRowsSeen, kLeastShareOfRows * rows()) || strength <= kLeastGain * best.strength)
+          continue;
         best = {{}, strength, width};
         line.for_each(places, [&](const Place& place) { best.places.push_back(place); });
       }
@@ -162,11 +163,11 @@ class Search {
     return best;
   }
 
-  /// Its course: straight where the lens's distortion is undone, brought back to the picture row by row.
+  /// Its course: straight where the lens's distortion is undone, brought back to the image row by row.
   std::vector<ThreadRow> course_of(const std::vector<Place>& places) const {
     std::vector<cv::Point2d> straights;
     for (const Place& place : places) straights.push_back(place.straight);
-    const PlaneLine line = fit_plane_line(straights, kNear / 3.0);
+    const PlaneLine line = fit_plane_line(straights, kMostOffLine / 3.0);
     std::vector<ThreadRow> course;
     for (const Place& place : places) {
       double at = place.at;
@@ -182,10 +183,10 @@ class Search {
     return course;
   }
 
-  ThreadInPicture fitted(const Thread& found) const {
+  ThreadInImage fitted(const Thread& found) const {
     const std::vector<ThreadRow> course = course_of(found.places);
     const double slant = (course.back().middle - course.front().middle) / (course.back().row - course.front().row);
-    ThreadInPicture thread;
+    ThreadInImage thread;
     const auto fit = fit_thread(course, slant, found.width);
     if (!fit) return thread;
     for (const ThreadRow& row : course) {
@@ -206,9 +207,9 @@ class Search {
 
 }  // namespace
 
-ThreadInPicture find_thread(const cv::Mat& grey, cv::Rect region, const Straight& straight) {
-  const ThreadInPicture upright = Search(grey, region, false, straight).find();
-  const ThreadInPicture lying = Search(grey, region, true, straight).find();
+ThreadInImage find_thread(const cv::Mat& grey, cv::Rect region, const Straight& straight) {
+  const ThreadInImage upright = Search(grey, region, false, straight).find();
+  const ThreadInImage lying = Search(grey, region, true, straight).find();
   // A line is followed best across: in as many rows (columns) as it spans.
   return lying.rows > upright.rows ? lying : upright;
 }

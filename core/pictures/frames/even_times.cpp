@@ -8,16 +8,16 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kFewest = 20;
-constexpr double kSame_s = 2e-6;     // stamps are stored to a microsecond or better
-constexpr double kWider = 1.05;      // than a tick, for exposures that jitter a little
-constexpr double kNextSlot = 1.5;    // of the median step: a longer one may hold a frame that is missing
-constexpr double kLeastTicks = 1.5;  // in a step: with fewer a tick more or less could be a frame
-constexpr int kHalvings = 60;        // of an interval: to the last bit
+constexpr std::size_t kFewestStamps = 20;
+constexpr double kStampResolution_s = 2e-6;     // stamps are stored to a microsecond or better
+constexpr double kMostSpreadOverTick = 1.05;    // than a tick, for exposures that jitter a little
+constexpr double kLongestStepOverMedian = 1.5;  // of the median step: a longer one may hold a frame that is missing
+constexpr double kLeastTicks = 1.5;             // in a step: with fewer a tick more or less could be a frame
+constexpr int kHalvings = 60;                   // of an interval: to the last bit
 
-/// The longest step of which both are whole multiples, to kSame_s.
+/// The longest step of which both are whole multiples, to kStampResolution_s.
 double common_step(double a, double b) {
-  while (b > kSame_s) {
+  while (b > kStampResolution_s) {
     const double rest = std::abs(a - b * std::round(a / b));
     a = b;
     b = rest;
@@ -30,7 +30,7 @@ std::vector<double> slots_of(const std::vector<double>& steps, double tick_s) {
   const double median_s = quantile(steps, 0.5);
   double sum = 0.0, count = 0.0;
   for (const double step : steps) {
-    if (step > kNextSlot * median_s) continue;
+    if (step > kLongestStepOverMedian * median_s) continue;
     sum += step;
     count += 1.0;
   }
@@ -69,11 +69,11 @@ double edge(const Spread& spread, double limit, double inside, double outside) {
 }  // namespace
 
 std::optional<EvenTimes> even_times(std::span<const double> stamps_s) {
-  if (stamps_s.size() < kFewest) return std::nullopt;
+  if (stamps_s.size() < kFewestStamps) return std::nullopt;
   std::vector<double> steps;
   for (std::size_t i = 1; i < stamps_s.size(); ++i) steps.push_back(stamps_s[i] - stamps_s[i - 1]);
   const auto [shortest, longest] = std::minmax_element(steps.begin(), steps.end());
-  if (*longest - *shortest < kSame_s) return std::nullopt;
+  if (*longest - *shortest < kStampResolution_s) return std::nullopt;
   EvenTimes even;
   even.tick_s = *shortest;
   for (const double step : steps) even.tick_s = common_step(even.tick_s, step);
@@ -94,7 +94,7 @@ std::optional<EvenTimes> even_times(std::span<const double> stamps_s) {
     }
   }
   const double best_s = 0.5 * (low + high), least = spread(best_s);
-  if (least > kWider * even.tick_s) return std::nullopt;
+  if (least > kMostSpreadOverTick * even.tick_s) return std::nullopt;
   const double limit = std::max(least, even.tick_s) * (1.0 + 1e-9);
   const double from_s = edge(spread, limit, best_s, best_s - 2.0 * reach_s);
   const double to_s = edge(spread, limit, best_s, best_s + 2.0 * reach_s);

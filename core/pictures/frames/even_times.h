@@ -1,4 +1,4 @@
-/// The times of a camera that runs evenly, behind time stamps that were rounded.
+/// The even times of a camera behind rounded time stamps.
 ///
 /// A phone writes whole ticks of 1/600 s, Matroska whole milliseconds, while the sensor exposes evenly: stamps are then
 /// off by up to half a tick q (q / sqrt(12) on average), which at a speed v looks like noise of v q / sqrt(12).

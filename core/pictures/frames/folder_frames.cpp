@@ -1,4 +1,5 @@
-// Frames that are pictures in a folder, in the order of their numbers.
+#include "core/pictures/frames/folder_frames.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,17 +18,17 @@ class FolderFrames final : public FrameSource {
  public:
   FolderFrames(const fs::path& folder, const CameraSettings& camera, bool with_color, std::optional<cv::Size> size)
       : camera_(camera), with_color_(with_color), check_size_(size) {
-    static const std::set<std::string> kPictures{".png", ".tif", ".tiff", ".pgm", ".bmp", ".jpg", ".jpeg"};
+    static const std::set<std::string> kImageEndings{".png", ".tif", ".tiff", ".pgm", ".bmp", ".jpg", ".jpeg"};
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
       if (name.starts_with('.') || !entry.is_regular_file()) continue;
-      if (kPictures.contains(lower_extension(entry.path()))) {
+      if (kImageEndings.contains(lower_extension(entry.path()))) {
         files_.push_back(entry.path());
       } else {
         ++others_;
       }
     }
-    if (files_.empty()) fail_frames(folder, "", "a folder without pictures", "a folder of frames (PNG, in order)");
+    if (files_.empty()) fail_frames(folder, "", "a folder without images", "a folder of frames (PNG, in order)");
     if (camera.time == TimeSource::container) {
       fail_frames(folder, "", "a folder of frames, which has no time stamps",
                   "a video, or time = \"rate\" in [camera] of experiment.toml");
@@ -38,9 +39,9 @@ class FolderFrames final : public FrameSource {
 
   std::optional<Frame> next() override {
     if (count_ == files_.size()) return std::nullopt;
-    const cv::Mat picture = read_picture(files_[count_]);
-    check_size_(picture, count_, files_[count_]);
-    Frame frame = make_frame(picture, with_color_, count_);
+    const cv::Mat image = read_image(files_[count_]);
+    check_size_(image, count_, files_[count_]);
+    Frame frame = make_frame(image, with_color_, count_);
     frame.t_s = static_cast<double>(count_) / camera_.frame_rate_hz;
     ++count_;
     return frame;
@@ -50,7 +51,7 @@ class FolderFrames final : public FrameSource {
 
   std::vector<std::string> notes() const override {
     if (others_ == 0) return {};
-    return {fmt::format("{} files in the folder of frames are no pictures and were left out", others_)};
+    return {fmt::format("{} files in the folder of frames are not images and are skipped", others_)};
   }
 
  private:

@@ -26,7 +26,7 @@ void SizeCheck::operator()(const cv::Mat& frame, std::size_t index, const fs::pa
   if (!size_) size_ = frame.size();
   if (frame.size() == *size_) return;
   fail_frames(file, fmt::format("frame {}", index), show(frame.size()),
-              show(*size_) + (given_ ? ", as the pattern's views" : ", as the frames before"));
+              show(*size_) + (given_ ? ", as the views of the pattern" : ", as the frames before"));
 }
 
 void RepeatCounter::operator()(const cv::Mat& grey) {
@@ -38,8 +38,8 @@ void RepeatCounter::operator()(const cv::Mat& grey) {
 void RepeatCounter::tell(std::vector<std::string>& notes) const {
   if (repeated_ == 0) return;
   notes.push_back(
-      fmt::format("{} of {} frames are the very picture before them once more: duplicates (a camera or converter that "
-                  "repeats frames), or a scene at rest without any noise",
+      fmt::format("{} of {} frames are identical to the frame before: duplicates (a camera or converter that repeats "
+                  "frames), or a scene at rest without any noise",
                   repeated_, count_));
 }
 
@@ -52,15 +52,15 @@ bool RepeatCounter::same_bits(const cv::Mat& grey) const {
   return true;
 }
 
-Frame make_frame(const cv::Mat& picture, bool with_color, std::size_t index) {
+Frame make_frame(const cv::Mat& image, bool with_color, std::size_t index) {
   Frame frame;
   frame.index = index;
-  frame.grey = to_grey(picture);
-  if (!with_color || picture.channels() == 1) return frame;
-  if (picture.depth() == CV_8U) {
-    frame.color = picture;
+  frame.grey = to_grey(image);
+  if (!with_color || image.channels() == 1) return frame;
+  if (image.depth() == CV_8U) {
+    frame.color = image;
   } else {
-    picture.convertTo(frame.color, CV_8U, 1.0 / 256.0);
+    image.convertTo(frame.color, CV_8U, 1.0 / 256.0);
   }
   return frame;
 }

@@ -1,5 +1,5 @@
-/// What frames from a video and frames from a folder have in common: their size is checked, repeats are counted, and a
-/// decoded picture becomes a Frame.
+/// What frames from a video and from a folder have in common: their size is checked, repeats are counted, and a
+/// decoded image becomes a Frame.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -29,7 +29,7 @@ class SizeCheck {
   bool given_;
 };
 
-/// Counts frames that are the picture before them once more, bit by bit: noise does not repeat itself.
+/// Counts frames that equal the frame before bit by bit: noise does not repeat itself.
 class RepeatCounter {
  public:
   void operator()(const cv::Mat& grey);
@@ -44,13 +44,7 @@ class RepeatCounter {
   std::size_t count_ = 0;
 };
 
-/// A decoded picture, grey as stored, and its colours where they are asked for.
-Frame make_frame(const cv::Mat& picture, bool with_color, std::size_t index);
-
-/// The two kinds of source that open_frames chooses between; `size` as there.
-std::unique_ptr<FrameSource> open_video(const std::filesystem::path& file, const CameraSettings& camera,
-                                        bool with_color, std::optional<cv::Size> size);
-std::unique_ptr<FrameSource> open_frame_folder(const std::filesystem::path& folder, const CameraSettings& camera,
-                                               bool with_color, std::optional<cv::Size> size);
+/// A decoded image, grey as stored, and its colours where they are asked for.
+Frame make_frame(const cv::Mat& image, bool with_color, std::size_t index);
 
 }  // namespace glidelab::core

@@ -1,4 +1,4 @@
-/// The frames of a clip, one after the other: from a video file or from a folder of pictures.
+/// The frames of a clip, one after the other: from a video file or from a folder of images.
 ///
 /// A frame's time is the middle of its exposure, counted from the first frame's: k / frame_rate_hz, or the container's
 /// time stamps where the experiment says so.
@@ -15,9 +15,12 @@
 #include <vector>
 
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/draw_pixels.h"
 
 namespace glidelab::core {
+
+/// Makes the pixels of a rectangle within the image, if they are not there yet: of an image whose pixels are made as
+/// they are looked at (a renderer's, of which a tracker looks at a hundredth).
+using DrawPixels = std::function<void(const cv::Rect&)>;
 
 struct Frame {
   cv::Mat grey;   ///< one channel, 8 or 16 bits; a grey clip comes out bit by bit as it is stored
@@ -27,19 +30,19 @@ struct Frame {
   DrawPixels draw = {};  ///< of next_in_parts(): grey holds nothing but what was drawn with it; else empty
 };
 
-/// Rates are stated rounded (239.76 as 240), 0.1 %; one that is further off, relative, is another one.
+/// People round rates by up to 0.1 % (239.76 as 240); a relative difference above this is another rate.
 inline constexpr double kRateRounding = 1.5e-3;
 
-/// What a video file says of how it was written and of its times, and frames that came twice. Of a folder of frames,
-/// and of frames from elsewhere, nothing is known.
+/// What a video file says about its codec and its times, and how many frames came twice. Nothing is known about a
+/// folder of frames.
 struct FileFacts {
   std::string codec;                        ///< four letters; empty for a folder of frames
-  std::optional<bool> lossy;                ///< nothing for a codec that is not known here
+  std::optional<bool> lossy;                ///< nothing for an unknown codec
   std::optional<double> container_rate_hz;  ///< frames a second, as the container says
   std::size_t stamps_missing = 0;           ///< frames for which the time stamps leave a gap
   std::size_t irregular_steps = 0;          ///< between time stamps, that differ from the median step
   std::size_t repeated = 0;                 ///< frames equal to the one before, bit by bit
-  double drift_frames = 0.0;                ///< how far the stamps leave a uniform row, in frames
+  double drift_frames = 0.0;                ///< largest departure of the time stamps from even spacing, in frames
 };
 
 class FrameSource {
@@ -51,8 +54,8 @@ class FrameSource {
   /// container says by more than max(2, 1 %), or empty.
   virtual std::optional<Frame> next() = 0;
 
-  /// The next frame for one who looks at parts of it: where a source makes its pixels, the same ones as next() gives,
-  /// it may leave them to Frame::draw, which outlives the source's next frames but not the source.
+  /// The next frame for a reader that looks at parts of it: a source that makes its pixels may leave that to
+  /// Frame::draw, which gives the same pixels as next() and outlives the following frames but not the source.
   virtual std::optional<Frame> next_in_parts() { return next(); }
 
   /// How many frames the container says there are; 0 where it does not.
@@ -65,14 +68,5 @@ class FrameSource {
   /// Complete once the end is reached.
   virtual FileFacts facts() const { return {}; }
 };
-
-/// Opens a video or a folder of frames. `size`, where given, is what the frames must measure (the calibration's
-/// pictures). InputError where it is neither a video nor a folder with pictures.
-std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& file, const CameraSettings& camera,
-                                         bool with_color, std::optional<cv::Size> size);
-
-/// How an analysis comes by a clip's frames: open_frames, or what gives the same from elsewhere.
-using FrameOpener = std::function<std::unique_ptr<FrameSource>(
-    const std::filesystem::path& file, const CameraSettings& camera, bool with_color, std::optional<cv::Size> size)>;
 
 }  // namespace glidelab::core

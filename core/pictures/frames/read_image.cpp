@@ -21,34 +21,34 @@ void silence_opencv() {
   });
 }
 
-cv::Mat read_picture(const fs::path& path) {
+cv::Mat read_image(const fs::path& path) {
   silence_opencv();
   const auto fail = [&](const std::string& found) {
-    throw base::InputError(base::Issue{path.string(), 0, "", found, "a picture (PNG, JPEG, TIFF, PGM)"});
+    throw base::InputError(base::Issue{path.string(), 0, "", found, "an image (PNG, JPEG, TIFF, PGM)"});
   };
   std::error_code error;
   if (!fs::is_regular_file(path, error)) fail("no file");
   if (fs::file_size(path, error) == 0) fail("an empty file");
-  cv::Mat picture;
+  cv::Mat image;
   try {
-    picture = cv::imread(path.string(), cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
+    image = cv::imread(path.string(), cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
   } catch (const cv::Exception& exception) {
-    fail("a picture that cannot be decoded (" + std::string(exception.err) + ")");
+    fail("an image that cannot be decoded (" + std::string(exception.err) + ")");
   }
-  if (picture.empty()) fail("no picture that can be decoded");
-  if (picture.depth() != CV_8U && picture.depth() != CV_16U) fail("a picture of neither 8 nor 16 bits");
-  return picture;
+  if (image.empty()) fail("no image that can be decoded");
+  if (image.depth() != CV_8U && image.depth() != CV_16U) fail("an image of neither 8 nor 16 bits");
+  return image;
 }
 
-cv::Mat to_grey(const cv::Mat& picture) {
-  if (picture.channels() == 1) return picture;
+cv::Mat to_grey(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
   cv::Mat grey;
-  cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
   return grey;
 }
 
-cv::Mat read_grey_picture(const fs::path& path) {
-  return to_grey(read_picture(path));
+cv::Mat read_grey_image(const fs::path& path) {
+  return to_grey(read_image(path));
 }
 
 }  // namespace glidelab::core

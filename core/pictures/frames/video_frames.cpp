@@ -1,4 +1,5 @@
-// Frames of a video file, with what its container says of their times.
+#include "core/pictures/frames/video_frames.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,14 +46,14 @@ class VideoFrames final : public FrameSource {
 
   std::optional<Frame> next() override {
     if (ended_) return std::nullopt;
-    cv::Mat picture;
-    if (!read(picture)) {
+    cv::Mat image;
+    if (!read(image)) {
       ended_ = true;
       check_length();
       return std::nullopt;
     }
-    check_size_(picture, count_, file_);
-    Frame frame = make_frame(picture, with_color_, count_);
+    check_size_(image, count_, file_);
+    Frame frame = make_frame(image, with_color_, count_);
     repeats_(frame.grey);
     const double stamp_s = capture_.get(cv::CAP_PROP_POS_MSEC) * 1e-3;
     if (count_ == 0) first_stamp_s_ = stamp_s;
@@ -78,10 +79,11 @@ class VideoFrames final : public FrameSource {
   std::vector<std::string> notes() const override {
     std::vector<std::string> notes;
     if (stated_rate_hz_ > 0.0 && std::abs(stated_rate_hz_ / camera_.frame_rate_hz - 1.0) > kRateRounding) {
-      notes.push_back(fmt::format(
-          "the container says {:.6g} frames per second, the experiment {:.6g}; {}", stated_rate_hz_,
-          camera_.frame_rate_hz,
-          camera_.time == TimeSource::rate ? "the stated rate counts" : "the container's stamps count, as asked"));
+      notes.push_back(fmt::format("the container states {:.6g} frames per second, experiment.toml {:.6g}; {}",
+                                  stated_rate_hz_, camera_.frame_rate_hz,
+                                  camera_.time == TimeSource::rate
+                                      ? "the rate in experiment.toml is used"
+                                      : "the container's time stamps are used, as requested"));
     }
     if (unstamped_ > 0 && camera_.time == TimeSource::container) {
       notes.emplace_back("the last frames have no time stamp and are left out");
@@ -92,7 +94,7 @@ class VideoFrames final : public FrameSource {
           "the container's time stamps are irregular: {} of {} steps differ from the median step of {:.4g} ms, the "
           "longest is {:.4g} ms{}",
           irregular_, stamps_s_.size() - 1, median_step_s_ * 1e3, longest_step_s_ * 1e3,
-          camera_.time == TimeSource::rate ? " (frames may be missing; the stated rate counts)" : ""));
+          camera_.time == TimeSource::rate ? " (frames may be missing; the rate in experiment.toml is used)" : ""));
     }
     return notes;
   }
@@ -111,12 +113,12 @@ class VideoFrames final : public FrameSource {
   }
 
  private:
-  bool read(cv::Mat& picture) {  // as cv::VideoCapture wants it
+  bool read(cv::Mat& image) {  // as cv::VideoCapture wants it
     try {
-      return capture_.read(picture) && !picture.empty();
+      return capture_.read(image) && !image.empty();
     } catch (const cv::Exception& exception) {
       fail_frames(file_, fmt::format("frame {}", count_),
-                  "a frame that cannot be decoded (" + std::string(exception.err) + ")", "a picture");
+                  "a frame that cannot be decoded (" + std::string(exception.err) + ")", "an image");
     }
   }
 

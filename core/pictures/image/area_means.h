@@ -1,4 +1,4 @@
-/// A picture made smaller: each pixel of the small one is the mean over its rectangle of the large one, in which a
+/// An image made smaller: each pixel of the small one is the mean over its rectangle of the large one, in which a
 /// pixel that is cut counts by its part. What cv::INTER_AREA does, to the rounding of single precision.
 #pragma once
 

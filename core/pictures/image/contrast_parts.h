@@ -1,4 +1,4 @@
-/// Parts of a picture in which something may stand out by a given contrast: the others need not be looked at.
+/// The parts of an image in which something may stand out by a given contrast; the others need not be searched.
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -12,8 +12,8 @@
 namespace glidelab::core {
 namespace {
 
-/// Means over squares of 2 half + 1 pixels, of what of them lies inside the picture, for centres in the picture and up
-/// to `beyond` pixels outside; NaN where nothing does. Sums are those of an integral picture.
+/// Means over squares of 2 half + 1 pixels, of what of them lies inside the image, for centres in the image and up
+/// to `beyond` pixels outside; NaN where nothing does. Sums are those of an integral image.
 cv::Mat square_means(const cv::Mat& sums, int half, int beyond) {
   const int width = sums.cols - 1, height = sums.rows - 1;
   cv::Mat means(height + 2 * beyond, width + 2 * beyond, CV_32F);

@@ -2,8 +2,6 @@
 
 #include <numbers>
 
-#include "core/pictures/image/edge_primitives.h"
-
 namespace glidelab::core {
 
 NormalNodes make_normal_nodes() {

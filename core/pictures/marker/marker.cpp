@@ -17,7 +17,7 @@ constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitud
 constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
 constexpr double kSharpEdge_px = 0.29;  // the pixel's own extent, 1/sqrt(12): nothing that is not clipped is sharper
 constexpr int kMaxIterations = 14;      // what is a marker takes 3 to 8
-constexpr int kTrials = 4;              // by then the residuals of a disc are nearly those of its fit
+constexpr int kIterationsBeforeHopeless = 4;  // by then the residuals of a disc are nearly those of its fit
 constexpr double kHopelessResidual = 2.0 * kLargestResidual;
 constexpr int kMoreIterations = 16;  // a disc so far, its edge sharper than a pixel: the sensor clips it
 
@@ -54,7 +54,7 @@ std::optional<MarkerPixels> cut_window(const Signal& signal, cv::Point2d centre,
   return window;
 }
 
-/// Weak knowledge that keeps small markers' size and blur apart, and the blur of a sharp picture from sliding to
+/// Weak knowledge that keeps small markers' size and blur apart, and the blur of a sharp image from sliding to
 /// nothing (it has no effect to be seen there); each worth so much of the amplitude in one pixel.
 struct Prior {
   double radius_px;
@@ -147,15 +147,15 @@ LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const
   const Prior prior{guess.radius_px, guess.blur_px, amplitude};
   const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(pixels, prior, p); };
   const auto is_hopeless = [&](const LeastSquaresFit<N>& so_far, const NormalEquations<N>& here) {
-    if (so_far.iterations < kTrials) return false;
+    if (so_far.iterations < kIterationsBeforeHopeless) return false;
     const double bright = std::max(amplitude, so_far.parameters[kBright] - so_far.parameters[kLevel]);
     return here.cost > here.weight * kHopelessResidual * kHopelessResidual * bright * bright;
   };
   const Eigen::Matrix<double, N, 1> step = steps_of<N>(guess, amplitude);
   LeastSquaresFit<N> found =
       fit_least_squares<N>(model, start_of<N>(guess, contrast), step, kMaxIterations, is_hopeless);
-  if (found.stop == FitStop::iterations && found.parameters[kLogBlur] < std::log(kSharpEdge_px) &&
-      found.rms < kLargestResidual * amplitude) {
+  const bool unsettled = found.stop == base::FitStop::iterations || found.stop == base::FitStop::no_descent;
+  if (unsettled && found.parameters[kLogBlur] < std::log(kSharpEdge_px) && found.rms < kLargestResidual * amplitude) {
     found = fit_least_squares<N>(model, found.parameters, step, kMoreIterations);
   }
   return found;
@@ -227,7 +227,7 @@ std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& gues
   if (!contrast) return std::nullopt;
   MarkerModel<N> pixels(window);
   const LeastSquaresFit<N> found = solve<N>(pixels, guess, *contrast);
-  if (found.stop != FitStop::converged) return std::nullopt;
+  if (!base::is_settled(found.stop)) return std::nullopt;
   double total_weight = 0.0;
   for (const double w : window.weight()) total_weight += w;
   if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;

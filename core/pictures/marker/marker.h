@@ -16,17 +16,17 @@
 
 #include <optional>
 
-#include "core/pictures/frames/draw_pixels.h"
+#include "core/pictures/frames/frame_source.h"
 
 namespace glidelab::core {
 
-/// One channel in which the marker is brighter than what surrounds it: the grey picture, its inverse, or the likeness
+/// One channel in which the marker is brighter than what surrounds it: the grey image, its inverse, or the likeness
 /// to the marker's colour. 8 or 16 bits.
 struct Signal {
   cv::Mat values;
   DrawPixels draw = {};  ///< where the pixels are made as they are looked at: before at() and values, see()
 
-  /// The rectangle, which lies within the picture, is about to be looked at.
+  /// The rectangle, which lies within the image, is about to be looked at.
   void see(const cv::Rect& part) const {
     if (draw) draw(part);
   }
@@ -70,13 +70,9 @@ inline bool has_expected_size(const MarkerFit& marker, const MarkerGuess& guess)
   return ratio <= kLargestRatio && ratio >= 1.0 / kLargestRatio;
 }
 
-/// Fits the model in a window of 1.25 radii plus 2.5 px. Nothing where the window leaves the picture, the fit does not
+/// Fits the model in a window of 1.25 radii plus 2.5 px. Nothing where the window leaves the image, the fit does not
 /// converge, moves by more than a radius, or ends with a shape that is not the marker's (size off by more than a factor
 /// of 2, darker than its surroundings, residuals above a third of the amplitude).
 std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& guess, Surface surface);
-
-/// Centroid of what stands out in the signal and hangs together around the guess, weighted with how far it stands out.
-/// For objects that are no disc and are known by their colour; sd_px is not estimated (0).
-std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGuess& guess);
 
 }  // namespace glidelab::core

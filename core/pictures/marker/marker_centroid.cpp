@@ -1,3 +1,5 @@
+#include "core/pictures/marker/marker_centroid.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <vector>
 
 #include "core/math/quantile.h"
-#include "core/pictures/marker/marker.h"
 
 namespace glidelab::core {
 namespace {

@@ -4,16 +4,17 @@
 #include <map>
 
 #include "core/math/quantile.h"
+#include "core/pictures/marker/marker_centroid.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kBicForShading = 10.0;    // a frame, on average: "very strong" on the usual scale
-constexpr double kSmallestShadedPx = 3.0;  // below, shading and place cannot be told apart
-constexpr double kDiscResidual = 0.1;      // of the amplitude; what is no disc leaves more
-constexpr double kSteadier = 1.2;          // times, by which a centroid must be to be preferred
+constexpr double kLeastBicGainPerFrame = 10.0;  // a frame, on average: "very strong" on the usual scale
+constexpr double kSmallestShadedPx = 3.0;       // below, shading and place cannot be told apart
+constexpr double kMostDiscResidual = 0.1;       // of the amplitude; what is no disc leaves more
+constexpr double kLeastJitterRatio = 1.2;       // times, by which a centroid must be to be preferred
 
-/// What all windows agree on, the picture's sharpness and the marker's size, from which each fit then starts.
+/// What all windows agree on, the image's sharpness and the marker's size, from which each fit then starts.
 void share_guesses(std::vector<MarkerSample>& samples, SignalKind kind) {
   std::vector<double> blurs, sizes;
   for (const MarkerSample& sample : samples) {
@@ -68,15 +69,17 @@ MarkerMethod best_of(const Remeasured& again, std::size_t samples, SignalKind ki
     return jitter_of(places);
   };
   MarkerMethod chosen = MarkerMethod::uniform;
-  if (most(MarkerMethod::shaded) && again.both > 0 && again.bic_gain > kBicForShading * static_cast<double>(again.both))
+  if (most(MarkerMethod::shaded) && again.both > 0 &&
+      again.bic_gain > kLeastBicGainPerFrame * static_cast<double>(again.both))
     chosen = MarkerMethod::shaded;
   if (kind == SignalKind::colored && most(MarkerMethod::centroid)) {
     std::vector<double> residuals{0.0};
     for (const auto& [frame, fit] : again.fits.at(chosen)) residuals.push_back(fit.rms / fit.amplitude);
     const auto of_fit = jitter(chosen);
     const auto of_centroid = jitter(MarkerMethod::centroid);
-    const bool is_disc = most(chosen) && median_of(residuals) < kDiscResidual;
-    if (!is_disc || (of_fit && of_centroid && *of_fit > kSteadier * *of_centroid)) chosen = MarkerMethod::centroid;
+    const bool is_disc = most(chosen) && median_of(residuals) < kMostDiscResidual;
+    if (!is_disc || (of_fit && of_centroid && *of_fit > kLeastJitterRatio * *of_centroid))
+      chosen = MarkerMethod::centroid;
   }
   return chosen;
 }

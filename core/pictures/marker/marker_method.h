@@ -1,4 +1,5 @@
-/// How a path's thing is measured: as a uniform or a shaded disc (marker.h), or, known by its hue, by its centroid.
+/// How the object of a path is measured: as a uniform or a shaded disc (marker.h) or, if its hue is known, by its
+/// centroid.
 #pragma once
 
 #include <optional>
@@ -7,13 +8,13 @@
 
 namespace glidelab::core {
 
-/// Nothing where the thing cannot be fitted so, or stands out too little. `undecided` is a uniform disc or, where none
-/// fits and a hue is looked for, the centroid.
+/// Nothing if the object cannot be fitted in this way or its contrast is too low. `undecided` is a uniform disc or, if
+/// none fits and a hue is searched for, the centroid.
 std::optional<MarkerFit> measure_marker(const Signal& signal, const MarkerGuess& guess, MarkerMethod method,
                                         SignalKind kind);
 
-/// Chooses the path's method by what its samples leave of residuals (for a thing known by its hue also by which is
-/// steadier), and measures its sightings so far again in that way.
+/// Chooses the path's method by the residuals of its samples (for an object of known hue also by which method is
+/// steadier), and measures its sightings so far again with it.
 void choose_method(MarkerPath& path, SignalKind kind, const RadiusAt& radius_at);
 
 }  // namespace glidelab::core

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/pictures/image/edge_primitives.h"
+#include "core/pictures/image/pixel_edge.h"
 
 namespace glidelab::core {
 namespace {

@@ -1,4 +1,4 @@
-/// The model of core/marker.h for the pixels of a window: its residuals and their derivatives, summed up.
+/// The model of marker.h for the pixels of a window: its residuals and their derivatives, summed up.
 ///
 /// The pixels are taken in batches, each step for a whole batch, so that a compiler turns the steps into vector
 /// instructions; where the processor has AVX2 these are wider. Sums are taken in four strands by a pixel's place in its

@@ -8,10 +8,10 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLongestBounce = 30.0;     // frames
-constexpr std::size_t kSlowlyOver = 20;     // sightings over which a path's size and brightness are averaged
-constexpr std::size_t kSpeedOver = 4;       // sightings that a path's speed is of
-constexpr std::size_t kSizesLookedAt = 50;  // of a path
+constexpr double kLongestBounceFrames = 30.0;   // frames
+constexpr std::size_t kSightingsAveraged = 20;  // sightings over which a path's size and brightness are averaged
+constexpr std::size_t kSightingsForSpeed = 4;   // sightings that a path's speed is of
+constexpr std::size_t kSightingsForSize = 50;   // of a path
 
 /// A later path goes on where an earlier one was going; it may have bounced while it was hidden.
 bool fits_on(const MarkerPath& early, const MarkerPath& late) {
@@ -19,7 +19,7 @@ bool fits_on(const MarkerPath& early, const MarkerPath& late) {
   const double gap = frames_between(early.seen.back().frame, late.seen.front().frame);
   const double speed = cv::norm(early.velocity());
   const double off = cv::norm(early.predict(late.seen.front().frame) - late.seen.front().fit.centre);
-  return off < 3.0 * early.radius_px + 2.2 * speed * std::min(gap, kLongestBounce) &&
+  return off < 3.0 * early.radius_px + 2.2 * speed * std::min(gap, kLongestBounceFrames) &&
          early.is_like(late.radius_px, late.amplitude);
 }
 
@@ -36,7 +36,7 @@ double least_travel(double radius_px) {
 cv::Point2d MarkerPath::velocity() const {
   if (seen.size() < 2) return {0.0, 0.0};
   const MarkerSeen& last = seen.back();
-  const MarkerSeen& before = seen[seen.size() - std::min(seen.size(), kSpeedOver)];
+  const MarkerSeen& before = seen[seen.size() - std::min(seen.size(), kSightingsForSpeed)];
   return (last.fit.centre - before.fit.centre) / frames_between(before.frame, last.frame);
 }
 
@@ -46,7 +46,7 @@ cv::Point2d MarkerPath::predict(std::size_t frame) const {
 
 void MarkerPath::push(const MarkerSeen& sighting) {
   // Perspective changes size and brightness slowly; a single frame counts little.
-  const double weight = 1.0 / static_cast<double>(std::min(seen.size() + 1, kSlowlyOver));
+  const double weight = 1.0 / static_cast<double>(std::min(seen.size() + 1, kSightingsAveraged));
   radius_px += weight * (sighting.fit.radius_px - radius_px);
   amplitude += weight * (sighting.fit.amplitude - amplitude);
   seen.push_back(sighting);
@@ -55,7 +55,7 @@ void MarkerPath::push(const MarkerSeen& sighting) {
 
 double MarkerPath::size_ratio() const {
   std::vector<double> ratios;
-  const std::size_t step = std::max<std::size_t>(1, seen.size() / kSizesLookedAt);
+  const std::size_t step = std::max<std::size_t>(1, seen.size() / kSightingsForSize);
   for (std::size_t i = 0; i < seen.size(); i += step) {
     ratios.push_back(seen[i].size());
   }

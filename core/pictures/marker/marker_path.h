@@ -1,4 +1,4 @@
-/// The path of one thing through a clip: where it was seen, where it should be next, and what is like it.
+/// The path of one object through a clip: where it was seen, where it should be next, and what resembles it.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -18,7 +18,7 @@ namespace glidelab::core {
 /// Expected radius of the marker's image at a pixel, in pixels.
 using RadiusAt = std::function<double(cv::Point2d)>;
 
-/// How a path's thing is measured in a frame (marker_method.h).
+/// How the object of a path is measured in a frame (marker_method.h).
 enum class MarkerMethod { undecided, uniform, shaded, centroid };
 
 struct MarkerSeen {
@@ -42,7 +42,7 @@ struct MarkerPath {
   std::vector<MarkerSample> samples;
   MarkerMethod method = MarkerMethod::undecided;
   bool ended = false;
-  bool asleep = false;  ///< rests, and is looked at only when the whole picture is searched
+  bool asleep = false;  ///< at rest, and considered only when the whole image is searched
   double radius_px = 0.0;
   double amplitude = 0.0;
   double travel_px = 0.0;  ///< largest distance from the first place
@@ -51,21 +51,21 @@ struct MarkerPath {
   cv::Point2d predict(std::size_t frame) const;
   void push(const MarkerSeen& sighting);
   double size_ratio() const;                               ///< of the radii seen and expected, median
-  bool is_like(double radius_px, double amplitude) const;  ///< the same thing, as far as size and brightness go
+  bool is_like(double radius_px, double amplitude) const;  ///< the same object, judging by size and brightness
   bool is_like(const MarkerFit& fit) const;                ///< and no longer than a streak of motion
 };
 
 constexpr double kLargestElongation = 4.0;  ///< a streak of motion may be long
 
-/// How far from its first place a path must get to count as moving, in pixels.
+/// The distance from its first position at which a path counts as moving, in pixels.
 double least_travel(double radius_px);
 
 double frames_between(std::size_t from, std::size_t to);
 
-/// The paths, with those joined of which one ends and another begins later where the first was going.
+/// The paths, joining those of which one ends and another begins later where the first was heading.
 std::vector<MarkerPath> joined_pieces(std::vector<MarkerPath> paths);
 
-/// Places of a thing, by frame.
+/// Positions of an object, by frame.
 using Places = std::map<std::size_t, cv::Point2d>;
 
 /// Standard deviation of a coordinate of the second differences of consecutive frames' places, in pixels; nothing with

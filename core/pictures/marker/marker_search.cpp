@@ -12,13 +12,13 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kColorful = 30.0;        // of 255: largest minus smallest channel; less is a grey with a tinge
-constexpr double kDark = 64.0;            // of 255
-constexpr double kOwnColor = 200.0;       // of 255: the likeness of the marker's own colour
-constexpr double kWorkingRadiusPx = 3.0;  // the picture is shrunk until the marker has this radius
-constexpr double kNoiseSigmas = 5.0;
-constexpr double kShareOfBest = 0.04;  // of the highest contrast in the region
-constexpr int kLargePx = 200 * 200;    // a smaller region is looked at as a whole
+constexpr double kLeastChannelRange = 30.0;  // of 255: largest minus smallest channel; less is a grey with a tinge
+constexpr double kDarkestGrey = 64.0;        // of 255
+constexpr double kOwnColor = 200.0;          // of 255: the likeness of the marker's own colour
+constexpr double kWorkingRadiusPx = 3.0;     // the image is shrunk until the marker has this radius
+constexpr double kLeastOverNoise = 5.0;
+constexpr double kLeastShareOfBest = 0.04;           // of the highest contrast in the region
+constexpr int kMostPixelsSearchedWhole = 200 * 200;  // a smaller region is looked at as a whole
 
 cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
   const double grey = (color[0] + color[1] + color[2]) / 3.0;
@@ -48,21 +48,21 @@ cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
   return values;
 }
 
-/// How a picture is looked at for discs of a radius.
+/// How an image is looked at for discs of a radius.
 struct Scale {
-  double shrink;  ///< of the picture
-  double radius;  ///< of the disc, in the shrunk picture
+  double shrink;  ///< of the image
+  double radius;  ///< of the disc, in the shrunk image
   DiscSquares squares;
 
   explicit Scale(double radius_px)
       : shrink(std::max(1.0, radius_px / kWorkingRadiusPx)), radius(radius_px / shrink), squares(radius) {}
-  /// What lies as far around a centre in the region belongs to the picture that is looked at.
+  /// What lies as far around a centre in the region belongs to the image that is looked at.
   int surroundings_px() const { return static_cast<int>(std::ceil(3.0 * radius * shrink + 3.0)); }
   /// No pixel that is farther away counts for the contrast at a place.
   int sight_px() const { return static_cast<int>(std::ceil((squares.away + squares.outer + 1.0) * shrink)) + 1; }
 };
 
-/// Adds what stands out in the region. The noise, where it is given, is that of the shrunk picture's pixels.
+/// Adds what stands out in the region. The noise, where it is given, is that of the shrunk image's pixels.
 void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& search, const Scale& scale,
                const std::optional<double>& noise, std::vector<Blob>& blobs) {
   const cv::Rect taken = with_border(region, scale.surroundings_px()) & cv::Rect({}, values.size());
@@ -76,18 +76,18 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
   }
   const double fu = static_cast<double>(taken.width) / small.cols;
   const double fv = static_cast<double>(taken.height) / small.rows;
-  const auto to_picture = [&](double u, double v) {
+  const auto to_image = [&](double u, double v) {
     return cv::Point2d((u + 0.5) * fu - 0.5 + taken.x, (v + 0.5) * fv - 0.5 + taken.y);
   };
 
-  // Of the shrunk picture, what lies in the region.
+  // Of the shrunk image, what lies in the region.
   const auto first_in = [](int count, double from, const auto& place) {
     int k = 0;
     while (k < count && place(k) < from) ++k;
     return k;
   };
-  const auto column = [&](int u) { return to_picture(u, 0).x; };
-  const auto line = [&](int v) { return to_picture(0, v).y; };
+  const auto column = [&](int u) { return to_image(u, 0).x; };
+  const auto line = [&](int v) { return to_image(0, v).y; };
   const cv::Point begin(first_in(small.cols, region.x - 0.5, column), first_in(small.rows, region.y - 0.5, line));
   const cv::Point end(first_in(small.cols, region.br().x, column), first_in(small.rows, region.br().y, line));
   const cv::Mat response = disc_response(small, cv::Rect(begin, end), scale.squares, search.bright_neighbours);
@@ -96,7 +96,7 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
   const double of_pixel = noise ? *noise : noise_of(small);
   const double of_mean = of_pixel / (2.0 * std::min(scale.squares.inner, scale.squares.outer) + 1.0);
   const double least =
-      std::max({kNoiseSigmas * std::sqrt(2.0) * of_mean, kShareOfBest * best, search.least_contrast, 1e-6});
+      std::max({kLeastOverNoise * std::sqrt(2.0) * of_mean, kLeastShareOfBest * best, search.least_contrast, 1e-6});
 
   for (int v = begin.y; v < end.y; ++v) {  // there is none elsewhere
     const auto* const row = response.ptr<float>(v);
@@ -125,7 +125,7 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
           sv += w * dv;
         }
       }
-      blobs.push_back({to_picture(u + su / sum, v + sv / sum), static_cast<double>(here)});
+      blobs.push_back({to_image(u + su / sum, v + sv / sum), static_cast<double>(here)});
     }
   }
 }
@@ -136,8 +136,8 @@ SignalKind signal_kind(const MarkerSetup& marker) {
   if (!marker.color_bgr) return SignalKind::bright;
   const std::array<unsigned char, 3>& c = *marker.color_bgr;
   const int high = std::max({c[0], c[1], c[2]}), low = std::min({c[0], c[1], c[2]});
-  if (high - low >= kColorful) return SignalKind::colored;
-  return (c[0] + c[1] + c[2]) / 3.0 < kDark ? SignalKind::dark : SignalKind::bright;
+  if (high - low >= kLeastChannelRange) return SignalKind::colored;
+  return (c[0] + c[1] + c[2]) / 3.0 < kDarkestGrey ? SignalKind::dark : SignalKind::bright;
 }
 
 double least_contrast(SignalKind kind) {
@@ -164,7 +164,7 @@ std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
   if (region.empty() || taken.empty()) return {};
   signal.see(taken);
   std::vector<Blob> blobs;
-  if (search.least_contrast > 0.0 && region.area() > kLargePx) {
+  if (search.least_contrast > 0.0 && region.area() > kMostPixelsSearchedWhole) {
     const double noise = noise_when_shrunk(signal.values(taken), static_cast<int>(std::lround(scale.shrink)));
     for (const cv::Rect& part : parts_with_contrast(signal.values, region, search.least_contrast, scale.sight_px())) {
       add_blobs(signal.values, part, search, scale, noise, blobs);
@@ -175,7 +175,7 @@ std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {
   std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) { return a.contrast > b.contrast; });
   std::vector<Blob> apart;
   for (const Blob& blob : blobs) {
-    if (blob.contrast < kShareOfBest * blobs.front().contrast) break;
+    if (blob.contrast < kLeastShareOfBest * blobs.front().contrast) break;
     const bool near = std::any_of(apart.begin(), apart.end(), [&](const Blob& other) {
       return cv::norm(blob.centre - other.centre) < 1.2 * search.radius_px;
     });

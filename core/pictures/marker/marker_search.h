@@ -1,4 +1,4 @@
-/// Where in a picture something stands out that could be the marker: brighter than its surroundings and of its size.
+/// Candidates for the marker in an image: spots brighter than their surroundings and of its size.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -12,7 +12,7 @@
 
 namespace glidelab::core {
 
-/// How the marker differs from the rest of the picture.
+/// How the marker differs from the rest of the image.
 enum class SignalKind {
   bright,  ///< the grey value
   dark,    ///< its inverse: a colour without a hue that is darker than a quarter of full scale
@@ -20,8 +20,8 @@ enum class SignalKind {
 };
 SignalKind signal_kind(const MarkerSetup& marker);
 
-/// What stands out by less is no marker: a sixth of the likeness of its own colour, and nothing to speak of for a grey
-/// value (there the noise decides).
+/// The least contrast of a marker: a sixth of the likeness of its own colour, and next to nothing for a grey value
+/// (there the noise decides).
 double least_contrast(SignalKind kind);
 
 /// The frame as a channel in which the marker is bright. Likeness to a colour is the pixel's colourfulness (its
@@ -44,7 +44,7 @@ struct BlobSearch {
 
 /// The mean of a box inside the expected disc against the means of eight boxes around it: local maxima of its excess
 /// above the (bright_neighbours + 1)-th brightest of them, down to five standard deviations of the noise. Highest
-/// contrast first. Where a contrast is asked for, only those parts of a large picture are looked at in which pixels
+/// contrast first. Where a contrast is asked for, only those parts of a large image are looked at in which pixels
 /// differ by as much within a blob's surroundings.
 std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search);
 

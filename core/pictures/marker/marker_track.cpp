@@ -11,16 +11,16 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kSearchPeriod = 10;    // frames from one search of the whole picture to the next
-constexpr std::size_t kRarestPeriod = 80;    // the same while the marker is followed
-constexpr double kRarest_s = 0.4;            // ten frames of a slow camera, which finds what it is to find
-constexpr std::size_t kPastBytes = 1 << 27;  // of the frames between, which are kept
-constexpr std::size_t kSamples = 24;         // windows that decide how a path is measured
-constexpr std::size_t kAwake = 10;           // resting paths that are followed nonetheless
-constexpr std::size_t kLostAfter = 25;       // frames without a sighting
-constexpr std::size_t kRestFrames = 12;      // after which a path that has not moved may sleep
-constexpr std::size_t kMovingFrames = 10;    // in which five radii are a motion
-constexpr std::size_t kFewestSightings = 5;  // fewer in a row are noise
+constexpr std::size_t kSearchPeriod = 10;           // frames from one search of the whole image to the next
+constexpr std::size_t kLongestSearchPeriod = 80;    // the same while the marker is followed
+constexpr double kLongestSearchPeriod_s = 0.4;      // ten frames of a slow camera, which finds what it is to find
+constexpr std::size_t kMostPastBytes = 1 << 27;     // of the frames between, which are kept
+constexpr std::size_t kSamplesToChooseMethod = 24;  // windows that decide how a path is measured
+constexpr std::size_t kMostRestingFollowed = 10;    // resting paths that are followed nonetheless
+constexpr std::size_t kLostAfter = 25;              // frames without a sighting
+constexpr std::size_t kRestFrames = 12;             // after which a path that has not moved may sleep
+constexpr std::size_t kMovingFrames = 10;           // in which five radii are a motion
+constexpr std::size_t kFewestSightings = 5;         // fewer in a row are noise
 constexpr double kSmallestRadiusPx = 1.2;
 
 bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
@@ -35,10 +35,6 @@ MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, Rad
       marker_(std::move(marker)),
       kind_(signal_kind(marker_)),
       radius_at_(std::move(radius_at)) {}
-
-base::Issue MarkerTracker::issue(std::string found, std::string expected) const {
-  return {clip_.string(), 0, "marker", std::move(found), std::move(expected)};
-}
 
 /// Where a path's thing is in the next frame: fitted where it should be, or looked for around there.
 std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
@@ -97,7 +93,7 @@ void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, 
   MarkerGuess guess = found.guess;
   guess.centre = found.fit.centre - cv::Point2d(box.x, box.y);
   path.samples.push_back({frame, Signal{signal.values(box).clone()}, box.tl(), guess});
-  if (path.samples.size() >= kSamples) choose_method(path, kind_, radius_at_);
+  if (path.samples.size() >= kSamplesToChooseMethod) choose_method(path, kind_, radius_at_);
 }
 
 std::vector<cv::Point2d> MarkerTracker::places_at(std::size_t frame) const {
@@ -227,7 +223,7 @@ void MarkerTracker::put_to_sleep(std::size_t frame) {
     return std::abs(std::log(path->size_ratio())) - 0.2 * std::log(path->amplitude);
   };
   std::stable_sort(resting.begin(), resting.end(), [&](const Path* a, const Path* b) { return rank(a) < rank(b); });
-  for (std::size_t i = something_moves ? 0 : kAwake; i < resting.size(); ++i) resting[i]->asleep = true;
+  for (std::size_t i = something_moves ? 0 : kMostRestingFollowed; i < resting.size(); ++i) resting[i]->asleep = true;
 }
 
 void MarkerTracker::tidy(std::size_t frame) {
@@ -247,10 +243,10 @@ bool MarkerTracker::is_time_to_search(const Signal& signal, const Frame& frame) 
   });
   if (any_lost || mover(frame.index) == nullptr) return true;
   const std::size_t bytes = std::max<std::size_t>(signal.values.total() * signal.values.elemSize(), 1);
-  const std::size_t period = std::clamp(kPastBytes / bytes, kSearchPeriod, kRarestPeriod);
+  const std::size_t period = std::clamp(kMostPastBytes / bytes, kSearchPeriod, kLongestSearchPeriod);
   const double since = frames_between(searched_, frame.index), until_next = since + kSearchPeriod;
   const double until_next_s = (frame.t_s - searched_s_) * until_next / since;
-  return until_next > static_cast<double>(period) || until_next_s > kRarest_s + 1e-9;
+  return until_next > static_cast<double>(period) || until_next_s > kLongestSearchPeriod_s + 1e-9;
 }
 
 /// What came since the last search, if that was long ago.
@@ -263,7 +259,9 @@ void MarkerTracker::search_rest() {
 
 void MarkerTracker::add(const Frame& frame) {
   const auto signal = signal_of(frame, marker_, kind_);
-  if (!signal) throw base::InputError(issue("a clip without colours", "a clip in colour, as [marker] color asks for"));
+  if (!signal)
+    throw base::InputError(base::Issue{clip_.string(), 0, "marker", "a clip without colours",
+                                       "a clip in colour, as [marker] color asks for"});
   if (frames_ == 0) {
     const cv::Point2d middle(0.5 * (signal->values.cols - 1), 0.5 * (signal->values.rows - 1));
     radius_px_ = std::max(radius_at_(middle), kSmallestRadiusPx);
@@ -281,6 +279,14 @@ void MarkerTracker::add(const Frame& frame) {
   }
   if (frame.index != searched_) past_.push_back({frame.index, *signal});
   frames_ = frame.index + 1;
+}
+
+TrackedMarker MarkerTracker::finish() {
+  search_rest();
+  for (Path& path : paths_) {
+    if (path.method == MarkerMethod::undecided) choose_method(path, kind_, radius_at_);
+  }
+  return choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_}, marker_, clip_);
 }
 
 }  // namespace glidelab::core

@@ -1,8 +1,8 @@
-/// Which of the things in a clip is the marker, and where it is in every frame.
+/// Finds the marker in a clip and follows it through every frame.
 ///
 /// Frames stream through once. Every blob of about the marker's size begins a path; a path is followed by fitting the
 /// marker's model around where it should be (constant velocity), or by searching a window where that fails. The whole
-/// picture is searched in the first frame and every tenth one after it, and a path that begins there is followed back
+/// image is searched in the first frame and every tenth one after it, and a path that begins there is followed back
 /// through the frames between; while something like the marker is seen moving and nothing else is lost, less often (up
 /// to eighty frames within 0.4 s). At the end the marker is the path that moves and has the right size and brightness,
 /// not the brightest one; what rests all the time is part of the scene. Frames in which it is not seen stay without.
@@ -14,29 +14,16 @@
 #include <deque>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "base/errors.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker.h"
 #include "core/pictures/marker/marker_path.h"
 #include "core/pictures/marker/marker_search.h"
-#include "core/result/results.h"
+#include "core/pictures/marker/marker_track_choice.h"
 
 namespace glidelab::core {
-
-/// Nothing in the clip is like the marker.
-class NoMarker : public base::InputError {
-  using base::InputError::InputError;
-};
-
-struct TrackedMarker {
-  std::vector<MarkerSighting> sightings;  ///< frames rise
-  std::vector<MarkerFit> fits;            ///< of each sighting
-  std::vector<std::string> notes;
-};
 
 class MarkerTracker {
  public:
@@ -73,20 +60,13 @@ class MarkerTracker {
   bool is_time_to_search(const Signal& signal, const Frame& frame) const;
   std::vector<cv::Point2d> places_at(std::size_t frame) const;
 
-  TrackedMarker undisturbed(const Path& path) const;
-  bool is_place_of_another(const Path& path, const MarkerSeen& sighting) const;
-  std::size_t choose_path(std::vector<std::string>& notes) const;
-  std::size_t path_at_start() const;
-  std::size_t resting_path(std::vector<std::string>& notes) const;
-  base::Issue issue(std::string found, std::string expected) const;
-
   std::filesystem::path clip_;
   MarkerSetup marker_;
   SignalKind kind_;
   RadiusAt radius_at_;
-  double radius_px_ = 0.0;  ///< in the middle of the picture
+  double radius_px_ = 0.0;  ///< in the middle of the image
   std::vector<Path> paths_;
-  std::deque<Past> past_;  ///< since the last search of the whole picture
+  std::deque<Past> past_;  ///< since the last search of the whole image
   std::size_t searched_ = 0;
   double searched_s_ = 0.0;
   std::size_t frames_ = 0;

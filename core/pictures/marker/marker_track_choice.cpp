@@ -1,14 +1,13 @@
-// The end of MarkerTracker: which path is the marker, and in which of its frames it is seen undisturbed.
+#include "core/pictures/marker/marker_track_choice.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "base/errors.h"
 #include "core/math/quantile.h"
-#include "core/pictures/marker/marker_method.h"
-#include "core/pictures/marker/marker_track.h"
 
 namespace glidelab::core {
 namespace {
@@ -33,10 +32,34 @@ bool are_twins(const MarkerPath& one, const MarkerPath& other) {
          alike(one.amplitude, other.amplitude, 1.4) && alike(one.travel_px, other.travel_px, 1.6);
 }
 
-}  // namespace
+/// The paths of one clip, of which one is chosen.
+class Choice {
+ public:
+  Choice(const FollowedPaths& followed, const MarkerSetup& marker, const std::filesystem::path& clip)
+      : paths_(followed.paths), frames_(followed.frames), radius_px_(followed.radius_px), marker_(marker), clip_(clip) {
+    std::erase_if(paths_, [](const MarkerPath& path) { return path.seen.size() < 2; });
+  }
+  TrackedMarker marker() const;
+
+ private:
+  TrackedMarker undisturbed(const MarkerPath& path) const;
+  bool is_place_of_another(const MarkerPath& path, const MarkerSeen& sighting) const;
+  std::size_t choose_path(std::vector<std::string>& notes) const;
+  std::size_t path_at_start() const;
+  std::size_t resting_path(std::vector<std::string>& notes) const;
+  base::Issue issue(std::string found, std::string expected) const {
+    return {clip_.string(), 0, "marker", std::move(found), std::move(expected)};
+  }
+
+  std::vector<MarkerPath> paths_;
+  std::size_t frames_;
+  double radius_px_;
+  const MarkerSetup& marker_;
+  const std::filesystem::path& clip_;
+};
 
 /// The path that is nearest to start_px in the first frames.
-std::size_t MarkerTracker::path_at_start() const {
+std::size_t Choice::path_at_start() const {
   std::size_t best = paths_.size();
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < paths_.size(); ++i) {
@@ -59,7 +82,7 @@ std::size_t MarkerTracker::path_at_start() const {
 }
 
 /// Where nothing moves: the one thing of the right size that is there all the time.
-std::size_t MarkerTracker::resting_path(std::vector<std::string>& notes) const {
+std::size_t Choice::resting_path(std::vector<std::string>& notes) const {
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     const double ratio = paths_[i].size_ratio();
@@ -69,20 +92,20 @@ std::size_t MarkerTracker::resting_path(std::vector<std::string>& notes) const {
     throw NoMarker(
         issue(fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
                           candidates.empty() ? "" : fmt::format(", and {} such things rest", candidates.size())),
-              "a marker of the diameter stated, brighter or darker than what is around it (or of the colour stated), "
-              "or start_px"));
+              "a marker of the stated diameter, brighter or darker than its surroundings (or of the stated colour), or "
+              "start_px"));
   }
   notes.emplace_back("the marker does not move in this clip");
   return candidates.front();
 }
 
-std::size_t MarkerTracker::choose_path(std::vector<std::string>& notes) const {
+std::size_t Choice::choose_path(std::vector<std::string>& notes) const {
   if (marker_.start_px) return path_at_start();
   const std::size_t fewest = std::min(kFewestMoving, std::max<std::size_t>(frames_ / 2, 2));
   std::vector<std::size_t> movers;
   double farthest = 0.0, brightest = 0.0, longest = 0.0;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
-    const Path& path = paths_[i];
+    const MarkerPath& path = paths_[i];
     if (path.seen.size() < fewest || path.travel_px < least_travel(path.radius_px)) continue;
     movers.push_back(i);
     farthest = std::max(farthest, path.travel_px);
@@ -92,7 +115,7 @@ std::size_t MarkerTracker::choose_path(std::vector<std::string>& notes) const {
   if (movers.empty()) return resting_path(notes);
   // Squared deviations from what a marker is like, each over how much it may vary.
   const auto cost = [&](std::size_t i) {
-    const Path& path = paths_[i];
+    const MarkerPath& path = paths_[i];
     const double size = std::log(path.size_ratio()) / 0.2;
     const double travel = std::log(path.travel_px / farthest) / 0.5;
     const double bright = std::log(path.amplitude / brightest) / 0.7;
@@ -101,10 +124,10 @@ std::size_t MarkerTracker::choose_path(std::vector<std::string>& notes) const {
   };
   const std::size_t best =
       *std::min_element(movers.begin(), movers.end(), [&](std::size_t a, std::size_t b) { return cost(a) < cost(b); });
-  const Path& marker = paths_[best];
+  const MarkerPath& marker = paths_[best];
   for (const std::size_t i : movers) {
     if (i == best) continue;
-    const Path& other = paths_[i];
+    const MarkerPath& other = paths_[i];
     if (are_twins(marker, other)) {
       const cv::Point2d a = marker.seen.front().fit.centre, b = other.seen.front().fit.centre;
       throw base::InputError(
@@ -119,8 +142,8 @@ std::size_t MarkerTracker::choose_path(std::vector<std::string>& notes) const {
 }
 
 /// The place of something that rested there long before the path came by.
-bool MarkerTracker::is_place_of_another(const Path& path, const MarkerSeen& sighting) const {
-  return std::any_of(paths_.begin(), paths_.end(), [&](const Path& other) {
+bool Choice::is_place_of_another(const MarkerPath& path, const MarkerSeen& sighting) const {
+  return std::any_of(paths_.begin(), paths_.end(), [&](const MarkerPath& other) {
     if (&other == &path || other.seen.size() < kFewestResting || other.travel_px > 0.75 * path.radius_px) return false;
     return other.seen[kFewestResting - 1].frame < sighting.frame &&
            cv::norm(other.seen.back().fit.centre - sighting.fit.centre) < 0.5 * path.radius_px;
@@ -129,7 +152,7 @@ bool MarkerTracker::is_place_of_another(const Path& path, const MarkerSeen& sigh
 
 /// Without the frames in which something like it rests at its place, or in which it is half hidden: measured wrong,
 /// smaller or with larger residuals than in the frames around.
-TrackedMarker MarkerTracker::undisturbed(const Path& path) const {
+TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
   TrackedMarker tracked;
   std::vector<double> sizes, residuals;
   for (const MarkerSeen& sighting : path.seen) {
@@ -158,7 +181,7 @@ TrackedMarker MarkerTracker::undisturbed(const Path& path) const {
   }
   if (hidden > 0) {
     tracked.notes.push_back(fmt::format(
-        "in {} frames the marker cannot be told from something like it that rests there, and counts as not seen",
+        "in {} frames the marker cannot be distinguished from a similar object at rest and counts as not seen",
         hidden));
   }
   if (dropped > 0) {
@@ -170,15 +193,9 @@ TrackedMarker MarkerTracker::undisturbed(const Path& path) const {
   return tracked;
 }
 
-TrackedMarker MarkerTracker::finish() {
-  search_rest();
-  for (Path& path : paths_) {
-    if (path.method == MarkerMethod::undecided) choose_method(path, kind_, radius_at_);
-  }
-  paths_ = joined_pieces(std::move(paths_));
-  std::erase_if(paths_, [&](const Path& path) { return path.seen.size() < 2; });
+TrackedMarker Choice::marker() const {
   std::vector<std::string> notes;
-  const Path& path = paths_[choose_path(notes)];
+  const MarkerPath& path = paths_[choose_path(notes)];
   TrackedMarker tracked = undisturbed(path);
   tracked.notes.insert(tracked.notes.begin(), notes.begin(), notes.end());
   if (path.method == MarkerMethod::centroid) {
@@ -189,7 +206,7 @@ TrackedMarker MarkerTracker::finish() {
     // A centroid has no covariance: its noise from the second differences (variance 1 + 4 + 1).
     const double sd = jitter_of(places).value_or(0.0) / std::sqrt(6.0);
     for (MarkerSighting& sighting : tracked.sightings) sighting.sd_px = sd;
-    tracked.notes.emplace_back("the marker is no disc; its centroid by colour was used");
+    tracked.notes.emplace_back("the marker is not a disc; the centroid of its colour is used");
   }
   if (path.method == MarkerMethod::shaded)
     tracked.notes.emplace_back("the marker is lit from one side; its shading is fitted");
@@ -199,6 +216,13 @@ TrackedMarker MarkerTracker::finish() {
                                         100.0 * std::abs(ratio - 1.0), ratio > 1.0 ? "larger" : "smaller"));
   }
   return tracked;
+}
+
+}  // namespace
+
+TrackedMarker choose_marker(const FollowedPaths& followed, const MarkerSetup& marker,
+                            const std::filesystem::path& clip) {
+  return Choice(followed, marker, clip).marker();
 }
 
 }  // namespace glidelab::core

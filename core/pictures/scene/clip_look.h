@@ -1,5 +1,5 @@
-/// The pictures of a clip, looked at as they pass by on their way to the tracker: how they are exposed, how the marker
-/// stands out, what the file says.
+/// The images of a clip, examined on their way to the tracker: their exposure, the contrast of the marker, what the
+/// file says.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -13,12 +13,31 @@
 #include <vector>
 
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "core/pictures/marker/marker.h"
-#include "core/pictures/scene/exposure_watch.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
+
+/// How a clip is exposed: every fourth pixel, either way, of every fifth frame counts.
+struct Exposure {
+  double saturated = 0.0;     ///< share of pixels at the largest code
+  double dark = 0.0;          ///< share at 0
+  double bright_level = 0.0;  ///< below which 99.9 % of the pixels are, as a share of the largest code
+  int full_code = 255;        ///< the largest code
+};
+
+class ExposureWatch {
+ public:
+  explicit ExposureWatch(int bit_depth) : bit_depth_(bit_depth) {}
+  void add(const Frame& frame);
+  Exposure result() const;
+
+ private:
+  int bit_depth_;
+  std::vector<std::size_t> count_;  ///< of each code
+  std::size_t pixels_ = 0;
+};
 
 struct ClipLook {
   cv::Size size;
@@ -31,8 +50,8 @@ struct ClipLook {
   double pixel_noise = 0.0;  ///< of pixels away from the marker, from one frame to the next; 0 where none is seen
 };
 
-/// Takes the frames of one clip, then says what was seen. Of the frames it keeps every fourth pixel, either way, of at
-/// most 24 pairs of neighbours spread over the clip.
+/// Takes the frames of one clip and then reports. It keeps every fourth pixel, either way, of at most 24 pairs of
+/// neighbouring frames spread over the clip.
 class ClipWatch {
  public:
   explicit ClipWatch(int bit_depth) : exposure_(bit_depth) {}
@@ -58,7 +77,7 @@ class ClipWatch {
   std::vector<Pair> pairs_;
 };
 
-/// Looks at the clips of an experiment while others read them, some at the same time.
+/// Watches the clips of an experiment while others read them, some of them concurrently.
 class ClipWatches {
  public:
   explicit ClipWatches(FrameOpener open) : open_(std::move(open)) {}

@@ -7,11 +7,11 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kEvery = 4;  // pictures
-constexpr int kRows = 24;
+constexpr std::size_t kImageStep = 4;  // images
+constexpr int kRowsLookedAt = 24;
 constexpr float kLargestStep = 12.0F / 255.0F;  // of full scale: larger ones are edges of things
 constexpr double kLeastScatter = 0.02;          // of the mean step
-constexpr double kBeyondDoubt = 10.0;
+constexpr double kLeastZOfCodec = 10.0;
 
 double mean_of_middle_half(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -24,9 +24,9 @@ double mean_of_middle_half(std::vector<double> values) {
 }  // namespace
 
 void BlockStepSums::add(const cv::Mat& grey) {
-  if (pictures_++ % kEvery != 0) return;
+  if (images_++ % kImageStep != 0) return;
   const float scale = grey.depth() == CV_8U ? 1.0F : 1.0F / 257.0F, most = 255.0F * kLargestStep;
-  const int apart = std::max(1, grey.rows / kRows);
+  const int apart = std::max(1, grey.rows / kRowsLookedAt);
   const std::size_t whole = static_cast<std::size_t>(grey.cols) / 8 * 8;  // of each column modulo 8 as many
   sums_.resize(whole, 0.0);
   cv::Mat_<float> row;
@@ -62,7 +62,7 @@ BlockEdges block_edges(const BlockSteps& steps) {
 }
 
 bool through_lossy_codec(const PictureRecord& record) {
-  return record.lossy.value_or(false) || block_edges(record.steps).z > kBeyondDoubt;
+  return record.lossy.value_or(false) || block_edges(record.steps).z > kLeastZOfCodec;
 }
 
 }  // namespace glidelab::core

@@ -1,10 +1,10 @@
-/// Does a codec of 8 x 8 blocks show in a clip? Steps between neighbouring pixels of a row, by the column of the right
-/// one modulo 8: where blocks meet they are larger than inside.
+/// Does a clip show a codec of 8 x 8 blocks? Steps between neighbouring pixels of a row, sorted by the column of the
+/// right one modulo 8, are larger where blocks meet than inside them.
 ///
-/// Of each column of the picture the mean over rows and frames; of the columns that are alike modulo 8 the mean of the
-/// middle half, which a few upright edges in the scene do not move. z is how far column 0 stands out above the largest
-/// of the other seven, over their scatter: a codec's profile is symmetric about a block's middle, so that is what
-/// columns k and 8 - k differ by; and never below 2 % of the mean step, as columns of real scenes do.
+/// Steps are averaged over rows and frames for each column of the image, then over the middle half of the columns that
+/// are equal modulo 8, so that a few upright edges in the scene do not matter. z is the excess of column 0 over the
+/// largest of the other seven, over their scatter: a codec's profile is symmetric about the middle of a block, so the
+/// scatter is the difference of columns k and 8 - k, and at least 2 % of the mean step, as in real scenes.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -18,14 +18,14 @@ namespace glidelab::core {
 
 class BlockStepSums {
  public:
-  /// Some rows of every fourth picture, all of one size.
+  /// Some rows of every fourth image, all of one size.
   void add(const cv::Mat& grey);
   BlockSteps finish() const;
 
  private:
-  std::vector<double> sums_;  ///< of each column of the picture
+  std::vector<double> sums_;  ///< of each column of the image
   double rows_ = 0.0;
-  std::size_t pictures_ = 0;
+  std::size_t images_ = 0;
 };
 
 struct BlockEdges {
@@ -35,7 +35,7 @@ struct BlockEdges {
 
 BlockEdges block_edges(const BlockSteps& steps);
 
-/// The file says so, or its pictures have blocks beyond doubt (z above 10).
+/// The file says so, or its images show blocks beyond doubt (z above 10).
 bool through_lossy_codec(const PictureRecord& record);
 
 }  // namespace glidelab::core

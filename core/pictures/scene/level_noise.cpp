@@ -9,9 +9,9 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kGroups = 12;
-constexpr double kCountAsOne = 2.0 * std::numbers::pi * 1.5;
-constexpr double kWellKnown = 0.1;
-constexpr double kTakenUp = 0.02;  // of a standard deviation: half of what three fitted numbers take from a patch
+constexpr double kPixelsCountedAsOne = 2.0 * std::numbers::pi * 1.5;
+constexpr double kMostRelativeSd = 0.1;
+constexpr double kShareTakenUp = 0.02;  // of a standard deviation: half of what three fitted numbers take from a patch
 
 }  // namespace
 
@@ -33,10 +33,10 @@ std::vector<NoiseAtLevel> noise_by_level(const PixelChanges& pixels) {
   for (const PixelChange& sum : sums) {
     if (!(sum.changes > 0.0)) continue;
     // The relative error of a variance of n is sqrt(2 / n), that of its root half of it.
-    const double known_to = std::sqrt(0.5 * kCountAsOne / sum.changes);
-    if (known_to > kWellKnown) continue;
+    const double known_to = std::sqrt(0.5 * kPixelsCountedAsOne / sum.changes);
+    if (known_to > kMostRelativeSd) continue;
     const double sd = std::sqrt(0.5 * sum.squares / sum.changes);
-    levels.push_back({sum.level_code / sum.changes, sd, sd * std::hypot(known_to, kTakenUp)});
+    levels.push_back({sum.level_code / sum.changes, sd, sd * std::hypot(known_to, kShareTakenUp)});
   }
   return levels;
 }

@@ -21,7 +21,7 @@ struct PixelChange {
 };
 using PixelChanges = std::vector<PixelChange>;
 
-/// Of the pixels as they are (blurred); a group that is known to worse than a tenth of itself is left out.
+/// Of the (blurred) pixels; a group whose relative standard deviation exceeds a tenth is left out.
 std::vector<NoiseAtLevel> noise_by_level(const PixelChanges& pixels);
 
 }  // namespace glidelab::core

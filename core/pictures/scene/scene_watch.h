@@ -1,15 +1,15 @@
-/// Watches what rests in a clip: has it moved in the picture, has it become brighter, is a codec to be seen in it?
+/// Watches the resting scene of a clip: does it move in the image, does it change brightness, does it show a codec?
 ///
 /// Some patches of 24 x 24 pixels are chosen in the first frame, those with most structure and some spread over the
-/// picture. In each frame a patch, blurred by 1 px, is compared with its mean R over the first frames, to first order
+/// image. In each frame a patch, blurred by 1 px, is compared with its mean R over the first frames, to first order
 /// in a shift d and a gain a,
 ///
 ///     I = (1 + a) R - d . grad R,
 ///
 /// by least squares, R being shifted (cubic interpolation) by what the last frame's shift was. Patches through which
-/// something passes (residuals three times the usual ones, or a shift that is not the others') are not counted in that
-/// frame. The shift is that of all patches together, weighted by their gradients; gains are told apart by bands of
-/// rows, which a rolling shutter exposes at different times. Pictures of the first six frames are held until then, and
+/// something passes (residuals three times the usual ones, or a shift that differs from the others') are not counted in
+/// that frame. The shift is that of all patches together, weighted by their gradients; gains are told apart by bands of
+/// rows, which a rolling shutter exposes at different times. Images of the first six frames are held until then, and
 /// of later ones only their patches.
 #pragma once
 
@@ -32,10 +32,10 @@ inline constexpr double kPatchSofter =
 
 class SceneWatch {
  public:
-  /// `lossy`: the file says that it is compressed with loss. What a codec leaves is then no noise that is new in every
-  /// pixel and frame: it freezes it, so that even a plain wall has structure that rests and later jumps. Errors count
-  /// as one code at least, the same in all of a block of 8 x 8 pixels. So they do in finish() where the pictures
-  /// themselves have blocks (block_steps.h) and the file says nothing.
+  /// `lossy`: the file says that its compression is lossy. The noise is then no longer new in every pixel and frame: a
+  /// codec freezes it, so that even a plain wall has structure that rests and later jumps. Errors then count as at
+  /// least one code, shared by a block of 8 x 8 pixels. finish() does the same if the file says nothing but the images
+  /// show blocks (codec_blocks.h).
   explicit SceneWatch(bool lossy = false) : lossy_(lossy) {}
   void add(const cv::Mat& grey, double t_s);
   /// Fills what it has seen into the record: scene, steps, noise.

@@ -62,7 +62,7 @@ TEST_CASE("on the PDF as another program prints it, the squares have the stated 
     WARN("skipped: no pdftoppm program");
     return;
   }
-  const cv::Mat picture = core::read_grey_picture(temp / "printed.pgm");
+  const cv::Mat picture = core::read_grey_image(temp / "printed.pgm");
   const auto found = core::find_board(picture, cv::Size(7, 4));
   REQUIRE(found);
   const core::BoardCorners board = core::refine_board(picture, *found);

@@ -270,7 +270,7 @@ TEST_CASE("a plan takes one scenario, or recordings without a noise of the comma
   CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
 }
 
-TEST_CASE("an output folder that is a link to nothing is called one, and so is what it would lie in") {
+TEST_CASE("an output folder that is a dangling link is called one, and so is what it would lie in") {
   const tests::TempDir temp;
   base::write_file(temp / "tiny.toml", tests::tiny_scenario());
   std::filesystem::create_symlink("gone", temp / "link");
@@ -278,7 +278,7 @@ TEST_CASE("an output folder that is a link to nothing is called one, and so is w
     const tests::ProcessResult result = tests::glidelab({"simulate", "tiny.toml", "-o", out}, temp.path());
     INFO(result.err);
     CHECK(result.status == 3);
-    CHECK(result.err.find("link: is a link to nothing (gone does not exist)") != std::string::npos);
+    CHECK(result.err.find("link: is a dangling link (gone does not exist)") != std::string::npos);
   }
   std::filesystem::create_directory(temp / "gone");
   CHECK(tests::glidelab({"simulate", "tiny.toml", "-o", "link"}, temp.path()).status == 0);

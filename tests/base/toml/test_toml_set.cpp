@@ -98,13 +98,13 @@ TEST_CASE("A path that leads nowhere is an error that names it") {
   using Catch::Matchers::Contains;
   CHECK_THAT(message("group.name"), Contains("group.name") && Contains("of which there are 2"));
   CHECK_THAT(message("group[3].name"), Contains("number 3 of 2"));
-  CHECK_THAT(message("group[*].force[law=magic].k"), Contains("nothing that it picks"));
-  CHECK_THAT(message("name.x"), Contains("which is no table"));
+  CHECK_THAT(message("group[*].force[law=magic].k"), Contains("nothing at this path"));
+  CHECK_THAT(message("name.x"), Contains("which is not a table"));
   CHECK_THAT(message("camera..rate"), Contains("an empty part"));
   CHECK_THAT(message("camera.place[0]"), Contains("[0]"));
   CHECK_THAT(message("camera.place[9]"), Contains("number 9 of 3"));
   CHECK_THAT(message("camera.rate[1]"), Contains("no array"));
-  CHECK_THAT(message("camera.\"a'b"), Contains("a path as"));
+  CHECK_THAT(message("camera.\"a'b"), Contains("a path such as"));
 }
 
 TEST_CASE("A key without a value is taken out wherever it stands, and is no mistake where it does not") {

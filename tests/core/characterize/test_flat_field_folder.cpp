@@ -141,11 +141,11 @@ TEST_CASE("frames that cannot be used are named, with what was expected") {
   }
   SECTION("8 bits for codes of 12") {
     for (const char* name : {"dark/000.png", "dark/001.png"}) folder.picture(name, 64, 64, CV_8U, 20);
-    check(folder.message(), {"dark/000.png: found a picture of 8 bits", "bit_depth = 12"});
+    check(folder.message(), {"dark/000.png: found an image of 8 bits", "bit_depth = 12"});
   }
   SECTION("no picture") {
     base::write_file(folder.dir / "flat-02" / "000.png", "no picture");
-    check(folder.message(), {"flat-02/000.png", "no picture that can be decoded"});
+    check(folder.message(), {"flat-02/000.png", "no image that can be decoded"});
   }
   SECTION("an empty file") {
     base::write_file(folder.dir / "dark" / "001.png", "");
@@ -154,7 +154,7 @@ TEST_CASE("frames that cannot be used are named, with what was expected") {
   SECTION("colours") {
     cv::Mat colors(64, 64, CV_16UC3, cv::Scalar(100, 200, 300));
     write_png(folder.dir / "flat-00/000.png", colors);
-    check(folder.message(), {"flat-00/000.png: found a picture with colours, expected a grey picture"});
+    check(folder.message(), {"flat-00/000.png: found an image with colours, expected a grey image"});
   }
   SECTION("codes above the largest") {
     folder.picture("flat-02/000.png", 64, 64, CV_16U, 65520);
@@ -162,7 +162,7 @@ TEST_CASE("frames that cannot be used are named, with what was expected") {
   }
   SECTION("the same frame twice") {
     fs::copy_file(folder.dir / "flat-01/000.png", folder.dir / "flat-01/001.png", fs::copy_options::overwrite_existing);
-    check(folder.message(), {"flat-01/001.png: found the same picture as 000.png"});
+    check(folder.message(), {"flat-01/001.png: found the same image as 000.png"});
   }
   SECTION("too small") {
     for (const char* name : {"dark/000.png", "dark/001.png"}) folder.picture(name, 32, 32, CV_16U, 64);

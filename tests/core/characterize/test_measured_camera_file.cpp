@@ -74,5 +74,5 @@ TEST_CASE("a dark signal below zero is written as none seen") {
   core::CameraMeasurement camera = made_camera();
   camera.dark_signal_e_s = {-0.2, 0.3, {}, {}, {}};
   const std::string text = core::camera_toml(camera);
-  CHECK(text.find("dark_signal_e_s = 0.0  # measured as -0.2, sd 0.3: none was seen") != std::string::npos);
+  CHECK(text.find("dark_signal_e_s = 0.0  # measured as -0.2, sd 0.3: not significant") != std::string::npos);
 }

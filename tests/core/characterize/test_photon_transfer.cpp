@@ -151,8 +151,8 @@ TEST_CASE(
   const core::CameraMeasurement found = measure(camera, usual_plan(camera));
   for (std::size_t i = 1; i < found.curve.size(); ++i) {
     // Levels are evenly spaced, and saturation only makes them closer; the means have errors of 0.03 %.
-    CHECK(found.curve[i].picture_dn > 0.999 * found.curve[i - 1].picture_dn);
-    if (!found.curve[i].used) CHECK(found.curve[i].mean_dn == found.curve[i].picture_dn);
+    CHECK(found.curve[i].image_dn > 0.999 * found.curve[i - 1].image_dn);
+    if (!found.curve[i].used) CHECK(found.curve[i].mean_dn == found.curve[i].image_dn);
   }
 }
 
@@ -199,11 +199,11 @@ TEST_CASE("where 8 bits hide the dark noise, the line tells it or a limit is giv
   CHECK(found.offset_dn.sd > 0.05);  // the dark mean is up to 0.3 DN from the offset, and nothing tells by how much
   if (found.read_noise_e.value) {
     check("read noise", found.read_noise_e, camera.read_noise_e);
-    CHECK(contains(found.read_noise_e.how, "where the line meets the dark level"));
+    CHECK(contains(found.read_noise_e.how, "the line extrapolated to the dark level"));
   } else {
     REQUIRE(found.read_noise_e.limit);
     CHECK(*found.read_noise_e.limit > camera.read_noise_e);
-    CHECK(contains(found.read_noise_e.why, "below what the quantisation shows"));
+    CHECK(contains(found.read_noise_e.why, "hidden by the quantisation"));
   }
   REQUIRE_FALSE(found.dsnu_e.value);
   CHECK(*found.dsnu_e.limit > camera.dsnu_e);
@@ -217,7 +217,7 @@ TEST_CASE("with enough light and pixels the line tells a read noise that 8 bits 
   plan.flat_frames = 4;
   const core::CameraMeasurement found = measure(camera, plan);
   check("read noise", found.read_noise_e, camera.read_noise_e);
-  CHECK(contains(found.read_noise_e.how, "where the line meets the dark level"));
+  CHECK(contains(found.read_noise_e.how, "the line extrapolated to the dark level"));
 }
 
 TEST_CASE("the converter limits a sensor whose full well is above its codes") {

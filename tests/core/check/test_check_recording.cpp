@@ -3,8 +3,9 @@
 #include <atomic>
 #include <cmath>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/check/marker_smear.h"
+#include "core/check/recording_findings.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 #include "tests/core/small_clip.h"
@@ -158,7 +159,7 @@ TEST_CASE("what is found is said once, and in the words of the folder that it is
   clip.jumps = 1;
   clip.repeated = 20;
   clip.marker_px = 16.0;
-  clip.notes = {"20 of 264 frames are the very picture before them once more: duplicates",
+  clip.notes = {"20 of 264 frames are identical to the frame before: duplicates",
                 "the marker looks 33 % larger than its diameter says", "something else"};
   std::size_t notes = 0, once = 0, scale = 0, square = 0;
   for (const core::Finding& finding : findings(clip)) {

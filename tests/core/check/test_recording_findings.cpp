@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/check/check_recording.h"
+#include "core/check/recording_findings.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -55,7 +55,7 @@ std::vector<core::Finding> of_pattern(const core::PatternCheck& pattern) {
 
 }  // namespace
 
-TEST_CASE("frames that came twice above 10 % make a clip unusable, as the very picture or as a standstill") {
+TEST_CASE("duplicated frames above 10 % make a clip unusable, whether identical or seen as a standstill") {
   CHECK(of_clip(fine_clip()).empty());
   for (auto count : {&core::ClipCheck::repeated, &core::ClipCheck::stalls}) {
     for (const std::size_t twice : {9u, 11u}) {
@@ -72,5 +72,5 @@ TEST_CASE("a camera is judged by the views that it rests on, not by those in whi
   CHECK(of_pattern(pattern_of(9, 8)).empty());
   const auto findings = of_pattern(pattern_of(9, 7));
   REQUIRE(findings.size() == 1);
-  CHECK_THAT(findings[0].found, Contains("rests on 7 views"));
+  CHECK_THAT(findings[0].found, Contains("uses 7 views"));
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/check/check_recording.h"
 #include "core/result/stated_values.h"
 #include "tests/catch.h"
@@ -142,7 +142,7 @@ TEST_CASE("a glider that runs farther than the track is long is a finding") {
   const auto findings = recorded.findings();
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].severity == core::Severity::unusable);
-  CHECK_THAT(findings[0].found, Contains("length_m in [track] says 0.5 m"));
+  CHECK_THAT(findings[0].found, Contains("length_m in [track] is 0.5 m"));
 }
 
 TEST_CASE("a marker of another size than stated is one finding for all clips, and unusable above 30 %") {

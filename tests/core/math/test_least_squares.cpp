@@ -30,7 +30,7 @@ TEST_CASE("a last small step is taken without another evaluation, and leaves the
   Line line;
   const auto evaluate = [&](const Eigen::Vector2d& p) { return std::optional(line.equations(p)); };
   const auto fit = fit_least_squares<2>(evaluate, Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.1, 0.1), 20);
-  CHECK(fit.stop == FitStop::converged);
+  CHECK(glidelab::base::is_settled(fit.stop));
   CHECK(line.evaluations == 2);  // at the start and after the first step
   NormalEquations<2> there = line.equations(Eigen::Vector2d::Zero());
   there.complete();
@@ -48,6 +48,6 @@ TEST_CASE("a fit that its caller calls hopeless ends there") {
   const auto after_one = [](const LeastSquaresFit<2>& fit, const NormalEquations<2>&) { return fit.iterations == 1; };
   const Eigen::Vector2d start(1.0, 0.0), step(1e-12, 1e-12);
   const auto fit = fit_least_squares<2>(evaluate, start, step, 20, after_one);
-  CHECK(fit.stop == FitStop::hopeless);
+  CHECK(fit.stop == glidelab::base::FitStop::hopeless);
   CHECK(line.evaluations == 2);
 }

@@ -14,7 +14,7 @@
 #include "base/files/staged_output.h"
 #include "base/text/csv.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "render/film/render_experiment.h"
 #include "tests/catch.h"
 #include "tests/one_glider.h"

@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "base/files/staged_output.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "core/pictures/marker/marker.h"
 #include "diagnose/effects/effect_library.h"
 #include "render/film/render_experiment.h"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/files/staged_output.h"
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 #include "render/film/clip_set.h"
 #include "render/video/video_writer.h"
 

@@ -44,7 +44,7 @@ BlindCamera draw_camera(BlindRandom& random, bool lossless) {
 double least_noise_m(const BlindCamera& camera, double v_m_s) {
   const double marker_e = kReflectance * kWhite * camera.full_well_e, wall_e = kWall * kWhite * camera.full_well_e;
   const double step_e = camera.full_well_e / 255.0;
-  core::DiscPicture disc;
+  core::DiscImage disc;
   disc.u = 0.3;
   disc.v = 0.2;
   disc.radius_px = 0.5 * kMarker_m * camera.px_per_m();

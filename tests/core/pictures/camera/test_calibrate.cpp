@@ -4,7 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/folder_files.h"
 #include "test_paths.h"
 #include "tests/catch.h"
@@ -119,7 +119,7 @@ namespace {
 /// Seen through a long picture's middle third only, so that nothing but chance says what a high term does at its sides.
 core::BoardViews views_of_the_middle(const KnownCamera& camera, cv::RNG& random) {
   core::BoardViews boards;
-  boards.picture_size = camera.size;
+  boards.image_size = camera.size;
   for (int k = 0; k < 8; ++k) {
     const cv::Vec3d middle(0.05 * (k % 4 - 1.5), 0.03 * (k / 4) - 0.015, 1.35);
     const auto plane =
@@ -165,7 +165,7 @@ TEST_CASE("fewer than three views with a visible pattern are an error that names
   boards.views.resize(2);
   boards.without = {"calibration/view-07.png"};
   CHECK_THROWS_WITH(core::calibrate_camera(boards, 0.04),
-                    Catch::Contains("2 pictures with a visible pattern") && Catch::Contains("view-07.png"));
+                    Catch::Contains("2 images with a visible pattern") && Catch::Contains("view-07.png"));
 }
 
 TEST_CASE("pictures without any visible pattern are an error that names them") {
@@ -178,11 +178,11 @@ TEST_CASE("pictures without any visible pattern are an error that names them") {
   const core::BoardViews boards = core::find_board_views(files, {9, 6}, 2);
   CHECK(boards.views.empty());
   CHECK_THROWS_WITH(core::calibrate_camera(boards, 0.04),
-                    Catch::Contains("calibration.views") && Catch::Contains("0 pictures with a visible pattern") &&
+                    Catch::Contains("calibration.views") && Catch::Contains("0 images with a visible pattern") &&
                         Catch::Contains("view-00.png") && Catch::Contains("view-03.png"));
 }
 
-TEST_CASE("files that are no pictures, or of another size, are errors that name the file") {
+TEST_CASE("files that are not images, or of another size, are errors that name the file") {
   const tests::TempDir dir;
   cv::imwrite((dir / "a.png").string(), cv::Mat(120, 160, CV_8U, cv::Scalar(90)));
   cv::imwrite((dir / "b.png").string(), cv::Mat(120, 100, CV_8U, cv::Scalar(90)));
@@ -190,7 +190,7 @@ TEST_CASE("files that are no pictures, or of another size, are errors that name 
   base::write_file(dir / "empty.png", "");
   const auto find = [&](const char* second) { core::find_board_views({dir / "a.png", dir / second}, {9, 6}, 2); };
   CHECK_THROWS_WITH(find("b.png"), Catch::Contains("b.png") && Catch::Contains("100 x 120"));
-  CHECK_THROWS_WITH(find("text.png"), Catch::Contains("text.png") && Catch::Contains("no picture"));
+  CHECK_THROWS_WITH(find("text.png"), Catch::Contains("text.png") && Catch::Contains("no image"));
   CHECK_THROWS_WITH(find("empty.png"), Catch::Contains("empty.png"));
   CHECK_THROWS_AS(find("empty.png"), base::InputError);
 }

@@ -20,7 +20,7 @@ core::BoardViews wide_views(const core::CameraModel& camera, double noise_px, cv
   const cv::Matx33d matrix(camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0);
   const cv::Vec4d lens(camera.distortion[0], camera.distortion[1], camera.distortion[2], camera.distortion[3]);
   core::BoardViews boards;
-  boards.picture_size = camera.size;
+  boards.image_size = camera.size;
   int k = 0;
   for (const double ay : {-0.5, -0.15, 0.2, 0.55}) {
     for (const double ax : {-0.4, 0.05, 0.45}) {

@@ -83,7 +83,7 @@ void add_replicate(const Set& set, std::uint64_t seed, std::map<std::string, Sco
   cv::RNG random(seed);
   const KnownCamera camera{.fx = 900.0, .fy = 900.0, .k1 = -0.12, .k2 = 0.03, .p1 = 6e-4, .p2 = -4e-4};
   core::BoardViews boards;
-  boards.picture_size = camera.size;
+  boards.image_size = camera.size;
   for (int k = 0; k < 12; ++k) {
     const KnownPlane pose = random_pose(random, camera, set.square_m);
     boards.views.push_back({std::to_string(k), tests::known_corners(camera, pose, set.square_m, set.noise_px, random)});

@@ -101,7 +101,7 @@ TEST_CASE("a region without a thread, or outside the picture, is an error that n
     return std::string();
   };
   CHECK_THAT(error({20, 20, 60, 200}), Catch::Contains("plumb.png") && Catch::Contains("no thin straight line"));
-  CHECK_THAT(error({380, 20, 60, 200}), Catch::Contains("plumb.png") && Catch::Contains("inside the picture"));
+  CHECK_THAT(error({380, 20, 60, 200}), Catch::Contains("plumb.png") && Catch::Contains("inside the image"));
 }
 
 TEST_CASE("an inclination is not determined where the marker does not move") {

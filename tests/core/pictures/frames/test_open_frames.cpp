@@ -1,4 +1,4 @@
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/clip_names.h"
 #include "core/pictures/frames/read_image.h"
 #include "tests/catch.h"
@@ -218,7 +218,7 @@ TEST_CASE("clips that cannot be used are errors that name the file and the frame
                  "whole.mkv: frame 0: found 96 x 64 pixels, expected 800 x 600"));
 
   fs::create_directories(dir / "nothing");
-  CHECK(contains(error_of(dir / "nothing"), "nothing: found a folder without pictures"));
+  CHECK(contains(error_of(dir / "nothing"), "nothing: found a folder without images"));
   const fs::path folder = dir / "frames";
   tests::write_folder(folder, some_frames(), 0.0, CV_8U);
   REQUIRE(count_frames(folder) == kFrames);

@@ -1,7 +1,9 @@
-#include "core/pictures/frames/frame_source.h"
+#include "core/pictures/frames/open_frames.h"
 
+#include "core/pictures/frames/folder_frames.h"
 #include "core/pictures/frames/frame_parts.h"
 #include "core/pictures/frames/read_image.h"
+#include "core/pictures/frames/video_frames.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
