@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
+#include "core/experiment/experiment.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 
