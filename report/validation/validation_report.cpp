@@ -64,7 +64,7 @@ std::string agreement_of(const validate::Comparison& comparison) {
   if (farthest != nullptr) {
     text +=
         fmt::format("; the farthest off is {} of {} by the {}: {} standard deviations", symbol_of(farthest->quantity),
-                    farthest->configuration, estimator_name(farthest->estimator), base::number_text(worst, 2));
+                    farthest->configuration, estimator_name(farthest->estimator), base::digits_text(worst, 2));
   }
   return text + ".";
 }

@@ -47,7 +47,7 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(first.find("2.780") == std::string::npos);  // the lines' value is below
   CHECK(first.find("α (°)") == std::string::npos);  // of which nothing is known here
   CHECK(first.find("3 of 4 recovered values lie within two of their standard deviations of the truth; the farthest off "
-                   "is K/m of m1 by the lines of the phase diagram: 3 standard deviations.") != std::string::npos);
+                   "is K/m of m1 by the lines of the phase diagram: 3.0 standard deviations.") != std::string::npos);
   CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
 }
 
