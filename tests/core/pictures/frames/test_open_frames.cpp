@@ -225,7 +225,7 @@ TEST_CASE("clips that cannot be used are errors that name the file and the frame
   cv::imwrite((folder / "000020.png").string(), cv::Mat(64, 90, CV_8U, cv::Scalar(1)));
   CHECK(contains(error_of(folder), "frame 20: found 90 x 64 pixels"));
   base::write_file(folder / "000010.png", "no picture");
-  CHECK(contains(error_of(folder), "000010.png: found no picture"));
+  CHECK(contains(error_of(folder), "000010.png: found no image"));
 }
 
 TEST_CASE("a clip that lacks one or two of the frames its container says is accepted") {
