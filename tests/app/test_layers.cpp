@@ -39,7 +39,8 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "core/check/recording_check.h", "validate/truth/comparison.h", "validate/study/sweep/sweep_summary.h",
       "validate/study/requirement/requirement.h", "validate/study/coverage/interval_coverage.h",
       "validate/blind/blind_score.h", "diagnose/result/diagnosis.h", "validate/film/twin_motions.h",
-      "diagnose/next/plan.h"}},  // the result types
+      "diagnose/next/plan.h", "diagnose/effects/effect_list.h",
+      "diagnose/effects/effect_library.h"}},  // the result types, and effects' names
     {"app", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
 };
 
