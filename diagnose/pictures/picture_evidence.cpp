@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/score_space.h"
+#include "diagnose/pictures/noise_law.h"
 #include "diagnose/pictures/picture_file.h"
 #include "diagnose/pictures/picture_light.h"
-#include "diagnose/pictures/picture_noise.h"
 #include "diagnose/pictures/picture_shape.h"
 #include "diagnose/pictures/picture_sway.h"
 
@@ -88,6 +89,30 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
                               base::value_and_sd_text(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
                               stated == 0.0 ? "(a global shutter) is stated" : "is stated");
   if (add_clearest(std::move(shutter), evidence)) evidence.stated_line_s = stated;
+}
+
+/// One curve `noise` for the clips of each view: variance (codes²) of resting pixels over their level (codes), with the
+/// law as fitted.
+void add_noise(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  std::map<std::size_t, std::vector<core::NoiseAtLevel>> views;
+  for (const FilmedClip& clip : clips) {
+    auto& levels = views[clip.view];
+    levels.insert(levels.end(), clip.record->noise_levels.begin(), clip.record->noise_levels.end());
+  }
+  for (auto& [view, levels] : views) {
+    const std::optional<NoiseLaw> law = noise_law(levels);
+    if (!law) continue;
+    std::sort(levels.begin(), levels.end(), [](const auto& a, const auto& b) { return a.level_code < b.level_code; });
+    PictureCurve curve;
+    curve.what = "noise";
+    for (const core::NoiseAtLevel& one : levels) {
+      curve.at.push_back(one.level_code);
+      curve.value.push_back(one.sd_code * one.sd_code);
+      curve.sd.push_back(2.0 * one.sd_code * one.known_to);
+      curve.fitted.push_back(law->at(one.level_code));
+    }
+    evidence.curves.push_back(std::move(curve));
+  }
 }
 
 }  // namespace
