@@ -4,7 +4,7 @@
 #include <random>
 
 #include "base/files/staged_output.h"
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 #include "sim/oracle/closed_forms.h"
 #include "teach/page/explorer_page.h"
@@ -32,8 +32,8 @@ sim::State expected(const Setting& s) {
   if (s.law == 2) return sim::quadratic_coulomb_motion(track, s.k, 0.0, s.v0_m_s, s.t_s);
   if (s.law != 1) return sim::viscous_coulomb_motion(track, s.law == 0 ? s.k : 0.0, 0.0, s.v0_m_s, s.t_s);
   sim::Body body{1.0, incline, kGravity, {}};
-  body.forces.push_back(std::make_shared<sim::PowerLawForce>(s.k, 1.5));
-  body.forces.push_back(std::make_shared<sim::CoulombForce>(s.mu));
+  body.forces.push_back(sim::laws::power_law().with({s.k, 1.5}));
+  body.forces.push_back(sim::laws::coulomb().with({s.mu}));
   return sim::simulate(body, 0.0, s.v0_m_s, std::vector<double>{s.t_s}).states.front();
 }
 
