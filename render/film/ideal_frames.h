@@ -8,12 +8,9 @@
 
 #include <filesystem>
 
-#include "render/scenario/scenario.h"
+#include "render/scenario/scenario_data.h"
 
 namespace glidelab::render {
-
-/// The scenario with a perfect camera; its motions, times, scene and pose.
-Scenario ideal_of(const Scenario& scenario);
 
 /// Writes `ideal-<clip>.mkv` (FFV1) and `ideal-<clip>.csv` (frame,t_s,u_px,v_px: the projection of the marker's centre,
 /// for the frames that hold it) of every clip into `truth_dir`, on up to `jobs` threads.

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "base/progress.h"
-#include "render/scenario/scenario.h"
+#include "render/scenario/scenario_data.h"
 
 namespace glidelab::render {
 
