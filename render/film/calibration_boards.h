@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/scenario/scenario_data.h"
+#include "render/scenario/scenario.h"
 #include "render/scenario/static_scene.h"
 
 namespace glidelab::render {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "render/scenario/scenario_data.h"
+#include "render/scenario/scenario.h"
 
 namespace glidelab::render {
 

@@ -8,7 +8,7 @@
 
 #include <filesystem>
 
-#include "render/scenario/scenario_data.h"
+#include "render/scenario/scenario.h"
 
 namespace glidelab::render {
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "render/scenario/clip_motion.h"
-#include "render/scenario/scenario_data.h"
+#include "render/scenario/scenario.h"
 
 namespace glidelab::render {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "base/progress.h"
-#include "render/scenario/scenario_data.h"
+#include "render/scenario/scenario.h"
 
 namespace glidelab::render {
 

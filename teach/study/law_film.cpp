@@ -7,6 +7,7 @@
 #include "base/files/staged_output.h"
 #include "base/files/temporary_folder.h"
 #include "render/film/clip_set.h"
+#include "render/scenario/scenario.h"
 #include "render/scenario/scene.h"
 #include "render/scenario/sections.h"
 #include "render/video/video_writer.h"
