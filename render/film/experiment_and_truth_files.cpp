@@ -7,8 +7,8 @@
 
 #include "base/toml/toml_set.h"
 #include "render/scenario/clip_motion.h"
+#include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"
-#include "render/scenario/sections.h"
 #include "sim/motion/true_parameters.h"
 
 namespace glidelab::render {

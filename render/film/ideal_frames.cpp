@@ -10,7 +10,7 @@
 #include "base/text/csv.h"
 #include "render/film/clip_set.h"
 #include "render/film/marker_truth.h"
-#include "render/scenario/sections.h"
+#include "render/scenario/scenario_sections.h"
 #include "render/video/video_writer.h"
 
 namespace glidelab::render {

@@ -7,7 +7,7 @@
 
 #include "base/files/staged_output.h"
 #include "base/toml/toml_set.h"
-#include "render/scenario/sections.h"
+#include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {

@@ -10,8 +10,8 @@
 #include "base/toml/strict_toml.h"
 #include "render/scenario/camera_catalogue.h"
 #include "render/scenario/clip_motion.h"
+#include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"
-#include "render/scenario/sections.h"
 
 namespace glidelab::render {
 namespace {

@@ -1,5 +1,5 @@
 /// What a scenario holds: the true motions, and everything that stands before the camera and in it. SI units and
-/// radians; pixels where the name says so. scenario.h reads it, sections.h names its sections.
+/// radians; pixels where the name says so. scenario.h reads it, scenario_sections.h names its sections.
 #pragma once
 
 #include <cstdint>

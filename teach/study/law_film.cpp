@@ -8,8 +8,8 @@
 #include "base/files/temporary_folder.h"
 #include "render/film/clip_set.h"
 #include "render/scenario/scenario.h"
+#include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"
-#include "render/scenario/sections.h"
 #include "render/video/video_writer.h"
 #include "sim/motion/simulate.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render/scenario/sections.h"
+#include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render/scenario/sections.h"
+#include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {

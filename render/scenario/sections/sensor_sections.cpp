@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/scenario/scene.h"
-#include "render/scenario/sections.h"
+#include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/scenario/sections.h"
+#include "render/scenario/scenario_sections.h"
 
 #include <array>
 #include <nlohmann/json.hpp>

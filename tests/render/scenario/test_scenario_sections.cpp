@@ -1,5 +1,5 @@
 /// Every section of the table: one that is added passes these tests or they name what it lacks.
-#include "render/scenario/sections.h"
+#include "render/scenario/scenario_sections.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
