@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 
 namespace {
@@ -18,7 +18,7 @@ sim::Body paper_body() {
   sim::Body body;
   body.mass_kg = 0.335;
   body.incline_rad = 0.07524;
-  body.forces = {std::make_shared<sim::ViscousForce>(0.927), std::make_shared<sim::CoulombForce>(0.0071)};
+  body.forces = {sim::laws::viscous().with({0.927}), sim::laws::coulomb().with({0.0071})};
   return body;
 }
 

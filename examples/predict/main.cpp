@@ -7,7 +7,7 @@
 
 #include "core/motion/analyze_motion.h"
 #include "core/motion/join_configurations.h"
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 
 int main() {
@@ -16,7 +16,7 @@ int main() {
   body.mass_kg = 0.335;
   body.incline_rad = 4.0 * std::numbers::pi / 180.0;
   const double k_n_s_m = 0.93, mu = 0.007;
-  body.forces = {std::make_shared<sim::ViscousForce>(k_n_s_m), std::make_shared<sim::CoulombForce>(mu)};
+  body.forces = {sim::laws::viscous().with({k_n_s_m}), sim::laws::coulomb().with({mu})};
 
   std::vector<double> times_s;
   for (int frame = 0; frame < 360; ++frame) times_s.push_back(frame / 200.0);

@@ -3,20 +3,15 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/force/force_terms.h"
-
 namespace glidelab::sim {
 
 std::optional<LinearLaw> linear_law(const Body& body) {
   LinearLaw law;
   for (const auto& term : body.forces) {
-    if (const auto* viscous = dynamic_cast<const ViscousForce*>(term.get())) {
-      law.k_over_m_1_s += viscous->k_n_s_m() / body.mass_kg;
-    } else if (const auto* coulomb = dynamic_cast<const CoulombForce*>(term.get())) {
-      law.mu += coulomb->mu();
-    } else {
-      return std::nullopt;
-    }
+    const std::optional<LinearShare> share = term->linear();
+    if (!share) return std::nullopt;
+    law.k_over_m_1_s += share->k_n_s_m / body.mass_kg;
+    law.mu += share->mu;
   }
   return law;
 }

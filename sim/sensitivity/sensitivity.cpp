@@ -11,15 +11,6 @@
 
 namespace glidelab::sim {
 
-LawValue TrackLaw::sliding(double, double v_m_s, int direction) const {
-  LawValue value;
-  value.a_m_s2 = drive_m_s2_ - k_1_s_ * v_m_s - direction * friction_m_s2_;
-  value.by_v_1_s = -k_1_s_;
-  value.by_parameter.resize(3);
-  value.by_parameter << -v_m_s, 1.0, -direction;
-  return value;
-}
-
 namespace {
 
 Mode mode_at_rest(const MotionLaw& law, double x_m) {

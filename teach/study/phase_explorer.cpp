@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 
 namespace glidelab::teach {
@@ -25,11 +25,11 @@ constexpr int kReferencePoints = 6;
 void add_drag(sim::Body& body, double k, double n) {
   if (n == 0.0 || k == 0.0) return;
   if (n == 1.0) {
-    body.forces.push_back(std::make_shared<sim::ViscousForce>(k * body.mass_kg));
+    body.forces.push_back(sim::laws::viscous().with({k * body.mass_kg}));
   } else if (n == 2.0) {
-    body.forces.push_back(std::make_shared<sim::QuadraticForce>(k * body.mass_kg));
+    body.forces.push_back(sim::laws::quadratic().with({k * body.mass_kg}));
   } else {
-    body.forces.push_back(std::make_shared<sim::PowerLawForce>(k * body.mass_kg, n));
+    body.forces.push_back(sim::laws::power_law().with({k * body.mass_kg, n}));
   }
 }
 
@@ -58,8 +58,8 @@ std::vector<double> times(double drive, double n, double u0, double end, std::op
   return tau;
 }
 
-/// Up to where it comes to rest, if it does. Every leg starts anew at a way of 0, and the ways are added up from the
-/// end: so small ones keep their digits beside large ones.
+/// Up to where it comes to rest, if it does. Every leg starts anew at a distance of 0, and the distances are added up
+/// from the end: so small ones keep their digits beside large ones.
 Orbit solved(double drive, double n, double u0, const std::vector<double>& tau) {
   const sim::Body body = unit_body(drive, n);
   const auto point = [&](double at, double u, double way, double slope) {
@@ -126,7 +126,7 @@ ReferenceMotion reference(const PhaseExplorer& explorer, std::size_t law, double
   body.gravity_m_s2 = explorer.gravity_m_s2;
   body.incline_rad = alpha_deg * std::numbers::pi / 180.0;
   add_drag(body, drag, explorer.laws[law].exponent);
-  if (mu > 0.0) body.forces.push_back(std::make_shared<sim::CoulombForce>(mu));
+  if (mu > 0.0) body.forces.push_back(sim::laws::coulomb().with({mu}));
   for (int i = 1; i <= kReferencePoints; ++i) motion.t_s.push_back(kExplorerTime * i / kReferencePoints);
   for (const sim::State& state : sim::simulate(body, 0.0, v0_m_s, motion.t_s).states) {
     motion.x_m.push_back(state.x_m);

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 
 namespace glidelab::tests {
@@ -19,7 +19,7 @@ sim::Body body(double mass_kg, double incline_rad, Terms... terms) {
   result.mass_kg = mass_kg;
   result.incline_rad = incline_rad;
   result.gravity_m_s2 = kGravity;
-  (result.forces.push_back(std::make_shared<Terms>(terms)), ...);
+  (result.forces.push_back(terms), ...);
   return result;
 }
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -14,7 +14,7 @@ sim::Body paper_like_body() {
   sim::Body body;
   body.mass_kg = 0.335;
   body.incline_rad = 0.075;
-  body.forces = {std::make_shared<sim::ViscousForce>(0.93), std::make_shared<sim::CoulombForce>(0.007)};
+  body.forces = {sim::laws::viscous().with({0.93}), sim::laws::coulomb().with({0.007})};
   return body;
 }
 

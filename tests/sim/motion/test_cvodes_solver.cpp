@@ -29,7 +29,7 @@ class FailingForce final : public ForceTerm {
     return std::numeric_limits<double>::quiet_NaN();
   }
   double slope_n_s_m(double, int, const Contact&) const override { return 0.0; }
-  std::string law() const override { return "failing"; }
+  std::vector<double> by_parameter(double, int, const Contact&) const override { return {}; }
 
  private:
   bool throws_;
@@ -41,7 +41,7 @@ class InconsistentForce final : public ForceTerm {
   double force_n(double, int direction, const Contact&) const override { return -2.0 * direction; }
   double slope_n_s_m(double, int, const Contact&) const override { return 0.0; }
   double holding_n(const Contact&) const override { return 0.5; }
-  std::string law() const override { return "inconsistent"; }
+  std::vector<double> by_parameter(double, int, const Contact&) const override { return {}; }
 };
 
 // y[1] falls exponentially.
@@ -103,7 +103,7 @@ TEST_CASE("an event in the other direction is passed over") {
 
 TEST_CASE("a force that is not a number is a numerical error with time, step and tolerance, and nothing is printed") {
   const tests::TempDir dir;
-  const Body glider = tests::body(1.0, 0.0, FailingForce(false));
+  const Body glider = tests::body(1.0, 0.0, std::make_shared<FailingForce>(false));
   std::string message;
   const std::string printed = standard_error_of(dir.path() / "stderr.txt", [&] {
     try {
@@ -120,18 +120,18 @@ TEST_CASE("a force that is not a number is a numerical error with time, step and
 }
 
 TEST_CASE("what a force throws comes out as it is") {
-  const Body glider = tests::body(1.0, 0.0, FailingForce(true));
+  const Body glider = tests::body(1.0, 0.0, std::make_shared<FailingForce>(true));
   CHECK_THROWS_WITH(simulate(glider, 0.0, 0.0, std::vector<double>{1.0}), "the force gave up");
 }
 
 TEST_CASE("a tolerance that no double can reach is a numerical error") {
-  const Body glider = tests::body(1.0, 0.05, ViscousForce(1.0));
+  const Body glider = tests::body(1.0, 0.05, laws::viscous().with({1.0}));
   CHECK_THROWS_AS(
       simulate(glider, 1.0, 1.0, std::vector<double>{1.0}, {.relative_tolerance = 1e-30, .absolute_tolerance = 1e-30}),
       base::NumericalError);
 }
 
 TEST_CASE("a term that holds less than it opposes to sliding is a numerical error, not an endless loop") {
-  const Body glider = tests::body(1.0, 0.0, InconsistentForce(), ConstantForce(1.0));
+  const Body glider = tests::body(1.0, 0.0, std::make_shared<InconsistentForce>(), laws::constant().with({1.0}));
   CHECK_THROWS_AS(simulate(glider, 0.0, 1.0, std::vector<double>{5.0}), base::NumericalError);
 }

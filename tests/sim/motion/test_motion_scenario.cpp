@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/errors.h"
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "sim/motion/true_parameters.h"
 #include "tests/catch.h"
 

@@ -15,7 +15,7 @@ using tests::kGravity;
 using tests::times;
 
 TEST_CASE("viscous drag on a level track never comes to rest, makes no root and no endless loop") {
-  const Body glider = body(0.3, 0.0, ViscousForce(15.0));
+  const Body glider = body(0.3, 0.0, laws::viscous().with({15.0}));
   for (const double v0 : {-1.5, 1.5}) {
     const Trajectory trajectory = simulate(glider, 0.0, v0, times(1000.0, 0.5));
     CHECK(trajectory.changes.empty());
@@ -36,7 +36,7 @@ TEST_CASE("a glider that is released starts as its load says") {
   const double incline = 0.05;
   const std::vector<double> at_s = times(1.0, 0.25);
   SECTION("downhill, from the first instant") {
-    const Trajectory trajectory = simulate(body(0.3, incline, CoulombForce(0.01)), 0.1, 0.0, at_s);
+    const Trajectory trajectory = simulate(body(0.3, incline, laws::coulomb().with({0.01})), 0.1, 0.0, at_s);
     CHECK(trajectory.changes.empty());
     CHECK(trajectory.states[0].mode == Mode::slide_down);
     const double a = kGravity * (std::sin(incline) - 0.01 * std::cos(incline));
@@ -44,22 +44,24 @@ TEST_CASE("a glider that is released starts as its load says") {
     CHECK(std::abs(trajectory.states[4].x_m - (0.1 + 0.5 * a)) < 1e-12);
   }
   SECTION("uphill under a force that pulls it") {
-    const Trajectory trajectory = simulate(body(0.3, incline, CoulombForce(0.01), ConstantForce(-0.5)), 0.1, 0.0, at_s);
+    const Trajectory trajectory =
+        simulate(body(0.3, incline, laws::coulomb().with({0.01}), laws::constant().with({-0.5})), 0.1, 0.0, at_s);
     CHECK(trajectory.states[0].mode == Mode::slide_up);
     CHECK(trajectory.states[4].v_m_s < 0.0);
   }
   SECTION("not at all on a level track") {
-    const Trajectory trajectory = simulate(body(0.3, 0.0, ViscousForce(0.5)), 0.1, 0.0, at_s);
+    const Trajectory trajectory = simulate(body(0.3, 0.0, laws::viscous().with({0.5})), 0.1, 0.0, at_s);
     CHECK(trajectory.states[4].mode == Mode::stick);
     CHECK(trajectory.states[4].x_m == 0.1);
     CHECK(trajectory.dissipated_j == 0.0);
   }
   SECTION("not at all where friction holds exactly as much as the load") {
-    const Trajectory trajectory = simulate(body(0.3, incline, CoulombForce(std::tan(incline))), 0.1, 0.0, at_s);
+    const Trajectory trajectory =
+        simulate(body(0.3, incline, laws::coulomb().with({std::tan(incline)})), 0.1, 0.0, at_s);
     CHECK(trajectory.states[4].mode == Mode::stick);
   }
   SECTION("not at all where a force balances gravity") {
-    const Body glider = body(0.3, incline, ConstantForce(-0.3 * kGravity * std::sin(incline)));
+    const Body glider = body(0.3, incline, laws::constant().with({-0.3 * kGravity * std::sin(incline)}));
     CHECK(simulate(glider, 0.1, 0.0, at_s).states[4].mode == Mode::stick);
   }
 }
@@ -67,7 +69,7 @@ TEST_CASE("a glider that is released starts as its load says") {
 TEST_CASE("static friction above sliding friction holds a glider that sliding friction would let go on") {
   const double incline = 0.05;
   const double mu = 0.8 * std::tan(incline);
-  const Body held = body(0.3, incline, CoulombForce(mu, 1.1 * std::tan(incline)));
+  const Body held = body(0.3, incline, laws::coulomb().with({mu, 1.1 * std::tan(incline)}));
   const Trajectory stopped = simulate(held, 0.0, -1.0, times(10.0, 0.5));
   REQUIRE(stopped.changes.size() == 1);
   CHECK(stopped.changes[0].to == Mode::stick);
@@ -77,7 +79,7 @@ TEST_CASE("static friction above sliding friction holds a glider that sliding fr
     CHECK(state.v_m_s == 0.0);
     CHECK(state.a_m_s2 == 0.0);
   }
-  const Body let_go = body(0.3, incline, CoulombForce(mu, 0.9 * std::tan(incline)));
+  const Body let_go = body(0.3, incline, laws::coulomb().with({mu, 0.9 * std::tan(incline)}));
   CHECK(simulate(let_go, 0.0, -1.0, times(10.0, 0.5)).changes[0].to == Mode::slide_down);
   // Launched downhill it is slowed down by neither: static friction does not act on what moves.
   CHECK(simulate(held, 0.0, 0.1, times(10.0, 0.5)).changes.empty());
@@ -91,8 +93,8 @@ TEST_CASE("a time that is the instant of a reversal shows the mode after it") {
       const double v0 = 0.1 * i;
       INFO("a " << a << " v0 " << v0);
       const double turn_s = v0 / a;
-      const Trajectory trajectory =
-          simulate(body(1.0, 0.0, ConstantForce(-a)), 0.0, v0, std::vector<double>{0.5 * turn_s, turn_s, 1.5 * turn_s});
+      const Trajectory trajectory = simulate(body(1.0, 0.0, laws::constant().with({-a})), 0.0, v0,
+                                             std::vector<double>{0.5 * turn_s, turn_s, 1.5 * turn_s});
       REQUIRE(trajectory.changes.size() == 1);
       CHECK(std::abs(trajectory.changes[0].t_s - turn_s) < 1e-12);
       CHECK(trajectory.states[0].mode == Mode::slide_down);
@@ -104,7 +106,7 @@ TEST_CASE("a time that is the instant of a reversal shows the mode after it") {
 }
 
 TEST_CASE("extreme starts and times are simulated as they stand") {
-  const Body glider = body(0.3, 0.0, ViscousForce(0.9), CoulombForce(0.01));
+  const Body glider = body(0.3, 0.0, laws::viscous().with({0.9}), laws::coulomb().with({0.01}));
   for (const double v0 : {1e-300, -1e-100, 1e-30, -1e-15, 1e-9}) {
     for (const double first_s : {1e-320, 1e-200, 1e-90, 1e-30, 1e-16, 1e-9}) {
       INFO("v0 " << v0 << " first time " << first_s);
@@ -124,7 +126,7 @@ TEST_CASE("extreme starts and times are simulated as they stand") {
 }
 
 TEST_CASE("times that do not rise and numbers that are not finite are refused by name") {
-  const Body glider = body(0.3, 0.0, CoulombForce(0.01));
+  const Body glider = body(0.3, 0.0, laws::coulomb().with({0.01}));
   const auto message = [&](const Body& of, double x0, double v0, std::vector<double> at_s, SolverOptions options = {}) {
     try {
       simulate(of, x0, v0, at_s, options);

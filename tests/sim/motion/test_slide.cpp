@@ -36,14 +36,14 @@ void check_jacobian(const Slide& slide, double v) {
 
 TEST_CASE("the Jacobian meets finite differences for every law, variable and direction") {
   const std::vector<Body> bodies = {
-      body(0.3, 0.05, ViscousForce(0.9), CoulombForce(0.01)),            // w = v
-      body(0.3, 0.05, QuadraticForce(0.7), ConstantForce(0.1)),          // w = v
-      body(0.3, 0.05, StribeckForce(0.02, 2.0, 0.2)),                    // w = v
-      body(0.3, 0.05, PowerLawForce(0.4, 0.5), EddyRolloffForce(1, 1)),  // w = v
-      body(0.3, 0.0, PowerLawForce(0.4, 0.5), ViscousForce(0.3)),        // w = sqrt|v|
-      body(0.3, 0.0, PowerLawForce(0.4, 0.8), QuadraticForce(0.3)),      // w = |v|^0.2
-      body(0.3, 0.0, ViscousForce(0.9), QuadraticForce(0.3)),            // w = ln |v|
-      body(0.3, 0.0, EddyRolloffForce(0.9, 0.3)),                        // w = ln |v|
+      body(0.3, 0.05, laws::viscous().with({0.9}), laws::coulomb().with({0.01})),              // w = v
+      body(0.3, 0.05, laws::quadratic().with({0.7}), laws::constant().with({0.1})),            // w = v
+      body(0.3, 0.05, laws::stribeck().with({0.02, 2.0, 0.2})),                                // w = v
+      body(0.3, 0.05, laws::power_law().with({0.4, 0.5}), laws::eddy_rolloff().with({1, 1})),  // w = v
+      body(0.3, 0.0, laws::power_law().with({0.4, 0.5}), laws::viscous().with({0.3})),         // w = sqrt|v|
+      body(0.3, 0.0, laws::power_law().with({0.4, 0.8}), laws::quadratic().with({0.3})),       // w = |v|^0.2
+      body(0.3, 0.0, laws::viscous().with({0.9}), laws::quadratic().with({0.3})),              // w = ln |v|
+      body(0.3, 0.0, laws::eddy_rolloff().with({0.9, 0.3})),                                   // w = ln |v|
   };
   for (const Body& glider : bodies) {
     for (const double v : {0.02, 0.3, 1.7}) {
@@ -54,8 +54,9 @@ TEST_CASE("the Jacobian meets finite differences for every law, variable and dir
 }
 
 TEST_CASE("the variable is a speed both ways") {
-  for (const Body& glider : {body(0.3, 0.05, ViscousForce(0.9)), body(0.3, 0.0, PowerLawForce(0.4, 0.5)),
-                             body(0.3, 0.0, ViscousForce(0.9))}) {
+  for (const Body& glider :
+       {body(0.3, 0.05, laws::viscous().with({0.9})), body(0.3, 0.0, laws::power_law().with({0.4, 0.5})),
+        body(0.3, 0.0, laws::viscous().with({0.9}))}) {
     for (const int direction : {-1, +1}) {
       const Slide slide(glider, direction, kLeast);
       for (const double speed : {1e-12, 0.3, 2.0}) {
@@ -67,18 +68,19 @@ TEST_CASE("the variable is a speed both ways") {
 }
 
 TEST_CASE("whether a slide stops follows from the force at v -> 0") {
-  CHECK(Slide(body(0.3, 0.05, ViscousForce(0.9)), -1, kLeast).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.05, ViscousForce(0.9)), +1, kLeast).stops());
-  CHECK(Slide(body(0.3, 0.05, CoulombForce(0.2)), +1, kLeast).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.0, ViscousForce(0.9)), +1, kLeast).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.0, QuadraticForce(0.9)), -1, kLeast).stops());
+  CHECK(Slide(body(0.3, 0.05, laws::viscous().with({0.9})), -1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.05, laws::viscous().with({0.9})), +1, kLeast).stops());
+  CHECK(Slide(body(0.3, 0.05, laws::coulomb().with({0.2})), +1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.0, laws::viscous().with({0.9})), +1, kLeast).stops());
+  CHECK_FALSE(Slide(body(0.3, 0.0, laws::quadratic().with({0.9})), -1, kLeast).stops());
   CHECK_FALSE(Slide(body(0.3, 0.0), +1, kLeast).stops());
-  CHECK(Slide(body(0.3, 0.0, PowerLawForce(0.9, 0.7)), +1, kLeast).stops());
-  CHECK_FALSE(Slide(body(0.3, 0.0, PowerLawForce(0.0, 0.7), ViscousForce(1.0)), +1, kLeast).stops());
+  CHECK(Slide(body(0.3, 0.0, laws::power_law().with({0.9, 0.7})), +1, kLeast).stops());
+  CHECK_FALSE(
+      Slide(body(0.3, 0.0, laws::power_law().with({0.0, 0.7}), laws::viscous().with({1.0})), +1, kLeast).stops());
 }
 
 TEST_CASE("below the least speed an infinite slope becomes a finite one, and the force has no jump") {
-  const Slide slide(body(0.3, 0.05, PowerLawForce(0.4, 0.5)), -1, 1e-6);
+  const Slide slide(body(0.3, 0.05, laws::power_law().with({0.4, 0.5})), -1, 1e-6);
   const double gap = slide.acceleration_m_s2(-1e-6) - slide.acceleration_m_s2(-1e-6 * (1.0 - 1e-9));
   CHECK(std::abs(gap) < 1e-11);  // 1e-9 of 0.4 N sqrt(1e-6) / 0.3 kg
   const Eigen::Matrix3d at_rest = slide.jacobian({0.0, 0.0, 0.0});

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "sim/force/force_terms.h"
+#include "sim/force/law_list.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 
@@ -118,17 +118,17 @@ TEST_CASE("Only friction brings a glider to rest: with a drag alone it tends the
   };
   CHECK(on_the_level(nullptr).empty());
   for (const auto& drag : std::vector<std::shared_ptr<const sim::ForceTerm>>{
-           std::make_shared<sim::ViscousForce>(0.5), std::make_shared<sim::QuadraticForce>(0.5),
-           std::make_shared<sim::EddyRolloffForce>(0.5, 0.6), std::make_shared<sim::PowerLawForce>(0.5, 1.5)}) {
-    INFO(drag->law());
+           sim::laws::viscous().with({0.5}), sim::laws::quadratic().with({0.5}),
+           sim::laws::eddy_rolloff().with({0.5, 0.6}), sim::laws::power_law().with({0.5, 1.5})}) {
+    INFO("force at 1 m/s " << drag->force_n(1.0, +1, sim::Contact{0.3, 3.0}) << " N");
     const auto found = on_the_level(drag);
     REQUIRE(found.size() == 1);
     CHECK((found[0].v_m_s == 0.0 && found[0].stable && !found[0].stops));
   }
   for (const auto& friction : std::vector<std::shared_ptr<const sim::ForceTerm>>{
-           std::make_shared<sim::CoulombForce>(0.01), std::make_shared<sim::StribeckForce>(0.01, 2.0, 0.1),
-           std::make_shared<sim::PowerLawForce>(0.5, 0.5)}) {  // the last stops at 2 sqrt(v0) / k
-    INFO(friction->law());
+           sim::laws::coulomb().with({0.01}), sim::laws::stribeck().with({0.01, 2.0, 0.1}),
+           sim::laws::power_law().with({0.5, 0.5})}) {  // the last stops at 2 sqrt(v0) / k
+    INFO("force at 1 m/s " << friction->force_n(1.0, +1, sim::Contact{0.3, 3.0}) << " N");
     const auto found = on_the_level(friction);
     REQUIRE(found.size() == 1);
     CHECK((found[0].v_m_s == 0.0 && found[0].stable && found[0].stops));
