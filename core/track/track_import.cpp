@@ -18,14 +18,14 @@ constexpr std::size_t kMostRowIssues = 10;
 
 const std::vector<std::string> kPlaces{"x",   "position", "pos",        "distance",     "displacement",    "position x",
                                        "weg", "ort",      "x-position", "position (x)", "posici\xC3\xB3n", "distancia"};
-const std::vector<std::string> kTimes{"t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "elapsed time"};
+const std::vector<std::string> kTimeNames{"t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "elapsed time"};
 
 bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), lower(name)) != names.end();
 }
 
 bool is_time(const TableColumn& column) {
-  return column.unit.empty() ? is_one_of(kTimes, column.name) : seconds_per(column.unit).has_value();
+  return column.unit.empty() ? is_one_of(kTimeNames, column.name) : seconds_per(column.unit).has_value();
 }
 
 std::string list_of(const ColumnTable& table) {
