@@ -58,7 +58,7 @@ std::optional<std::string> why_not_one_to_one(const Camera& camera) {
       const double v = -0.5 + (bottom + 0.5) * row / rows;
       if (!check(u, v)) {
         return fmt::format(
-            "a lens that folds the picture over (no ray leads to the pixel ({:.1f}, {:.1f}); the mapping "
+            "a lens that folds the image over (no ray leads to the pixel ({:.1f}, {:.1f}); the mapping "
             "is one to one up to {:.4g} focal lengths off the axis)",
             u, v, largest_radius);
       }
@@ -66,12 +66,12 @@ std::optional<std::string> why_not_one_to_one(const Camera& camera) {
   }
   for (int i = 0; i < camera.width_px; ++i) {
     if (!check(i, -0.5) || !check(i, bottom)) {
-      return fmt::format("a lens that folds the picture over at column {} of its border", i);
+      return fmt::format("a lens that folds the image over at column {} of its border", i);
     }
   }
   for (int i = 0; i < camera.height_px; ++i) {
     if (!check(-0.5, i) || !check(right, i)) {
-      return fmt::format("a lens that folds the picture over at row {} of its border", i);
+      return fmt::format("a lens that folds the image over at row {} of its border", i);
     }
   }
   return std::nullopt;

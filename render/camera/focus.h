@@ -2,7 +2,7 @@
 ///
 /// A lens of the focal length f = s d / (s + d), s = focal_px · pixel pitch being the distance from lens to sensor and
 /// d the focus distance, with the aperture D = f / N: a point at depth Z is spread evenly over a disc of the diameter
-/// D |1/Z - 1/d| in undistorted coordinates, times focal_px in the picture. A point a of the aperture sees the point
+/// D |1/Z - 1/d| in undistorted coordinates, times focal_px in the image. A point a of the aperture sees the point
 /// (X, Y, Z) at (X/Z, Y/Z) - a (1/Z - 1/d). The core is a Gaussian with sigma = 0.42 lambda N s / f, the one nearest to
 /// Airy's disc, and in quadrature what else blurs (`core_px`). The pixel's square is integrated over besides. Source:
 /// M. Born and E. Wolf, Principles of Optics, 8.5.2; B. Zhang et al., Applied Optics 46 (2007), for 0.42.
@@ -32,7 +32,7 @@ double disc_radius_px(const Focus& focus, const Camera& camera, double depth_m);
 /// The standard deviation of the core, in pixels.
 double core_sigma_px(const Focus& focus, const Camera& camera);
 
-/// One of the rays of which a blurred picture is the mean.
+/// One of the rays of which a blurred image is the mean.
 struct FocusSample {
   Eigen::Vector2d aperture = Eigen::Vector2d::Zero();  ///< in the unit disc
   Eigen::Vector2d core = Eigen::Vector2d::Zero();      ///< of a normal distribution with variance 1

@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "render/random/normal_pair.h"
-#include "render/random/philox.h"
+#include "render/random/streams.h"
 
 namespace glidelab::render {
 namespace {
 
 PhiloxCounter words_of(std::size_t slot, std::uint64_t seed, std::uint32_t stream) {
-  return philox({static_cast<std::uint32_t>(slot), 0, stream, 3}, philox_key(seed));
+  return random_words(RandomPurpose::frame_clock, {static_cast<std::uint32_t>(slot), 0, stream}, philox_key(seed));
 }
 
 }  // namespace

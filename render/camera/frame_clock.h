@@ -5,9 +5,9 @@
 ///     stamp of slot k = k / rate + jitter_k (1 + error), rounded to the tick: the same instant on the camera's own
 ///     clock
 ///
-/// A slot's picture is recorded; or dropped: it is not in the file, and in a file of constant rate the later ones move
-/// up; or duplicated: the file has the picture before once more, as software does that fills an empty slot. The first
-/// slot is always recorded. Philox counter {slot, 0, stream, 3} (sensor.h): a function of the seed, the clip and the
+/// A slot's image is recorded; or dropped: it is not in the file, and in a file of constant rate the later ones move
+/// up; or duplicated: the file has the image before, repeated, as software does that fills an empty slot. The first
+/// slot is always recorded. A function of the seed, the clip and the
 /// slot.
 #pragma once
 

@@ -45,7 +45,7 @@ Eigen::Vector2d distort(const Lens& lens, const Eigen::Vector2d& undistorted);
 Eigen::Matrix2d distortion_jacobian(const Lens& lens, const Eigen::Vector2d& undistorted);
 
 /// The radius sqrt(x² + y²) at which the radial part stops growing (or has a pole); infinity where it never does.
-/// Beyond it the formula maps points back into the picture that no lens would show there.
+/// Beyond it the formula maps points back into the image that no lens would show there.
 double fold_radius(const Lens& lens);
 
 /// The undistorted point that the lens moves to `distorted`, to 1e-14 of the focal length. Nothing where there is none

@@ -5,7 +5,7 @@
 ///
 ///     offset + drift t + amplitude sin(2 pi f t + phase),
 ///
-/// t counted from the clip's first exposure. The calibration's pictures are taken with all six at 0, and with the focal
+/// t counted from the clip's first exposure. The calibration's images are taken with all six at 0, and with the focal
 /// length that the camera's section says; the clips with (1 + focal_change) of it.
 #pragma once
 
@@ -38,7 +38,7 @@ struct Mount {
 /// What the mount does to the camera at an instant: X_WC(t) = X_WC * this.
 Eigen::Isometry3d mount_at(const Mount& mount, double t_s);
 
-/// How far the picture's middle and corners move, at most, when a camera is moved so; for what is 1 m away or farther.
+/// How far the image's middle and corners move, at most, when a camera is moved so; for what is 1 m away or farther.
 double picture_shift_px(const Camera& camera, const Eigen::Isometry3d& moved);
 
 }  // namespace glidelab::render

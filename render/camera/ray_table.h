@@ -2,8 +2,8 @@
 ///
 /// For the pixel (u, v) the table gives the undistorted coordinates (x, y) of the ray through its centre, and the
 /// Jacobian d(x, y)/d(u, v). Within a pixel the mapping is taken as linear; the neglected second order is below
-/// |d²x/du²|/8, 3e-5 px for the strongest lens that `why_not_one_to_one` lets pass in a picture of 800 px. Computed in
-/// double and rounded once to single precision: 2^-25 of half the picture's width, 1e-5 px.
+/// |d²x/du²|/8, 3e-5 px for the strongest lens that `why_not_one_to_one` lets pass in an image of 800 px. Computed in
+/// double and rounded once to single precision: 2^-25 of half the image's width, 1e-5 px.
 #pragma once
 
 #include <limits>
@@ -33,7 +33,7 @@ inline bool overlap(const RayBounds& a, const RayBounds& b) {
   return a.low.x() <= b.high.x() && b.low.x() <= a.high.x() && a.low.y() <= b.high.y() && b.low.y() <= a.high.y();
 }
 
-/// The picture is cut into tiles of kRayTile x kRayTile pixels, from its first pixel on.
+/// The image is cut into tiles of kRayTile x kRayTile pixels, from its first pixel on.
 inline constexpr int kRayTile = 8;
 
 struct RayTable {

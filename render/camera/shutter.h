@@ -1,8 +1,8 @@
-/// Which row of the picture is exposed when.
+/// Which row of the image is exposed when.
 ///
 /// All rows are exposed equally long. A global shutter starts them together; a rolling one starts a row
-/// `line_readout_s` after the one before, from the picture's top row or from its bottom row on. A frame's time belongs
-/// to the middle of the exposure of the picture's middle row (height - 1)/2, as the experiment folder says.
+/// `line_readout_s` after the one before, from the image's top row or from its bottom row on. A frame's time belongs
+/// to the middle of the exposure of the image's middle row (height - 1)/2, as the experiment folder says.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ struct Shutter {
   bool rolling = false;
   double line_readout_s = 0.0;  ///< 0 for a global shutter
   bool bottom_first = false;
-  int rows = 1;  ///< of the picture
+  int rows = 1;  ///< of the image
 
   /// How much later than the first row's a row's exposure starts; also between rows.
   double delay_s(double row) const { return line_readout_s * (bottom_first ? rows - 1 - row : row); }

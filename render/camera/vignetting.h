@@ -1,4 +1,4 @@
-/// How much darker the picture is towards its corners.
+/// How much darker the image is towards its corners.
 ///
 /// cos⁴: the illumination of a flat sensor behind a simple lens, cos⁴ of the angle between the ray and the optical
 /// axis. Radial: a table of gains over the distance from the principal point in pixels, linear between its entries;

@@ -1,22 +1,23 @@
+#include "render/film/calibration_boards.h"
+
 #include <cmath>
 #include <numbers>
 
 #include "base/errors.h"
-#include "render/random/philox.h"
-#include "render/scenario/scene.h"
+#include "render/random/streams.h"
 
 namespace glidelab::render {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// A pose as a person would take it: where in the picture (parts of its half width and height off the middle), how
-/// large (part of the picture's width), how tilted (degrees about the picture's horizontal and vertical), how turned.
+/// A pose as a person would take it: where in the image (parts of its half width and height off the middle), how
+/// large (part of the image's width), how tilted (degrees about the image's horizontal and vertical), how turned.
 struct Pose {
   double right, down, width, tilt_x_deg, tilt_y_deg, turn_deg;
 };
 
-// Every part of the picture is covered, every tilt comes with another place; cyclic beyond twelve.
+// Every part of the image is covered, every tilt comes with another place; cyclic beyond twelve.
 constexpr Pose kPoses[] = {
     {0.00, 0.00, 0.78, 0.0, 0.0, 0.0},        {-0.55, -0.50, 0.52, 25.0, -25.0, 3.0},
     {0.55, -0.50, 0.52, 25.0, 25.0, -4.0},    {-0.55, 0.50, 0.52, -25.0, -25.0, -3.0},
@@ -27,7 +28,8 @@ constexpr Pose kPoses[] = {
 };
 
 double jitter(std::uint64_t seed, std::uint32_t view, std::uint32_t number) {
-  return 2.0 * uniform_of(philox({view, number, 0, 4}, philox_key(seed))[0]) - 1.0;  // -1 to 1
+  return 2.0 * uniform_of(random_words(RandomPurpose::pattern_poses, {view, number, 0}, philox_key(seed))[0]) -
+         1.0;  // -1 to 1
 }
 
 bool wholly_seen(const Camera& camera, const Chessboard& board, double margin_px) {
@@ -67,7 +69,7 @@ std::vector<Chessboard> calibration_boards(const Scenario& scenario, std::uint64
     const Eigen::Vector3d middle_P(0.5 * (pattern.inner_columns - 1) * pattern.square_m,
                                    0.5 * (pattern.inner_rows - 1) * pattern.square_m, 0.0);
     bool found = false;
-    // Moved towards the middle and away from the camera until it is wholly in the picture.
+    // Moved towards the middle and away from the camera until it is wholly in the image.
     for (int attempt = 0; attempt < 60 && !found; ++attempt) {
       const double inward = std::pow(0.93, attempt);
       const double width = pose.width * std::pow(0.985, attempt);
@@ -82,7 +84,7 @@ std::vector<Chessboard> calibration_boards(const Scenario& scenario, std::uint64
       board.X_WP = camera.X_WC * X_CP;
       found = wholly_seen(camera, board, 3.0);
     }
-    if (!found) throw base::NumericalError("calibration: no pose of the pattern is wholly in the picture");
+    if (!found) throw base::NumericalError("calibration: no pose of the pattern is wholly in the image");
     boards.push_back(board);
   }
   return boards;

@@ -14,7 +14,7 @@ std::size_t sample_count(double disc_radius_px, double core_sigma_px) {
   return 2 * static_cast<std::size_t>(std::clamp(std::ceil(4.0 * across), 8.0, 64.0));
 }
 
-/// From one pose to the next the picture moves by no more than this.
+/// From one pose to the next the image moves by no more than this.
 constexpr double kPoseStep = 0.02;  // px
 constexpr double kMostPoses = 64.0;
 
@@ -89,7 +89,7 @@ void ClipRenderer::background_of(const FrameMotion& frame, const PixelRect& with
   for (int y = within.y; y < within.y + within.height; ++y) {
     const std::span<float> row = expected_e_.row(y, within.x, within.width);
     std::fill(row.begin(), row.end(), 0.0f);
-    // The poses that this row's exposure meets, each by its share; the fine picture has the blur of the lens in it.
+    // The poses that this row's exposure meets, each by its share; the fine image has the blur of the lens in it.
     instants_of(frame, frame.start_s + recording.shutter.delay_s(y));
     std::vector<double> share(poses_, 0.0);
     for (const Instant& instant : instants_) share[instant.view / samples] += instant.weight;

@@ -30,7 +30,7 @@ class ClipRenderer {
   void read(const FrameMotion& frame, const PixelRect& rect, std::span<std::uint8_t> codes);
   void read(const FrameMotion& frame, const PixelRect& rect, std::span<std::uint16_t> codes);
 
-  /// The steps in which the exposure is to be cut: half a pixel of the marker's way.
+  /// The steps in which the exposure is to be cut: half a pixel of the marker's path.
   double longest_step_m() const { return longest_step_m_; }
   /// What the frames must tell of their motion.
   MotionDetail detail() const;

@@ -1,4 +1,4 @@
-/// The clips of a scenario, to be drawn by anybody: what they share is made once.
+/// The clips of a scenario, to be drawn by any caller: what they share is made once.
 #pragma once
 
 #include <functional>
@@ -45,7 +45,7 @@ class ClipSet {
     return clock(clip, seed).frames_of(frame_count(scenario_.recording, motion(clip)));
   }
   FrameClock clock(std::size_t clip, std::uint64_t seed) const;
-  /// As in the clips (render/mount.h).
+  /// As in the clips (render/camera/mount.h).
   const Scenario& scenario() const { return scenario_; }
   /// Of the camera as in the clips.
   const RayTable& rays() const { return stage_->rays; }
@@ -83,7 +83,7 @@ class ClipStream {
   struct Next {
     std::shared_ptr<const FrameMotion> shown;
     std::size_t slot;  ///< of the clock; shown.frame unless repeated
-    bool repeated;     ///< the picture before once more
+    bool repeated;     ///< the image before, repeated
     double stamp_s;    ///< what a container would say of its time
   };
   /// The next frame, or nothing at the end.

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "base/toml/toml_set.h"
 #include "render/scenario/clip_motion.h"
+#include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"
 #include "sim/motion/true_parameters.h"
 
@@ -29,103 +29,6 @@ const char* word_of(sim::Launched launched) {
 
 nlohmann::ordered_json maybe(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json finite(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json distortion_json(const Lens& lens) {
-  nlohmann::ordered_json json = {{"k1", lens.k1}, {"k2", lens.k2}, {"k3", lens.k3}};
-  if (lens.model != LensModel::brown_conrady) json["k4"] = lens.k4;
-  if (lens.model == LensModel::rational) {
-    json["k5"] = lens.k5;
-    json["k6"] = lens.k6;
-  }
-  if (lens.model != LensModel::fisheye) {
-    json["p1"] = lens.p1;
-    json["p2"] = lens.p2;
-  }
-  return json;
-}
-
-/// What of the optics is not as in a plain scenario.
-void add_optics(const Scenario& scenario, nlohmann::ordered_json& camera) {
-  if (!scenario.vignetting.none()) {
-    nlohmann::ordered_json radial = nlohmann::ordered_json::array();
-    for (const Eigen::Vector2d& entry : scenario.vignetting.radial) radial.push_back({entry.x(), entry.y()});
-    camera["vignetting"] = {{"cos4", scenario.vignetting.cos4}, {"radial", radial}};
-  }
-  if (scenario.focus) {
-    const Focus& focus = *scenario.focus;
-    const double depth_m = scenario.camera.X_WC.translation().norm();
-    camera["focus"] = {{"f_number", focus.f_number},
-                       {"focus_distance_m", focus.focus_distance_m},
-                       {"pixel_pitch_m", focus.pixel_pitch_m},
-                       {"wavelength_m", focus.wavelength_m},
-                       {"core_px", focus.core_px},
-                       {"core_sigma_px", core_sigma_px(focus, scenario.camera)},
-                       {"disc_radius_px_at_reference", disc_radius_px(focus, scenario.camera, depth_m)}};
-  }
-  const Light& light = scenario.light;
-  camera["light"] = {{"level", light.level},
-                     {"gradient_per_m", {light.gradient_per_m.x(), light.gradient_per_m.y()}},
-                     {"flicker_depth", light.flicker_depth},
-                     {"flicker_hz", light.flicker_hz},
-                     {"ring_light", light.ring_light},
-                     {"reflections", light.reflections.size()}};
-  camera["mount"] = {{"focal_change", scenario.mount.focal_change}, {"motions", scenario.mount.motions.size()}};
-}
-
-nlohmann::ordered_json camera_json(const Scenario& scenario) {
-  const Camera& camera = scenario.camera;
-  nlohmann::ordered_json rotation = nlohmann::ordered_json::array();
-  for (int row = 0; row < 3; ++row) {
-    rotation.push_back({camera.X_WC.linear()(row, 0), camera.X_WC.linear()(row, 1), camera.X_WC.linear()(row, 2)});
-  }
-  const Eigen::Vector3d eye = camera.X_WC.translation();
-  nlohmann::ordered_json json = {
-      {"name", scenario.camera_name},
-      {"width_px", camera.width_px},
-      {"height_px", camera.height_px},
-      {"focal_px", {camera.focal_px.x(), camera.focal_px.y()}},
-      {"center_px", {camera.center_px.x(), camera.center_px.y()}},
-      {"lens", name_of(camera.lens.model)},
-      {"distortion", distortion_json(camera.lens)},
-      {"one_to_one_radius", finite(fold_radius(camera.lens))},
-      {"rotation_WC", rotation},
-      {"position_m", {eye.x(), eye.y(), eye.z()}},
-      {"frame_rate_hz", scenario.recording.frame_rate_hz},
-      {"exposure_s", scenario.recording.exposure_s},
-      {"clock",
-       {{"rate_error_ppm", scenario.recording.clock.rate_error_ppm},
-        {"jitter_s", scenario.recording.clock.jitter_s},
-        {"dropped_fraction", scenario.recording.clock.dropped_fraction},
-        {"duplicated_fraction", scenario.recording.clock.duplicated_fraction},
-        {"variable", scenario.recording.clock.variable}}},
-      {"codec", name_of(scenario.codec)},
-      {"shutter",
-       {{"kind", scenario.recording.shutter.rolling ? "rolling" : "global"},
-        {"line_readout_s", scenario.recording.shutter.line_readout_s},
-        {"first_row", scenario.recording.shutter.bottom_first ? "bottom" : "top"}}},
-      {"sensor",
-       {{"bit_depth", scenario.sensor.bit_depth},
-        {"full_well_e", scenario.sensor.full_well_e},
-        {"read_noise_e", scenario.sensor.read_noise_e},
-        {"gain_dn_per_e", scenario.sensor.gain_dn_per_e},
-        {"offset_dn", scenario.sensor.offset_dn},
-        {"converter_bits", scenario.sensor.converter_bits.value_or(scenario.sensor.bit_depth)},
-        {"dark_signal_e_s", scenario.sensor.pixels.dark_signal_e_s},
-        {"prnu", scenario.sensor.pixels.prnu},
-        {"dsnu_e", scenario.sensor.pixels.dsnu_e},
-        {"hot_fraction", scenario.sensor.pixels.hot_fraction},
-        {"dead_fraction", scenario.sensor.pixels.dead_fraction},
-        {"tone", name_of(scenario.sensor.tone.kind)},
-        {"colour", scenario.sensor.colour == Colour::bayer ? "bayer" : "mono"},
-        {"quantum_efficiency", scenario.exposure.quantum_efficiency},
-        {"white_e", electrons_of_white(scenario)}}}};
-  add_optics(scenario, json);
-  return json;
 }
 
 }  // namespace
@@ -225,7 +128,7 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed) {
   }
   const nlohmann::ordered_json truth = {{"format", 1},    {"name", scenario.motion.name},
                                         {"seed", seed},   {"configurations", configurations},
-                                        {"clips", clips}, {"camera", camera_json(scenario)}};
+                                        {"clips", clips}, {"camera", sections_truth(scenario)}};
   return truth.dump(2) + "\n";
 }
 

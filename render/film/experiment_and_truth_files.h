@@ -8,11 +8,11 @@
 
 namespace glidelab::render {
 
-/// Names within the experiment folder, of the i-th of `count` pictures.
+/// Names within the experiment folder, of the i-th of `count` images.
 std::string view_name(std::size_t i);
 std::string plane_name(std::size_t i, std::size_t count);
 
-/// experiment.toml: what a person would write who took these pictures; no truth in it.
+/// experiment.toml: what a person would write who took these images; no truth in it.
 std::string experiment_toml(const Scenario& scenario);
 
 /// truth.json: what was put in. The seed is the one that was used.

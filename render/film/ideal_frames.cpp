@@ -10,21 +10,10 @@
 #include "base/text/csv.h"
 #include "render/film/clip_set.h"
 #include "render/film/marker_truth.h"
+#include "render/scenario/scenario_sections.h"
+#include "render/video/video_writer.h"
 
 namespace glidelab::render {
-
-Scenario ideal_of(const Scenario& scenario) {
-  Scenario ideal = scenario;
-  ideal.camera.lens = {};
-  ideal.vignetting = {};
-  ideal.focus.reset();
-  ideal.light = {};
-  ideal.mount = {};
-  ideal.recording.shutter = {};
-  ideal.recording.clock = {};
-  ideal.recording.shutter.rows = scenario.camera.height_px;
-  return ideal;
-}
 
 void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& truth_dir, int jobs) {
   const Scenario ideal = ideal_of(scenario);

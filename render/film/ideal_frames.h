@@ -12,9 +12,6 @@
 
 namespace glidelab::render {
 
-/// The scenario with a perfect camera; its motions, times, scene and pose.
-Scenario ideal_of(const Scenario& scenario);
-
 /// Writes `ideal-<clip>.mkv` (FFV1) and `ideal-<clip>.csv` (frame,t_s,u_px,v_px: the projection of the marker's centre,
 /// for the frames that hold it) of every clip into `truth_dir`, on up to `jobs` threads.
 void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& truth_dir, int jobs);

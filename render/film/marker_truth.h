@@ -1,8 +1,8 @@
-/// Where the marker truly is in each frame's picture, for the truth folder.
+/// Where the marker truly is in each frame's image, for the truth folder.
 ///
 /// A frame shows the marker as it is at the middle of the exposure of the row that its centre lies on (with a global
 /// shutter, of any row). Centre: the projection of the sphere's centre. Centroid: of the area of the sphere's sharp
-/// picture at that instant, which differs by what perspective and lens do to a sphere (some 1e-3 px of a small one).
+/// image at that instant, which differs by what perspective and lens do to a sphere (some 1e-3 px of a small one).
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct MarkerInPicture {
   Eigen::Vector2d centroid_px = Eigen::Vector2d::Zero();
 };
 
-/// Nothing where the centre lies outside the picture. NumericalError where the marker outruns a rolling readout.
+/// Nothing where the centre lies outside the image. NumericalError where the marker outruns a rolling readout.
 std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const sim::Body& body,
                                                  const FrameMotion& frame);
 

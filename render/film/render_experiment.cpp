@@ -10,11 +10,13 @@
 #include "base/files/staged_output.h"
 #include "base/parallel.h"
 #include "base/text/csv.h"
+#include "render/film/calibration_boards.h"
 #include "render/film/clip_set.h"
 #include "render/film/experiment_and_truth_files.h"
 #include "render/film/ideal_frames.h"
 #include "render/film/marker_truth.h"
 #include "render/paint/static_painter.h"
+#include "render/random/streams.h"
 #include "render/sensor/readout.h"
 #include "render/video/video_writer.h"
 
@@ -23,14 +25,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A still picture that has to be taken.
+/// A still image that has to be taken.
 struct Still {
   std::string name;  ///< within the experiment folder
   StaticScene scene;
 };
 
-// Noise streams: clips count from 0, stills from here.
-constexpr std::uint32_t kFirstStill = 0x40000000u;
 // How long a still takes beside a frame, for the progress.
 constexpr double kStillWork = 30.0;
 
@@ -218,7 +218,8 @@ void render_stills(const Scenario& scenario, const RenderOptions& options, const
     std::vector<std::uint8_t> codes(static_cast<std::size_t>(all.width) * all.height);
     for (std::size_t i = next(); i < stills.size(); i = next()) {
       const FloatPicture expected_e = scaled(painter.paint_before(empty, stills[i].scene), white_e);
-      readout.read(expected_e, kFirstStill + static_cast<std::uint32_t>(i), 0, all, std::span<std::uint8_t>(codes));
+      readout.read(expected_e, kFirstStillStream + static_cast<std::uint32_t>(i), 0, all,
+                   std::span<std::uint8_t>(codes));
       write_png(experiment_dir / stills[i].name, cv::Mat(all.height, all.width, CV_8U, codes.data()));
       still_done();
     }

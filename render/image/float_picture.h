@@ -1,4 +1,4 @@
-/// A picture of floats in memory, and a rectangle of pixels.
+/// An image of floats in memory, and a rectangle of pixels.
 #pragma once
 
 #include <algorithm>

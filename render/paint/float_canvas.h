@@ -1,8 +1,8 @@
-/// Pictures by fragment shaders, off screen and in single precision: an OSMesa context behind RAII.
+/// Images by fragment shaders, off screen and in single precision: an OSMesa context behind RAII.
 ///
 /// A canvas has one render target of floats, textures of floats that shaders read with texelFetch, and programs, each
 /// made of one fragment shader (GLSL 3.30) that runs once for every pixel of a rectangle. Row 0 of the target is the
-/// picture's top row: the shader's ivec2(gl_FragCoord.xy) is the target's (column, row), and this is the one place
+/// image's top row: the shader's ivec2(gl_FragCoord.xy) is the target's (column, row), and this is the one place
 /// where OpenGL's half pixel is dropped.
 ///
 /// A canvas belongs to one thread at a time. Errors: EnvironmentError where OSMesa gives no 3.3 core context or no

@@ -78,7 +78,7 @@ TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
 [[gnu::always_inline]] inline void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight,
                                            const RowRays& rays, RowPicture& out) {
   RowPicture seen = kDark;
-  // One box after the other: its seen faces, which share its picture, then patches in their places, then the whole
+  // One box after the other: its seen faces, which share its image, then patches in their places, then the whole
   // over what was there.
   for (std::size_t k = 0; k < plan.steps.size();) {
     RowPicture box = kDark;
@@ -145,7 +145,7 @@ AddRow* best_add_row() {
 }
 
 /// Draws tile by tile. What is decided of a tile is decided of the whole of it, also where only a part is wanted: so a
-/// pixel is the same in any part of the picture.
+/// pixel is the same in any part of the image.
 class TilePainter {
  public:
   TilePainter(const RayTable& rays, const std::vector<Shapes>& shapes, double middle_m, const Looks& looks)

@@ -4,9 +4,9 @@
 /// straight line cuts off the unit square: outlines are projected exactly, the lens is taken as linear within a pixel,
 /// and the sphere is taken in quarters of a pixel with its curvature corrected to first order in 1/radius. Light is
 /// linear. The exposure is the mean over the instants at which the caller says where the body is, and whence it is
-/// seen. The moments of a marker's picture are those of rays cast one by one to 1e-3 px, for radii from 2.5 px
-/// (tests/render/test_moving_painter.cpp). Of tiles of 8 x 8 pixels only those that an outline may cross at one of the
-/// instants are looked at pixel by pixel. A pixel is the same in any part of the picture that is asked for.
+/// seen. The moments of a marker's image are those of rays cast one by one to 1e-3 px, for radii from 2.5 px
+/// (tests/render/paint/test_moving_painter.cpp). Of tiles of 8 x 8 pixels only those that an outline may cross at one
+/// of the instants are looked at pixel by pixel. A pixel is the same in any part of the image that is asked for.
 ///
 /// This runs on the processor and not in a shader: of the few thousand pixels of a glider each belongs to a few shapes
 /// only, and a shader, which does all the shapes' work in each pixel, was measured to be some twenty times slower.
@@ -22,20 +22,20 @@
 
 namespace glidelab::render {
 
-/// What the body adds to the picture: pixel = radiance + (1 - coverage) * what stands behind.
+/// What the body adds to the image: pixel = radiance + (1 - coverage) * what stands behind.
 struct MovingLayer {
-  PixelRect rect;               ///< within the picture, whole tiles of it; empty where the body is not seen
+  PixelRect rect;               ///< within the image, whole tiles of it; empty where the body is not seen
   std::vector<float> radiance;  ///< times coverage and the table's gain; rect.width * rect.height, row by row
   std::vector<float> coverage;
 };
 
-/// The body's mean picture over the instants at which it is at `x_m` on its track, within `within`; `rays` belongs to
+/// The body's mean image over the instants at which it is at `x_m` on its track, within `within`; `rays` belongs to
 /// `camera`. NumericalError where a part of the body is not before the camera.
 MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, std::span<const double> x_m,
                   const PixelRect& within);
 MovingLayer paint(const Camera& camera, const RayTable& rays, const MovingBody& body, std::span<const double> x_m);
 
-/// One of the instants of which a row of the picture is the mean.
+/// One of the instants of which a row of the image is the mean.
 struct Instant {
   std::size_t view = 0;  ///< whence the body is seen
   double x_m = 0.0;      ///< where it is on its track
@@ -53,10 +53,10 @@ struct Looks {
   std::function<std::span<const Instant>(int row)> of_row;
 };
 
-/// The body's picture by what each row sees. The sphere stays a sphere in a view that is not rigid.
+/// The body's image by what each row sees. The sphere stays a sphere in a view that is not rigid.
 MovingLayer paint(const RayTable& rays, const MovingBody& body, const Looks& looks, const PixelRect& within);
 
-/// Puts the layer over a picture (of radiance, or of anything that radiance times `scale` is).
+/// Puts the layer over an image (of radiance, or of anything that radiance times `scale` is).
 void put_over(const MovingLayer& layer, float scale, FloatPicture& picture);
 
 }  // namespace glidelab::render

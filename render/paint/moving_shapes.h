@@ -1,6 +1,6 @@
 /// The glider's outlines as one view sees them, in undistorted coordinates, where straight edges are straight lines.
 ///
-/// An outline moves with the body's shift s along the track: the line through the pictures of p + s d and q + s d is
+/// An outline moves with the body's shift s along the track: the line through the images of p + s d and q + s d is
 /// (p + s d) x (q + s d) = p x q + s (p - q) x d, linear in s. So what holds of a line at both ends of a range of
 /// shifts holds within it, and a tile of pixels (ray_table.h) that lies on one side of all lines at both ends is
 /// decided without a look at its pixels.

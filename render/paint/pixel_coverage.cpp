@@ -13,16 +13,16 @@ struct Point {
   double x, y;
 };
 // A square has 4 corners, and each line adds at most one.
-using Corners = std::array<Point, 12>;
+using CutCorners = std::array<Point, 12>;
 
 }  // namespace
 
 double convex_coverage(std::span<const PixelLine> lines) {
   if (lines.size() > 8) throw std::logic_error("too many lines through a pixel");
-  Corners corners{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
+  CutCorners corners{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
   std::size_t count = 4;
   for (const PixelLine& line : lines) {
-    Corners kept{};
+    CutCorners kept{};
     std::size_t kept_count = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const Point& p = corners[i];

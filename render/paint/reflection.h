@@ -1,6 +1,6 @@
-/// Spots of reflected light in a frame (render/light.h).
+/// Spots of reflected light in a frame (render/scenario/light.h).
 ///
-/// A spot's picture is a Gaussian about the projection of its middle, with the standard deviation radius · focal/Z
+/// A spot's image is a Gaussian about the projection of its middle, with the standard deviation radius · focal/Z
 /// along both axes; each pixel gets its exact integral over the pixel. It is drawn up to six standard deviations.
 /// During the exposure it moves; with a rolling shutter it is taken at the time of its middle's row, without shear.
 #pragma once
@@ -8,7 +8,7 @@
 #include "render/camera/ray_table.h"
 #include "render/image/float_picture.h"
 #include "render/scenario/clip_motion.h"
-#include "render/scenario/scenario.h"
+#include "render/scenario/scenario_data.h"
 
 namespace glidelab::render {
 

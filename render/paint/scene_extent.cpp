@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMarginPx = 6.0;  // for what a long edge bulges between its points, and the rays of pixels beside it
 
-/// The rectangle that holds the pictures of points, with a margin; the whole picture where one of them has none.
+/// The rectangle that holds the images of points, with a margin; the whole image where one of them has none.
 class Extent {
  public:
   explicit Extent(const Camera& camera) : camera_(camera) {}

@@ -1,4 +1,4 @@
-/// Where in the picture the parts of a scene are: rectangles of pixels that hold them.
+/// Where in the image the parts of a scene are: rectangles of pixels that hold them.
 #pragma once
 
 #include "render/camera/camera.h"
@@ -7,7 +7,7 @@
 
 namespace glidelab::render {
 
-/// The whole picture where a part of the box's edges is not before the camera.
+/// The whole image where a part of the box's edges is not before the camera.
 PixelRect pixels_of(const Camera& camera, const StaticBox& box);
 
 /// The pixels that the board and the plumb line may change, with `reach_px` around; empty without either.

@@ -88,7 +88,7 @@ Eigen::Vector2d source_of(const FinePicture& fine, const Eigen::Isometry3d& move
       source = pixel_of(fine.camera, (turned + moved.translation() / scale).hnormalized(), fine.rays.fold_radius);
     }
   }
-  if (!source) throw std::logic_error("shaken picture: a ray leads beyond the lens");
+  if (!source) throw std::logic_error("shaken image: a ray leads beyond the lens");
   return *source;
 }
 
@@ -123,7 +123,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
   constexpr double kMost = 400.0;
   if (!(shift <= kMost)) {
     throw base::NumericalError(
-        fmt::format("mount: the picture moves by {:.0f} px; up to {:.0f} px can be drawn", shift, kMost));
+        fmt::format("mount: the image moves by {:.0f} px; up to {:.0f} px can be drawn", shift, kMost));
   }
   fine.margin_px = static_cast<int>(std::ceil(shift));
   const int columns = (camera.width_px + 2 * fine.margin_px) * kFine;
@@ -157,7 +157,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
             camera.lens,
             (Eigen::Vector2d(x - fine.margin_px, y - fine.margin_px) - camera.center_px).cwiseQuotient(camera.focal_px),
             fine.rays.fold_radius);
-        if (!ray) throw base::NumericalError("mount: the lens has no rays beyond the picture's edge");
+        if (!ray) throw base::NumericalError("mount: the lens has no rays beyond the image's edge");
         fine.depth_m.at(x, y) = static_cast<float>(depth_along(camera, scene, *ray));
       }
     }
@@ -176,7 +176,7 @@ void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int
     const int left = static_cast<int>(std::floor(fx));
     const int top = static_cast<int>(std::floor(fy));
     if (left < 0 || top < 0 || left + 1 >= fine.means.width || top + 1 >= fine.means.height) {
-      throw std::logic_error(fmt::format("shaken picture: ({}, {}) lies beyond the margin", u, v));
+      throw std::logic_error(fmt::format("shaken image: ({}, {}) lies beyond the margin", u, v));
     }
     const auto a = static_cast<float>(fx - left);
     const auto b = static_cast<float>(fy - top);

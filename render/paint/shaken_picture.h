@@ -1,12 +1,12 @@
 /// What stands still, seen by a camera that does not.
 ///
-/// The scene is ray-cast once, over a margin around the picture and finer than its pixels (kFine to a pixel), and each
+/// The scene is ray-cast once, over a margin around the image and finer than its pixels (kFine to a pixel), and each
 /// fine place then holds the mean over a pixel's square about it: what a pixel shows whose ray leads there. A frame
 /// takes each pixel from where its ray leads at that instant, bilinearly between fine places. The directions are exact
-/// (one projection every 16 px along a row, linear between them); within 1/kFine of a pixel a picture is taken as
+/// (one projection every 16 px along a row, linear between them); within 1/kFine of a pixel an image is taken as
 /// linear, which errs where a straight edge along rows or columns enters a pixel, by 1/(4 kFine) of its contrast at
 /// most. A camera that is moved sideways sees parallax: by the depth of what the still camera sees there, so that
-/// within a pixel or two of an edge in depth the picture is an estimate.
+/// within a pixel or two of an edge in depth the image is an estimate.
 #pragma once
 
 #include <optional>
@@ -25,14 +25,14 @@ namespace glidelab::render {
 inline constexpr int kFine = 4;
 
 struct FinePicture {
-  Camera camera;         ///< at rest, of the picture's own size
+  Camera camera;         ///< at rest, of the image's own size
   RayTable rays;         ///< of it
   int margin_px = 0;     ///< around it
   FloatPicture means;    ///< radiance, a pixel's mean about each fine place
   FloatPicture depth_m;  ///< of the pixel centres, margin included; empty where nothing moves sideways
 };
 
-/// How far, in pixels, the picture of something at infinity or at `nearest_m` moves at most within `duration_s`: what
+/// How far, in pixels, the image of something at infinity or at `nearest_m` moves at most within `duration_s`: what
 /// the margin must hold.
 double largest_shift_px(const Camera& camera, const Mount& mount, double duration_s, double nearest_m);
 
@@ -41,7 +41,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
                          const StaticScene& scene, double duration_s);
 
 /// Adds weight times the radiance of pixels [x, x + values.size()) of the row y, the camera being moved by `moved`
-/// (render/mount.h). std::logic_error where a ray leads beyond the margin.
+/// (render/camera/mount.h). std::logic_error where a ray leads beyond the margin.
 void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int x, float weight,
              std::span<float> values);
 

@@ -1,8 +1,8 @@
-/// The exact picture of a sphere.
+/// The exact image of a sphere.
 ///
 /// A sphere of radius r about c (camera frame) fills the cone of rays d with (d·c)² >= (|c|² - r²) |d|². On the plane
 /// z = 1 of undistorted coordinates that is an ellipse, whose centre is not the projection of the sphere's centre. The
-/// lens then bends the ellipse; the photometric centre of the picture is the centroid of the bent area.
+/// lens then bends the ellipse; the photometric centre of the image is the centroid of the bent area.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ struct AreaMoments {
   Eigen::Vector2d centroid_px = Eigen::Vector2d::Zero();
 };
 
-/// Area and centroid, in the picture, of what the lens makes of an ellipse: the integrals of 1 and of the pixel
+/// Area and centroid, in the image, of what the lens makes of an ellipse: the integrals of 1 and of the pixel
 /// position over the ellipse with the mapping's Jacobian, by Gauss-Legendre in the radius and the trapezoid rule in the
 /// angle (exact to rounding for the polynomials that a lens is made of).
 AreaMoments picture_of(const Camera& camera, const Ellipse& ellipse);

@@ -55,7 +55,7 @@ int StaticPainter::blur_reach_px(const StaticScene& scene) const {
   double nearest = std::numeric_limits<double>::infinity();
   double farthest = 0.0;
   const auto add = [&](const Eigen::Vector3d& p_W) {
-    constexpr double kBefore = 0.2;  // m; what is nearer is hardly in the picture
+    constexpr double kBefore = 0.2;  // m; what is nearer is hardly in the image
     const double depth = std::max((X_CW * p_W).z(), kBefore);
     nearest = std::min(nearest, depth);
     farthest = std::max(farthest, depth);

@@ -23,10 +23,10 @@ class StaticPainter {
   /// 256 rays, from all over the lens's aperture and the core's Gaussian (the same in each pixel).
   StaticPainter(const Camera& camera, const RayTable& rays, const std::optional<Focus>& focus = std::nullopt);
 
-  /// Relative radiance, times the table's gain, in the size of the picture.
+  /// Relative radiance, times the table's gain, in the size of the image.
   FloatPicture paint(const StaticScene& scene);
 
-  /// The same, from `empty`, the picture of the scene without its board and plumb line: only what these may change is
+  /// The same, from `empty`, the image of the scene without its board and plumb line: only what these may change is
   /// drawn. (With `focus` the pixels elsewhere have as many rays as `empty` needed.)
   FloatPicture paint_before(const FloatPicture& empty, const StaticScene& scene);
 

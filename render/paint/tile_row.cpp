@@ -109,7 +109,7 @@ struct Quarters {
 [[gnu::always_inline]] inline void cover_quarters(const Ball& ball, int count, Quarters& q) {
   const double z2 = ball.z * ball.z, least = 1e-3 * ball.radius, bend = 1.0 / (24.0 * ball.radius);
   for (int i = 0; i < count; ++i) {
-    // The distance's gradient in the picture makes it a distance in pixels.
+    // The distance's gradient in the image makes it a distance in pixels.
     const double x = q.x[i], y = q.y[i], ex = x - ball.center_x, ey = y - ball.center_y;
     const double ray2 = 1.0 + (x * x + y * y);
     const double turn = ex * ball.y - ey * ball.x;

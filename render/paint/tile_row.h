@@ -26,7 +26,7 @@ RowRays rays_of_row(const RayTable& rays, int x, int y, int count);
 /// Coverage by what lies on the inner side of all lines a x + b y + c > 0 (at most four).
 TileRow polygon_row(std::span<const Eigen::Vector3d> lines, const RowRays& rays, Simd simd = Simd::best);
 
-/// Coverage by a sphere's picture, each pixel in quarters, the outline's curvature to first order.
+/// Coverage by a sphere's image, each pixel in quarters, the outline's curvature to first order.
 TileRow sphere_row(const Eigen::Vector3d& center_C, double radius_m, const RowRays& rays, Simd simd = Simd::best);
 
 }  // namespace glidelab::render

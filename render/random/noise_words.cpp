@@ -1,5 +1,7 @@
 #include "render/random/noise_words.h"
 
+#include "render/random/streams.h"
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -10,7 +12,8 @@ namespace {
 void row_words_portable(std::uint32_t first_block, int groups, const RowNoise& noise, std::uint32_t* words) {
   for (int block = 0; block < groups * kBlocks; ++block) {
     const PhiloxCounter four =
-        philox({first_block + static_cast<std::uint32_t>(block), noise.frame, noise.stream, 0}, noise.key);
+        random_words(RandomPurpose::pixel_noise,
+                     {first_block + static_cast<std::uint32_t>(block), noise.frame, noise.stream}, noise.key);
     for (int j = 0; j < 4; ++j) words[block / kBlocks * kGroup + j * kBlocks + block % kBlocks] = four[j];
   }
 }
@@ -37,7 +40,7 @@ void row_words_portable(std::uint32_t first_block, int groups, const RowNoise& n
       c[h][0] = _mm256_add_epi32(block, _mm256_setr_epi32(h, 0, 2 + h, 0, 4 + h, 0, 6 + h, 0));
       c[h][1] = _mm256_set1_epi64x(noise.frame);
       c[h][2] = _mm256_set1_epi64x(noise.stream);
-      c[h][3] = _mm256_setzero_si256();
+      c[h][3] = _mm256_set1_epi64x(static_cast<std::uint32_t>(RandomPurpose::pixel_noise));
     }
     for (const auto& [k0, k1] : keys) {
       for (auto& half : c) {
@@ -69,7 +72,7 @@ void row_words_sse2(std::uint32_t first_block, int groups, const RowNoise& noise
       c[h][0] = _mm_add_epi32(block, _mm_setr_epi32(h, 0, 2 + h, 0));
       c[h][1] = _mm_set1_epi64x(noise.frame);
       c[h][2] = _mm_set1_epi64x(noise.stream);
-      c[h][3] = _mm_setzero_si128();
+      c[h][3] = _mm_set1_epi64x(static_cast<std::uint32_t>(RandomPurpose::pixel_noise));
     }
     PhiloxKey key = noise.key;
     for (int round = 0; round < kPhiloxRounds; ++round) {

@@ -21,7 +21,7 @@ struct RowNoise {
 };
 
 /// Words of the blocks first_block, first_block + 1, …, 8 blocks a group, into `words` (32 a group): word j of block b
-/// of group g at 32 g + 8 j + b. The counter is {block, frame, stream, 0}.
+/// of group g at 32 g + 8 j + b. RandomPurpose::pixel_noise.
 void row_words(std::uint32_t first_block, int groups, const RowNoise& noise, std::uint32_t* words, Simd simd);
 
 }  // namespace glidelab::render

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "base/files/staged_output.h"
 #include "base/toml/toml_set.h"
+#include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {
@@ -15,12 +15,19 @@ namespace {
 using base::TomlFile;
 using base::TomlTable;
 
-constexpr std::array kSections = {"camera", "vignetting", "focus", "shutter", "sensor", "clock", "codec"};
+/// The sections that a camera's file may have.
+std::vector<std::string_view> camera_file_sections() {
+  std::vector<std::string_view> names;
+  for (const ScenarioSection* section : scenario_sections()) {
+    if (section->in_camera_file) names.push_back(section->name);
+  }
+  return names;
+}
 
 /// With a key of the scenario's own, these keys of the camera make no sense.
 struct Choice {
-  const char* section;
-  const char* key;
+  std::string_view section;
+  std::string_view key;
   std::vector<std::string> belonging;
 };
 
@@ -39,10 +46,10 @@ const std::vector<Choice>& choices() {
   return all;
 }
 
-std::vector<std::string> left_out(const TomlTable& own, const char* section) {
+std::vector<std::string> left_out(const TomlTable& own, std::string_view section) {
   std::vector<std::string> keys;
   for (const Choice& choice : choices()) {
-    if (std::string_view(choice.section) != section || !own.has(choice.key)) continue;
+    if (choice.section != section || !own.has(choice.key)) continue;
     keys.insert(keys.end(), choice.belonging.begin(), choice.belonging.end());
   }
   return keys;
@@ -61,7 +68,7 @@ void check_source(const TomlTable& values, const TomlTable& sources, const std::
 void check_sources(const TomlTable& root) {
   const std::optional<TomlTable> source = root.maybe_table("source");
   if (!source) return;
-  for (const char* section : kSections) {
+  for (const std::string_view section : camera_file_sections()) {
     const std::optional<TomlTable> values = root.maybe_table(section);
     if (!values) continue;
     const TomlTable sources = source->table(section);
@@ -80,7 +87,7 @@ CameraFile read_camera_name(const std::filesystem::path& path) {
   root.integer_or("format", 1, 1, 1);
   CameraFile camera{root.text_or("name", path.stem().string()), root.text_or("price_class", "unknown")};
   root.ignore("notes");
-  for (const char* section : kSections) root.ignore(section);
+  for (const std::string_view section : camera_file_sections()) root.ignore(section);
   check_sources(root);
   file.finish();
   return camera;
@@ -91,7 +98,7 @@ CameraFile take_camera_file(const std::filesystem::path& path, TomlFile& scenari
   // Asking marks a key as known, so what is asked here is another copy of both files.
   TomlFile values = TomlFile::load(path);
   const TomlFile own = TomlFile::parse(scenario_text, scenario.name());
-  for (const char* section : kSections) {
+  for (const std::string_view section : camera_file_sections()) {
     const std::optional<TomlTable> table = own.root().maybe_table(section);
     scenario.add_missing(section, values, table ? left_out(*table, section) : std::vector<std::string>{});
   }
@@ -105,9 +112,9 @@ std::string with_camera_written_in(std::string_view scenario_text, const std::fi
   const std::filesystem::path path = scenario_file.parent_path() / *camera;
   read_camera_name(path);  // says what is wrong with the file
   std::vector<base::TomlSection> sections;
-  for (const char* section : kSections) {
+  for (const std::string_view section : camera_file_sections()) {
     const std::optional<TomlTable> table = scenario.root().maybe_table(section);
-    sections.push_back({section, table ? left_out(*table, section) : std::vector<std::string>{}});
+    sections.push_back({std::string(section), table ? left_out(*table, section) : std::vector<std::string>{}});
   }
   return base::with_missing(scenario_text, scenario_file.string(), base::read_file(path), path.string(), sections,
                             "camera_file");

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/scenario/scenario.h"
+#include "render/scenario/scenario_data.h"
 #include "sim/motion/simulate.h"
 
 namespace glidelab::render {

@@ -1,8 +1,8 @@
-/// The light of a scene as it changes from picture to picture and from place to place.
+/// The light of a scene as it changes from image to image and from place to place.
 ///
 /// Flicker: all light is multiplied by 1 + depth cos(2 pi f t + phase), t counted from the clip's first exposure; a row
 /// gets its mean over the row's exposure [a, a + T], 1 + depth sinc(pi f T) cos(2 pi f (a + T/2) + phase). Still
-/// pictures do not flicker. A reflection is a round spot of light with a Gaussian profile, added to what stands there;
+/// images do not flicker. A reflection is a round spot of light with a Gaussian profile, added to what stands there;
 /// it follows its own velocity, and the glider's motion times `follow`.
 #pragma once
 
@@ -17,7 +17,7 @@ struct Reflection {
   double radius_m = 0.02;       ///< standard deviation of its profile
   double radiance = 1.0;        ///< in its middle, of white
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
-  double follow = 0.0;    ///< of the glider's way, along the track
+  double follow = 0.0;    ///< of the glider's displacement along the track
   bool in_front = false;  ///< of the glider; else it hides the spot
 };
 

@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
+#include <limits>
+#include <vector>
 
 #include "base/errors.h"
 #include "base/files/staged_output.h"
 #include "base/toml/strict_toml.h"
 #include "render/scenario/camera_catalogue.h"
 #include "render/scenario/clip_motion.h"
-#include "render/scenario/read_optics.h"
-#include "render/scenario/read_sensor.h"
+#include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"
 
 namespace glidelab::render {
@@ -19,76 +18,11 @@ namespace {
 
 using base::TomlTable;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-/// An optional section: absent, it is as good as empty.
-template <typename Read>
-void section(const TomlTable& root, std::string_view key, const Read& read) {
-  if (const std::optional<TomlTable> table = root.maybe_table(key)) read(*table);
-}
-
-void read_pattern(const TomlTable& root, PatternSetup& pattern) {
-  section(root, "calibration", [&](const TomlTable& table) {
-    if (const auto corners = table.maybe_numbers("inner_corners", 2, base::between(3.0, 100.0))) {
-      const double columns = (*corners)[0], rows = (*corners)[1];
-      if (columns == std::floor(columns) && rows == std::floor(rows) && columns >= rows) {
-        pattern.inner_columns = static_cast<int>(columns);
-        pattern.inner_rows = static_cast<int>(rows);
-      } else if (std::isfinite(columns)) {  // else it is an error already
-        table.reject("inner_corners", fmt::format("[{}, {}]", (*corners)[0], (*corners)[1]),
-                     "two whole numbers, the larger one first");
-      }
-    }
-    pattern.square_m = table.number_or("square_m", pattern.square_m, {1e-4, 10.0, false, false});
-    pattern.views = static_cast<int>(table.integer_or("views", pattern.views, 3, 99));
-    if (const auto places = table.maybe_numbers("plane_x_m", 0, base::between(-1000.0, 1000.0))) {
-      pattern.plane_x_m = *places;
-      if (places->empty() || places->size() > 99) {
-        table.reject("plane_x_m", fmt::format("an array of {}", places->size()), "1 to 99 places");
-      }
-    }
-    pattern.plane_y_m = table.number_or("plane_y_m", pattern.plane_y_m, base::between(-1000.0, 1000.0));
-    pattern.plane_rotation_rad =
-        table.number_or("plane_rotation_deg", pattern.plane_rotation_rad / kRadPerDeg, base::between(-10.0, 10.0)) *
-        kRadPerDeg;
-  });
-}
-
-void read_laboratory(const TomlTable& root, Scenario& scenario) {
-  const base::Range albedo = base::between(0.0, 1.0);
-  section(root, "marker", [&](const TomlTable& table) {
-    MarkerSetup& marker = scenario.marker;
-    marker.diameter_m = table.number_or("diameter_m", marker.diameter_m, {1e-4, 1.0, false, false});
-    marker.height_m = table.number_or("height_m", marker.height_m, base::between(-0.2, 0.2));
-    marker.reflectance = table.number_or("reflectance", marker.reflectance, base::between(0.0, 20.0));
-  });
-  section(root, "track", [&](const TomlTable& table) {
-    scenario.track.downhill = table.word("downhill", {"+X", "-X"}, "+X") == "+X" ? 1 : -1;
-    scenario.track.length_m = table.number_or("length_m", scenario.track.length_m, {0.1, 100.0, false, false});
-  });
-  section(root, "scene", [&](const TomlTable& table) {
-    SceneSetup& scene = scenario.scene;
-    scene.wall_albedo = table.number_or("wall_albedo", scene.wall_albedo, albedo);
-    scene.wall_distance_m = table.number_or("wall_distance_m", scene.wall_distance_m, base::between(0.25, 100.0));
-    scene.track_albedo = table.number_or("track_albedo", scene.track_albedo, albedo);
-    scene.glider_albedo = table.number_or("glider_albedo", scene.glider_albedo, albedo);
-    scene.glider_mass_kg = table.number_or("glider_mass_kg", scene.glider_mass_kg, base::at_least(0.0));
-    scene.light_falloff = table.number_or("light_falloff", scene.light_falloff, base::between(0.0, 10.0));
-  });
-  section(root, "plumb", [&](const TomlTable& table) {
-    PlumbSetup plumb;
-    plumb.x_m = table.number_or("x_m", plumb.x_m, base::between(-1000.0, 1000.0));
-    plumb.z_m = table.number_or("z_m", plumb.z_m, base::between(-10.0, 10.0));
-    plumb.diameter_m = table.number_or("diameter_m", plumb.diameter_m, {1e-5, 0.1, false, false});
-    scenario.plumb = plumb;
-  });
-}
-
 /// The checks that need the whole scenario; asked only of one without other errors.
 void check_pictures(const TomlTable& root, const Scenario& scenario) {
   const Camera& camera = scenario.camera;
   if (const auto why = why_not_one_to_one(camera)) {
-    root.reject("camera", *why, "a lens that maps one to one over the picture");
+    root.reject("camera", *why, "a lens that maps one to one over the image");
     return;
   }
   for (std::size_t view = 0; view < scenario.pattern.plane_x_m.size(); ++view) {
@@ -96,9 +30,9 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
       const auto pixel = project(camera, corner);
       if (pixel && in_picture(camera, *pixel)) continue;
       root.reject("calibration",
-                  fmt::format("a pattern of which a part is not in the picture, at plane_x_m = {}",
+                  fmt::format("a pattern of which a part is not in the image, at plane_x_m = {}",
                               scenario.pattern.plane_x_m[view]),
-                  "a pattern in the plane of motion that is wholly in the picture, with a white border of one square");
+                  "a pattern in the plane of motion that is wholly in the image, with a white border of one square");
       break;
     }
   }
@@ -127,7 +61,7 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
       if (behind) {
         root.reject("configuration", clip + " with a marker that gets behind the camera", "a motion before the camera");
       } else if (!seen) {
-        root.reject("configuration", clip + " with a marker that is never in the picture",
+        root.reject("configuration", clip + " with a marker that is never in the image",
                     "a motion of which the camera sees at least a part");
       }
     }
@@ -173,12 +107,7 @@ Scenario read_scenario(std::string_view text, const std::filesystem::path& path,
   scenario.file = path;
   scenario.motion = sim::read_motions(root);
   scenario.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
-  read_optics(root, scenario);
-  read_sensor(root, scenario);
-  read_codec(root, scenario);
-  read_clock(root, scenario);
-  read_pattern(root, scenario.pattern);
-  read_laboratory(root, scenario);
+  read_sections(root, scenario);
   file.finish();
   if (checks == ScenarioChecks::all) check_pictures(root, scenario);
   file.finish();

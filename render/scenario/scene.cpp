@@ -185,7 +185,7 @@ PlumbLine plumb_line(const PlumbSetup& setup, const Camera& camera) {
   line.x_m = setup.x_m;
   line.z_m = setup.z_m;
   line.diameter_m = setup.diameter_m;
-  // From above the picture down to a bob that hangs a little over the table.
+  // From above the image down to a bob that hangs a little over the table.
   const double reach = camera.height_px / camera.focal_px.y() * (camera.X_WC.translation().z() - setup.z_m);
   line.top_y_m = camera.X_WC.translation().y() + 2.0 * reach;
   line.bottom_y_m = -kTableBelow + 0.035;

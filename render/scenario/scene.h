@@ -1,4 +1,4 @@
-/// The laboratory of a scenario: what the painters get to draw for each picture.
+/// The laboratory of a scenario: what the painters get to draw for each image.
 ///
 /// The line of motion of a set-up with inclination a passes through the world's origin, off the plane z = 0 by the
 /// marker's height, along (cos a, -sin a, 0) (track.downhill = +1) or (-cos a, -sin a, 0) (-1).
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/scenario/moving_body.h"
-#include "render/scenario/scenario.h"
+#include "render/scenario/scenario_data.h"
 #include "render/scenario/static_scene.h"
 
 namespace glidelab::render {
@@ -29,17 +29,13 @@ MovingBody glider(const Scenario& scenario, const StaticScene& scene, const sim:
 /// configuration.
 Chessboard plane_board(const Scenario& scenario, std::size_t view);
 
-/// The boards of the calibration views: poses that fill different parts of the picture, tilted up to 35 degrees,
-/// jittered by `seed`, each wholly visible with its white border. NumericalError where no such pose is found.
-std::vector<Chessboard> calibration_boards(const Scenario& scenario, std::uint64_t seed);
-
 PlumbLine plumb_line(const PlumbSetup& setup, const Camera& camera);
 
 /// A rectangle around the part of the plumb line that is seen before the wall, above the track of the first
-/// configuration; nothing where less than 40 px of it are in the picture, or there is no plumb.
+/// configuration; nothing where less than 40 px of it are in the image, or there is no plumb.
 std::optional<PixelRect> plumb_region(const Scenario& scenario);
 
-/// The scenario as its clips see it: with the focal length after the calibration (render/mount.h).
+/// The scenario as its clips see it: with the focal length after the calibration (render/camera/mount.h).
 Scenario as_in_clips(const Scenario& scenario);
 
 /// Electrons that a relative radiance of 1 gives in one exposure.

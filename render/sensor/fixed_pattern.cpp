@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "render/random/normal_pair.h"
-#include "render/random/philox.h"
+#include "render/random/streams.h"
 
 namespace glidelab::render {
 
@@ -16,7 +16,7 @@ FixedPattern make_fixed_pattern(const PixelSpread& spread, double exposure_s, st
   FixedPattern pattern{width, height, std::vector<float>(pixels), std::vector<float>(pixels, dark_e),
                        std::vector<float>(pixels)};
   for (std::size_t i = 0; i < pixels; ++i) {
-    const PhiloxCounter words = philox({static_cast<std::uint32_t>(i), 0, 0, 2}, key);
+    const PhiloxCounter words = random_words(RandomPurpose::fixed_pattern, {static_cast<std::uint32_t>(i), 0, 0}, key);
     const auto [z1, z2] = normal_pair(words[0], words[1]);
     pattern.response[i] = std::max(0.0f, 1.0f + static_cast<float>(spread.prnu) * z1);
     pattern.offset_e[i] = static_cast<float>(spread.dsnu_e) * z2;

@@ -5,8 +5,8 @@
 ///     offset_p   = DSNU z2
 ///
 /// with z1, z2 standard normal, white over the sensor (EMVA standard 1288: photo response and dark signal
-/// non-uniformity; DSNU at the exposure of the clip). Philox counter {pixel, 0, 0, 2} (sensor.h): a function of the
-/// seed and the pixel's place alone.
+/// non-uniformity; DSNU at the exposure of the clip). A function of the seed and the
+/// pixel's place alone (RandomPurpose::fixed_pattern).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// A camera's way from expected electrons to the codes of its pictures: the sensor with its fixed pattern (sensor.h),
+/// From expected electrons to the codes of a camera's images: the sensor with its fixed pattern (sensor.h),
 /// then, where it has them, the mosaic (mosaic.h) and the tone curve (tone_curve.h).
 ///
 ///     converter codes ─► demosaiced to grey, rounded ─► round(tone((code - offset) / (largest - offset)) largest out)
@@ -18,7 +18,7 @@ namespace glidelab::render {
 /// Made once for a camera; const and safe to share among threads.
 class Readout {
  public:
-  /// The seed and the pictures' size make the fixed pattern; the exposure scales the dark signal.
+  /// The seed and the images' size make the fixed pattern; the exposure scales the dark signal.
   Readout(const Sensor& sensor, double exposure_s, std::uint64_t seed, int width, int height);
 
   const Sensor& sensor() const { return sensor_; }
@@ -26,7 +26,7 @@ class Readout {
   /// The pixels of which the expected electrons count for the codes of `rect`: a mosaic's neighbours too.
   PixelRect seen_by(const PixelRect& rect) const;
 
-  /// Codes of the pixels of `rect`, row by row; 8-bit ones for bit_depth 8. The same in any part of the picture.
+  /// Codes of the pixels of `rect`, row by row; 8-bit ones for bit_depth 8. The same in any part of the image.
   void read(const FloatPicture& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
             std::span<std::uint8_t> codes) const;
   void read(const FloatPicture& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,

@@ -12,6 +12,7 @@
 #include "render/random/noise_words.h"
 #include "render/random/normal_pair.h"
 #include "render/random/poisson.h"
+#include "render/random/streams.h"
 
 namespace glidelab::render {
 namespace {
@@ -88,7 +89,7 @@ const PoissonTable& poisson_table() {
 /// The exact path for one pixel.
 int exact_code(const Sensor& sensor, double mean_e, double own_e, std::uint32_t pixel, const NoiseKey& key,
                const PhiloxKey& words_key) {
-  const PhiloxCounter words = philox({pixel, key.frame, key.stream, 1}, words_key);
+  const PhiloxCounter words = random_words(RandomPurpose::exact_pixel_noise, {pixel, key.frame, key.stream}, words_key);
   const auto [z_read, z_shot] = normal_pair(words[2], words[3]);
   double electrons = 0.0;
   if (mean_e < static_cast<double>(kNormalMean)) {
@@ -124,7 +125,7 @@ class FilledGroup {
   Pixels pixels_;
 };
 
-/// Rows of one picture.
+/// Rows of one image.
 template <typename Code>
 class RowReader {
  public:
@@ -185,7 +186,7 @@ class RowReader {
     std::copy(all.begin() + (left - start), all.begin() + (right - start), codes);
   }
 
-  /// `last` pixels of the last group are in the picture.
+  /// `last` pixels of the last group are in the image.
   void read_groups(int y, int first, int groups, const Pixels& pixels, int last, Code* codes) {
     const auto block = static_cast<std::uint32_t>((y * groups_in_row_ + first) * kBlocks);
     row_words(block, groups, noise_, words_.data(), simd_);
@@ -220,7 +221,7 @@ void read_out_as(const Sensor& sensor, const FloatPicture& expected_e, const Noi
       intersection(rect, {0, 0, expected_e.width, expected_e.height}) != rect ||
       sensor.largest_converter_code() > std::numeric_limits<Code>::max() ||
       (pattern != nullptr && (pattern->width != expected_e.width || pattern->height != expected_e.height))) {
-    throw std::logic_error(fmt::format("read_out: {} codes for {} x {} pixels of a {} x {} picture, {} bits",
+    throw std::logic_error(fmt::format("read_out: {} codes for {} x {} pixels of a {} x {} image, {} bits",
                                        codes.size(), rect.width, rect.height, expected_e.width, expected_e.height,
                                        sensor.converter_bits.value_or(sensor.bit_depth)));
   }

@@ -9,15 +9,13 @@
 /// expected electrons on, and where the full well is six standard deviations away, the Poisson number and the read
 /// noise are one normal deviate of the variance of both; else the Poisson number is exact.
 ///
-/// Random numbers are Philox4x32-10 with the key {seed low, seed high} and the counter {block, frame, stream, purpose}.
-/// Purpose 0: normal deviates. A row is cut into groups of 32 pixels, each group into 8 blocks (numbered row by row
-/// through the picture); word pairs (0, 1) and (2, 3) of a block give two deviates each by Box and Muller's method (24
+/// Random numbers are Philox4x32-10 with the key {seed low, seed high} (streams.h). Normal deviates
+/// (RandomPurpose::pixel_noise): a row is cut into groups of 32 pixels, each group into 8 blocks, numbered row by row
+/// through the image; word pairs (0, 1) and (2, 3) of a block give two deviates each by Box and Muller's method (24
 /// bits of each word, so at most 5.9 standard deviations), and deviate j of block b belongs to pixel 8 j + b of its
-/// group. Purpose 1: the exact path; block is the pixel's number in the picture, its words are Poisson (2), and the
-/// read noise's pair. Purpose 2: the fixed pattern {pixel, 0, 0}. Purpose 3: the clock {slot, 0, stream}. Purpose
-/// 4: the poses of the calibration's boards {view, number, 0}. So a pixel is the
-/// same in any order, on any number of threads, and in any part of the picture that is asked for; and the same with and
-/// without AVX2 (only IEEE-exact operations, never contracted).
+/// group. The exact path (exact_pixel_noise): the words of a pixel are those of its Poisson number (2) and of the read
+/// noise's pair. So a pixel is the same in any order, on any number of threads, and in any part of the image that is
+/// asked for; and the same with and without AVX2 (only IEEE-exact operations, never contracted).
 #pragma once
 
 #include <array>
@@ -60,7 +58,7 @@ struct NoiseKey {
 /// Mean number of electrons from which the Poisson distribution is taken as normal (its skewness is 1/16 there).
 inline constexpr float kNormalMean = 256.0f;
 
-/// The converter's codes of the pixels of `rect`, row by row, from the expected electrons of the whole picture, without
+/// The converter's codes of the pixels of `rect`, row by row, from the expected electrons of the whole image, without
 /// colours. `codes` holds rect.width x rect.height; the 8-bit form is for converters of 8 bits. No pattern: all pixels
 /// are alike. std::logic_error where sizes do not fit.
 void read_out(const Sensor& sensor, const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect,

@@ -163,7 +163,7 @@ class LibavWriter final : public VideoWriter {
     check(avcodec_open2(encoder_, codec, nullptr), path_, "encoder cannot be opened");
   }
 
-  /// As the encoders in phones work: 4:2:0 in the range of video, no pictures that refer to later ones, and with a bit
+  /// As the encoders in phones work: 4:2:0 in the range of video, no images that refer to later ones, and with a bit
   /// rate a buffer of one second.
   void set_h264() {
     const Compression& wanted = format_.compression;

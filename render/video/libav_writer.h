@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "render/video/video_writer.h"
+#include "render/video/video_format.h"
 
 namespace glidelab::render {
 

@@ -5,7 +5,6 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "base/errors.h"
@@ -26,7 +25,7 @@ class PngFolderWriter final : public VideoWriter {
 
   void write(std::span<const std::uint8_t> frame) override { write_as(frame, CV_8U); }
   void write(std::span<const std::uint8_t>, double) override {
-    throw std::logic_error("a folder of pictures has no times");
+    throw std::logic_error("a folder of images has no times");
   }
   void write(std::span<const std::uint16_t> frame) override { write_as(frame, CV_16U); }
   void finish() override {}
@@ -39,8 +38,8 @@ class PngFolderWriter final : public VideoWriter {
           fmt::format("a frame of {} codes for {} x {}", frame.size(), format_.width, format_.height));
     }
     // imwrite takes const data by a cv::Mat that it does not change.
-    const cv::Mat picture(format_.height, format_.width, type, const_cast<Code*>(frame.data()));
-    write_png(folder_ / fmt::format("{:06d}.png", next_++), picture);
+    const cv::Mat image(format_.height, format_.width, type, const_cast<Code*>(frame.data()));
+    write_png(folder_ / fmt::format("{:06d}.png", next_++), image);
   }
 
   std::filesystem::path folder_;
@@ -50,70 +49,13 @@ class PngFolderWriter final : public VideoWriter {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, const cv::Mat& picture) {
+void write_png(const std::filesystem::path& path, const cv::Mat& image) {
   // Encoded in memory and written by write_file, which sees a full disk at the write and at the close.
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
     throw base::EnvironmentError(fmt::format("{}: PNG encoder failed", path.string()));
   }
   base::write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
-
-const char* name_of(Codec codec) {
-  switch (codec) {
-    case Codec::ffv1:
-      return "ffv1";
-    case Codec::raw:
-      return "raw";
-    case Codec::png:
-      return "png";
-    case Codec::mjpeg:
-      return "mjpeg";
-    case Codec::h264:
-      return "h264";
-  }
-  throw std::logic_error("unknown codec");
-}
-
-Container usual_container(Codec codec) {
-  switch (codec) {
-    case Codec::ffv1:
-      return Container::mkv;
-    case Codec::raw:
-    case Codec::mjpeg:
-      return Container::avi;
-    case Codec::h264:
-      return Container::mp4;
-    case Codec::png:
-      return Container::folder;
-  }
-  throw std::logic_error("unknown codec");
-}
-
-bool fits(Codec codec, Container container) {
-  return container == usual_container(codec) ||
-         (container == Container::mkv && codec != Codec::png && codec != Codec::raw) ||
-         (container == Container::mp4 && codec == Codec::mjpeg);
-}
-
-std::string file_name_of(Codec codec, const Compression& compression, const std::string& clip) {
-  const Container container = compression.container.value_or(usual_container(codec));
-  if (!fits(codec, container)) throw std::logic_error("a container that does not fit the codec");
-  switch (container) {
-    case Container::mkv:
-      return clip + ".mkv";
-    case Container::avi:
-      return clip + ".avi";
-    case Container::mp4:
-      return clip + ".mp4";
-    case Container::folder:
-      return clip;
-  }
-  throw std::logic_error("unknown container");
-}
-
-std::string file_name_of(Codec codec, const std::string& clip) {
-  return file_name_of(codec, Compression{}, clip);
 }
 
 std::unique_ptr<VideoWriter> open_video(const std::filesystem::path& path, const VideoFormat& format) {

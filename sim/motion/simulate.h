@@ -1,4 +1,4 @@
-/// Equation (8) as a hybrid system: slide up, slide down, stick.
+/// The motion of a body as a hybrid system: slide up, slide down, stick.
 ///
 ///     m dv/dt = m g sin(alpha) + sum of forces(v, sign v)     while sliding;     v = 0     while sticking.
 ///
@@ -6,7 +6,7 @@
 /// does not exceed what static friction holds, else it slides on with the sign of the net force; the solver is
 /// reinitialised there. sign(v) is never smoothed. The forces depend on v only, so a glider that has come to rest
 /// stays, and one that has reversed never does so again. Method: CVODES, BDF with Newton and the analytic slope
-/// (sim/slide.h), tolerances in SolverOptions.
+/// (sim/motion/slide.h), tolerances in SolverOptions.
 #pragma once
 
 #include <span>
@@ -54,8 +54,9 @@ struct SolverOptions {
   double absolute_tolerance = 1e-14;  ///< of x in m and v in m/s
 };
 
-/// With the standard tolerances, and speeds and ways as on a track: positions within 1e-9 m over 10 s, and the time of
-/// a reversal within 1e-9 s where the glider comes to v = 0 with 1 mm/s² or more (an error dv makes one of dv / a).
+/// With the standard tolerances, and speeds and distances as on a track: positions within 1e-9 m over 10 s, and the
+/// time of a reversal within 1e-9 s where the glider comes to v = 0 with 1 mm/s² or more (an error dv makes one of dv /
+/// a).
 ///
 /// Moves the body from (x0, v0) at t = 0 and returns its state at each of `times_s` (rising, not negative). At a
 /// requested time that is the instant of a reversal, the mode is the one after it. InputError where a number is not

@@ -1,4 +1,4 @@
-/// What an analysis is compared with: the parameters of equation (8) of a body, and the speed that it tends to.
+/// What an analysis is compared with: K/m and mu of a body, and its terminal velocity.
 #pragma once
 
 #include <optional>
@@ -16,9 +16,9 @@ struct LinearLaw {
 std::optional<LinearLaw> linear_law(const Body& body);
 
 /// The speed v > 0 at which the net force vanishes and falls through zero, so that the glider settles to it: for
-/// viscous and Coulomb friction equation (9). Of several the lowest. Nothing where there is none up to 1000 m/s, or
-/// where the force at v = 0 is 0 within rounding and falls. Found by bisection to the last bit between neighbours of a
-/// logarithmic grid, 64 speeds a decade from 1 nm/s: two zeros closer than that are missed.
+/// viscous and Coulomb friction (m g sin(alpha) - mu N) / K. Of several the lowest. Nothing where there is none up to
+/// 1000 m/s, or where the force at v = 0 is 0 within rounding and falls. Found by bisection to the last bit between
+/// neighbours of a logarithmic grid, 64 speeds a decade from 1 nm/s: two zeros closer than that are missed.
 std::optional<double> limit_speed_m_s(const Body& body);
 
 }  // namespace glidelab::sim

@@ -16,7 +16,7 @@ int sign_of(double value) {
   return value < 0.0 ? -1 : 1;
 }
 
-// A motion along its own direction: way and speed count forward, acceleration too.
+// A motion along its own direction: distance and speed count forward, acceleration too.
 struct Run {
   double way_m = 0.0;
   double speed_m_s = 0.0;
@@ -30,8 +30,8 @@ Run linear_run(double a, double k, double speed0, double t) {
 }
 
 // speed' = a - q speed². With r = sqrt(|a| q), and T = tan(rt)/r for a < 0 or tanh(rt)/r for a > 0 (t for r = 0),
-//     speed = (speed0 + a T) / (1 + q speed0 T),     way = ln(C + q speed0 S) / q,
-// C = cos or cosh of rt, S = sin(rt)/r or sinh(rt)/r. For small q the way is taken as log1p(q u) / q with
+//     speed = (speed0 + a T) / (1 + q speed0 T),     distance = ln(C + q speed0 S) / q,
+// C = cos or cosh of rt, S = sin(rt)/r or sinh(rt)/r. For small q the distance is taken as log1p(q u) / q with
 //     u = (C - 1)/q + speed0 S,     (C - 1)/q = a/2 (sin or sinh of (rt/2) / (r/2))².
 Run quadratic_run(double a, double q, double speed0, double t) {
   const double r = std::sqrt(std::abs(a) * q);
@@ -68,7 +68,7 @@ std::optional<double> first_stop(const DryTrack& track, double v0, StopTime&& st
   return stop_time(sign_of(v0) * track.drive_m_s2 - track.friction_m_s2, std::abs(v0));
 }
 
-// Runs up to v = 0, and from there the other way or not at all.
+// Runs up to v = 0, and from there back or not at all.
 template <class RunFrom, class StopTime>
 State piecewise(const DryTrack& track, double x0, double v0, double t, RunFrom&& run_from, StopTime&& stop_time) {
   const auto slide = [&](int direction, double start_s, double from_m, double speed0) -> State {

@@ -7,7 +7,7 @@
 /// moved together with (x, v) by Adams' formulas. Where v comes to 0 at the time T, T itself depends on p,
 /// dT/dp = -Sv / a(T-), so that S jumps (saltation; Aizerman and Gantmacher 1958):
 ///
-///     Sx stays,     Sv(T+) = Sv(T-) a(T+) / a(T-)      slides on the other way
+///     Sx stays,     Sv(T+) = Sv(T-) a(T+) / a(T-)      slides back
 ///     Sx stays,     Sv(T+) = 0, and both stay so      sticks
 ///
 /// x has no jump in its derivative for v = 0 on both sides.

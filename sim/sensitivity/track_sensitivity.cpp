@@ -99,8 +99,9 @@ std::vector<SensitiveState> track_motion_sensitive(double k_1_s, double drive_m_
                                                    double v0_m_s, std::span<const double> times_s) {
   const Law law{k_1_s, drive_m_s2, friction_m_s2};
   if (!std::isfinite(k_1_s + drive_m_s2 + friction_m_s2 + x0_m + v0_m_s)) {
-    throw base::NumericalError(fmt::format("equation (8) with k = {}, d = {}, f = {} from x0 = {}, v0 = {}", k_1_s,
-                                           drive_m_s2, friction_m_s2, x0_m, v0_m_s));
+    throw base::NumericalError(
+        fmt::format("a motion with K/m = {} 1/s, drive {} m/s², friction {} m/s², from x0 = {} m, v0 = {} m/s", k_1_s,
+                    drive_m_s2, friction_m_s2, x0_m, v0_m_s));
   }
   Phase phase{0.0, x0_m, v0_m_s, v0_m_s > 0.0 ? 1 : v0_m_s < 0.0 ? -1 : law.direction_at_rest(), Derivatives::Zero()};
   phase.by(0, 3) = 1.0;
@@ -115,7 +116,7 @@ std::vector<SensitiveState> track_motion_sensitive(double k_1_s, double drive_m_
     }
     states.push_back(state_at(law, phase, t_s));
     if (!std::isfinite(states.back().x_m)) {
-      throw base::NumericalError(fmt::format("equation (8) with k = {} runs away by t = {} s", k_1_s, t_s));
+      throw base::NumericalError(fmt::format("a motion with K/m = {} 1/s runs away by t = {} s", k_1_s, t_s));
     }
   }
   return states;

@@ -1,4 +1,5 @@
-/// Equation (8) with its derivatives in closed form: what sim/sensitivity.h integrates, for this law alone.
+/// Motion under viscous and Coulomb friction with its derivatives in closed form: what sim/sensitivity/sensitivity.h
+/// integrates, for this law alone.
 ///
 /// dv/dt = d - k v - s f, s = sign(v). From (x0, v0) while v keeps its sign, with a0 = d - s f:
 ///
@@ -16,8 +17,8 @@
 
 namespace glidelab::sim {
 
-/// By k, d, f, x0, v0, in this order, at each of `times_s` (rising, not negative). From v0 = 0 it sticks or moves the
-/// way of the drive. NumericalError where a number is not finite.
+/// By k, d, f, x0, v0, in this order, at each of `times_s` (rising, not negative). From v0 = 0 the
+/// glider sticks or moves with the drive. NumericalError where a number is not finite.
 std::vector<SensitiveState> track_motion_sensitive(double k_1_s, double drive_m_s2, double friction_m_s2, double x0_m,
                                                    double v0_m_s, std::span<const double> times_s);
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "report/html/html.h"
-#include "teach/page/explorer_script.h"
+#include "teach/page/page_texts.h"
 
 namespace glidelab::teach {
 namespace {
 
-/// With the digits that a way needs: up to 20, scaled by 2e4 m where k is small.
+/// With the digits that a distance needs: up to 20, scaled by 2e4 m where k is small.
 std::string array_of(const std::vector<double>& values) {
   return fmt::format("[{:.15g}]", fmt::join(values, ","));
 }
@@ -43,11 +43,10 @@ std::string data_of(const PhaseExplorer& explorer) {
 }  // namespace
 
 report::Page explorer_page(const PhaseExplorer& explorer) {
-  std::string body(kExplorerBody);
+  std::string body = fmt::format("<style>\n{}</style>\n{}", kExplorerStyle, kExplorerBody);
   body += "<script>\n'use strict';\n" + data_of(explorer);
-  body += kExplorerMotion;
-  body += kExplorerWords;
-  body += kExplorerView;
+  for (const std::string_view script : {kExplorerMotion, kExplorerWords, kExplorerView})
+    body.append("\n").append(script);
   return report::page("Friction in the phase plane", body + "</script>\n");
 }
 

@@ -1,7 +1,7 @@
 /// The page on which a motion's parameters are chosen by hand, for class: nothing but itself is needed to show it.
 ///
-/// Its script scales, interpolates (Hermite, fifth order) and joins the orbits of validate/phase_explorer.h; it solves
-/// no equation of motion. It also compares itself with the reference motions and says how far it was off.
+/// Its script scales, interpolates (Hermite, fifth order) and joins the orbits of teach/study/phase_explorer.h; it
+/// solves no equation of motion. It also compares itself with the reference motions and says how far it was off.
 #pragma once
 
 #include <string>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "teach/study/law_film.h"
 #include "teach/study/law_study.h"
@@ -13,6 +12,6 @@ namespace glidelab::teach {
 std::string film_figure(const LawStudy& study, const LawFilm& film);
 
 /// Once a page: the style and the script of all its film_figure().
-extern const std::string_view kFilmScript;
+std::string film_script();
 
 }  // namespace glidelab::teach

@@ -90,7 +90,8 @@ Plot phase_plot(const LawStudy& study) {
       add(std::move(points), fmt::format("with points pt {} ps 1.1 lw 1.6 lc rgb '#000000' {}", stable ? 7 : 6, title));
     }
   }
-  return {Drawing{script, data}, "Acceleration over velocity; dots are where motions tend to, circles where they part",
+  return {Drawing{script, data},
+          "Acceleration over velocity; dots: speeds that motions tend to, circles: speeds that they leave",
           "a(v) of " + study.name};
 }
 
@@ -101,13 +102,13 @@ std::string equilibrium_text(const LawStudy& study) {
     for (const Equilibrium& at : curve.equilibria) {
       const std::string v = base::number_text(at.v_m_s, 4) + " m/s";
       const std::string end = at.v_m_s != 0.0 ? (at.stable ? "tends to v<sub>lim</sub> = " : "unstable at ") + v
-                              : !at.stable    ? "may rest, but does not come back to it"
+                              : !at.stable    ? "may stay at rest, but does not return to it"
                               : at.stops      ? "comes to rest"
                                               : "tends to rest";
       ends += (ends.empty() ? "" : ", ") + end;
     }
     text += fmt::format("{}{} ({:.3g}°): {}", text.empty() ? "" : "; ", escape(curve.configuration), curve.incline_deg,
-                        ends.empty() ? "tends to no speed" : ends);
+                        ends.empty() ? "has no limit velocity" : ends);
   }
   return text;
 }
@@ -118,20 +119,21 @@ report::Page laws_report(const std::vector<LawStudy>& studies, const std::vector
                          const base::Progress& progress) {
   if (films.size() != studies.size()) throw std::logic_error("not a film for each law");
   Html body =
-      "<h1>Laws of friction in a(v)</h1>\n<p>How a glider moves under each law: launched up or down, let go from rest, "
-      "or started above its limit. Every point is the program's own solution of the equation of motion; the films are "
-      "drawn by its renderer.</p>\n";
+      "<h1>Laws of friction in a(v)</h1>\n<p>How a glider moves under each law: launched uphill or downhill, released "
+      "from rest, or started above its limit velocity. Every point is the program's own solution of the equation of "
+      "motion, and its renderer drew the films.</p>\n";
   std::string meaning =
-      "<p>x(t) shows where a glider goes, a(v) which law moves it: "
-      "there every motion of one glider on one slope runs on the same curve, wherever it starts. A straight line "
-      "is linear viscous friction, a curved one another drag, a jump at v = 0 Coulomb friction. Where the curve falls "
-      "through a = 0 the glider tends to that speed, from both sides (dot); where it rises through it, the glider "
-      "leaves "
-      "that speed (circle). A viscous or quadratic drag alone never quite stops a glider; friction that does not "
-      "vanish "
-      "at v = 0 does.";
+      "<p>x(t) shows where a glider is, a(v) which law moves it: every motion of one glider on one slope runs along "
+      "the "
+      "same curve of a(v), wherever it starts. A straight line means linear viscous friction, a bent curve another "
+      "drag, "
+      "a jump at v = 0 Coulomb friction. Where the curve falls through a = 0 (dot), the glider tends to that speed "
+      "from "
+      "both sides; where it rises through a = 0 (circle), the glider leaves that speed. Viscous or quadratic drag "
+      "alone "
+      "never quite stops a glider; friction that does not vanish at v = 0 does.";
   if (std::ranges::any_of(studies, [](const LawStudy& study) { return study.x_apart_m.has_value(); })) {
-    meaning += " A pair with almost the same x(t) shows why one should look at a(v).";
+    meaning += " The pair with almost the same x(t) shows why a(v) is worth plotting.";
   }
   body += meaning_section(meaning + "</p>\n") + "<nav><ul>";
   for (std::size_t i = 0; i < studies.size(); ++i) {
@@ -151,7 +153,7 @@ report::Page laws_report(const std::vector<LawStudy>& studies, const std::vector
     }
     body += figures({position_plot(study), phase_plot(study)}) + film_figure(study, films[i]);
   }
-  return report::page("Laws of friction", body + std::string(kFilmScript));
+  return report::page("Laws of friction", body + film_script());
 }
 
 }  // namespace glidelab::teach

@@ -7,8 +7,10 @@
 #include "base/files/staged_output.h"
 #include "base/files/temporary_folder.h"
 #include "render/film/clip_set.h"
-#include "render/film/ideal_frames.h"
+#include "render/scenario/scenario.h"
+#include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"
+#include "render/video/video_writer.h"
 #include "sim/motion/simulate.h"
 
 namespace glidelab::teach {
@@ -20,7 +22,7 @@ constexpr double kAboveTrack = 0.06;   // m, above and below the line of motion:
 constexpr int kLeastHalf = 8;          // px of a row's height, where motions go so far that gliders are dots
 constexpr double kWhite =
     400.0;                     // code of white, so that the wall is of a middle grey; what is brighter than 255 is 255
-constexpr double kCrf = 26.0;  // of H.264; the picture stands still but for the gliders
+constexpr double kCrf = 26.0;  // of H.264; the image stands still but for the gliders
 
 std::vector<sim::State> states(const sim::ConfigurationSetup& configuration, const sim::MotionSetup& motion,
                                double rate_hz) {
@@ -50,7 +52,7 @@ render::Scenario before_camera(render::Scenario scenario, double farthest_m, int
   return render::ideal_of(scenario);
 }
 
-/// Draws one motion's frames into its row of the film's pictures, one after the other.
+/// Draws one motion's frames into its row of the film's images, one after the other.
 class Row {
  public:
   Row(const render::ClipSet& set, std::size_t clip, std::vector<sim::State> states)

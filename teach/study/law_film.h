@@ -1,9 +1,9 @@
 /// A small film of a scenario's motions, one above the other, each from its own start.
 ///
-/// The renderer draws them (render/) as a perfect camera would take them (render/ideal_frames.h), from 3 m before the
-/// middle of the track and square to it, so that the track and all of the motions are in the picture. Motions, track,
+/// The renderer draws them (render/) as a perfect camera would take them (render/film/ideal_frames.h), from 3 m before
+/// the middle of the track and square to it, so that the track and all of the motions are in the image. Motions, track,
 /// glider and light are the scenario's; its camera is not. Frame k shows k / frame_rate_hz after the start; a motion
-/// that ends before the longest one keeps its last picture.
+/// that ends before the longest one keeps its last image.
 #pragma once
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 /// The cases by which friction is taught: motions of a scenario, and the curve a(v) on which each of them runs.
 ///
 /// a(v) = (m g sin(alpha) + forces(v, sign v)) / m for v < 0 and v > 0 (the paper's figures 1 to 3), with its
-/// equilibria (validate/equilibria.h).
+/// equilibria (teach/study/equilibria.h).
 #pragma once
 
 #include <filesystem>

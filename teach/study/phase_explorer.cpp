@@ -58,8 +58,8 @@ std::vector<double> times(double drive, double n, double u0, double end, std::op
   return tau;
 }
 
-/// Up to where it comes to rest, if it does. Every leg starts anew at a way of 0, and the ways are added up from the
-/// end: so small ones keep their digits beside large ones.
+/// Up to where it comes to rest, if it does. Every leg starts anew at a distance of 0, and the distances are added up
+/// from the end: so small ones keep their digits beside large ones.
 Orbit solved(double drive, double n, double u0, const std::vector<double>& tau) {
   const sim::Body body = unit_body(drive, n);
   const auto point = [&](double at, double u, double way, double slope) {

@@ -11,9 +11,10 @@
 /// Without a drag (n = 0 stands for it) W = 1 m/s. So four orbits a law, made once by simulate(), hold all motions; a
 /// page scales and joins them at v = 0, where the glider stays if |A| <= F.
 ///
-/// Ways are scaled by W T, which is 1e4 m where k is small, while the way itself is a few metres: between two places of
-/// an orbit the difference of their ways has to be good, not only each. So an orbit is solved in legs over which u
-/// falls by ten at most, and its points are near enough for fifth-order polynomials: what those leave is 1e-10 of u.
+/// Distances are scaled by W T, which is 1e4 m where k is small, while the distance itself is a few metres: between two
+/// places of an orbit the difference of their distances has to be good, not only each. So an orbit is solved in legs
+/// over which u falls by ten at most, and its points are near enough for fifth-order polynomials: what those leave is
+/// 1e-10 of u.
 #pragma once
 
 #include <string>
@@ -21,7 +22,7 @@
 
 namespace glidelab::teach {
 
-/// At tau: u, the way (integral of u, 0 at the orbit's end: small where u is), du/dtau and d²u/dtau².
+/// At tau: u, the distance (integral of u, 0 at the orbit's end: small where u is), du/dtau and d²u/dtau².
 struct OrbitPoint {
   double tau = 0.0, u = 0.0, way = 0.0, slope = 0.0, bend = 0.0;
 };

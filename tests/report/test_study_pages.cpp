@@ -1,12 +1,9 @@
-/// The pages of require, coverage and laws: units, digits and names as a reader meets them.
-#include <algorithm>
-
+/// The pages of require and coverage: units, digits and names as a reader meets them.
 #include "report/coverage/coverage_report.h"
 #include "report/diagnosis/plan_report.h"
 #include "report/html/html.h"
 #include "report/requirement/requirement_plot.h"
 #include "report/requirement/requirement_report.h"
-#include "teach/page/laws_report.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -134,38 +131,4 @@ TEST_CASE("coverage names what scatters farther than it states, and the naive li
   CHECK(has(page, "for µ (3.0 times), α (3.1 times) of m1 by the lines of the phase diagram. A few"));
   coverage.rows.erase(coverage.rows.begin(), coverage.rows.begin() + 2);
   CHECK_FALSE(has(report::coverage_page("webcam", coverage).html, "scatter more than"));
-}
-
-TEST_CASE("the films of laws have every motion's name as text, which steers nothing") {
-  teach::LawStudy study;
-  study.name = "viscous";
-  study.curves = {{"level", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0}}, {0}}};
-  study.motions = {{"</script><b>up", "level", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
-  teach::LawFilm film;
-  film.mp4 = "film";
-  film.frames = 26;
-  film.frame_rate_hz = 25.0;
-  const std::string page = teach::laws_report({study}, {film}).html;
-  CHECK(has(page, "&lt;/script&gt;&lt;b&gt;up</li>"));
-  CHECK_FALSE(has(page, "</script><b>up"));
-  CHECK(has(page, "src=\"data:video/mp4;base64,ZmlsbQ==\""));
-  CHECK(has(page, "1.0\u00a0s, in real time"));
-  CHECK(has(page, ".law canvas, .law .rows i { filter: invert"));  // a dark page's names have the curves' hues
-}
-
-TEST_CASE("the page of laws tells coming to rest from tending to it, and marks what is unstable as such") {
-  teach::LawStudy study;
-  study.name = "three";
-  study.curves = {{"viscous", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0, true, false}}, {}},
-                  {"coulomb", 0.0, {}, {}, {0.0, 1.0}, {-0.1, -0.1}, {{0.0, true, true}}, {}},
-                  {"stribeck", 2.0, {}, {}, {0.0, 1.0}, {-0.2, -0.1}, {{0.1805, false}, {0.4874, true}}, {}}};
-  study.motions = {{"down", "viscous", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
-  const report::Page page = teach::laws_report({study}, {teach::LawFilm{}});
-  CHECK(has(page.html,
-            "viscous (0°): tends to rest; coulomb (0°): comes to rest; "
-            "stribeck (2°): unstable at 0.1805\u00a0m/s, tends to v<sub>lim</sub> = 0.4874\u00a0m/s"));
-  const auto script = std::ranges::find_if(
-      page.files, [](const auto& file) { return file.first.ends_with(".gp") && has(file.first, "a-v"); });
-  REQUIRE(script != page.files.end());
-  CHECK(has(script->second, "title 'unstable equilibrium'"));
 }

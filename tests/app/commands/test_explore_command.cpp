@@ -125,16 +125,16 @@ TEST_CASE("the explorer says what becomes of a motion: held, stopped, ever slowe
     bool equilibrium;
   };
   const std::vector<Case> cases = {
-      {"3,0,0,0,-2", "goes on for ever", "rest", false},
-      {"0,0,0,0,-2", "goes on for ever", "rest", false},  // a viscous drag of nothing
+      {"3,0,0,0,-2", "keeps its speed for ever", "rest", false},
+      {"0,0,0,0,-2", "keeps its speed for ever", "rest", false},  // a viscous drag of nothing
       {"0,0,0,0,0", "at rest, and nothing drives it", "comes to rest", false},
       {"2,1,0,0,1", "tends to rest", "comes to rest", true},
       {"0,1,0,0,0", "at rest, and nothing drives it", "tends", true},
       {"0,1,0.01,0,0", "at rest and stays: nothing pulls it", "comes to rest", true},
       {"0,1,0.03,1,0", "at rest and stays: the slope pulls", "comes to rest", true},
-      {"3,0,0.01,0,0.5", "comes to rest at t = 5.099 s", "for ever", true},       // v0 / (mu g)
-      {"3,0,0,2,-1", "It turns at t = 2.922 s. Without a drag", "jumps", false},  // v0 / (g sin alpha)
-      {"0,2,0,0.5,0", "tends to v = 0.0428 m/s", "turns", true}};                 // g sin(alpha) / k
+      {"3,0,0.01,0,0.5", "comes to rest at t = 5.099 s", "for ever", true},     // v0 / (mu g)
+      {"3,0,0,2,-1", "It turns at t = 2.922 s. Without drag", "jumps", false},  // v0 / (g sin alpha)
+      {"0,2,0,0.5,0", "tends to v = 0.0428 m/s", "turns", true}};               // g sin(alpha) / k
   std::string script = "const said = [], dots = [];\nfor (const [law, k, mu, alpha, v0] of [";
   for (const Case& c : cases) script += fmt::format("[{}],", c.p);
   script += R"js(]) {

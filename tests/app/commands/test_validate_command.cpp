@@ -184,7 +184,7 @@ TEST_CASE("coverage with a noise that is given asks no camera, and counts at the
   }
   const tests::ProcessResult seen = tests::glidelab({"coverage", "aside.toml", "--replicates", "5"}, dir.path());
   CHECK(seen.status == 1);
-  CHECK(seen.err.find("never in the picture") != std::string::npos);
+  CHECK(seen.err.find("never in the image") != std::string::npos);
   const tests::ProcessResult wrong =
       tests::glidelab({"coverage", "s.toml", "--noise-m", "2e-5", "--replicates", "5", "--level", "100"}, dir.path());
   CHECK(wrong.status == 2);

@@ -178,8 +178,8 @@ TEST_CASE("What makes no sense is refused by its key, with the line") {
       {"[calibration]\ninner_corners = [9.5, 6]\n", "calibration.inner_corners", "whole"},
       {"[calibration]\nviews = 2\n", "calibration.views", "3 to 99"},
       {"[calibration]\nplane_x_m = []\n", "calibration.plane_x_m", "1 to 99"},
-      {"[calibration]\nplane_x_m = [0.7]\n", "calibration", "wholly in the picture"},
-      {"[calibration]\nsquare_m = 0.2\n", "calibration", "wholly in the picture"},
+      {"[calibration]\nplane_x_m = [0.7]\n", "calibration", "wholly in the image"},
+      {"[calibration]\nsquare_m = 0.2\n", "calibration", "wholly in the image"},
       {"[marker]\ndiameter_m = 0.0\n", "marker.diameter_m", "number"},
       {"[marker]\ndiametre_m = 0.02\n", "marker.diametre_m", "diameter_m"},
       {"[track]\ndownhill = \"+Y\"\n", "track.downhill", "-X"},
@@ -202,11 +202,11 @@ TEST_CASE("A marker that is never seen is refused, one that is seen for a while 
         "launched = \"{}\"\nx0_m = {}\nv0_m_s = {}\nduration_s = 1.0\n",
         v0_m_s > 0 ? "down" : "up", x0_m, v0_m_s);
   };
-  CHECK_THAT(message("", motion(5.0, 1.0)), Catch::Contains("clip \"c\"") && Catch::Contains("never in the picture"));
+  CHECK_THAT(message("", motion(5.0, 1.0)), Catch::Contains("clip \"c\"") && Catch::Contains("never in the image"));
   CHECK(message("", motion(-1.5, 1.2)) == "nothing");
   // A fisheye-like barrel maps what is far outside back into the picture by its formula; that is not seen either.
   CHECK_THAT(message("[camera]\ndistortion = { k1 = -0.3 }\n", motion(-3.4, -0.1)),
-             Catch::Contains("never in the picture"));
+             Catch::Contains("never in the image"));
 }
 
 TEST_CASE("All errors of a file are reported together") {

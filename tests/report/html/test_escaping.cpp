@@ -1,7 +1,6 @@
 /// Names, titles, notes and reasons that come from files are text on every page, whatever is written in them.
 #include <algorithm>
 #include <filesystem>
-#include <regex>
 
 #include "base/files/staged_output.h"
 #include "report/analysis/analysis_report.h"
@@ -15,36 +14,17 @@
 #include "report/requirement/requirement_report.h"
 #include "report/sweep/sweep_report.h"
 #include "report/validation/validation_report.h"
-#include "teach/page/laws_report.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
+#include "tests/report/text_of_pages.h"
 
 using namespace glidelab;
+using tests::check_is_text;
+using tests::has;
+using tests::kEvil;
 
 namespace {
-
-const std::string kEvil = R"(<script>alert(1)</script>&"x')";
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-/// It is there to be read, and nowhere markup: not in the page, and not in the plots beside it, which a browser opens
-/// as well.
-void check_is_text(const report::Page& page) {
-  const std::size_t raw = std::min(page.html.find("<script>alert"), page.html.find("&\"x'"));
-  INFO("near: " << (raw == std::string::npos ? "" : page.html.substr(raw - std::min<std::size_t>(raw, 120), 180)));
-  CHECK(has(page.html, "&lt;script&gt;alert(1)&lt;/script&gt;&amp;&quot;x&#39;"));
-  CHECK_FALSE(has(page.html, "<script>alert"));
-  CHECK_FALSE(has(page.html, "alert(1)</script>"));
-  CHECK_FALSE(has(page.html, "&\"x'"));
-  for (const auto& [name, bytes] : page.files) {
-    if (!name.ends_with(".svg")) continue;
-    INFO(name);
-    CHECK_FALSE(has(bytes, "<script>alert"));
-  }
-}
 
 core::AnalysisResults evil_results() {
   core::AnalysisResults results = tests::made_results();
@@ -276,18 +256,6 @@ TEST_CASE("the page of a measured camera has every name from a file as text") {
   check_is_text(report::camera_report(camera));
 }
 
-TEST_CASE("the page of laws has every name from a file as text") {
-  teach::LawStudy study;
-  study.name = study.text = kEvil;
-  study.curves = {{kEvil, 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0}}, {0}}};
-  study.motions = {{kEvil, kEvil, {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
-  teach::LawFilm film;
-  film.frames = 2;
-  film.frame_rate_hz = 25.0;
-  film.clips = {kEvil};
-  check_is_text(teach::laws_report({study}, {film}));
-}
-
 TEST_CASE("the page of blind cases has every name from a file as text") {
   validate::BlindOutcome outcome;
   outcome.kind = validate::BlindKind::single;
@@ -306,19 +274,11 @@ TEST_CASE("the page of blind cases has every name from a file as text") {
 
 TEST_CASE("every page that report can make is among those whose texts are tested here") {
   const std::filesystem::path root = tests::kSourceDir;
-  const std::string here = base::read_file(root / "tests/report/test_escaping.cpp");
-  const std::regex makes("\nPage ([a-z_]+)\\(");
-  std::size_t pages = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(root / "report")) {
-    if (entry.path().extension() != ".h") continue;
-    const std::string header = base::read_file(entry.path());
-    for (std::sregex_iterator it(header.begin(), header.end(), makes); it != std::sregex_iterator(); ++it) {
-      const std::string name = (*it)[1];
-      if (name == "page" || name == "explorer_page") continue;  // the frame of all, and one that reads no file
-      INFO(name << " of " << entry.path().filename());
-      CHECK(has(here, "report::" + name + "("));
-      ++pages;
-    }
+  const std::string here = base::read_file(root / "tests/report/html/test_escaping.cpp");
+  const std::vector<std::string> pages = tests::pages_of(root / "report");
+  for (const std::string& name : pages) {
+    INFO(name);
+    CHECK(has(here, "report::" + name + "("));
   }
-  CHECK(pages >= 12);
+  CHECK(pages.size() >= 12);
 }

@@ -1,11 +1,13 @@
-#include "render/scenario/read_sensor.h"
-
+/// [sensor] and [codec]: from electrons to the codes in a file.
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
-#include "render/scenario/read_optics.h"
 #include "render/scenario/scene.h"
+#include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {
@@ -94,6 +96,36 @@ void read_white(const TomlTable& table, const Scenario& scenario, Exposure& expo
   }
 }
 
+void read_sensor(const std::optional<TomlTable>& table, Scenario& scenario) {
+  if (!table) return;
+  Sensor& sensor = scenario.sensor;
+  read_converter(*table, sensor);
+  read_charge(*table, sensor);
+  read_pixels(*table, sensor.pixels);
+  read_tone(*table, sensor.tone);
+  read_colour(*table, sensor);
+  read_white(*table, scenario, scenario.exposure);
+}
+
+void sensor_truth(const Scenario& scenario, nlohmann::ordered_json& camera) {
+  const Sensor& sensor = scenario.sensor;
+  camera["sensor"] = {{"bit_depth", sensor.bit_depth},
+                      {"full_well_e", sensor.full_well_e},
+                      {"read_noise_e", sensor.read_noise_e},
+                      {"gain_dn_per_e", sensor.gain_dn_per_e},
+                      {"offset_dn", sensor.offset_dn},
+                      {"converter_bits", sensor.converter_bits.value_or(sensor.bit_depth)},
+                      {"dark_signal_e_s", sensor.pixels.dark_signal_e_s},
+                      {"prnu", sensor.pixels.prnu},
+                      {"dsnu_e", sensor.pixels.dsnu_e},
+                      {"hot_fraction", sensor.pixels.hot_fraction},
+                      {"dead_fraction", sensor.pixels.dead_fraction},
+                      {"tone", name_of(sensor.tone.kind)},
+                      {"colour", sensor.colour == Colour::bayer ? "bayer" : "mono"},
+                      {"quantum_efficiency", scenario.exposure.quantum_efficiency},
+                      {"white_e", electrons_of_white(scenario)}};
+}
+
 void read_h264(const TomlTable& table, Scenario& scenario) {
   Compression& compression = scenario.compression;
   compression.gop = static_cast<int>(table.integer_or("gop", compression.gop, 1, 10'000));
@@ -120,57 +152,11 @@ void read_container(const TomlTable& table, Scenario& scenario) {
   }
 }
 
-/// Exposures must not overlap, and a file must be able to hold the stamps.
-void check_clock(const TomlTable& table, const Scenario& scenario) {
-  const Recording& recording = scenario.recording;
-  const ClockSetup& clock = recording.clock;
-  const double rate_hz = recording.frame_rate_hz * (1.0 + 1e-6 * clock.rate_error_ppm);
-  const double free_s = longest_exposure_s(rate_hz) - recording.exposure_s - 2.0 * kLargestJitter * clock.jitter_s;
-  const bool refused = recording.exposure_s > longest_exposure_s(recording.frame_rate_hz);  // of [camera] already
-  if (free_s < 0.0 && !refused) {
-    table.reject(clock.jitter_s > 0.0 ? "jitter_s" : "rate_error_ppm",
-                 fmt::format("exposures of {} s every {} s that overlap", recording.exposure_s, 1.0 / rate_hz),
-                 "exposures that do not, with a jitter of up to 5.9 standard deviations each");
-  }
-  const Container container = scenario.compression.container.value_or(usual_container(scenario.codec));
-  if (clock.variable && (container == Container::avi || container == Container::folder)) {
-    table.reject("variable", fmt::format("a variable rate for {}", name_of(scenario.codec)),
-                 "a codec in mkv or mp4, which hold time stamps");
-  }
-}
-
-void read_tick(const TomlTable& table, ClockSetup& clock, double frame_rate_hz) {
-  if (!table.has("stamp_tick_s")) return;
-  clock.stamp_tick_s = table.number("stamp_tick_s", {0.0, 0.5 / frame_rate_hz, true, false});
-  if (!clock.variable) table.reject("stamp_tick_s", "a tick", "variable = true beside it: only then there are stamps");
-}
-
-}  // namespace
-
-void read_sensor(const TomlTable& root, Scenario& scenario) {
-  Sensor& sensor = scenario.sensor;
-  const std::optional<TomlTable> table = root.maybe_table("sensor");
-  if (!table) return;
-  read_converter(*table, sensor);
-  read_charge(*table, sensor);
-  read_pixels(*table, sensor.pixels);
-  read_tone(*table, sensor.tone);
-  read_colour(*table, sensor);
-  read_white(*table, scenario, scenario.exposure);
-}
-
-void read_codec(const TomlTable& root, Scenario& scenario) {
-  const bool deep = scenario.sensor.bit_depth > 8;
-  scenario.codec = deep ? Codec::png : Codec::ffv1;
-  const std::optional<TomlTable> table = root.maybe_table("codec");
+void read_codec(const std::optional<TomlTable>& table, Scenario& scenario) {
   if (!table) return;
   const std::string name = table->word("name", {"ffv1", "raw", "png", "mjpeg", "h264"});
   for (const Codec codec : {Codec::ffv1, Codec::raw, Codec::png, Codec::mjpeg, Codec::h264}) {
     if (name == name_of(codec)) scenario.codec = codec;
-  }
-  if (deep && scenario.codec != Codec::png) {
-    table->reject("name", fmt::format("text \"{}\"", name),
-                  fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));
   }
   Compression& compression = scenario.compression;
   if (scenario.codec == Codec::mjpeg) {
@@ -180,21 +166,43 @@ void read_codec(const TomlTable& root, Scenario& scenario) {
   read_container(*table, scenario);
 }
 
-void read_clock(const TomlTable& root, Scenario& scenario) {
-  const std::optional<TomlTable> table = root.maybe_table("clock");
-  if (!table) return;
-  ClockSetup& clock = scenario.recording.clock;
-  clock.rate_error_ppm = table->number_or("rate_error_ppm", 0.0, base::between(-1e5, 1e5));
-  clock.jitter_s = table->number_or("jitter_s", 0.0, base::between(0.0, 1.0));
-  clock.dropped_fraction = table->number_or("dropped_fraction", 0.0, base::between(0.0, 0.9));
-  clock.duplicated_fraction = table->number_or("duplicated_fraction", 0.0, base::between(0.0, 0.9));
-  if (clock.dropped_fraction + clock.duplicated_fraction > 0.9) {
-    table->reject("duplicated_fraction", fmt::format("{}", clock.duplicated_fraction),
-                  "a tenth of the frames or more that are neither dropped nor duplicated");
+/// With more than 8 bits only PNG holds the codes, and not every container holds time stamps.
+void settle_codec(const TomlTable& root, Scenario& scenario) {
+  const bool deep = scenario.sensor.bit_depth > 8;
+  if (const std::optional<TomlTable> table = root.maybe_table("codec"); !table) {
+    scenario.codec = deep ? Codec::png : Codec::ffv1;
+  } else if (deep && scenario.codec != Codec::png) {
+    table->reject("name", fmt::format("text \"{}\"", name_of(scenario.codec)),
+                  fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));
   }
-  clock.variable = table->boolean_or("variable", false);
-  read_tick(*table, clock, scenario.recording.frame_rate_hz);
-  check_clock(*table, scenario);
+  const Container container = scenario.compression.container.value_or(usual_container(scenario.codec));
+  if (scenario.recording.clock.variable && (container == Container::avi || container == Container::folder)) {
+    root.table("clock").reject("variable", fmt::format("a variable rate for {}", name_of(scenario.codec)),
+                               "a codec in mkv or mp4, which hold time stamps");
+  }
 }
+
+void codec_truth(const Scenario& scenario, nlohmann::ordered_json& camera) {
+  camera["codec"] = name_of(scenario.codec);
+}
+
+}  // namespace
+
+const ScenarioSection sections::sensor = {
+    .name = "sensor",
+    .help = "noise, gain, depth, tone and colours of the sensor, and how bright white is",
+    .in_camera_file = true,
+    .read = read_sensor,
+    .settle = nullptr,
+    .truth = sensor_truth,
+    .ideal = sections::keep};
+
+const ScenarioSection sections::codec = {.name = "codec",
+                                         .help = "how the frames are compressed, and in which container",
+                                         .in_camera_file = true,
+                                         .read = read_codec,
+                                         .settle = settle_codec,
+                                         .truth = codec_truth,
+                                         .ideal = sections::keep};
 
 }  // namespace glidelab::render

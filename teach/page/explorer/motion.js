@@ -1,10 +1,5 @@
-#include "teach/page/explorer_script.h"
-
-namespace glidelab::teach {
-
-const std::string_view kExplorerMotion = R"js(
 // An orbit is [tau, u, way, slope, bend], five arrays. Between two points u is the polynomial of fifth order in s (0 to 1)
-// with the values, slopes and bends that are known at both; a way is its integral.
+// with the values, slopes and bends that are known at both; a distance is its integral.
 function polynomial(orbit, i) {  // h, and u = c[0] + c[1] s + ... + c[5] s^5
   const [t, u, , slope, bend] = orbit, h = t[i + 1] - t[i];
   const d = u[i + 1] - u[i], p = h * slope[i], q = h * slope[i + 1], b = h * h * bend[i] / 2, e = h * h * bend[i + 1] / 2;
@@ -23,13 +18,13 @@ function piece(column, value) {  // the last i with column[i] not beyond value, 
   }
   return low;
 }
-function at(orbit, tau) {  // {u, slope, and where in the orbit that is: the point before it, and the way from there}
+function at(orbit, tau) {  // {u, slope, and where in the orbit that is: the point before it, and the distance from there}
   const [t, u, , slope] = orbit, last = t.length - 1;
   if (tau >= t[last]) return { u: u[last], slope: slope[last], i: last, way: u[last] * (tau - t[last]) };
   const i = piece(t, tau), p = polynomial(orbit, i), s = (tau - t[i]) / p.h;
   return { u: valueOf(p, s), slope: slopeOf(p, s), i, way: integralOf(p, s) };
 }
-// The way between two places. Within one piece it is not taken from the way of the whole orbit, in which it would drown.
+// The distance between two places. Within one piece it is not taken from the distance along the whole orbit, in which it would drown.
 function wayBetween(orbit, from, to) {
   return (from.i === to.i ? 0 : orbit[2][to.i] - orbit[2][from.i]) + (to.way - from.way);
 }
@@ -108,6 +103,3 @@ function measured() {
   }
   return off;
 }
-)js";
-
-}  // namespace glidelab::teach

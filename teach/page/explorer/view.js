@@ -1,8 +1,3 @@
-#include "teach/page/explorer_script.h"
-
-namespace glidelab::teach {
-
-const std::string_view kExplorerView = R"js(
 const $ = id => document.getElementById(id), names = ['k', 'mu', 'alpha', 'v0', 't'], END = 5, POINTS = 500;
 const digits = { k: 2, mu: 4, alpha: 1, v0: 2, t: 2 };
 const units = ['K/m (1/s)', 'C/m (1/√(m·s))', 'C/m (1/m)', 'no drag'];
@@ -152,9 +147,6 @@ for (const button of document.querySelectorAll('[data-case]')) button.onclick = 
 window.addEventListener('resize', resized);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
 const off = measured();
-$('measured').textContent = `Every curve comes from the program's own solver: four orbits a law, scaled, and interpolated by polynomials of fifth order between kept points. At ${off.points} instants of ${off.motions} motions that the solver made as they are, every corner of the sliders among them, the largest found that this page is off is ${(off.x * 1e3).toPrecision(2)} mm, ${(off.v * 1e3).toPrecision(2)} mm/s and ${(off.a * 1e3).toPrecision(2)} mm/s².`;
+$('measured').textContent = `Every curve comes from the program's own solver: four orbits for each law, scaled, and interpolated by polynomials of fifth degree. At ${off.points} instants of ${off.motions} motions that were solved one by one, every corner of the sliders among them, this page is off by at most ${(off.x * 1e3).toPrecision(2)} mm, ${(off.v * 1e3).toPrecision(2)} mm/s and ${(off.a * 1e3).toPrecision(2)} mm/s².`;
 document.documentElement.dataset.offX = off.x; document.documentElement.dataset.offV = off.v; document.documentElement.dataset.offA = off.a;
 change();
-)js";
-
-}  // namespace glidelab::teach

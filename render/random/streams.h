@@ -1,0 +1,49 @@
+/// Which random numbers are drawn for what, so that no two uses draw the same.
+///
+/// A random word is a function of the seed and of a counter {first, second, third, purpose} (philox.h). Every purpose
+/// has a number of its own in the last place; the stream in the third place tells clips and stills apart.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "render/random/philox.h"
+
+namespace glidelab::render {
+
+/// Files of a seed stay the same only as long as these numbers do.
+enum class RandomPurpose : std::uint32_t {
+  pixel_noise = 0,        ///< normal deviates of shot and read noise: {block, frame, stream}
+  exact_pixel_noise = 1,  ///< Poisson numbers of dark pixels: {pixel, frame, stream}
+  fixed_pattern = 2,      ///< how a sensor's pixels differ: {pixel, 0, 0}
+  frame_clock = 3,        ///< jitter, dropped and repeated frames: {slot, 0, stream}
+  pattern_poses = 4,      ///< poses of the calibration's boards: {view, number, 0}
+};
+
+inline constexpr std::array kRandomPurposes = {RandomPurpose::pixel_noise, RandomPurpose::exact_pixel_noise,
+                                               RandomPurpose::fixed_pattern, RandomPurpose::frame_clock,
+                                               RandomPurpose::pattern_poses};
+
+/// Streams: clips count from 0, stills from here.
+inline constexpr std::uint32_t kFirstStillStream = 0x40000000u;
+
+/// Four random words.
+constexpr PhiloxCounter random_words(RandomPurpose purpose, const std::array<std::uint32_t, 3>& counter,
+                                     PhiloxKey key) {
+  return philox({counter[0], counter[1], counter[2], static_cast<std::uint32_t>(purpose)}, key);
+}
+
+/// No two values of the list are equal.
+template <typename T, std::size_t n>
+constexpr bool all_distinct(const std::array<T, n>& values) {
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (values[i] == values[j]) return false;
+    }
+  }
+  return true;
+}
+static_assert(all_distinct(kRandomPurposes), "two purposes would draw the same random numbers");
+
+}  // namespace glidelab::render

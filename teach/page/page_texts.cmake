@@ -1,0 +1,16 @@
+# Turns real files into a C++ source of string constants:
+# cmake -DOUTPUT=file.cpp -DFOLDER=teach/page -DTEXTS=kName=file,kOther=file -P page_texts.cmake
+set(source "// Made by teach/page/page_texts.cmake of the files named below; edit those.\n#include \"teach/page/page_texts.h\"\n\nnamespace glidelab::teach {\n")
+string(REPLACE "," ";" texts "${TEXTS}")
+foreach(text ${texts})
+  string(REPLACE "=" ";" pair "${text}")
+  list(GET pair 0 name)
+  list(GET pair 1 file)
+  file(READ "${FOLDER}/${file}" content)
+  string(FIND "${content}" ")page_text\"" end_of_literal)
+  if(NOT end_of_literal EQUAL -1)
+    message(FATAL_ERROR "${file} holds what ends the string literal that it becomes")
+  endif()
+  string(APPEND source "\n// ${file}\nconst std::string_view ${name} = R\"page_text(${content})page_text\";\n")
+endforeach()
+file(WRITE "${OUTPUT}" "${source}\n}  // namespace glidelab::teach\n")

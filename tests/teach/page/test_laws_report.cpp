@@ -1,0 +1,71 @@
+#include "teach/page/laws_report.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/files/staged_output.h"
+#include "test_paths.h"
+#include "tests/catch.h"
+#include "tests/report/text_of_pages.h"
+
+using namespace glidelab;
+using tests::check_is_text;
+using tests::has;
+using tests::kEvil;
+
+TEST_CASE("the page of laws has every name from a file as text") {
+  teach::LawStudy study;
+  study.name = study.text = kEvil;
+  study.curves = {{kEvil, 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0}}, {0}}};
+  study.motions = {{kEvil, kEvil, {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
+  teach::LawFilm film;
+  film.frames = 2;
+  film.frame_rate_hz = 25.0;
+  film.clips = {kEvil};
+  check_is_text(teach::laws_report({study}, {film}));
+}
+
+TEST_CASE("the films of laws have every motion's name as text, which steers nothing") {
+  teach::LawStudy study;
+  study.name = "viscous";
+  study.curves = {{"level", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0}}, {0}}};
+  study.motions = {{"</script><b>up", "level", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
+  teach::LawFilm film;
+  film.mp4 = "film";
+  film.frames = 26;
+  film.frame_rate_hz = 25.0;
+  const std::string page = teach::laws_report({study}, {film}).html;
+  CHECK(has(page, "&lt;/script&gt;&lt;b&gt;up</li>"));
+  CHECK_FALSE(has(page, "</script><b>up"));
+  CHECK(has(page, "src=\"data:video/mp4;base64,ZmlsbQ==\""));
+  CHECK(has(page, "1.0\u00a0s, in real time"));
+  CHECK(has(page, ".law canvas, .law .rows i { filter: invert"));  // a dark page's names have the curves' hues
+}
+
+TEST_CASE("the page of laws tells coming to rest from tending to it, and marks what is unstable as such") {
+  teach::LawStudy study;
+  study.name = "three";
+  study.curves = {{"viscous", 0.0, {}, {}, {0.0, 1.0}, {0.0, -2.0}, {{0.0, true, false}}, {}},
+                  {"coulomb", 0.0, {}, {}, {0.0, 1.0}, {-0.1, -0.1}, {{0.0, true, true}}, {}},
+                  {"stribeck", 2.0, {}, {}, {0.0, 1.0}, {-0.2, -0.1}, {{0.1805, false}, {0.4874, true}}, {}}};
+  study.motions = {{"down", "viscous", {0.0, 0.02}, {0.0, 0.02}, {1.0, 0.96}, {-2.0, -1.9}}};
+  const report::Page page = teach::laws_report({study}, {teach::LawFilm{}});
+  CHECK(has(page.html,
+            "viscous (0°): tends to rest; coulomb (0°): comes to rest; "
+            "stribeck (2°): unstable at 0.1805\u00a0m/s, tends to v<sub>lim</sub> = 0.4874\u00a0m/s"));
+  const auto script = std::ranges::find_if(
+      page.files, [](const auto& file) { return file.first.ends_with(".gp") && has(file.first, "a-v"); });
+  REQUIRE(script != page.files.end());
+  CHECK(has(script->second, "title 'unstable equilibrium'"));
+}
+
+TEST_CASE("every page that teach can make either reads no file or is among those whose texts are tested here") {
+  const std::filesystem::path root = tests::kSourceDir;
+  const std::string here = base::read_file(root / "tests/teach/page/test_laws_report.cpp");
+  const std::vector<std::string> pages = tests::pages_of(root / "teach");
+  for (const std::string& name : pages) {
+    INFO(name);
+    CHECK((name == "explorer_page" || has(here, "check_is_text(teach::" + name + "(")));
+  }
+  CHECK(pages.size() >= 2);
+}

@@ -1,0 +1,21 @@
+#include "teach/page/page_texts.h"
+
+#include <filesystem>
+#include <string>
+
+#include "base/files/staged_output.h"
+#include "test_paths.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+TEST_CASE("the program holds the fixed parts of the pages as they stand in their files") {
+  const std::filesystem::path page = std::filesystem::path(tests::kSourceDir) / "teach/page";
+  CHECK(teach::kExplorerStyle == base::read_file(page / "explorer/explorer.css"));
+  CHECK(teach::kExplorerBody == base::read_file(page / "explorer/body.html"));
+  CHECK(teach::kExplorerMotion == base::read_file(page / "explorer/motion.js"));
+  CHECK(teach::kExplorerWords == base::read_file(page / "explorer/words.js"));
+  CHECK(teach::kExplorerView == base::read_file(page / "explorer/view.js"));
+  CHECK(teach::kFilmStyle == base::read_file(page / "laws/film.css"));
+  CHECK(teach::kFilmScript == base::read_file(page / "laws/film.js"));
+}
