@@ -110,7 +110,9 @@ class Mover {
     if (laws_.resistance.any()) {
       Resistance of{.slope = sin_};
       for (const Acting& effect : laws_.resistance.all()) effect.law->resistance(effect.p, glider_, at, of);
-      viscous = viscous * of.drag_factor / of.drag_divisor * of.drag_along;
+      if (of.drag_factor != 1.0) viscous *= of.drag_factor;
+      if (of.drag_divisor != 1.0) viscous /= of.drag_divisor;  // a division costs as much as the rest
+      if (of.drag_along != 1.0) viscous *= of.drag_along;
       slope = of.slope;
       against = of.against_n;
     }

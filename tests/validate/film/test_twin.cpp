@@ -92,7 +92,7 @@ TEST_CASE("each force that a scenario has moves the twin as the fit's own model 
   const auto made = tests::made_experiment(tests::made_launches(), {}, 5);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
-  // Members as effect_values.h has them: 1/v_c², n - 1, s - 1.
+  // As they are fitted: 1/v_c², n - 1, s - 1.
   const std::vector<std::pair<std::string, std::vector<double>>> cases = {{"quadratic_drag", {0.05}},
                                                                           {"eddy_rolloff", {0.2}},
                                                                           {"power_law_drag", {0.15}},
