@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/math/dense.h"
+#include "diagnose/tracks/track_set.h"
 
 namespace glidelab::diagnose {
 namespace {
