@@ -17,7 +17,7 @@ namespace glidelab::validate {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Ordered = nlohmann::ordered_json;
 
 void check(const BlindOptions& options) {
   if (options.cases < 1 || options.cases > kMostBlindCases) {
@@ -39,7 +39,7 @@ void check(const BlindOptions& options) {
 
 /// What makes two runs the same but for their number of cases.
 void check_same_run(const BlindOptions& options, const fs::path& out) {
-  Json wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
+  Ordered wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
   if (options.pictures) wanted["pictures"] = true;
   const fs::path file = out / "run.json";
   if (!fs::exists(file)) {
@@ -53,7 +53,7 @@ void check_same_run(const BlindOptions& options, const fs::path& out) {
     staged.publish_files();
     return;
   }
-  const Json found = Json::parse(base::read_file(file), nullptr, false);
+  const Ordered found = Ordered::parse(base::read_file(file), nullptr, false);
   if (found == wanted) return;
   throw base::InputError(base::Issue{file.string(), 0, "", found.is_discarded() ? "no JSON" : found.dump(),
                                      "the seed and effect of this run, " + wanted.dump() + ", or an empty folder"});

@@ -85,7 +85,7 @@ class NominalFit {
 
   /// Half of chi² that is left; a size of `more` is fitted as well. 0 where the fit does not settle.
   double misfit(const Seen& seen, const std::optional<Eigen::VectorXd>& more = {}) const {
-    constexpr int kMostSteps = 60;     // of which a glider that comes to rest elsewhere takes some ten
+    constexpr int kMostFitSteps = 60;     // of which a glider that comes to rest elsewhere takes some ten
     constexpr double kSettled = 0.01;  // of chi²: far less than the classes of strength are wide
     constexpr double kNothing = 0.01;  // chi²: the nominal law takes up all of it
     constexpr double kDown = 0.9;      // of what must stay positive, in one step
@@ -94,7 +94,7 @@ class NominalFit {
     Eigen::VectorXd at = Eigen::VectorXd::Zero(many);
     double last = 0.0;
     bool whole = true;  // the last step was
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMostFitSteps; ++step) {
       const Seen now = step == 0 ? without_ : seen_with(fitted, {});
       const Eigen::VectorXd d = difference(seen, now, design_.noise_sd_m);
       Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(d.size() + many, many);
