@@ -234,7 +234,8 @@ void sweep_command(const SweepOptions& options) {
 void add_sweep(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<SweepOptions>();
   CLI::App* command = app.add_subcommand(
-      "sweep", "Run a scenario many times with varied values, and see how errors depend on them (docs/reference/sweep.md)");
+      "sweep",
+      "Run a scenario many times with varied values, and see how errors depend on them (docs/reference/sweep.md)");
   command->add_option("SWEEP", options->sweep, "A sweep file (docs/reference/sweep.md)")->type_name("FILE")->required();
   command
       ->add_option("--shard", options->shard,

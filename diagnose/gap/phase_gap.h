@@ -11,8 +11,8 @@
 /// d is linear in the noise of all positions, and its variance is that of exactly this sum: what neighbouring a share
 /// by the kernel and the noise's own correlation, the fitted start, and the parameters' errors are in it.
 ///
-/// Points within two bandwidths of a motion's ends are left out. There are twelve bins over the range of all speeds, one
-/// edge at v = 0; a bin of fewer than five points is left out.
+/// Points within two bandwidths of a motion's ends are left out. There are twelve bins over the range of all speeds,
+/// one edge at v = 0; a bin of fewer than five points is left out.
 #pragma once
 
 #include <vector>

@@ -3,7 +3,8 @@
 ///
 /// Restricted maximum likelihood: those amplitudes and lengths that make most likely what the positions hold besides
 /// everything slow (noise_chunks.h: bumps are projected out, and, where one shows, a wave with what the fit made of
-/// it), so that neither the nominal model nor what it lacks goes in. The white part may differ between motions by some 30
+/// it), so that neither the nominal model nor what it lacks goes in. The white part may differ between motions by some
+/// 30
 /// %. Of what was tracked elsewhere nobody knows the pixels: its noise may last for some frames, as a tracker's does
 /// that follows its own last image, and is white unless that shows beyond doubt. What lasts for four frames or longer
 /// may be what the model lacks, and is left to it.

@@ -16,7 +16,8 @@ namespace {
 /// taken as they are, or where it is open.
 std::string consequence(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == diagnose::Verdict::effect) {
-    const bool lost_only = diagnosis.effects.size() == 1 && diagnosis.effects.front().id == diagnose::ids::dropped_frames &&
+    const bool lost_only = diagnosis.effects.size() == 1 &&
+                           diagnosis.effects.front().id == diagnose::ids::dropped_frames &&
                            diagnosis.effects.front().equivalent_to.empty();
     if (lost_only)
       return " An analysis of these data reports the losses that it finds, and corrects the times after them.";

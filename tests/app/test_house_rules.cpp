@@ -32,8 +32,7 @@ const std::vector<std::string> kItems = {"app/commands/",   "app/shell/main.cpp"
                                          "sim/force/laws/", "render/scenario/sections/", "core/motion/bandwidth/rule_"};
 
 /// Sources without a header of their name that still stand elsewhere; the list only shrinks.
-const std::set<std::string> kStandingWithoutHeader = {
-};
+const std::set<std::string> kStandingWithoutHeader = {};
 
 std::vector<std::string> too_long(const std::vector<Source>& sources) {
   std::vector<std::string> found;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/scenario/scene.h"
 #include "render/scenario/scenario_sections.h"
+#include "render/scenario/scene.h"
 
 namespace glidelab::render {
 namespace {

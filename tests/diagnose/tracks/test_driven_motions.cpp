@@ -152,8 +152,8 @@ TEST_CASE("a motion whose first positions are all set aside is fitted from those
 }
 
 TEST_CASE("the force that a model lacks is seen in the accelerations") {
-  // A push of 0.1 N from 0.6 to 0.9 s that the nominal model has not: the fit spreads some of it, and noise of 1 um adds
-  // 0.4 kg 0.11 1 um / (10 ms)² = 0.5 mN.
+  // A push of 0.1 N from 0.6 to 0.9 s that the nominal model has not: the fit spreads some of it, and noise of 1 um
+  // adds 0.4 kg 0.11 1 um / (10 ms)² = 0.5 mN.
   const auto made = tests::made_experiment(
       tests::made_launches(),
       {.force = [](double, double, double, double t) { return t > 0.6 && t < 0.9 ? 0.1 : 0.0; }}, 3, 1e-6, 150, 100.0);

@@ -21,7 +21,8 @@ core::CameraMeasurement made_camera() {
   core::CameraMeasurement camera;
   camera.folder.name = "a <b> camera";
   camera.folder.bit_depth = 12;
-  camera.picture = {640, 480};
+  camera.width_px = 640;
+  camera.height_px = 480;
   camera.frames = 44;
   camera.gain_dn_per_e = measured(0.40123, 0.0017);
   camera.read_noise_e = missing("below what the quantisation shows: less than 3.2 e-", 3.2);

@@ -243,7 +243,8 @@ TEST_CASE("the page of a sweep has every name from a file as text, with its mass
 TEST_CASE("the page of a measured camera has every name from a file as text") {
   core::CameraMeasurement camera;
   camera.folder.name = camera.folder.price_class = kEvil;
-  camera.picture = {640, 480};
+  camera.width_px = 640;
+  camera.height_px = 480;
   for (core::Measured* of : {&camera.gain_dn_per_e, &camera.offset_dn, &camera.full_well_e}) {
     *of = {1.0, 0.1, kEvil, "", {}};
   }

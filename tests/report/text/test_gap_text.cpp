@@ -51,13 +51,15 @@ TEST_CASE("a gap is written with its intervals over clips, and null with a reaso
 
 TEST_CASE("where there are too few clips for an interval, the file and the text say so") {
   diagnose::Diagnosis diagnosis = with_gap();
-  diagnosis.gap->interval95 = {{}, {}, {}, {}, {}, "two clips, too few"};
+  diagnosis.gap->interval95 = {
+      .before = {}, .after = {}, .shrink = {}, .acceleration_before = {}, .acceleration_after = {}, .too_few = 2};
   const auto gap = gap_of(diagnosis);
   for (const char* key : {"before", "after", "shrink"}) {
     CHECK(gap.at("interval95").at(key).is_null());
-    CHECK(gap.at("interval95").at("why").at(key) == "two clips, too few");
+    CHECK(gap.at("interval95").at("why").at(key) ==
+          "2 clips cannot tell how much clips differ: an interval takes three or more");
   }
-  CHECK(report::diagnosis_text(diagnosis).find("two clips, too few") != std::string::npos);
+  CHECK(report::diagnosis_text(diagnosis).find("2 clips cannot tell how much clips differ") != std::string::npos);
   CHECK(report::shrink_text(*diagnosis.gap) == "95.0 %");
 }
 

@@ -94,7 +94,7 @@ TEST_CASE("a film with nothing wrong is found to lack nothing, whatever the came
     INFO(kind.name);
     const Filmed clean = film(kind, "", 51);
     REQUIRE(usual(clean.truth));
-    INFO(clean.diagnosis.summary);
+    INFO("none " << clean.diagnosis.none << ", unknown " << clean.diagnosis.unknown);
     // What a file says of itself withholds nothing.
     const bool told = clean.diagnosis.verdict == diagnose::Verdict::effect && clean.diagnosis.effects.size() == 1 &&
                       clean.diagnosis.effects.front().id == "compression";

@@ -85,7 +85,7 @@ class NominalFit {
 
   /// Half of chi² that is left; a size of `more` is fitted as well. 0 where the fit does not settle.
   double misfit(const Seen& seen, const std::optional<Eigen::VectorXd>& more = {}) const {
-    constexpr int kMostFitSteps = 60;     // of which a glider that comes to rest elsewhere takes some ten
+    constexpr int kMostFitSteps = 60;  // of which a glider that comes to rest elsewhere takes some ten
     constexpr double kSettled = 0.01;  // of chi²: far less than the classes of strength are wide
     constexpr double kNothing = 0.01;  // chi²: the nominal law takes up all of it
     constexpr double kDown = 0.9;      // of what must stay positive, in one step

@@ -23,7 +23,8 @@
 namespace glidelab::validate {
 
 inline constexpr double kClearMargin = 4.0;
-/// Clips of a cheap camera with a compressing codec were seen to err 13 times as much as tracks (docs/evidence/requirements.md).
+/// Clips of a cheap camera with a compressing codec were seen to err 13 times as much as tracks
+/// (docs/evidence/requirements.md).
 inline constexpr double kClearMarginOfClips = 20.0;
 
 struct Requirement {

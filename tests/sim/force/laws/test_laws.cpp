@@ -38,8 +38,7 @@ std::vector<LawCase> dissipative_laws(double normal_n) {
       {"power_law 1.5", laws::power_law().with({0.5, 1.5}), [](double v) { return 0.5 * v * std::sqrt(v); }},
       {"stribeck", laws::stribeck().with({0.02, 2.5, 0.15}),
        [=](double v) { return 0.02 * normal_n * (1.0 + 1.5 * std::exp(-v * v / 0.0225)); }},
-      {"eddy_rolloff", laws::eddy_rolloff().with({1.1, 0.4}),
-       [](double v) { return 1.1 * v / (1.0 + v * v / 0.16); }},
+      {"eddy_rolloff", laws::eddy_rolloff().with({1.1, 0.4}), [](double v) { return 1.1 * v / (1.0 + v * v / 0.16); }},
   };
 }
 
@@ -147,7 +146,8 @@ TEST_CASE("a power law alone on a level track follows its closed form, and stops
     for (const double v0 : {-1.5, 0.6}) {
       const double k = 1.3;
       INFO("n " << n << " v0 " << v0);
-      const Trajectory trajectory = simulate(body(kMass, 0.0, laws::power_law().with({k * kMass, n})), 0.2, v0, times(10.0, 0.05));
+      const Trajectory trajectory =
+          simulate(body(kMass, 0.0, laws::power_law().with({k * kMass, n})), 0.2, v0, times(10.0, 0.05));
       double error = 0.0;
       for (const State& state : trajectory.states) {
         const State truth = power_law_motion(k, n, 0.2, v0, state.t_s);
@@ -169,8 +169,9 @@ TEST_CASE("a power law alone on a level track follows its closed form, and stops
 
 TEST_CASE("below n = 1 a viscous term beside the power law does not change that it stops in finite time") {
   // w = sqrt|v| obeys w' = -(c + k w) / 2 with c = 0.6 and k = 1.5, so w = 0 at t = 2/k ln(1 + k w0 / c).
-  const Trajectory trajectory = simulate(body(kMass, 0.0, laws::viscous().with({1.5 * kMass}), laws::power_law().with({0.6 * kMass, 0.5})),
-                                         0.0, 1.44, times(5.0, 0.1));
+  const Trajectory trajectory =
+      simulate(body(kMass, 0.0, laws::viscous().with({1.5 * kMass}), laws::power_law().with({0.6 * kMass, 0.5})), 0.0,
+               1.44, times(5.0, 0.1));
   REQUIRE(trajectory.changes.size() == 1);
   CHECK(std::abs(trajectory.changes[0].t_s - 2.0 / 1.5 * std::log(1.0 + 1.5 * 1.2 / 0.6)) < 1e-9);
   CHECK(trajectory.states.back().mode == Mode::stick);
