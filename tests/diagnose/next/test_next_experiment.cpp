@@ -238,7 +238,7 @@ TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and not
     return diagnosis.next;
   };
   const auto weakest = std::get<diagnose::SharpenParameter>(advice(tests::made_launches(), drag));
-  CHECK(weakest.key == "c_n_s2_m2");
+  CHECK(weakest.key == "c_kg_m");
   CHECK(weakest.effect == "quadratic_drag");
   const tests::MadeEffect scale{{}, [](double x, double) { return 1.02 * x; }};
   const auto alike = std::get<diagnose::SettleDoubt>(advice(tests::made_launches(), scale));

@@ -134,7 +134,7 @@ TEST_CASE("a clip with lost frames is analysed with its times put right, and say
                        [&](const std::string& note) { return note.find(what) != std::string::npos; });
   };
   CHECK(says(right, "3 frames are missing"));
-  CHECK(says(right, "put right"));
+  CHECK(says(right, "corrected"));
   CHECK(says(kept, "left as they are"));
   // The end that a person reads off the file's times goes with them: three lost frames are 50 ms.
   CHECK(right.motion.back().t_s == Approx(track.t_s.back() + 3.0 / 60.0).margin(1e-12));  // sums of eps
