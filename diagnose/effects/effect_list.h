@@ -1,4 +1,4 @@
-/// The list of effects: it names each once. Everything else about an effect stands in diagnose/effects/<id>.cpp.
+/// The list of effects: it names each once. Everything else about an effect stands in diagnose/effects/ID.cpp.
 ///
 /// A new effect is a line here and that file. The order is that of the indices by which the searches know an effect.
 /// What only a table of lines shows comes last.

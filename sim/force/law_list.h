@@ -8,8 +8,8 @@
 
 #include "sim/force/force_law.h"
 
-/// The ids, in the order in which messages and documentation name them; sim/force/laws/<id>_law.cpp (power_law.cpp)
-/// defines laws::<id>().
+/// The ids, in the order in which messages and documentation name them; sim/force/laws/ID_law.cpp (power_law.cpp)
+/// defines laws::ID().
 #define GLIDELAB_FORCE_LAWS(LAW) \
   LAW(viscous)                   \
   LAW(coulomb)                   \

@@ -52,7 +52,7 @@ TEST_CASE("characterize of pictures with a gamma prints why there is no gain, an
   INFO(result.out << result.err);
   REQUIRE(result.status == 0);
   CHECK(result.out.find("not linear in the light") != std::string::npos);
-  CHECK(result.err.find("not complete") != std::string::npos);
+  CHECK(result.err.find("incomplete") != std::string::npos);
   CHECK(base::read_file(temp / "out/camera.toml").find("gain_dn_per_e = nan") != std::string::npos);
 }
 

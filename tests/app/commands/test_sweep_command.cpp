@@ -191,7 +191,7 @@ TEST_CASE("A merge takes all of its files or none, and says what is not there ye
   CHECK_FALSE(fs::exists(out / "sweep.sqlite"));
   const tests::ProcessResult half = tests::glidelab({"sweep", sweep, "-o", out, "--merge", part});
   CHECK(half.status == 0);
-  CHECK(half.err.find("not complete: 3 of 6 runs are missing") != std::string::npos);
+  CHECK(half.err.find("incomplete: 3 of 6 runs are missing") != std::string::npos);
   // A merge that came too early is no hindrance to that of all.
   REQUIRE(tests::glidelab({"sweep", sweep, "-q", "-o", out, "--shard", "2/2"}).status == 0);
   const tests::ProcessResult all =

@@ -113,7 +113,7 @@ TEST_CASE("a gate of few runs says how little it finds, and takes no other noise
   CHECK(same.err.find("smallest worsening that is detected with probability 0.9") != std::string::npos);
   // Of normal errors 10 runs find no factor at all: 4.7 (the level's z and that of 0.9) times 0.603 / sqrt(10) is more
   // than 0.798, the mean of |z|.
-  CHECK(same.err.find("none is found") != std::string::npos);
+  CHECK(same.err.find("not detected") != std::string::npos);
   CHECK(same.err.find("warning: a weak gate: for ") != std::string::npos);
   const tests::ProcessResult alone = tests::glidelab({"validate", scenario, "--noise-m", "3e-5"}, dir.path());
   CHECK(alone.status == 2);

@@ -17,14 +17,9 @@ namespace {
 
 /// The block of TOML in which the documentation shows all sections.
 std::string documented_sections() {
-  const std::filesystem::path root = tests::kSourceDir;
-  for (const char* place : {"docs/reference/scenario.md", "docs/scenario.md"}) {
-    if (!std::filesystem::exists(root / place)) continue;
-    const std::string text = base::read_file(root / place);
-    const std::size_t start = text.find("\n[camera]\nwidth_px");
-    return text.substr(start, text.find("\n```", start) - start + 1);
-  }
-  return "";
+  const std::string text = base::read_file(std::filesystem::path(tests::kSourceDir) / "docs/reference/scenario.md");
+  const std::size_t start = text.find("\n[camera]\nwidth_px");
+  return text.substr(start, text.find("\n```", start) - start + 1);
 }
 
 Scenario read(const std::string& sections) {

@@ -78,7 +78,7 @@ TEST_CASE("where the law is in doubt the doubt comes first and the numbers are c
   REQUIRE(doubt != std::string::npos);
   REQUIRE(number != std::string::npos);
   CHECK(doubt < number);
-  CHECK(doubted.find("need not be a property") < number);
+  CHECK(doubted.find("need not be properties") < number);
   CHECK(doubted.find("slows it at") == std::string::npos);
   CHECK(doubted.find("Coulomb friction is") == std::string::npos);
   const std::string page = report::analysis_report("doubted", results, {}).html;
@@ -140,7 +140,7 @@ TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict mea
                              {{{}, true}, diagnose::UnnamedInLines{}, 0.05, 1.0, 1.0, 1, {}, {}, {}, {}}};
   for (diagnose::Diagnosis* diagnosis : {&of, &lines}) {
     diagnosis->verdict = diagnose::Verdict::effect;
-    CHECK(tells(report::diagnosis_report("d", *diagnosis), " show &lt;a drag&gt; (quadratic_drag, 90 %)"));
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), "The data show &lt;a drag&gt; (quadratic_drag, 90 %)"));
     CHECK(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data leaves this out"));
     diagnosis->verdict = diagnose::Verdict::unknown;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), "need not be properties of the track"));
@@ -190,7 +190,7 @@ TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and 
   core::CameraMeasurement camera;
   camera.curve.resize(2);
   camera.curve[1].mean_dn = camera.curve[1].variance_dn2 = camera.saturation_dn = 100.0;
-  CHECK(tells(report::camera_report(camera), "do not tell"));
+  CHECK(tells(report::camera_report(camera), "do not determine"));
   camera.gain_dn_per_e.value = 0.5;
   camera.read_noise_e.value = 7.0;
   camera.full_well_e.value = 10000.0;

@@ -104,7 +104,7 @@ TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curve
   CHECK(has(page, "How large the gap is"));
   CHECK(has(page, "Map of the residuals by clip"));
   // In a dark page black is nothing and the light colours are far: by numbers, not by colours.
-  CHECK(has(page, "noise allows (0: nothing; 5 and −5: as many standard deviations or more)"));
+  CHECK(has(page, "noise allows (0: none; 5 and −5: as many standard deviations or more)"));
   diagnose::Diagnosis lines;
   lines.gap = diagnose::GapSizes{};
   CHECK(report::domain_plots(lines).empty());

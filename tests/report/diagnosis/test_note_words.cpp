@@ -45,7 +45,8 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::NoInclination{{"level"}}, "Set-up \"level\" has neither"},
       {diagnose::SplitSetUps{{"flat"}}, "Clips of set-up \"flat\""},
       {diagnose::LaunchedOtherWay{"up_1", true}, "launched up"},
-      {diagnose::NegativeLoss{diagnose::NegativeLoss::Of::drag, -0.279, 0.004}, "a drag below zero (−0.279 ± 0.004 N"},
+      {diagnose::NegativeLoss{diagnose::NegativeLoss::Of::drag, -0.279, 0.004},
+       "a drag below zero (-0.2790 ± 0.0040 N"},
       {diagnose::ContradictedIncline{"flat", "plumb", 0.1, 0.001, 0.2, 0.001, true, 70.0}, "by the plumb line"},
       {diagnose::BeyondGravity{4.0, 12.7, 9.81}, "12.7 m/s², more than gravity"},
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "3.900 degrees"},
@@ -110,9 +111,9 @@ TEST_CASE("a doubt is told as what each explanation has and the other lacks, eac
 }
 
 TEST_CASE("the least known parameter is named with its size, of the nominal model by its letter") {
-  diagnose::SharpenParameter step{"c_n_s2_m2", "quadratic_drag", 0.1, 0.01, {}, {62, {}}, 0.0};
+  diagnose::SharpenParameter step{"c_kg_m", "quadratic_drag", 0.1, 0.01, {}, {62, {}}, 0.0};
   CHECK(report::next_step_words(step).starts_with(
-      "Nothing else is likely. The least known parameter is c of quadratic_drag (0.100 ± 0.010 N s²/m²). None of 62"));
+      "Nothing else is likely. The least known parameter is c of quadratic_drag (0.100 ± 0.010 kg/m). None of 62"));
   step = {"K", "", 0.93, 0.01, launch(diagnose::ChangeKind::launch, 1.0, 0.3), {62, {}}, 0.005, true};
   const std::string words = report::next_step_words(step);
   CHECK(contains(words, "The least known parameter is K (0.930 ± 0.010 N s/m). Record a launch"));

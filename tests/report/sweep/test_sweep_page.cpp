@@ -215,8 +215,8 @@ TEST_CASE("the question of mu and mass is answered in words, with its standard e
   answer.widest = row;
   study.answers = {answer};
   std::string text = report::mass_study_section(study);
-  CHECK(has(text, "Table 2 has a fall of µ from 0.0075 to 0.0051, by 0.0024"));
-  CHECK(has(text, "h = 0.1 s makes 0.001530 ± 0.000050, with R² = 0.9986"));
+  CHECK(has(text, "Table 2 has µ fall from 0.0075 to 0.0051, by 0.0024"));
+  CHECK(has(text, "h = 0.1 s gives 0.001530 ± 0.000050, with R² = 0.9986"));
   CHECK(has(text, "all of these lines are less straight"));
   study.answers[0].whole = validate::FallAt{0.126, 0.0024, 0.0, 0.9971};
   study.answers[0].at_r2 = validate::FallAt{0.07, 0.0007, 0.0, 0.9996};
