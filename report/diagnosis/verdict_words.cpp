@@ -90,7 +90,7 @@ std::string sentences(const Notes& notes) {
 std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
   const std::string sure = percent(diagnosis.unknown);
   if (!diagnosis.limits.driving.empty()) {
-    return fmt::format("{} So it is no sign that nothing is missing that no clip leaves more than its noise ({}).",
+    return fmt::format("{} Residuals no larger than the noise therefore do not show that nothing is missing ({}).",
                        sentences(diagnosis.limits.driving), sure);
   }
   return fmt::format(

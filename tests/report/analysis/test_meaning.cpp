@@ -140,7 +140,7 @@ TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict mea
                              {{{}, true}, diagnose::UnnamedInLines{}, 0.05, 1.0, 1.0, 1, {}, {}, {}, {}}};
   for (diagnose::Diagnosis* diagnosis : {&of, &lines}) {
     diagnosis->verdict = diagnose::Verdict::effect;
-    CHECK(tells(report::diagnosis_report("d", *diagnosis), "The data show &lt;a drag&gt; (quadratic_drag, 90 %)"));
+    CHECK(tells(report::diagnosis_report("d", *diagnosis), " show &lt;a drag&gt; (quadratic_drag, 90"));
     CHECK(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data leaves this out"));
     diagnosis->verdict = diagnose::Verdict::unknown;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), "need not be properties of the track"));

@@ -72,7 +72,7 @@ TEST_CASE("a drag or friction below zero is told before the verdict that rests o
   diagnose::Diagnosis of = with_incline(1.0);
   of.limits = {};
   of.limits.driving = {{diagnose::NegativeLoss::Of::friction, -0.0114, 0.0003}};
-  CHECK(report::verdict_words(of).starts_with("The fit has a friction below zero (-0.0114 ± 0.0003)"));
+  CHECK(report::verdict_words(of).starts_with("The fit has a friction below zero (-0.01140 ± 0.00030)"));
 }
 
 TEST_CASE("where a fifth of the motion is set aside, the summary begins with it") {
