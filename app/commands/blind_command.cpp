@@ -62,7 +62,7 @@ void blind(const BlindCommand& options) {
   keep_on_interrupt(
       [&] { run.outcomes = validate::run_blind(wanted, out, diagnose_apart, display.callback(), render_apart); },
       [&] {
-        return fmt::format("{} of {} cases are kept in {}; the same command goes on with the rest",
+        return fmt::format("{} of {} cases are kept in {}; the same command continues with the rest",
                            validate::kept_cases(wanted, out), wanted.cases, out.string());
       });
   run.score = validate::score_blind(run.outcomes);

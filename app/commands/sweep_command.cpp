@@ -223,7 +223,7 @@ void sweep_command(const SweepOptions& options) {
   validate::SweepDatabase database(out / database_name(shard), sweep, GLIDELAB_VERSION, shard);
   keep_on_interrupt([&] { fill(options, sweep, shard, database, out, progress, display); },
                     [&] {
-                      return fmt::format("{} of {} runs are kept in {}; the same command goes on with the rest",
+                      return fmt::format("{} of {} runs are kept in {}; the same command continues with the rest",
                                          database.runs(), validate::run_count(sweep, shard),
                                          (out / database_name(shard)).string());
                     });

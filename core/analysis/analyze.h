@@ -30,8 +30,8 @@ struct AnalysisOptions {
   BareTrackOptions bare = {};  ///< for inputs that are a track's file
 };
 
-/// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, and nothing of the
-/// camera. InputError for what is wrong with a folder; the progress tells frames.
+/// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, but not the camera.
+/// InputError for what is wrong with a folder; the progress tells frames.
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
                         const base::Progress& progress = base::no_progress);
 

@@ -17,7 +17,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track up to a few degrees"
+constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track to within a few degrees"
 constexpr double kLeastPath = 0.5;                               // marker diameters from end to end
 
 int downhill_of(const Experiment& experiment, const std::string& name) {

@@ -186,7 +186,7 @@ void judge_marker(const ClipCheck& clip, FindingBook& book) {
     book.add(share < kUnusableSeenShare ? Severity::unusable : Severity::change,
              fmt::format("the marker is seen in {} of the {} frames between its first and its last sighting", clip.seen,
                          clip.spanned),
-             "let nothing hide it; increase the contrast, reduce the blur");
+             "make sure that nothing hides it; increase the contrast, reduce the blur");
   }
   judge_ends(clip, book);
   if (clip.marker_px < kSmallMarkerPx) {

@@ -26,7 +26,7 @@ struct MarkerLook {
 
 inline constexpr std::size_t kRowBands = 4;  ///< equal parts of the picture's height, from its top
 
-/// What rests in the scene, in one frame against the clip's first ones (scene_watch.h).
+/// The fixed scene in one frame, compared with the clip's first frames (scene_watch.h).
 struct SceneLook {
   std::size_t frame = 0;
   double t_s = 0.0;

@@ -1,4 +1,4 @@
-/// A camera that sways or shakes: what rests in the scene moves in the image, the phase of each motion its own.
+/// A camera that sways or shakes: the fixed scene moves in the image, with its own phase in each motion.
 ///
 /// A turning camera moves what is at the sides of the image by more: A (1 + slope (x - x_mid) + bend (x - x_mid)²). Of
 /// tracks nobody knows the camera: one size everywhere.
@@ -42,7 +42,7 @@ EffectInfo camera_motion() {
       .stage = Stage::optics,
       .words = "a camera that sways or shakes",
       .name = "moving camera",
-      .meaning = "what rests in the scene moves by this amplitude, with frequency f",
+      .meaning = "the fixed scene moves by this amplitude, with frequency f",
       .search = Search::wave,
       .both_signs = false,
       .parameters = {{.key = "amplitude_m", .absent = 0.0, .low = 0.0, .high = 0.05, .step = 1e-8},

@@ -7,7 +7,7 @@
 namespace glidelab::diagnose {
 
 void TwinForces::replace_drag(std::string_view id, std::string text) {
-  if (!drag.empty()) lacks.push_back({drag_by, "a drag of one law has no other one in it"});
+  if (!drag.empty()) lacks.push_back({drag_by, "a drag law cannot contain another one"});
   drag = std::move(text);
   drag_by = id;
 }

@@ -31,8 +31,8 @@ EffectInfo light_flicker() {
       .twin = EffectTwin::as_camera(TwinPart::light, flicker_twin),
       .next =
           "Record the same launch again with an exposure of one whole period of the flicker (lamps flicker at twice "
-          "the mains' frequency: 10 ms at 50 Hz, 8.3 ms at 60 Hz), or in light of a direct current: every frame "
-          "collects the same light then.",
+          "the mains' frequency: 10 ms at 50 Hz, 8.3 ms at 60 Hz), or under lamps on direct current: then every frame "
+          "collects the same light.",
       .alike = {},
   };
 }

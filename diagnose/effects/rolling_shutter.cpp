@@ -38,7 +38,7 @@ EffectInfo rolling_shutter() {
       .twin = EffectTwin::as_camera(TwinPart::shutter, rows_twin),
       .next =
           "Turn the camera upside down and record the same launch again (or film it with a global shutter): rows are "
-          "read in the other order over the track then, so that their lateness and the marker's shear change sign, "
+          "then read across the track in the opposite order, so their delay and the marker's shear change sign, "
           "and a force does not.",
       .alike = {},
   };

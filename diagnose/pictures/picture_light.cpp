@@ -91,10 +91,10 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   finding.parameters = {{"depth", wave.amplitude / passed, wave.sd / passed}, {"f_hz", f_hz, wave.sd_hz}};
   finding.words =
       finding.log_evidence > kSeenInPictures
-          ? fmt::format("The brightness of what rests in the scene varies by ±{:.2g} % with {:.4g} Hz{}.",
-                        100.0 * wave.amplitude, wave.f_hz,
-                        f_hz != wave.f_hz ? fmt::format(" (as {:.0f} Hz looks at this frame rate)", f_hz) : "")
-          : fmt::format("Light does not flicker: no wave above {:.2g} % in what rests in the scene.",
+          ? fmt::format("The brightness of the fixed scene varies by ±{:.2g} % at {:.4g} Hz{}.", 100.0 * wave.amplitude,
+                        wave.f_hz,
+                        f_hz != wave.f_hz ? fmt::format(" ({:.0f} Hz looks like this at this frame rate)", f_hz) : "")
+          : fmt::format("The light does not flicker: no wave above {:.2g} % in the fixed scene.",
                         100.0 * std::max(wave.amplitude, 3.0 * wave.sd));
   evidence.findings.push_back(std::move(finding));
 }

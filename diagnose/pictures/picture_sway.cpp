@@ -91,18 +91,17 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   if (shakes) {
     finding.log_evidence = std::max(wave.log_evidence, of_drift);
     finding.parameters = {{"amplitude_px", wave.amplitude, wave.sd}, {"f_hz", wave.f_hz, wave.sd_hz}};
-    finding.words =
-        fmt::format("What rests in the scene sways in the image by ±{:.2g} px with {:.3g} Hz: the camera shakes.",
-                    wave.amplitude, wave.f_hz);
+    finding.words = fmt::format("The fixed scene sways in the image by ±{:.2g} px at {:.3g} Hz: the camera shakes.",
+                                wave.amplitude, wave.f_hz);
   } else if (of_drift > kSeenInPictures) {
     finding.log_evidence = of_drift;
     finding.parameters = {{"amplitude_px", 0.5 * drift.size, 0.5 * drift_sd}};
-    finding.words = fmt::format(
-        "What rests in the scene drifts in the image by {:.2g} px within a clip: the camera moves.", drift.size);
+    finding.words =
+        fmt::format("The fixed scene drifts in the image by {:.2g} px within a clip: the camera moves.", drift.size);
   } else {
     finding.log_evidence = std::min({of_drift, wave.log_evidence, -2.0});
     finding.parameters = {{"amplitude_px", 0.0, std::max(least_px, wave.amplitude)}};
-    finding.words = fmt::format("The camera rests: what is fixed in the scene stays within {:.2g} px in the image.",
+    finding.words = fmt::format("The camera is at rest: the fixed scene stays within {:.2g} px in the image.",
                                 std::max(least_px, std::max(wave.amplitude, drift.size)));
   }
   evidence.findings.push_back(std::move(finding));

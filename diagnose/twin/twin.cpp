@@ -130,7 +130,7 @@ std::vector<std::string> assumed_of_clips(const TrackSet& set, const Twin& twin,
                                        [of = clip](const TrackedMotion& motion) { return motion.clip == of; });
     if (motions > 1) {
       assumed.push_back(
-          fmt::format("of clip {} its first stretch of motion alone, of {}", clip_names_of(set)[clip], motions));
+          fmt::format("only the first of clip {}'s stretches of motion, of {}", clip_names_of(set)[clip], motions));
     }
   }
   return assumed;

@@ -66,7 +66,7 @@ std::string codec_sections(const std::optional<Filming>& filming, TwinCamera& ca
   const bool even = filming && filming->width_px % 2 == 0 && filming->height_px % 2 == 0;
   // Of 8 x 8 blocks in a file that does not say which codec made them, each image by itself is the simplest.
   const bool h264 = stated_lossy && !motion_jpeg && even;
-  camera.notes.emplace_back("how strongly the codec compresses is not known: as a scenario has it by itself");
+  camera.notes.emplace_back("how strongly the codec compresses is not known: the scenario's default is used");
   return depth + section("[codec]", h264 ? "name = \"h264\"\n" : "name = \"mjpeg\"\n");
 }
 

@@ -102,7 +102,7 @@ FloatCanvas::FloatCanvas(int width, int height, int channels) : context_(std::ma
                             0,
                             0};
   context_->mesa = OSMesaCreateContextAttribs(attributes, nullptr);
-  if (context_->mesa == nullptr) throw base::EnvironmentError("off-screen OpenGL 3.3 (OSMesa) is not there");
+  if (context_->mesa == nullptr) throw base::EnvironmentError("off-screen OpenGL 3.3 (OSMesa) is not available");
   context_->width = width;
   context_->height = height;
   context_->channels = channels;

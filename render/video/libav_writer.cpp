@@ -78,7 +78,7 @@ class LibavWriter final : public VideoWriter {
   LibavWriter& operator=(const LibavWriter&) = delete;
 
   void write(std::span<const std::uint8_t> frame) override {
-    if (format_.variable) throw std::logic_error("a clip of variable rate wants a time for every frame");
+    if (format_.variable) throw std::logic_error("a clip of variable rate needs a time for every frame");
     put(frame, next_++);
   }
   void write(std::span<const std::uint8_t> frame, double t_s) override {

@@ -77,7 +77,7 @@ Plot noise_plot(const diagnose::PictureCurve& curve) {
       fmt::format(
           "set xrange [0:*]\nset yrange [0:*]\nset xlabel 'brightness of a resting pixel  (codes)'\nset ylabel "
           "'variance of its noise  (codes²)'\nplot $noise using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{0}' "
-          "title 'seen', $noise using 1:4 with lines lw 2 lc rgb '{0}' title 'of light and a linear sensor'\n",
+          "title 'seen', $noise using 1:4 with lines lw 2 lc rgb '{0}' title 'shot noise, linear sensor'\n",
           kColors[0]);
   return {Drawing{script, std::vector{data}},
           fmt::format("How much resting pixels change from frame to frame, against their brightness. Shot noise gives "

@@ -252,7 +252,7 @@ Page blind_page(const BlindRun& run) {
   }
   targets.row({"expected calibration error", base::number_text(score.calibration_error, 2),
                wanted_calibration_text() + (score.calibration_error < kWantedCalibration ? ": met" : ": missed")});
-  body += "<h2>Found and wanted</h2>\n" + targets.str();
+  body += "<h2>Results against the targets</h2>\n" + targets.str();
   if (score.failed > 0) {
     body += fmt::format("<p class=\"note\">{} cases could not be diagnosed; they count as wrong.</p>\n", score.failed);
   }
@@ -274,7 +274,7 @@ Page blind_page(const BlindRun& run) {
       "same positions: weak below 15, moderate up to 50, strong above. ";
   body +=
       run.pictures
-          ? "For an effect that moves no position, it is half the square of its size over what images may show where "
+          ? "For an effect that moves no position, it is half the square of its size over what images may show when "
             "nothing is wrong. A wrong scale and a wrong frame rate count as one. Where the file itself says that "
             "it is lossily compressed, compression is no secret: naming it makes a verdict neither better nor "
             "worse.</p>\n"

@@ -90,7 +90,7 @@ std::string blind_meaning(const validate::BlindScore& score) {
   text = meaning_section("<p>How far a verdict on an experiment like these can be trusted:</p>\n<ul>\n" + text +
                          "</ul>\n");
   const bool calibrated = score.calibration_error < kWantedCalibration;
-  text += fmt::format("<p>A stated probability is off by {} on average: it can{} be taken at its word{}.",
+  text += fmt::format("<p>A stated probability is off by {} on average: it can{} be taken at face value{}.",
                       base::number_text(score.calibration_error, 2), calibrated ? "" : "not",
                       calibrated                 ? ""
                       : over_stated(score) > 0.0 ? ", it is too sure of itself"
@@ -102,10 +102,9 @@ std::string blind_meaning(const validate::BlindScore& score) {
     ++weighed;
     if (!is_met(target)) missed += (missed.empty() ? "" : "; ") + escape(target.what);
   }
-  if (weighed == 1) return text + " No case says anything about the targets.</p>\n";
-  return text + (missed.empty()
-                     ? fmt::format(" All {} targets that these cases say anything about are met.</p>\n", weighed)
-                     : fmt::format(" Missed: {}.</p>\n", missed));
+  if (weighed == 1) return text + " No case bears on the targets.</p>\n";
+  return text + (missed.empty() ? fmt::format(" All {} targets that these cases bear on are met.</p>\n", weighed)
+                                : fmt::format(" Missed: {}.</p>\n", missed));
 }
 
 }  // namespace glidelab::report

@@ -24,7 +24,7 @@ std::string verdict_of(const core::RecordingCheck& check) {
   };
   const auto worst = count(core::Severity::unusable), changes = count(core::Severity::change);
   if (worst > 0) {
-    return fmt::format("Not usable as it is: {} thing{} to mend first", worst, worst == 1 ? "" : "s");
+    return fmt::format("Not usable as it is: {} thing{} to fix first", worst, worst == 1 ? "" : "s");
   }
   return changes == 0 ? "Usable as it is"
                       : fmt::format("Usable; {} thing{} would make it better", changes, changes == 1 ? "" : "s");
@@ -81,10 +81,10 @@ std::string check_meaning(const core::RecordingCheck& check) {
   std::string text;
   if (!check.usable) {
     text =
-        "An analysis of this recording would fail, or give numbers that mislead: mend what “must change” below "
+        "An analysis of this recording would fail, or give numbers that mislead: fix what “must change” below "
         "first.";
   } else if (wants_change(check)) {
-    text = "What is “better” below would make its numbers surer, should it be recorded again.";
+    text = "What is “better” below would make its numbers more precise if you record again.";
   } else {
     text = "Nothing needs to be recorded again.";
   }
@@ -219,7 +219,7 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
       "Lost, "
       "twice: frames that are missing or repeated, as far as the marker's motion and the images show. Speed: the "
       "highest, "
-      "and the blur that the exposure makes of it. Marker: its diameter; contrast: how far it stands out of its "
+      "and the blur that the exposure makes of it. Marker: its diameter; contrast: how far it stands out from its "
       "surroundings, as a share of the camera's range, and over the noise of a pixel. White, black: pixels at the ends "
       "of "
       "the range. Noise: of a position.</p>\n";

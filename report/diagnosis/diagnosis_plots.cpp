@@ -165,7 +165,7 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
   PlotData data{"seen",
                 {},
                 {"speed in the image (px/s)", "lengthening (px²)", "standard deviation (px²)",
-                 "as by the exposure found (px²)", "as by the one stated (px²)"}};
+                 "for the exposure found (px²)", "for the exposure stated (px²)"}};
   for (std::size_t p = 0; p < curve.at.size(); ++p) {
     data.rows.push_back(
         {curve.at[p], curve.value[p], curve.sd[p], curve.fitted[p], curve.expected.empty() ? kNan : curve.expected[p]});
@@ -176,10 +176,10 @@ Plot lengthening_plot(const diagnose::PictureCurve& curve) {
       " (px²)'\n";
   script += fmt::format(
       "plot $seen using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{}' title 'seen', $seen using 1:4 with "
-      "lines lw 2 lc rgb '{}' title 'as by the exposure found'",
+      "lines lw 2 lc rgb '{}' title 'for the exposure found'",
       kColors[0], kColors[0]);
   if (!curve.expected.empty()) {
-    script += fmt::format(", $seen using 1:5 with lines lw 2 dt 2 lc rgb '{}' title 'as by the one stated'", kGrey);
+    script += fmt::format(", $seen using 1:5 with lines lw 2 dt 2 lc rgb '{}' title 'for the exposure stated'", kGrey);
   }
   return {Drawing{script + "\n", std::vector{data}},
           "Lengthening of the marker's image with its speed: a long exposure smears it",
@@ -289,11 +289,10 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
     const std::string script = std::string(kFrame) + kFromStart + key_of(light) +
                                "set xlabel 'time t (s)'\nset ylabel 'brightness, change  (%)'\nplot " +
                                lines_of(light, 1, true) + "\n";
-    plots.push_back(
-        {Drawing{script, std::vector{light.data}},
-         "Brightness of what rests in the scene, relative to each clip's first frames; light that flickers makes a "
-         "regular wave",
-         "Brightness of the scene over time"});
+    plots.push_back({Drawing{script, std::vector{light.data}},
+                     "Brightness of the fixed scene, relative to each clip's first frames; light that flickers makes a "
+                     "regular wave",
+                     "Brightness of the scene over time"});
   }
   const OverTime across = over_time(curves, "drift across", {"across", {}, {"t (s)", "to the right (px)"}}, 1.0);
   const OverTime down = over_time(curves, "drift down", {"down", {}, {"t (s)", "downwards (px)"}}, 1.0);
@@ -305,7 +304,7 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
       ", keyentry with lines lw 1.5 lc rgb '#000000' title 'to the right', keyentry with lines lw 1.5 dt 3 lc rgb "
       "'#000000' title 'downwards'\n";
   plots.push_back({Drawing{script, std::vector{across.data, down.data}},
-                   "Position in the image of what rests in the scene: a camera at rest keeps it at 0, up to noise",
+                   "Position of the fixed scene in the image: with a camera at rest it stays at 0, up to noise",
                    "Drift of the scene in the image over time"});
   return plots;
 }

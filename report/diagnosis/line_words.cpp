@@ -191,7 +191,7 @@ std::string impossible_words(const diagnose::ImpossibleSize& size) {
   const auto [name, unit] = base::name_and_unit(size.key);
   const std::string needed = fmt::format("{} would have to be {}", name, base::size_text(size.value, 2, unit));
   if (!size.largest) return needed + ", and it cannot be below zero";
-  return fmt::format("{}, and more than {} is absurd", needed, base::size_text(*size.largest, 2, unit));
+  return fmt::format("{}, and more than {} is implausible", needed, base::size_text(*size.largest, 2, unit));
 }
 
 }  // namespace glidelab::report

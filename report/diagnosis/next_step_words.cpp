@@ -143,7 +143,7 @@ std::string routine_words(diagnose::Routine routine) {
              "statement cannot both be right.";
     case Routine::check_statements:
       return "Check the stated downhill direction, inclinations and masses, then launch one glider both ways: friction "
-             "slows it whichever way it goes, an inclination does not.";
+             "slows it in both directions, an inclination does not.";
     case Routine::second_mass:
       return "Record a second mass: with one, a friction force is simply mu.";
   }
@@ -158,17 +158,17 @@ struct Words {
 
   std::string operator()(const diagnose::RepeatClip& of) const {
     return fmt::format(
-        "Repeat clip {} three times without changing anything: what is its own does not come back, what its launch, "
-        "mass or set-up does to it comes back each time.",
+        "Repeat clip {} three times without changing anything: what belongs to that clip alone does not come back; "
+        "what its launch, mass or set-up causes comes back each time.",
         of.clip);
   }
 
   std::string operator()(const diagnose::CoverRegion& of) const {
     const bool places = of.over == diagnose::CoverRegion::Over::places;
-    const std::string launch =
-        fmt::format("{}: of {} launches it has most positions ({} of {}) at {} from {} to {} {}, where the excess lies",
-                    change_words(of.launch), of.launches, of.inside, of.positions, places ? "places" : "speeds",
-                    base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
+    const std::string launch = fmt::format(
+        "{}: of {} launches it has the most positions ({} of {}) at {} from {} to {} {}, where the excess lies",
+        change_words(of.launch), of.launches, of.inside, of.positions, places ? "places" : "speeds",
+        base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
     if (!places) return launch + ", and its shape over the speed tells what it is.";
     return fmt::format("Move the camera along the track by a third of the view. {}; {}", launch, kMoveCamera);
   }
@@ -199,7 +199,7 @@ struct Words {
     const base::NamedUnit named =
         of.effect.empty() ? base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""} : base::name_and_unit(of.key);
     std::string text =
-        fmt::format("Nothing else is likely. The least known parameter is {}{} ({}).", named.name,
+        fmt::format("Nothing else is likely. The least well known parameter is {}{} ({}).", named.name,
                     of.effect.empty() ? "" : " of " + of.effect, base::size_and_sd_text(of.value, of.sd, named.unit));
     if (of.by) {
       text += fmt::format(" {}: of {} this one sharpens it most, to ± {}.", change_words(*of.by),
@@ -211,7 +211,7 @@ struct Words {
           weighed_words(of.weighed));
     }
     if (of.one_mass) {
-      text += " With one mass, a friction that does not grow with the load counts as mu: a second mass tells.";
+      text += " With one mass, a friction that does not grow with the load counts as mu: a second mass would tell.";
     }
     return text;
   }

@@ -31,14 +31,13 @@ struct Sentence {
     return fmt::format("Clip {} holds no free motion of {} points or more.", of.clip, of.fewest);
   }
   std::string operator()(const diagnose::ThinnedPositions& of) const {
-    return fmt::format(
-        "Of {} positions{}, one in {} is weighed: the law needs no more, and the search slows with them.", of.points,
-        of.driven ? " with a recorded force" : "", of.every);
+    return fmt::format("Of {} positions{}, one in {} is used: the law needs no more, and more would slow the search.",
+                       of.points, of.driven ? " with a recorded force" : "", of.every);
   }
   std::string operator()(const diagnose::CutAtTurns& of) const {
     return fmt::format(
         "The recorded force turns the motion {} times. The motion is weighed in pieces of {} turns, each with a start "
-        "of its own; what shows only over longer times, such as a slow drift, is not looked at.",
+        "of its own; anything that shows only over longer times, such as a slow drift, is not examined.",
         of.turns, of.turns_of_piece);
   }
   std::string operator()(const diagnose::SomePieces& of) const {
@@ -53,7 +52,7 @@ struct Sentence {
   std::string operator()(const diagnose::SetAside& of) const {
     return fmt::format(
         "Of the {} positions of the motion, {:.0f} % are set aside: they look like a hand or a stop, or lie far off, "
-        "and no effect of the list explains them. What is said holds for the others.",
+        "and no effect of the list explains them. The verdict holds for the rest.",
         of.positions, 100.0 * of.part);
   }
   std::string operator()(const diagnose::PiecesHeldOut&) const {
@@ -72,7 +71,7 @@ struct Sentence {
   std::string operator()(const diagnose::StatementsDisagree& of) const {
     return fmt::format(
         "Set-up \"{}\": the {} and the {} inclination contradict each other by {:.1f} standard deviations. One of them "
-        "is wrong, and what rests on them is unsure.",
+        "is wrong, and the results that depend on them are uncertain.",
         of.group, of.one, of.other, of.z);
   }
   std::string operator()(const diagnose::NoInclination& of) const {
@@ -87,14 +86,14 @@ struct Sentence {
                        ups(of.groups));
   }
   std::string operator()(const diagnose::LaunchedOtherWay& of) const {
-    return fmt::format("Clip {} is stated as launched {}, and begins the other way.", of.clip,
+    return fmt::format("Clip {} is stated as launched {}, but starts in the opposite direction.", of.clip,
                        of.stated_up ? "up" : "down");
   }
   std::string operator()(const diagnose::NegativeLoss& of) const {
     const bool drag = of.of == diagnose::NegativeLoss::Of::drag;
     return fmt::format(
-        "The fit has a {} below zero ({}), which would drive the glider: either the effect that is missing takes it "
-        "there, or the stated inclination, downhill direction or masses are wrong.",
+        "The fit has a {} below zero ({}), which would drive the glider: either the missing effect pushes it there, or "
+        "the stated inclination, downhill direction or masses are wrong.",
         drag ? "drag" : "friction", base::size_and_sd_text(of.value, of.sd, drag ? "N s/m" : ""));
   }
   std::string operator()(const diagnose::ContradictedIncline& of) const {

@@ -45,7 +45,7 @@ std::string lead(const diagnose::Plan& plan) {
 std::string what_follows(const diagnose::Plan& plan) {
   if (plan.effects.empty()) return {};
   const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
-  if (!any) return "Recorded like this, a diagnosis could find none of them: its “none” would say nothing.";
+  if (!any) return "Recorded like this, a diagnosis could find none of them: its “none” would mean nothing.";
   return "Recorded like this, a diagnosis can find an effect from the size “seen from” on. If it finds none, smaller "
          "ones "
          "may still act, and those that are not seen may have any size.";

@@ -94,7 +94,8 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
                        sentences(diagnosis.limits.driving), sure);
   }
   return fmt::format(
-      "{} The nominal model explains the motion to its noise, and none of the effects that this program knows shifts "
+      "{} The nominal model explains the motion to within its noise, and none of the effects that this program knows "
+      "shifts "
       "an "
       "inclination so far: a statement is wrong, or something acts as an inclination does ({}).",
       sentences(diagnosis.limits.contradicted), sure);
@@ -124,7 +125,8 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   }
   if (diagnosis.verdict == diagnose::Verdict::none) {
     return fmt::format(
-               "Nothing is missing that these data could show ({}): the nominal model explains them to their noise.",
+               "Nothing is missing that these data could show ({}): the nominal model explains them to within their "
+               "noise.",
                percent(diagnosis.none)) +
            clip_gap_words(diagnosis);
   }
@@ -170,7 +172,7 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
 
 std::string too_few_words(const diagnose::GapIntervals& intervals) {
   if (!intervals.too_few) return {};
-  return fmt::format("{} clip{} cannot tell how much clips differ: an interval takes three or more", *intervals.too_few,
+  return fmt::format("{} clip{} cannot tell how much clips differ: an interval needs three or more", *intervals.too_few,
                      *intervals.too_few == 1 ? "" : "s");
 }
 

@@ -171,7 +171,7 @@ std::string meaning(const Requirement& requirement) {
                     undecided.size());
   }
   if (!possible.empty()) {
-    text += fmt::format(" Of {} the bound allows it, and nothing was run.", possible.size());
+    text += fmt::format(" For {} the bound allows it, and nothing was run.", possible.size());
   }
   if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
     const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();

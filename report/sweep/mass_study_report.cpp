@@ -86,7 +86,7 @@ std::string mass_study_section(const validate::MassStudy& study) {
   return html + table.str() +
          "<p class=\"soft\">Lines through every smoothed point, kernels over ends and reversals included. The fall is "
          "µ of the lightest glider less that of the heaviest; ± is one standard error over the runs, and missing where "
-         "the positions are exact, for then nothing is chance. R² is the least of a run's lines, the mean over its "
+         "the positions are exact, because then nothing is random. R² is the least of a run's lines, the mean over its "
          "runs. Between two bandwidths that were run the fall and the logarithm of 1 − R² are taken to lie on "
          "straight lines.</p>\n";
 }

@@ -96,7 +96,7 @@ std::string bandwidths_of(const SweepSummary& summary) {
   // Two standard errors of the ratio of two rms errors, of normal errors.
   return fmt::format(
       "<p>Of the {} given bandwidths of the lines the least rms error is that of {}. Two whose errors differ by less "
-      "than {:.0f} % may be alike.</p>\n",
+      "than {:.0f} % may be equivalent.</p>\n",
       given.size(), winners, 200.0 / std::sqrt(static_cast<double>(answered)));
 }
 
@@ -168,9 +168,10 @@ std::string changes_of(const SweepSummary& summary, const Series& best) {
   const std::string configurations = configurations_of(summary, best);
   if (!configurations.empty()) list += item(configurations);
   if (!unlike.empty()) {
-    list += item(fmt::format("along {} it is not compared: some runs have no answer, and {}", unlike,
-                             drawn ? "with drawn values those that have are not alike at two values of a key"
-                                   : "no combination of all else has one at each value"));
+    list +=
+        item(fmt::format("along {} it is not compared: some runs have no answer, and {}", unlike,
+                         drawn ? "with random values the runs that have one are not comparable between values of a key"
+                               : "no combination of all else has one at each value"));
   }
   if (list.empty()) return {};
   return fmt::format("<p>The rms error of {} by {} is:</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
@@ -262,7 +263,7 @@ std::string sweep_meaning(const SweepSummary& summary) {
   if (first == nullptr) return {};
   std::string text;
   if (summary.runs < summary.planned) {
-    text += fmt::format("{} of {} runs are done; what follows is of these. ", summary.runs, summary.planned);
+    text += fmt::format("{} of {} runs are done; the following covers only these. ", summary.runs, summary.planned);
   }
   if (summary.failed > 0) text += fmt::format("{} runs failed and are not in it. ", summary.failed);
   text += "The least rms error over all runs is that of " +

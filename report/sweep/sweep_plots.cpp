@@ -86,8 +86,8 @@ RunNotes notes_of(const std::vector<const Series*>& drawn) {
                     one ? fmt::format("over those {} of {}", of.alike, of.combinations) : "n of m: over those");
   }
   if (of_unlike) {
-    notes.common += one ? "; some runs have no answer, so that those at two values are not alike"
-                        : "; unlike runs: some have no answer, so that those at two values are not alike";
+    notes.common += one ? "; some runs have no answer, so the runs at two values are not comparable"
+                        : "; unlike runs: some have no answer, so the runs at two values are not comparable";
   }
   for (std::size_t i = 0; i < drawn.size() && !one; ++i) {
     const validate::Likeness& of = drawn[i]->likeness;
@@ -193,7 +193,7 @@ Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::str
     frame.titles.push_back(titles.of_each[i] + notes.of_each[i]);
   }
   frame.note = notes.common;
-  if (titles.shortened) frame.note += "; what is named by a rule or h alone are lines of the phase diagram";
+  if (titles.shortened) frame.note += "; entries named by a rule or h alone are lines of the phase diagram";
   // gnuplot makes the legend's columns as wide as its longest text: some 7.5 points a letter at this size, and its
   // sample.
   std::size_t longest = std::string_view("stated sd (dashed)").size();

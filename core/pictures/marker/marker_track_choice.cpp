@@ -212,7 +212,7 @@ TrackedMarker Choice::marker() const {
     tracked.notes.emplace_back("the marker is lit from one side; its shading is fitted");
   const double ratio = path.size_ratio();
   if (std::abs(std::log(ratio)) > 0.2) {
-    tracked.notes.push_back(fmt::format("the marker looks {:.0f} % {} than its diameter says",
+    tracked.notes.push_back(fmt::format("the marker looks {:.0f} % {} than its diameter predicts",
                                         100.0 * std::abs(ratio - 1.0), ratio > 1.0 ? "larger" : "smaller"));
   }
   return tracked;

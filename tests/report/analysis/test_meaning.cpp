@@ -97,7 +97,7 @@ TEST_CASE("what blind cases mean is told of what was there, with intervals, and 
   const auto has = [&](const char* part) { return report::blind_meaning(score).find(part) != std::string::npos; };
   // Clopper and Pearson, all of n: the lower end is 0.025^(1/n), 0.398 of 4.
   CHECK(has("in 100 % (4 of 4; 95 %: 40 to 100 %)"));
-  CHECK(has("can be taken at its word"));
+  CHECK(has("can be taken at face value"));
   CHECK(has("Missed: nothing wrong: a verdict other than none"));  // 10 % of at most 5
   CHECK_FALSE(has("moderate"));
   score.false_alarm = {20, 1};
@@ -174,10 +174,10 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
   CHECK(tells(page(), "off by 0.0036\u00a0mm or less"));
   check.findings = {{core::Severity::change, "m1", "dark", "more light"}};
-  CHECK(tells(page(), "should it be recorded again"));
+  CHECK(tells(page(), "if you record again"));
   check.findings = {{core::Severity::unusable, "m1", "black", "more light"}};
   check.usable = false;
-  CHECK(tells(page(), "mend what “must change”"));
+  CHECK(tells(page(), "fix what “must change”"));
 }
 
 TEST_CASE("a rehearsal's page says at the top how many values lie near the truth, above all its tables") {

@@ -110,14 +110,15 @@ TEST_CASE("a doubt is told as what each explanation has and the other lacks, eac
   CHECK(report::next_step_words(diagnose::RecordForEffect{"Film it again.", {}}) == "Film it again.");
 }
 
-TEST_CASE("the least known parameter is named with its size, of the nominal model by its letter") {
+TEST_CASE("the least well known parameter is named with its size, of the nominal model by its letter") {
   diagnose::SharpenParameter step{"c_kg_m", "quadratic_drag", 0.1, 0.01, {}, {62, {}}, 0.0};
-  CHECK(report::next_step_words(step).starts_with(
-      "Nothing else is likely. The least known parameter is c of quadratic_drag (0.100 ± 0.010 kg/m). None of 62"));
+  CHECK(
+      report::next_step_words(step).starts_with("Nothing else is likely. The least well known parameter is c of "
+                                                "quadratic_drag (0.100 ± 0.010 kg/m). None of 62"));
   step = {"K", "", 0.93, 0.01, launch(diagnose::ChangeKind::launch, 1.0, 0.3), {62, {}}, 0.005, true};
   const std::string words = report::next_step_words(step);
-  CHECK(contains(words, "The least known parameter is K (0.930 ± 0.010 N s/m). Record a launch"));
-  CHECK(contains(words, "a second mass tells"));
+  CHECK(contains(words, "The least well known parameter is K (0.930 ± 0.010 N s/m). Record a launch"));
+  CHECK(contains(words, "a second mass would tell"));
 }
 
 TEST_CASE("a step without numbers has a sentence with its reason, and no step has none") {
@@ -138,7 +139,7 @@ TEST_CASE("a step without numbers has a sentence with its reason, and no step ha
   cover.launches = 12;
   cover.inside = 30;
   cover.positions = 80;
-  CHECK(contains(report::next_step_words(cover), "it has most positions (30 of 80) at places from 1.5 to 2.1 m"));
+  CHECK(contains(report::next_step_words(cover), "it has the most positions (30 of 80) at places from 1.5 to 2.1 m"));
   cover.over = diagnose::CoverRegion::Over::speeds;
   CHECK(contains(report::next_step_words(cover), "at speeds from 1.5 to 2.1 m/s"));
   CHECK(contains(report::next_step_words(diagnose::AddMass{0.435}), " 435 g "));

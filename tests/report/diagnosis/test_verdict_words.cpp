@@ -61,7 +61,7 @@ TEST_CASE("a stated inclination that the motion contradicts is said first, with 
   const diagnose::Diagnosis at_floor = with_incline(1.02);
   CHECK(report::verdict_words(at_floor).starts_with(
       "The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated, and the motion says 4.001 ± 0.004° by the "
-      "nominal model (199 standard deviations apart). The nominal model explains the motion to its noise"));
+      "nominal model (199 standard deviations apart). The nominal model explains the motion to within its noise"));
   // Where the motion itself is not explained, that comes first and the statement last.
   const std::string off = report::verdict_words(with_incline(5.0));
   CHECK(off.starts_with("Something is missing"));

@@ -64,7 +64,7 @@ TEST_CASE("a twin says that it has one frame rate, and one stretch of a clip, wh
   }
   made.results.clips[1].frame_rate_hz = 100.001;
   const std::string twin = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2}).twin;
-  CHECK(twin.find("# Assumed: of clip clip0 its first stretch of motion alone, of 2.\n") != std::string::npos);
+  CHECK(twin.find("# Assumed: only the first of clip clip0's stretches of motion, of 2.\n") != std::string::npos);
   CHECK(twin.find("# Assumed: 100 frames a second, the first clip's, for all clips.\n") != std::string::npos);
 }
 

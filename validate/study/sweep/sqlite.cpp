@@ -29,7 +29,7 @@ namespace {
       throw std::logic_error(fmt::format("{}: {} ({})", name, what, doing));
     case SQLITE_FULL:
       throw base::EnvironmentError(
-          fmt::format("{}: the disk is full; what is finished is kept, run the same command again to go on", name));
+          fmt::format("{}: the disk is full; what is finished is kept, run the same command again to continue", name));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       throw base::EnvironmentError(fmt::format("{}: another process is writing it", name));

@@ -133,7 +133,7 @@ void check_entries(Database& database, const SweepEntries& expected) {
     if (entry != found.end() && entry->second == wanted.second) continue;
     throw base::InputError(base::Issue{
         database.file().string(), 0, wanted.first, entry == found.end() ? "nothing" : shorten(entry->second),
-        fmt::format("{}: a database goes on with the sweep and the program that began it; give another --out",
+        fmt::format("{}: a database is continued only by the sweep and the program that began it; give another --out",
                     wanted.second.find('\n') == std::string::npos ? shorten(wanted.second) : "that of this sweep")});
   }
 }

@@ -20,7 +20,7 @@ void check_camera_is_free(const Sweep& sweep) {
     if (!camera || !camera->has(key)) continue;
     issues.push_back({sweep.scenario_file.string(), camera->line(key), camera->path(key),
                       "a value of the scenario's own",
-                      "none, for it would stand in place of every camera's in a sweep over cameras"});
+                      "none: it would replace every camera's own in a sweep over cameras"});
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
 }
