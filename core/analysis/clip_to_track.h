@@ -1,4 +1,4 @@
-/// From pictures to x(t): everything that has to do with images, behind one function a folder.
+/// From images to x(t): one function per folder hides everything that has to do with images.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-/// What one clip's pictures say, in pixels: the marker in every frame, the frames' times, and what else is to be seen.
+/// What one clip's images show, in pixels: the marker in every frame, the frames' times, and anything else of note.
 #pragma once
 
 #include <opencv2/core.hpp>

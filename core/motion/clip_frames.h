@@ -1,4 +1,4 @@
-/// A clip frame by frame, as it is reported: smoothed, with what became of each frame, and the stretches that count.
+/// A clip frame by frame, as it is reported: smoothed, with the fate of each frame, and the stretches that are used.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// What a clip's pictures show besides the marker's centre, as plain data: evidence of how the camera saw, not of how
+/// What a clip's images show besides the marker's centre, as plain data: evidence of how the camera saw, not of how
 /// the glider moved. Measured while the clip streams by, a few hundred bytes a frame. Pixels and seconds; the centre of
 /// the first pixel is (0, 0), rows count downwards.
 #pragma once

@@ -1,4 +1,4 @@
-/// What experiment.toml states of a configuration, against what its motion shows.
+/// What experiment.toml states about a configuration, compared with what its motion shows.
 ///
 /// Inclination, from the lines a = a0 - (K/m) v:
 ///     both directions: g sin(alpha) = (a0- + a0+)/2                             (13)

@@ -1,4 +1,4 @@
-/// What the program knows of one effect: its names and words, its parameters and how large they may be, its law, its
+/// What the program knows about one effect: its names and words, its parameters and how large they may be, its law, its
 /// lines in a table, its twin in a scenario, and what to record next.
 ///
 /// No member has a default: the compiler refuses an effect that leaves one out.

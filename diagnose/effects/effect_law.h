@@ -1,4 +1,4 @@
-/// What an effect changes in the motion and in what is seen of it, as functions that the model calls while it acts.
+/// How an effect changes the motion and its observation, as functions that the model calls while it acts.
 ///
 ///     (m + m_w) dv/dt = W slope - K v factor / divisor along - against + forces - sign(v) (mu W cos(alpha) + F_0)
 ///

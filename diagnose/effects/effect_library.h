@@ -1,4 +1,4 @@
-/// All effects of effect_list.h, each as its own file has it.
+/// All effects of effect_list.h, each defined in its own file.
 #pragma once
 
 #include <string>

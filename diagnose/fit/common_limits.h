@@ -1,4 +1,4 @@
-/// Limits that more than one search goes by, and that must be the same in each.
+/// Limits that several searches share and that must be the same in each.
 #pragma once
 
 #include <cstddef>

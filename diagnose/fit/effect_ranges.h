@@ -1,4 +1,4 @@
-/// What the parameters of effects may be in given data: one range for the scan, which averages evidence over it, and
+/// The ranges of the effects' parameters in given data: one range for the scan, which averages evidence over it, and
 /// for the fit. A fit that went further would gain by what its evidence was never asked to pay for: a wave slower than
 /// the clips is any drift, a cable that tightens before the first position or a lens whose axis is out of the image
 /// is any bend.

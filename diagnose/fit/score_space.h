@@ -1,4 +1,4 @@
-/// What a small addition to a fitted model would gain, everything that was fitted taken up again by what it can.
+/// What a small addition to a fitted model would gain once everything that was fitted has readjusted.
 ///
 /// r, c: residuals and a change of the model, both over the noise. With J the derivatives by the fitted parameters,
 ///

@@ -1,4 +1,4 @@
-/// Frames that are missing right behind a clip's first frames, or right before its last.
+/// Frames that are missing right after a clip's first frames, or right before its last.
 ///
 /// The few positions on the far side of such a gap lie off the rest, and so the analysis takes them for outliers. They
 /// are none where all of them lie on the path that the others make, each by the same whole number of frames earlier

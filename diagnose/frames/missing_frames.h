@@ -1,6 +1,7 @@
-/// Frames that are missing from a clip, later ones moved up: all later positions are ahead by one or more frames' way.
+/// Frames that are missing from a clip, later ones moved up: all later positions are ahead by the distance of one or
+/// more frames.
 ///
-/// First those for all to see: around such a place the positions make a parabola only if all from there on are later by
+/// First the obvious ones: around such a place the positions make a parabola only if all from there on are later by
 /// whole frames (a gain of 14 in log likelihood), the clearest first; or, where that ends better, those that the
 /// analysis finds (core/lost_frames.h). Then those that raise the likelihood of the whole
 /// fit by 12, one in each motion at a time or all together, K, mu and the inclination free; then all of them placed

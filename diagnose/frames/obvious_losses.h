@@ -1,4 +1,4 @@
-/// Frames that are missing for all to see, before anything is fitted to the whole motion.
+/// Frames that are obviously missing, found before anything is fitted to the whole motion.
 ///
 /// Around such a place the positions make a parabola only if all from there on are later by whole frames: with S(k) the
 /// squares that it leaves over the noise, k of them lost, (S(0) - S(k))/2 is above 14 and S(k) below four a point, or

@@ -1,5 +1,5 @@
-/// What a smooth curve through each motion's residuals leaves of them: the scatter of single positions, whatever force
-/// the model lacks.
+/// What remains of each motion's residuals after a smooth curve: the scatter of single positions, regardless of any
+/// force that the model lacks.
 ///
 /// The curve is a least-squares sum of Gaussian bumps, as fine as it must be until neighbours no longer err alike: what
 /// the law lacks by hundreds of deviations shows a coarse one's own error, first of all at the clip's ends.

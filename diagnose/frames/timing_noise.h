@@ -1,4 +1,4 @@
-/// Noise of positions that goes with the speed, as uneven times make it: variance sd² + (v tau)².
+/// Position noise that grows with the speed, as uneven frame times cause it: variance sd² + (v tau)².
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// How far a model is from data that it was not fitted to.
+/// How far a model lies from data that it was not fitted to.
 ///
 /// Each clip in turn is left out: the common parameters come from the other clips (and from what is stated), its own
 /// start is fitted to it, and its residuals are standardised by their predictive covariance, the position noise and

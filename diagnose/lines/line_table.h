@@ -1,4 +1,4 @@
-/// A table of fitted lines a = a0 - (K/m) v, as a paper prints it, in place of clips.
+/// A table of fitted lines a = a0 - (K/m) v, as printed in a paper, in place of clips.
 #pragma once
 
 #include <cstddef>

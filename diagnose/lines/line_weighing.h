@@ -1,4 +1,4 @@
-/// How probable each explanation of a table of lines is, and how alike what two effects do to it is.
+/// How probable each explanation of a table of lines is, and how similar two effects are in it.
 ///
 /// The odds are those of tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. Each is four times as likely alone as
 /// with something without a name beside it; of that each variable (mass, set-up, both together, direction) is as likely

@@ -1,4 +1,4 @@
-/// What a change to the experiment would tell, before it is made: in the linear neighbourhood of a fit, the
+/// How informative a change to the experiment would be, before it is made: in the linear neighbourhood of a fit, the
 /// change's clip simulated by the track model, with noise as in the clips so far (white, or as position_noise.h has
 /// it).
 ///

@@ -1,4 +1,4 @@
-/// Which further recording or measurement would tell most.
+/// Which further recording or measurement would be most informative.
 #pragma once
 
 #include "diagnose/result/diagnosis.h"

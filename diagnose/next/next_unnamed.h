@@ -1,4 +1,4 @@
-/// What to record next where something without a name acts.
+/// What to record next if something without a name acts.
 #pragma once
 
 #include "diagnose/fit/motion_fit.h"

@@ -1,4 +1,4 @@
-/// What an experiment will be able to tell apart, before anybody has recorded it.
+/// Which effects an experiment will be able to tell apart, before anything is recorded.
 ///
 /// Every effect that displaces positions in one direction (in the space of all positions, over their noise, with all
 /// that a fit may change projected out) has a size that makes one standard deviation, and a cosine with any other.

@@ -1,4 +1,4 @@
-/// The noise of resting pixels over their brightness, against what light and a sensor make of it:
+/// The noise of resting pixels against their brightness, compared with shot noise and a linear sensor:
 ///
 ///     variance = dark + gain level      (codes²; level in codes above the black)
 ///

@@ -1,4 +1,4 @@
-/// Findings about the file: was the clip compressed with loss, and does it show; are frames missing or repeated?
+/// Findings about the file: was the clip lossily compressed, and is that visible; are frames missing or repeated?
 ///
 /// Blocks: steps between pixels at the edges of 8 x 8 blocks against those of the other seven columns. Memory: a
 /// resting pixel's change over two frames against that over one, 1 where noise is new in every frame; light or a scene

@@ -1,4 +1,4 @@
-/// Findings about the camera's rest: what is fixed in the scene sways or drifts in the image, or stays.
+/// Findings about camera motion: does the fixed scene sway or drift in the image, or stay in place?
 ///
 /// Patches are trusted to 0.02 px. A wave is looked for in both directions of all clips; a drift is the range of the
 /// means of eight parts of a clip beyond what noise makes of it.

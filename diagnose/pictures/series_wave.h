@@ -1,4 +1,4 @@
-/// Waves in series that several clips have in common: brightness that flickers, a scene that sways in the picture.
+/// Waves in series that several clips have in common: brightness that flickers, a scene that sways in the image.
 ///
 /// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, a and b free in
 /// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known;

@@ -1,4 +1,4 @@
-/// How an experiment was filmed, as far as its folder and its calibration tell, and that as a scenario's sections.
+/// How an experiment was filmed, as far as its folder and calibration show, written as sections of a scenario.
 ///
 /// The calibration gives the camera and where the pattern of the plane stands before it (p_C = R p_P + s); the marker's
 /// pixels, restituted onto the plane Z = -height of the pattern's frame P, give the line of motion p_P = through + x

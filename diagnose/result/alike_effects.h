@@ -1,4 +1,5 @@
-/// Effects that these data cannot tell apart, as one set: who is in it, and how likely it is that one of them acts.
+/// Effects that these data cannot tell apart, as one set: which effects are in it, and how likely it is that one of
+/// them acts.
 #pragma once
 
 #include <functional>

@@ -218,8 +218,8 @@ struct Diagnosis {
   std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
 };
 
-/// Whether the nominal model follows the positions to their noise, and the verdict is unknown for what is stated alone:
-/// an inclination that the motion contradicts, a drag or friction below zero.
+/// Whether the nominal model follows the positions to within their noise, and the verdict is unknown for what is stated
+/// alone: an inclination that the motion contradicts, a drag or friction below zero.
 bool only_statements_fail(const Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

@@ -1,4 +1,4 @@
-/// What is said of a table of lines beyond what is said of motions, as plain data for report/.
+/// What a diagnosis says about a table of lines beyond what it says about motions, as plain data for report/.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// How well each effect of the list would explain what a fit leaves, in the linear neighbourhood of that fit.
+/// How well each effect on the list would explain the residuals of a fit, in the linear neighbourhood of that fit.
 ///
 /// An amplitude is a score test; a second parameter is searched on a grid and its evidence averaged over it; a wave has
 /// one amplitude and one frequency for all motions and a free phase in each (averaged over); a push has a size in each

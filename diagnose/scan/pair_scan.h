@@ -1,8 +1,8 @@
-/// How well two effects together would explain what a fit leaves, in the linear neighbourhood of that fit.
+/// How well two effects together would explain the residuals of a fit, in the linear neighbourhood of that fit.
 ///
-/// Each by itself may show little where the other hides it: two sizes that work against each other, or a first fit that
-/// the second effect leads astray. Both are therefore fitted at once to what the nominal model leaves, for all pairs
-/// and all second parameters that were tried.
+/// Each by itself may show little because the other hides it: two sizes that work against each other, or a first fit
+/// that the second effect leads astray. Both are therefore fitted at once to what the nominal model leaves, for all
+/// pairs and all second parameters that were tried.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-/// What the search for one effect comes to.
+/// The result of the search for one effect.
 #pragma once
 
 #include <cstddef>

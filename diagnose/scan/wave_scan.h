@@ -1,5 +1,5 @@
-/// A wave in time, one amplitude and one frequency for all motions and a free phase in each: what it would explain of
-/// what a fit leaves. The evidence is averaged over amplitudes (three decades), frequencies and phases.
+/// A wave in time, one amplitude and one frequency for all motions and a free phase in each: how much of a fit's
+/// residuals it would explain. The evidence is averaged over amplitudes (three decades), frequencies and phases.
 #pragma once
 
 #include <cstddef>

@@ -1,10 +1,10 @@
 /// Motions that a recorded force drives to and fro, in pieces.
 ///
-/// What the model lacks in force adds up twice over the time, and a turn that comes a little early begins the next way
+/// What the model lacks in force adds up twice over the time, and a turn that comes a little early starts the next run
 /// elsewhere: over tens of turns chi² has a local minimum for every order in which the modelled motion turns and rests,
-/// and no fit finds its way. A piece turns twice, so that it holds both directions, and has a start of its own; it is
-/// cut half way between turns, where the glider is fast. What shows over longer than a piece only, such as a slow
-/// drift, is lost.
+/// and no fit converges to the right one. A piece turns twice, so that it holds both directions, and has a start of its
+/// own; it is cut half way between turns, where the glider is fast. What shows over longer than a piece only, such as a
+/// slow drift, is lost.
 #pragma once
 
 #include "diagnose/tracks/track_set.h"

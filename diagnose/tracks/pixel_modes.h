@@ -1,4 +1,4 @@
-/// What finding a marker among square pixels does to filmed positions, as errors that all clips of an experiment share.
+/// The errors that square pixels cause in the positions of a marker, shared by all clips of an experiment.
 ///
 /// The fit of a blurred edge to pixels errs with the place of the centre between two pixels, a few thousandths of a
 /// pixel, the same wherever that place is the same:

@@ -1,4 +1,4 @@
-/// Parts of motions, and fewer points of them.
+/// Parts of motions, and thinned motions.
 #pragma once
 
 #include "diagnose/tracks/tracked_motions.h"

@@ -1,7 +1,7 @@
-/// What neighbouring frames of a clip share of their noise, as a covariance.
+/// The noise that neighbouring frames of a clip share, as a covariance.
 ///
-/// Where the marker moves slowly, several frames see it on the same pixels, and err alike. Of two frames i, j of a
-/// motion, d their distance in the image along it (px), n in frames, v the speed, over the white noise s:
+/// Where the marker moves slowly, several frames see it on the same pixels and share their errors. Of two frames i, j
+/// of a motion, d their distance in the image along it (px), n in frames, v the speed, over the white noise s:
 ///
 ///     cov / s² = [i = j]                       photons, read noise, rounding
 ///              + a² exp(-(d/l)²/2)             pixels that differ from each other (PRNU), at the marker's edges

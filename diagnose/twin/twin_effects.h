@@ -1,4 +1,4 @@
-/// What the named effects of the camera and its clock are in a scenario: sections of keys, and what no key can say.
+/// The named effects of the camera and its clock as sections of a scenario, and what no key can express.
 ///
 /// What each effect makes of the camera stands in its own file (effects/effect_twin.h): exactly what [clock], [camera]
 /// exposure, [shutter] and [light] say; of the same kind a codec of unknown strength, a pan with one phase for all

@@ -1,4 +1,4 @@
-/// A family of explanations without a name, and what it is made of: bumps over a range, and the evidence of their
+/// A family of explanations without a name, and its parts: bumps over a range, and the evidence of their
 /// sizes.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// Parameters that the list of effects states for an effect, and that no fit has as such.
+/// Parameters that the list of effects states for an effect but that no fit has as such.
 ///
 ///     track_bow          x_mid_m: middle of the range of x of all clips of a set-up
 ///     damping_gradient   x_mid_m: the same; with one K(x) for set-ups at several places, where K is K itself,

@@ -1,4 +1,5 @@
-/// From a comparison of hypotheses to what is said: the verdict, its effects, where the gap lies, and how large it is.
+/// From a comparison of hypotheses to the statements about it: the verdict, its effects, where the gap lies, and how
+/// large it is.
 #pragma once
 
 #include "diagnose/pictures/picture_evidence.h"

@@ -1,5 +1,5 @@
-/// What the data contradict of what is stated, and which part of the data is set aside: limits that a reader must know
-/// before the verdict.
+/// Which statements the data contradict, and which part of the data is set aside: limits that a reader must know before
+/// the verdict.
 ///
 /// Drag and friction take energy from a glider. A nominal fit that has them give some, by more than five standard
 /// deviations, explains nothing, however well it follows the positions: "nothing is missing" is no verdict then, and

@@ -1,4 +1,4 @@
-/// Which explanation the data bear out: nothing, one effect of the list, two, or something without a name.
+/// Which explanation the data support: nothing, one effect of the list, two, or something without a name.
 ///
 /// Score tests make a short list. Each effect on it is fitted in full, alone and with a second one; so are pairs that
 /// show only together (pair_scan.h). The log evidence is that of the linear neighbourhood (sizes and shapes averaged

@@ -1,4 +1,4 @@
-/// When the frames of a clip are really exposed, which of them get into the file, and what the file says of their
+/// When the frames of a clip are really exposed, which of them reach the file, and what the file says about their
 /// times.
 ///
 ///     start of slot k = k / (rate (1 + error)) + jitter_k        (jitter_0 = 0; normal, white)

@@ -1,4 +1,4 @@
-/// What stands still, seen by a camera that does not.
+/// A scene at rest, seen by a camera that moves.
 ///
 /// The scene is ray-cast once, over a margin around the image and finer than its pixels (kFine to a pixel), and each
 /// fine place then holds the mean over a pixel's square about it: what a pixel shows whose ray leads there. A frame

@@ -1,4 +1,4 @@
-/// What a sensor makes of light: fixed patterns, shot noise, read noise, saturation, gain, offset, quantisation.
+/// From light to codes in a sensor: fixed patterns, shot noise, read noise, saturation, gain, offset, quantisation.
 ///
 ///     expected  = light response_p + dark_p                     (of pixel p; fixed_pattern.h)
 ///     electrons = min(Poisson(expected), full well) + Normal(0, read noise) + offset_p

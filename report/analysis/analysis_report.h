@@ -1,4 +1,4 @@
-/// report.html of `analyze`: one page that needs nothing but itself.
+/// report.html of `analyze`: one self-contained page.
 #pragma once
 
 #include <string>

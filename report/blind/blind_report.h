@@ -1,4 +1,4 @@
-/// What came out of blind cases: a file, a text, a page.
+/// The results of blind cases: a file, a text, a page.
 #pragma once
 
 #include <cstdint>

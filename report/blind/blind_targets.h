@@ -1,4 +1,4 @@
-/// What blind cases are wanted to come out with, and what their score means in words.
+/// The targets for blind cases, and what their score means in words.
 #pragma once
 
 #include <map>

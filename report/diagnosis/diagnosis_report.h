@@ -1,4 +1,4 @@
-/// report.html of `diagnose`: one page that needs nothing but itself.
+/// report.html of `diagnose`: one self-contained page.
 #pragma once
 
 #include <string>

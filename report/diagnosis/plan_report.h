@@ -1,4 +1,4 @@
-/// What an experiment will be able to tell apart: a file, a text, a page.
+/// Which effects an experiment will be able to tell apart: a file, a text, a page.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// A twin beside the data that it was made from.
+/// A twin compared with the data that it was made from.
 #pragma once
 
 #include <vector>

@@ -86,7 +86,7 @@ std::string sentences(const Notes& notes) {
   return text;
 }
 
-/// The nominal model follows the positions to their noise, and what it says cannot be.
+/// The nominal model follows the positions to within their noise, but its parameters are impossible.
 std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
   const std::string sure = percent(diagnosis.unknown);
   if (!diagnosis.limits.driving.empty()) {

@@ -1,4 +1,4 @@
-/// The pieces of a page that needs nothing but itself: style, tables, images as data URIs.
+/// The pieces of a self-contained page: style, tables, images as data URIs.
 ///
 /// Plots are drawn when the page is made, all in one run of gnuplot; beside the page their files are laid in a folder
 /// "plots". Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.

@@ -1,4 +1,4 @@
-/// What all plots share: colours that differ for everybody's eyes and in grey print, and the frame of a plot.
+/// What all plots share: colours that colour-blind readers can tell apart, also in grey print, and the frame of a plot.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-/// Numbers on a page as they are set: a minus sign where a hyphen stands for one, and no line that begins with a unit.
+/// Typesetting of the numbers on a page: a minus sign in place of a hyphen, and no line that begins with a unit.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// The plot of a requirement: what each candidate reaches over what it costs.
+/// The plot of a requirement: the accuracy of each candidate against its cost.
 #pragma once
 
 #include <string>

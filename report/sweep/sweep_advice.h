@@ -1,4 +1,4 @@
-/// What a sweep over bandwidth rules comes to, in a paragraph: which rule has the least error of which quantity, by
+/// The outcome of a sweep over bandwidth rules, in a paragraph: which rule has the least error of which quantity, by
 /// what factor the default loses, and where another rule does better.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// What a sweep comes to, in a short paragraph at the head of its page.
+/// The outcome of a sweep, in a short paragraph at the head of its page.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// The page on which a motion's parameters are chosen by hand, for class: nothing but itself is needed to show it.
+/// The page on which a motion's parameters are chosen by hand, for class: it is self-contained.
 ///
 /// Its script scales, interpolates (Hermite, fifth order) and joins the orbits of teach/study/phase_explorer.h; it
 /// solves no equation of motion. It also compares itself with the reference motions and says how far it was off.

@@ -1,4 +1,4 @@
-/// Diagnoses of blind cases held against their truths.
+/// Diagnoses of blind cases compared with the truth.
 ///
 /// Two pairs of effects are the same thing on tracks and count as one (effects.md: "cannot be told apart, always"):
 /// scale_error and frame_rate_error; camera_motion and base_vibration. Images tell the second pair apart. Weak cases

@@ -1,4 +1,4 @@
-/// The closed loop: a scenario is rendered, the images are analysed, and the results meet the truth.
+/// The closed loop: a scenario is rendered, the images are analysed, and the results are compared with the truth.
 #pragma once
 
 #include <filesystem>

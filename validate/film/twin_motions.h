@@ -1,5 +1,5 @@
-/// A twin beside the data that it was made from: its exact motions, and the result of the data's analysis applied to
-/// them with as much noise as the data have.
+/// A twin compared with the data that it was made from: its exact motions, and the result of the data's analysis
+/// applied to them with as much noise as the data have.
 ///
 /// Exact positions: the scenario's clock but for lost frames and uneven times, which fall elsewhere in every recording;
 /// of the camera a wrong scale and a wrong perspective, no more. Smoothed with each clip's own bandwidth. SI units.

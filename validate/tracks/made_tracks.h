@@ -1,6 +1,6 @@
 /// The motions of a scenario as tracks: x at the times of the frames, with white noise, and no images.
 ///
-/// What a study of estimators needs that runs them thousands of times. The frames come when the scenario's clock says
+/// For studies that run estimators thousands of times. The frames come when the scenario's clock says
 /// (dropped, duplicated, late ones too), and their times are what the file would say: frame j at j / rate, or its stamp
 /// where the rate is variable. Of the camera nothing else is in it: no exposure, lens, shutter, calibration or plumb;
 /// `noise_sd_m` stands for all of that. x counts from the track's reference point, as in the scenario.

@@ -1,5 +1,5 @@
-/// The bandwidth that is best for a = x'' where the truth is known: what a rule
-/// (core/motion/bandwidth/bandwidth_rule.h) is measured by.
+/// The best bandwidth for a = x'' when the truth is known: the yardstick for the rules
+/// (core/motion/bandwidth/bandwidth_rule.h).
 ///
 ///     h* = least of the mean over the points of  bias(t; h)^2 + variance(t; h)
 ///

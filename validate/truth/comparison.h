@@ -1,4 +1,4 @@
-/// Truth beside estimate: errors of the recovered values and of the restituted positions.
+/// Truth compared with estimate: errors of the recovered values and of the restituted positions.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// How well the motion can tell K/m, mu, alpha and v_lim at all: the Cramér-Rao bound.
+/// How precisely a motion can determine K/m, mu, alpha and v_lim at all: the Cramér-Rao bound.
 ///
 /// Positions x_i with independent normal noise of one standard deviation s a clip, equation (8) with k = K/m, drive d =
 /// g sin(alpha) and friction f = mu g cos(alpha) for all clips of one configuration, and a start (x0, v0) of each

@@ -1,4 +1,4 @@
-/// The default bandwidth of a clip: what its lines, and then its points, are best served by.
+/// The default bandwidth of a clip: the best for its lines, and then for its points.
 ///
 /// The kernel's bias of a is h^2 x''''/2, its noise falls with h^(-5/2). The pointwise best (for x'''' the same
 /// everywhere h^9 = 1.058 s^2 dt / x''''^2) would give the lines too much bias: a line averages the noise of its

@@ -1,4 +1,4 @@
-/// The line a = a0 - k v that most points of one direction agree with, however wild the others are.
+/// The line a = a0 - k v that most points of one direction agree with, regardless of the outliers.
 #pragma once
 
 #include <cstddef>

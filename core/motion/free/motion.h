@@ -1,4 +1,4 @@
-/// The measured motion of one clip as the analysis of it starts from.
+/// The measured motion of one clip, from which its analysis starts.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// What smoothing and ordinary least squares make of a line's own law, so that it can be taken off.
+/// The bias that smoothing and ordinary least squares give a line under its own law, so that it can be subtracted.
 ///
 /// A line a = a0 - k v is the law dv/dt = a0 - k v, whose motion in each stretch of one direction is known in closed
 /// form (line_law.h) but for x_0, v_0; v_0 is taken from the stretch's smoothed v by least squares. That motion without

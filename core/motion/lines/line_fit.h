@@ -1,5 +1,5 @@
-/// The line a = a0 - (K/m) v by ordinary least squares through smoothed points, as the paper fits it, with what the
-/// noise of the positions makes of its coefficients.
+/// The line a = a0 - (K/m) v by ordinary least squares through smoothed points, as the paper fits it, with the effect
+/// of the position noise on its coefficients.
 ///
 /// Smoothed points are correlated over the kernel, so the textbook formula for independent points is wrong here. But v
 /// and a are linear in the measured positions, and so, to first order in the noise n, are the coefficients:

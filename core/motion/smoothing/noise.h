@@ -1,4 +1,4 @@
-/// The noise of the measured positions, from the data alone: no law of motion goes in.
+/// The noise of the measured positions, from the data alone: no law of motion is assumed.
 #pragma once
 
 #include <cstddef>

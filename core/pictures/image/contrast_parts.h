@@ -1,4 +1,4 @@
-/// The parts of an image in which something may stand out by a given contrast; the others need not be searched.
+/// The parts of an image in which something may stand out by a given contrast; the rest need not be searched.
 #pragma once
 
 #include <opencv2/core.hpp>

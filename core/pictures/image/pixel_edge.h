@@ -1,4 +1,4 @@
-/// What a square pixel sees of a straight edge that a lens has blurred.
+/// The light that a square pixel receives from a straight edge that a lens has blurred.
 ///
 /// An ideal edge, bright where s > 0, convolved with a Gaussian of standard deviation `blur` and averaged over the
 /// pixel's square of side 1. Along the edge's normal n the square is two boxes of widths a = |n_u| and b = |n_v|, so

@@ -1,4 +1,4 @@
-/// The centroid of a coloured object that is no disc.
+/// The centroid of a coloured object that is not a disc.
 ///
 /// Pixels that stand out from the background by more than a fifth of the peak and hang together with the brightest one
 /// near the guess count in proportion to how far they rise above that floor, so that a pixel that comes or goes at the

@@ -1,5 +1,5 @@
-/// A pixel's noise by its brightness: of a sensor without a tone curve the variance grows in proportion to the level
-/// (the light's own noise) from that of the darkest.
+/// A pixel's noise against its brightness: for a sensor without a tone curve the variance grows in proportion to the
+/// level (the light's own noise) from that of the darkest.
 ///
 /// Pixels are put into groups of equal ranges of level. A pixel's variance is half the mean square of its changes from
 /// one frame to the next. How well a group's is known allows for what pixels blurred by 1 px have in common with their

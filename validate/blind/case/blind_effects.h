@@ -1,4 +1,5 @@
-/// What a blind case has besides the nominal law: the effects that a diagnosis may name, and those that nobody listed.
+/// What a blind case has besides the nominal law: the effects that a diagnosis may name, and some that are not on its
+/// list.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 /// One filmed blind case: a small experiment rendered by the program's own renderer in a process of its own, with
-/// nothing (25 of 100), one effect (57) or one of no list (18) that its folder does not tell of.
+/// nothing (25 of 100), one effect (57) or one not on the list (18); its folder does not say which.
 ///
 /// Drawn from (seed, index) alone: scene, cause and strength (blind_scene_effects.h; 8 to 1500). The folder shown to
 /// the diagnosis is what the renderer wrote, less what is withheld; the scenario, the renderer's own truth and all that

@@ -1,4 +1,4 @@
-/// The motion of a blind case: the truth that a diagnosis is held against, made with nothing of what a diagnosis uses.
+/// The motion of a blind case: the truth to which a diagnosis is compared, made with none of the diagnosis's code.
 ///
 ///     inertia dv/dt = drive - drag - sign(v) friction,        at v = 0 it stays while |drive| <= friction
 ///

@@ -1,5 +1,5 @@
 /// What a filmed blind case has besides what its folder says: effects of effects.md made in the scenario, in what
-/// experiment.toml says of it, or in the images; and some that are in no list.
+/// experiment.toml says of it, or in the images; and some that are not on the list.
 ///
 /// Strength of what displaces positions is the log likelihood of blind_strength.h, the noise being the bound that the
 /// camera's noise sets. What moves no position has that of blind_picture_effects.h.

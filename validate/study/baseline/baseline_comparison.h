@@ -1,4 +1,4 @@
-/// Is the analysis worse than it was? Errors of now against those of a baseline.
+/// Is the analysis worse than it was? Present errors compared with those of a baseline.
 ///
 /// For each quantity of each configuration and estimator:
 ///

@@ -1,4 +1,4 @@
-/// One point of a sweep (a camera, a setting) as a requirement judges it: how it is tried, and what came out.
+/// One point of a sweep (a camera, a setting) as a requirement judges it: how it is tried, and the result.
 #pragma once
 
 #include <cstddef>

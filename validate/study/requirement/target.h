@@ -1,4 +1,4 @@
-/// What a requirement asks for, and what the errors of many runs come to beside it.
+/// What a requirement asks for, and how the errors of many runs compare with it.
 ///
 /// Over n errors e_i, an infinite one for a run without an answer:
 ///

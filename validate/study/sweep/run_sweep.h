@@ -1,4 +1,4 @@
-/// Runs what is missing of a sweep, on several threads, into its database.
+/// Does the missing runs of a sweep, on several threads, into its database.
 #pragma once
 
 #include <cstdint>

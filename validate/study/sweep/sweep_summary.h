@@ -1,4 +1,4 @@
-/// What a sweep's database says: of every quantity and estimator, error, stated and least sd over each varied key.
+/// A summary of a sweep's database: for every quantity and estimator, error, stated and least sd over each varied key.
 #pragma once
 
 #include <cstdint>

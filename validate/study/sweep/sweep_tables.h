@@ -1,4 +1,4 @@
-/// The tables of sweep.sqlite (sweep_database.h): what makes them, and what tells whether a file's are those of a
+/// The tables of sweep.sqlite (sweep_database.h): how they are made, and how to tell whether a file holds those of a
 /// sweep.
 ///
 /// A file is one of a sweep where each entry of its table `sweep` is the sweep's: texts, seed, number of runs and the
