@@ -55,7 +55,7 @@ bool of_recordings(const DiagnoseCommand& options) {
 void check_plan(const DiagnoseCommand& options) {
   if (of_recordings(options)) {
     if (!options.noise_m) return;
-    throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "a noise beside a recording",
+    throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "a noise with a recording",
                                            "none: recorded positions show their own noise"}));
   }
   if (options.experiments.size() > 1) {
@@ -210,9 +210,10 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->needs(plan);
   command->add_flag("--no-page", options->no_page, "Write diagnosis.json only, no report.html");
   add_allow_outside(*command, options->outside);
-  add_common_options(*command, options->common, "glidelab-out/diagnose-<name of the first folder>",
-                     "Seed of a plan's noise, default the scenario's, and of the noise beside a twin on the page; a "
-                     "diagnosis draws no random numbers");
+  add_common_options(
+      *command, options->common, "glidelab-out/diagnose-<name of the first folder>",
+      "Seed of a plan's noise, default the scenario's, and of the noise shown with a twin on the page; a "
+      "diagnosis draws no random numbers");
   command->callback([options, &chosen] { chosen = [options] { diagnose(*options); }; });
 }
 

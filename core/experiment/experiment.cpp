@@ -73,7 +73,7 @@ ScaleSetup read_scale(const TomlTable& table) {
     return setup;
   }
   if (table.has("px_per_m")) {
-    table.reject("px_per_m", "a value beside from_px, to_px and length_m", "either px_per_m or those three");
+    table.reject("px_per_m", "a value together with from_px, to_px and length_m", "either px_per_m or those three");
   }
   const std::vector<double> from = table.numbers("from_px", 2);
   const std::vector<double> to = table.numbers("to_px", 2);
@@ -145,7 +145,7 @@ ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
     table.reject("name", fmt::format("text \"{}\"", clip.name), "a name without slashes and control characters");
   }
   if (table.has("file") && table.has("track")) {
-    table.reject("track", "a track beside a file", "either file or track");
+    table.reject("track", "a track and a file", "either file or track");
   }
   if (table.has("track")) {
     clip.track = folder.file(table, "track");
@@ -191,7 +191,7 @@ bool stated_by_all_groups(const Experiment& experiment, bool only_images, bool (
 /// The sections that clips of images cannot do without.
 void check_sections(const Experiment& experiment, const TomlTable& root) {
   if (experiment.calibration && experiment.scale) {
-    root.reject("scale", "a table [scale] beside [calibration]", "one of the two");
+    root.reject("scale", "a table [scale] and a table [calibration]", "one of the two");
   }
   const auto picture = std::find_if(experiment.clips.begin(), experiment.clips.end(),
                                     [](const ClipSetup& clip) { return !clip.file.empty(); });
@@ -252,7 +252,7 @@ Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
       experiment.lines || root.has("lines") ? root.tables_or_none("clip") : root.tables("clip");
   for (const TomlTable& table : clip_tables) experiment.clips.push_back(read_clip(table, folder));
   if (experiment.lines && !clip_tables.empty()) {
-    root.reject("lines", "a table of lines beside [[clip]]", "either lines or clips");
+    root.reject("lines", "a table of lines and [[clip]]", "either lines or clips");
   }
   name_groups(experiment.clips);
   const std::vector<TomlTable> group_tables = root.tables_or_none("group");

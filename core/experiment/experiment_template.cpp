@@ -15,7 +15,7 @@ constexpr std::string_view kToml =
 
 # ---- The camera: what it was told to do, or what its data sheet says.
 [camera]
-frame_rate_hz = 240.0              # what it filmed at, whatever rate the file plays at
+frame_rate_hz = 240.0              # what it filmed at; the file may play at another rate
 #exposure_s = 0.001                # exposure time of one frame; a short one keeps the marker sharp
 #shutter = "global"                # or "rolling" (phones, webcams): then line_readout_s says how slowly it rolls
 #line_readout_s = 0.00002          # rolling only: time from one row to the next
@@ -38,9 +38,9 @@ plane = "calibration/plane.png"    # the pattern where the marker moves, its lon
 #from_px = [100.0, 240.0]          # two points of the image ...
 #to_px = [580.0, 240.0]
 #length_m = 1.0                    # ... and how far apart they are in the plane of motion
-#px_per_m_sd = 5.0                 # how far the scale may be off
+#px_per_m_sd = 5.0                 # standard deviation of the scale
 
-# ---- A plumb line in the image, which tells the inclination (and with it mu of a single direction).
+# ---- A plumb line in the image, which gives the inclination (and with it mu from a single direction).
 #[plumb]
 #view = "plumb.png"
 #region = [40, 0, 120, 500]        # x, y, width, height in pixels, around the line
@@ -57,7 +57,7 @@ downhill = "+X"                    # which direction of the pattern's long row i
                                    # corner squares to that with white ones; level track: the one you call positive
 #length_m = 2.0
 
-# ---- The clips, one [[clip]] a motion. mu and the inclination need both directions: launch it both ways, or up a
+# ---- The clips, one [[clip]] for each motion. mu and the inclination need both directions: launch it both ways, or up a
 #      slope that it comes back down. More masses tell more.
 [[clip]]
 name = "m1-up"
@@ -65,9 +65,9 @@ file = "clips/m1-up.mp4"           # a video, or a folder of frames
 #track = "tracks/m1-up.csv"        # instead of file, for a motion tracked elsewhere: t_s,x_m; an export of Tracker, ...
 #column = "x"                      # of an export with several columns: which one is x, by header or number
 mass_kg = 0.335                    # glider with marker and load
-#mass_sd_kg = 0.0005               # how far the mass may be off
+#mass_sd_kg = 0.0005               # standard deviation of the mass
 incline_deg = 4.0                  # of the track, as set; one reading for all clips of a group
-#incline_sd_deg = 0.3              # how far that may be off
+#incline_sd_deg = 0.3              # its standard deviation
 launched = "up"                    # "up" (towards -x), "down" (towards +x) or "released"
 #start_s = 0.2                     # the part of the clip in which the glider moves freely; ...
 #end_s = 1.8                       # ... without them the analysis finds it
@@ -101,7 +101,7 @@ What goes where, and what follows. `experiment.toml` explains every key.
    light. From here on do not touch the camera.
 3. **`calibration/`.** `view-00.png`, `view-01.png`, …: a dozen images of the board, tilted to all sides, near and far, reaching
    into all corners of the image. `plane.png`: the board held where the marker will move, its long side along the track.
-4. **`clips/`.** One clip a motion, both directions, and more than one mass if you can. In `experiment.toml`, state the mass, the
+4. **`clips/`.** One clip for each motion, both directions, and more than one mass if you can. In `experiment.toml`, state the mass, the
    inclination and the launch of each.
 
 Then, before you put anything away:

@@ -55,8 +55,8 @@ EffectInfo camera_motion() {
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::mount, sway_twin),
       .next =
-          "Put the camera on a stand that does not touch the table, with a mark that is fixed to the wall in the "
-          "image, and record the same launch again: a camera that sways moves the mark as it moves the glider.",
+          "Put the camera on a stand that does not touch the table, with a mark fixed to the wall in view, and record "
+          "the same launch again: a swaying camera moves the mark and the glider alike.",
       .alike = {.id = ids::base_vibration, .filmed = false},
   };
 }

@@ -26,7 +26,7 @@ EffectInfo compression() {
       .twin = EffectTwin::as_camera(TwinPart::codec, codec_twin),
       .next =
           "Record the same launch again without loss (FFV1 or single images; at least MJPEG in place of H.264): edges "
-          "of blocks and errors that last over frames come from the codec and go with it.",
+          "of blocks and errors that last over frames come from the codec and disappear with it.",
       .alike = {},
   };
 }

@@ -32,7 +32,7 @@ EffectInfo frame_rate_error() {
   return {
       .id = ids::frame_rate_error,
       .stage = Stage::timing,
-      .words = "a frame rate that is not the stated one",
+      .words = "a frame rate that differs from the stated one",
       .name = "wrong frame rate",
       .meaning = "the time from frame to frame is (1 + e) times what is stated",
       .search = Search::amplitude,

@@ -26,7 +26,7 @@ EffectInfo timestamp_jitter() {
   return {
       .id = ids::timestamp_jitter,
       .stage = Stage::timing,
-      .words = "frames that are not taken at even times",
+      .words = "frames taken at uneven times",
       .name = "uneven frame times",
       .meaning = "sd: of a frame's time",
       .search = Search::noise,
@@ -38,7 +38,7 @@ EffectInfo timestamp_jitter() {
       .twin = EffectTwin::as_camera(TwinPart::clock, jitter_twin),
       .next =
           "Record the same launch again with the camera's own time stamps, or with a lamp in the image that counts "
-          "milliseconds: an uneven time moves a position by the speed times its error, and only a clock shows the "
+          "milliseconds: a wrong time shifts a position by the speed times its error, and only a clock shows the "
           "error itself.",
       .alike = {},
   };

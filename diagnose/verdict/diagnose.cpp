@@ -257,8 +257,8 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     const core::Experiment experiment = read_recording(folder, options.outside);
     if (experiment.lines) {
       if (folders.size() > 1) {
-        throw base::InputError(base::Issue{experiment.file.string(), 0, "lines",
-                                           "a table of lines beside other folders", "a table of lines by itself"});
+        throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines with other folders",
+                                           "a table of lines by itself"});
       }
       return diagnose_lines(read_lines(*experiment.lines), experiment.gravity_m_s2, options.without);
     }

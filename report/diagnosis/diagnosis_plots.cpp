@@ -108,13 +108,13 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
       "title 'two standard deviations', $curve using 1:2 with lines lw 2 lc rgb '{}' title 'likeliest', 0 with lines "
       "lw 1 lc rgb '{}' notitle\n",
       kColors[0], kColors[0], kGrey);
-  return {Drawing{script, std::vector{data}},
-          fmt::format("{} {} over {} that would fill the gap, with two standard deviations{}",
-                      alternatives > 1 ? "One smooth" : "The smooth", curve.what, axis_of(curve.variable),
-                      alternatives > 1
-                          ? fmt::format(": any one of these {} curves by itself, not all of them", alternatives)
-                          : std::string()),
-          fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
+  return {
+      Drawing{script, std::vector{data}},
+      fmt::format("{} {} over {} that would fill the gap, with two standard deviations{}",
+                  alternatives > 1 ? "One smooth" : "The smooth", curve.what, axis_of(curve.variable),
+                  alternatives > 1 ? fmt::format(": any one of these {} curves alone, not all of them", alternatives)
+                                   : std::string()),
+      fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
 }
 
 Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& variable) {

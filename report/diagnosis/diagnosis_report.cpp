@@ -176,8 +176,8 @@ std::string region_table(const diagnose::Diagnosis& diagnosis) {
 
 Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<validate::TwinMotion>& twin) {
   Html text = std::string(
-      "<h2>The twin beside the data</h2>\n<p>The twin is a simulation of the fitted motions. Its positions are exact "
-      "but for noise like that of the data; of what a camera does to positions, it has only a wrong scale or "
+      "<h2>The twin compared with the data</h2>\n<p>The twin is a simulation of the fitted motions. Its positions are "
+      "exact apart from noise like that of the data; of the effects of a camera, it includes only a wrong scale or "
       "perspective.</p>\n");
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
@@ -223,7 +223,8 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
       "noise is estimated from neighbouring positions alone. Every effect of the list is added to the model, alone and "
       "in pairs. The evidence for each is its likelihood averaged over the sizes that it may have (equal odds for each "
       "factor of ten above what can be seen). Smooth forces and displacements without a name (over position, speed and "
-      "time) and differences between clips, masses and set-ups compete with the effects, also beside them: where one "
+      "time) and differences between clips, masses and set-ups compete with the effects, and act alongside them: where "
+      "one "
       "of those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all "
       "clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
       "waves or positions, which frames are lost, the shape of a curve without a name) comes from all clips.</p>\n";

@@ -176,13 +176,13 @@ std::string unnamed_words(const diagnose::UnnamedInLines& of) {
   const char* what = of.what == diagnose::UnnamedInLines::What::friction ? "friction" : "drag";
   switch (of.over) {
     case Over::mass:
-      return fmt::format("a {} of each mass by itself", what);
+      return fmt::format("a separate {} for each mass", what);
     case Over::set_up:
-      return fmt::format("a {} of each set-up by itself", what);
+      return fmt::format("a separate {} for each set-up", what);
     case Over::mass_and_set_up:
-      return fmt::format("a {} of each mass in each set-up by itself", what);
+      return fmt::format("a separate {} for each mass in each set-up", what);
     case Over::direction:
-      return fmt::format("a {} of each direction by itself", what);
+      return fmt::format("a separate {} for each direction", what);
   }
   return {};
 }

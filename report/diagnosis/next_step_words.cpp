@@ -114,7 +114,7 @@ std::string routine_words(diagnose::Routine routine) {
   using diagnose::Routine;
   switch (routine) {
     case Routine::repeat_each_kind:
-      return "Repeat one launch of each kind: more clips make it surer.";
+      return "Repeat one launch of each kind: more clips make the verdict surer.";
     case Routine::repeat_launch:
       return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
              "is "

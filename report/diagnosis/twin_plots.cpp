@@ -54,7 +54,7 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
                    fmt::format("set ylabel 'position  ({})'\n", unit) + points("data − twin", "noise of the twin"),
                std::vector{never_empty(rest), never_empty(noise)}},
        "Measured positions of all clips minus those of the twin: where nothing is missing, as large as noise alone",
-       "Measured positions minus those of the twin over time, beside noise"},
+       "Measured positions minus those of the twin over time, with noise for comparison"},
       {Drawing{std::string(kFrame) + "set xlabel 'speed v (m/s)'\nset ylabel 'acceleration a (m/s²)'\n" +
                    points("data", "twin"),
                std::vector{never_empty(data), never_empty(twin)}},

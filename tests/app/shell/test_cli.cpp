@@ -266,7 +266,7 @@ TEST_CASE("a plan takes one scenario, or recordings without a noise of the comma
       tests::glidelab({"diagnose", "--plan", "made", "--noise-m", "1e-5", "--no-page"}, temp.path());
   INFO(noise.err);
   CHECK(noise.status == 2);
-  CHECK(noise.err.find("--noise-m: found a noise beside a recording") != std::string::npos);
+  CHECK(noise.err.find("--noise-m: found a noise with a recording") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
 }
 

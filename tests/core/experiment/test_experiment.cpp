@@ -149,7 +149,7 @@ TEST_CASE("a table of lines needs no clips") {
   CHECK(folder.read(kHead + "lines = \"lines.csv\"\n").lines == folder.dir / "lines.csv");
   CHECK(contains(folder.message(kHead + "lines = \"none.csv\"\n"), "experiment.toml:3: lines: found no file none.csv"));
   CHECK(contains(folder.message(kHead + "lines = \"lines.csv\"\n" + kCamera + kCalibration + kMarker + kTrack + kClip),
-                 "experiment.toml:3: lines: found a table of lines beside [[clip]]"));
+                 "experiment.toml:3: lines: found a table of lines and [[clip]]"));
   CHECK(contains(folder.message(kHead), "clip: found nothing"));
 }
 
@@ -168,7 +168,8 @@ TEST_CASE("a scale is stated or follows from two points a known length apart") {
                "experiment.toml:17: scale.px_per_m"));
   CHECK(contains(folder.message(rest + "[scale]\nfrom_px = [10, 20]\nto_px = [10, 20]\nlength_m = 1\n"),
                  "experiment.toml:18: scale.to_px: found the same point"));
-  CHECK(contains(folder.message(kWhole + "[scale]\npx_per_m = 480\n"), "scale: found a table [scale] beside"));
+  CHECK(contains(folder.message(kWhole + "[scale]\npx_per_m = 480\n"),
+                 "scale: found a table [scale] and a table [calibration]"));
 }
 
 TEST_CASE("groups default to one for each stated inclination") {
@@ -227,7 +228,7 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"\"-X\"", "\"x\"", "15: track.downhill"},
       {"name = \"a\"", "name = \"a/b\"", "17: clip[1].name"},
       {"clips/a.mkv", "clips/c.mkv", "18: clip[1].file: found no file clips/c.mkv"},
-      {"mass_kg", "track = \"track.csv\"\nmass_kg", "19: clip[1].track: found a track beside a file"},
+      {"mass_kg", "track = \"track.csv\"\nmass_kg", "19: clip[1].track: found a track and a file"},
       {"file = \"clips/a.mkv\"", "track = \"no.csv\"", "18: clip[1].track: found no file no.csv"},
       {"file = \"clips/a.mkv\"", "", "16: clip[1].file: found nothing"},
       {"mass_kg = 0.335", "mass_kg = 0", "19: clip[1].mass_kg: found 0"},

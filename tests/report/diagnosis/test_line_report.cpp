@@ -36,8 +36,8 @@ TEST_CASE("an explanation of lines has its sizes in units, and its words once") 
   CHECK(report::line_rows(lines).at(1).at(1) == "force = 23.8 ± 1.1 mN");
   const std::string page = report::line_report("lines", of).html;
   CHECK(has(page, "load-independent friction + something without a name"));
-  CHECK(has(page, "<code>load_independent_friction + unknown</code></small>: a drag of each direction by itself<"));
-  CHECK_FALSE(has(page, "unknown: a drag of each direction by itself</code>"));
+  CHECK(has(page, "<code>load_independent_friction + unknown</code></small>: a separate drag for each direction<"));
+  CHECK_FALSE(has(page, "unknown: a separate drag for each direction</code>"));
 }
 
 TEST_CASE("the chart of what was held out speaks of lines where lines were held out, of clips else") {
