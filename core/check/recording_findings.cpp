@@ -59,8 +59,7 @@ void judge_pattern(const PatternCheck& pattern, FindingBook book) {
   if (camera.plane_rms_px > std::max(kLeastPlaneRmsPx, kMostPlaneOverNoise * camera.plane_expected_px)) {
     book.add(camera.plane_rms_px > kUnusablePlaneRmsPx ? Severity::unusable : Severity::change,
              fmt::format("the corners of the plane views lie {:.2g} px (rms) from where the camera places them; their "
-                         "noise explains "
-                         "{:.2g} px",
+                         "noise explains {:.2g} px",
                          camera.plane_rms_px, camera.plane_expected_px),
              "retake the plane view with the same focus, zoom and image size as all others, the board flat and still");
   }

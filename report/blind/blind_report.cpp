@@ -270,8 +270,7 @@ Page blind_page(const BlindRun& run) {
   body += "<h2>Confusions</h2>\n" + confusion.str();
   body +=
       "<p class=\"soft\">A case's gain is the log likelihood by which the true model beats the nominal one, fitted to "
-      "the "
-      "same positions: weak below 15, moderate up to 50, strong above. ";
+      "the same positions: weak below 15, moderate up to 50, strong above. ";
   body +=
       run.pictures
           ? "For an effect that moves no position, it is half the square of its size over what images may show when "

@@ -213,23 +213,19 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
     for (const ClipRow& row : kClipRows) cells.push_back(clip.failure.empty() ? row.text(clip) : "–");
     table.row(cells);
   }
-  std::string text =
-      "<h2>Clips</h2>\n" + table.str() +
-      "<p class=\"soft\">Seen in: frames in which the marker was found. In the file: the rate that the file states. "
-      "Lost, "
-      "twice: frames that are missing or repeated, as far as the marker's motion and the images show. Speed: the "
-      "highest, "
-      "and the blur that the exposure makes of it. Marker: its diameter; contrast: how far it stands out from its "
-      "surroundings, as a share of the camera's range, and over the noise of a pixel. White, black: pixels at the ends "
-      "of "
-      "the range. Noise: of a position.</p>\n";
+  std::string text = "<h2>Clips</h2>\n" + table.str() +
+                     "<p class=\"soft\">Seen in: frames in which the marker was found. In the file: the rate that the "
+                     "file states. Lost, twice: frames that are missing or repeated, as far as the marker's motion and "
+                     "the images show. Speed: the highest, and the blur that the exposure makes of it. Marker: its "
+                     "diameter; contrast: how far it stands out from its "
+                     "surroundings, as a share of the camera's range, and over the noise of a pixel. White, black: "
+                     "pixels at the ends of the range. Noise: of a position.</p>\n";
   std::string shown;
   for (std::size_t i = 0; i < previews.size(); ++i) {
     for (const core::PreviewFrame& frame : previews[i].frames) {
       shown += fmt::format(
           "<figure><img alt=\"frame {0} of clip {1}\" src=\"{2}\"><figcaption>{1}, frame {0}: the marker as it was "
-          "found, "
-          "and its path</figcaption></figure>\n",
+          "found, and its path</figcaption></figure>\n",
           frame.frame, escape(check.clips[i].name), data_uri("image/jpeg", frame.jpeg));
     }
   }

@@ -330,9 +330,8 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
   }
   script += fmt::format(
       "unset key\nunset grid\nset offsets 0,0,0,0\nset ytics ({}) scale 0 noenhanced\nset xtics ({}) scale 0\nset "
-      "xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 "
-      "'#9ecae1', "
-      "0.95 '#3182bd', 1 '#08306b')\nset lmargin at screen 0.43\nset rmargin at screen 0.87\n"
+      "xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 '#9ecae1', 0.95 "
+      "'#3182bd', 1 '#08306b')\nset lmargin at screen 0.43\nset rmargin at screen 0.87\n"
       "plot $cells using 1:2:3 with image pixels\n",
       rows, columns, static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {

@@ -75,8 +75,7 @@ std::string gap_table(const diagnose::GapSizes& gap) {
   std::string text = table.str();
   text += fmt::format(
       "<p class=\"soft\">Each line predicted by the others: root mean square of what its intercept and its slope are "
-      "off, "
-      "over the lines' own scatter. At the floor it is 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
+      "off, over the lines' own scatter. At the floor it is 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
       base::number_text(gap.standard_error, 2), interval_text(gap.interval95.before),
       interval_text(gap.interval95.after),
       gap.shrink ? fmt::format(" It shrinks by {} of what is above the floor.", shrink_text(gap)) : std::string());
@@ -120,8 +119,8 @@ constexpr const char* kLineMethod =
     "g sin α − sign(v) µ g cos α with one µ and one α for each set-up. Each effect that lines can show is added to it, "
     "alone and in pairs. A friction or drag of each mass, of each set-up, of each mass in each set-up, and of each "
     "direction competes with them, alone and alongside them, as “unknown”. A table states no errors: they are fitted "
-    "with each "
-    "explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and the gap are "
+    "with each explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and "
+    "the gap are "
     "relative to the lines' own scatter, which involves no friction: that of the mean intercept over both directions, "
     "and of the slopes within each mass.</p>\n";
 
@@ -196,8 +195,7 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   if (!alike.empty()) {
     alike[0].caption =
         "How alike two effects (a row and a numbered column) are in these lines, with the nominal model fitted: at 1 "
-        "they "
-        "cannot be told apart, at 0 they can";
+        "they cannot be told apart, at 0 they can";
     body += "<h2>What these lines can tell apart</h2>\n" + figures(alike);
   }
   if (diagnosis.gap) body += "<h2>The gap, line by line</h2>\n" + gap_table(*diagnosis.gap);

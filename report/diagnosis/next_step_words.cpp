@@ -117,8 +117,7 @@ std::string routine_words(diagnose::Routine routine) {
       return "Repeat one launch of each kind: more clips make the verdict surer.";
     case Routine::repeat_launch:
       return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
-             "is "
-             "no law of motion.";
+             "is no law of motion.";
     case Routine::start_later:
       return "Repeat one of the launches three times, each one second later after the start of the camera: what "
              "belongs to the clip's time (a clock, something that warms or settles) stays at that time, what acts on "
@@ -135,12 +134,10 @@ std::string routine_words(diagnose::Routine routine) {
              kMoveCamera;
     case Routine::other_speeds:
       return "Record launches at two further speeds, with one mass and at one inclination: the missing force depends "
-             "on "
-             "the speed, and its shape tells what it is.";
+             "on the speed, and its shape tells what it is.";
     case Routine::measure_inclination:
       return "Measure the inclination again, with a level on the track or a plumb line in the image: the motion and "
-             "the "
-             "statement cannot both be right.";
+             "the statement cannot both be right.";
     case Routine::check_statements:
       return "Check the stated downhill direction, inclinations and masses, then launch one glider both ways: friction "
              "slows it in both directions, an inclination does not.";

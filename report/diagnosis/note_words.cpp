@@ -77,8 +77,7 @@ struct Sentence {
   std::string operator()(const diagnose::NoInclination& of) const {
     return fmt::format(
         "Set{} {} neither a plumb line nor an inclination with its uncertainty (incline_sd_deg): effects that show "
-        "only "
-        "in the inclination (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
+        "only in the inclination (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
         ups(of.groups), of.groups.size() > 1 ? "have" : "has");
   }
   std::string operator()(const diagnose::SplitSetUps& of) const {

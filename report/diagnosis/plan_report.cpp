@@ -47,8 +47,7 @@ std::string what_follows(const diagnose::Plan& plan) {
   const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
   if (!any) return "Recorded like this, a diagnosis could find none of them: its “none” would mean nothing.";
   return "Recorded like this, a diagnosis can find an effect from the size “seen from” on. If it finds none, smaller "
-         "ones "
-         "may still act, and those that are not seen may have any size.";
+         "ones may still act, and those that are not seen may have any size.";
 }
 
 /// What to do about effects that look alike; empty where none do.
@@ -64,8 +63,8 @@ std::string advice(const diagnose::Plan& plan) {
 
 constexpr const char* kPlanMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
-    "adjust "
-    "(K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes that "
+    "adjust (K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes "
+    "that "
     "remain is below 18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven frame times and outliers "
     "have no single direction and are not in the table.";
 

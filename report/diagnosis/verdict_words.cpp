@@ -59,8 +59,7 @@ std::string clip_gap_words(const diagnose::Diagnosis& diagnosis) {
   const diagnose::GapSizes& gap = *diagnosis.gap;
   std::string text = fmt::format(
       " Held-out clips lie {} times as far from the nominal model (drag proportional to the speed, dry friction, "
-      "gravity) "
-      "as their noise explains",
+      "gravity) as their noise explains",
       times(gap.before));
   if (diagnosis.verdict == diagnose::Verdict::effect && gap.shrink) {
     const bool one = diagnosis.effects.size() == 1;
@@ -95,8 +94,7 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
   }
   return fmt::format(
       "{} The nominal model explains the motion to within its noise, and none of the effects that this program knows "
-      "shifts "
-      "an "
+      "shifts an "
       "inclination so far: a statement is wrong, or something acts as an inclination does ({}).",
       sentences(diagnosis.limits.contradicted), sure);
 }
@@ -117,8 +115,7 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
       diagnosis.ranking.front().probability > diagnosis.none) {
     return fmt::format(
                "These data leave it open whether anything is missing. The likeliest explanation is {} ({}), but "
-               "nothing "
-               "missing ({}) is not ruled out at three to one, so no effect is claimed.",
+               "nothing missing ({}) is not ruled out at three to one, so no effect is claimed.",
                explanation_id(diagnosis.ranking.front().explanation), percent(diagnosis.ranking.front().probability),
                percent(diagnosis.none)) +
            clip_gap_words(diagnosis);
