@@ -18,7 +18,7 @@ using diagnose::ChangeKind;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which its figure means no more
 constexpr const char* kMoveCamera =
-    "what belongs to the track stays at its place on it, what belongs to the image moves with the camera.";
+    "what belongs to the track stays in place on it, what belongs to the image moves with the camera.";
 
 const char* kind_words(ChangeKind kind) {
   switch (kind) {
@@ -37,7 +37,7 @@ const char* kind_words(ChangeKind kind) {
     case ChangeKind::pattern:
       return "a pattern check";
     case ChangeKind::clock:
-      return "a stop-watch";
+      return "a stopwatch";
   }
   return "";
 }
@@ -82,7 +82,7 @@ std::string change_words(const Change& change) {
           "({:.1f} mm in {:.2g} m)",
           1000.0 * change.statements.front().sd, change.statements.front().to_m - change.statements.front().from_m);
     case ChangeKind::clock:
-      return fmt::format("Film a running stop-watch for {:.0f} s (it shows the frame rate)",
+      return fmt::format("Film a running stopwatch for {:.0f} s (it shows the frame rate)",
                          1.0 / (change.statements.front().sd * change.rate_so_far_hz));
   }
   return {};
@@ -117,11 +117,11 @@ std::string routine_words(diagnose::Routine routine) {
       return "Repeat one launch of each kind: more clips make the verdict surer.";
     case Routine::repeat_launch:
       return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
-             "is no law of motion.";
+             "is not due to the law of motion.";
     case Routine::start_later:
       return "Repeat one of the launches three times, each one second later after the start of the camera: what "
              "belongs to the clip's time (a clock, something that warms or settles) stays at that time, what acts on "
-             "the glider comes later with it.";
+             "the glider shifts with it.";
     case Routine::turn_glider:
       return "Turn the glider round on the track and record the same launches each way: what belongs to the glider "
              "turns with it, what belongs to the track does not.";
@@ -155,8 +155,8 @@ struct Words {
 
   std::string operator()(const diagnose::RepeatClip& of) const {
     return fmt::format(
-        "Repeat clip {} three times without changing anything: what belongs to that clip alone does not come back; "
-        "what its launch, mass or set-up causes comes back each time.",
+        "Repeat clip {} three times without changing anything: what belongs to that clip alone does not recur; what "
+        "its launch, mass or set-up causes recurs each time.",
         of.clip);
   }
 
@@ -173,7 +173,7 @@ struct Words {
   std::string operator()(const diagnose::AddMass& of) const {
     return fmt::format(
         "Record a further mass of {:.0f} g both ways, and the lightest one again: what depends on the mass then has a "
-        "third point on its curve, what differed by chance does not come back.",
+        "third point on its curve, what differed by chance does not recur.",
         1000.0 * of.mass_kg);
   }
 

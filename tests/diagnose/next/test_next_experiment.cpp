@@ -98,7 +98,7 @@ TEST_CASE("after a plumb view the variance of an inclination is that of the two 
   }
 }
 
-TEST_CASE("no clip splits a wrong scale from a wrong clock: a measured length or a stop-watch does") {
+TEST_CASE("no clip splits a wrong scale from a wrong clock: a measured length or a stopwatch does") {
   const diagnose::TrackSet set = inclined(100.0, 0.05);
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
   const double k = nominal.at.global[0], alpha = nominal.at.global[2], e = 0.02;

@@ -92,7 +92,7 @@ TEST_CASE("a change is an order with its numbers in units that people use") {
   CHECK(contains(words_for(statement), "(0.5 mm in 0.6 m)"));
   statement.kind = ChangeKind::clock;
   statement.statements = {{diagnose::NextStatement::Of::clock, 0, 0.0, 0.0, 1e-3}};
-  CHECK(contains(words_for(statement), "Film a running stop-watch for 10 s"));
+  CHECK(contains(words_for(statement), "Film a running stopwatch for 10 s"));
 }
 
 TEST_CASE("a doubt is told as what each explanation has and the other lacks, each name once") {
