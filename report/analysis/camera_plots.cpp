@@ -42,7 +42,8 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
           "ytics {2}\n"
           "set xlabel 'u (px)'\nset ylabel 'v (px)'\n"
           "plot $noise using 1:2:3 with circles fillcolor rgb '{3}' fillstyle solid noborder title 'expected from "
-          "noise', $arrows using 1:2:3:4 with vectors filled head size graph 0.012,20 lw 1.5 lc rgb '{4}' title 'mean residual, {5:g} times enlarged'\n",
+          "noise', $arrows using 1:2:3:4 with vectors filled head size graph 0.012,20 lw 1.5 lc rgb '{4}' title 'mean "
+          "residual, {5:g} times enlarged'\n",
           rests.width_px - 0.5, rests.height_px - 0.5, step, kShade, kColors[0], enlarged);
   return {{Drawing{script, std::vector{noise, arrows}},
            fmt::format(

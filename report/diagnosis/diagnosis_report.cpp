@@ -224,7 +224,8 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
       "in pairs. The evidence for each is its likelihood averaged over the sizes that it may have (equal odds for each "
       "factor of ten above what can be seen). Smooth forces and displacements without a name (over position, speed and "
       "time) and differences between clips, masses and set-ups compete with the effects, and act alongside them: where "
-      "one of those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
+      "one of those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to "
+      "all clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
       "waves or positions, which frames are lost, the shape of a curve without a name) comes from all clips.</p>\n";
   return page(title, body);
 }

@@ -119,7 +119,9 @@ constexpr const char* kLineMethod =
     "g sin α − sign(v) µ g cos α with one µ and one α for each set-up. Each effect that lines can show is added to it, "
     "alone and in pairs. A friction or drag of each mass, of each set-up, of each mass in each set-up, and of each "
     "direction competes with them, alone and alongside them, as “unknown”. A table states no errors: they are fitted "
-    "with each explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and the gap are relative to the lines' own scatter, which involves no friction: that of the mean intercept over both directions, "
+    "with each explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and "
+    "the gap are relative to the lines' own scatter, which involves no friction: that of the mean intercept over both "
+    "directions, "
     "and of the slopes within each mass.</p>\n";
 
 }  // namespace

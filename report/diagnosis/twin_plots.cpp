@@ -17,7 +17,8 @@ constexpr std::size_t kTwinPoints = 4000;  // of all clips
 std::string points(const char* below, const char* above) {
   return fmt::format(
       "plot $data using 1:2 with points pt 7 ps 0.3 lc rgb '{0}' notitle, keyentry with points pt 7 ps 0.8 lc rgb "
-      "'{0}' title '{2}', $twin using 1:2 with points pt 7 ps 0.15 lc rgb '{1}' notitle, keyentry with points pt 7 ps 0.8 lc rgb '{1}' title '{3}'\n",
+      "'{0}' title '{2}', $twin using 1:2 with points pt 7 ps 0.15 lc rgb '{1}' notitle, keyentry with points pt 7 ps "
+      "0.8 lc rgb '{1}' title '{3}'\n",
       kColors[4], kColors[1], below, above);
 }
 

@@ -93,7 +93,8 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
                        sentences(diagnosis.limits.driving), sure);
   }
   return fmt::format(
-      "{} The nominal model explains the motion to within its noise, and none of the effects that this program knows shifts an inclination so far: a statement is wrong, or something acts as an inclination does ({}).",
+      "{} The nominal model explains the motion to within its noise, and none of the effects that this program knows "
+      "shifts an inclination so far: a statement is wrong, or something acts as an inclination does ({}).",
       sentences(diagnosis.limits.contradicted), sure);
 }
 
