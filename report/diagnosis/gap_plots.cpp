@@ -26,6 +26,7 @@ std::string domain_name(const std::string& domain) {
   if (domain == "positions") return "positions of held-out clips";
   if (domain == "phase_plane") return "phase plane: a over v";
   if (domain == "parameters") return "parameters: K, µ, α";
+  if (domain == "picture") return "images";
   return domain;
 }
 
