@@ -1,0 +1,208 @@
+/// The recipes of docs/extending.md, followed with the toys of tests/recipes in a copy of the rooms that they need:
+/// with all steps the toy is known and gives its closed form, and a step that is left out is answered with the toy's
+/// name.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/files/staged_output.h"
+#include "test_paths.h"
+#include "tests/app/run_process.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kBuildOfCopy = R"(cmake_minimum_required(VERSION 3.25)
+project(recipe LANGUAGES CXX)
+include(cmake/Room.cmake)
+add_subdirectory(base)
+{}
+find_package(Catch2 REQUIRED)
+file(WRITE ${{CMAKE_BINARY_DIR}}/test_paths.h "#pragma once
+namespace glidelab::tests {{
+inline constexpr const char* kSourceDir = \"${{CMAKE_SOURCE_DIR}}\";
+}}
+")
+file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${{CMAKE_SOURCE_DIR}}/tests/*.cpp)
+add_executable(driver ${{sources}})
+target_include_directories(driver PRIVATE ${{CMAKE_SOURCE_DIR}} ${{CMAKE_BINARY_DIR}})
+target_link_libraries(driver PRIVATE {} Catch2::Catch2)
+)";
+
+/// A tree with some of the folders and files, a program `driver` of the tests among them, and one build folder.
+class Copy {
+ public:
+  /// `rooms` are lines of CMake that make the target `room`, which the driver links to.
+  Copy(std::vector<std::string> paths, const std::string& rooms, const std::string& room) {
+    paths.insert(paths.end(), {"base", "cmake", "tests/test_main.cpp", "tests/catch.h"});
+    for (const std::string& path : paths) take(path, path);
+    base::write_file(temp_ / "CMakeLists.txt", fmt::format(kBuildOfCopy, rooms, room));
+    const tests::ProcessResult configured =
+        tests::run({"cmake", "-S", (temp_ / ".").string(), "-B", (temp_ / "build").string(), "-G", "Ninja",
+                    "-DCMAKE_BUILD_TYPE=Debug", "-DGLIDELAB_WERROR=ON"});
+    INFO(configured.out << configured.err);
+    REQUIRE(configured.status == 0);
+  }
+
+  /// A file or folder of the source tree.
+  void take(const std::string& from, const std::string& to) {
+    fs::create_directories((temp_ / to).parent_path());
+    fs::copy(fs::path(tests::kSourceDir) / from, temp_ / to, fs::copy_options::recursive);
+  }
+
+  void remove(const std::string& path) { REQUIRE(fs::remove(temp_ / path)); }
+
+  /// Where `from` stands first.
+  void replace(const std::string& path, const std::string& from, const std::string& to) {
+    std::string text = base::read_file(temp_ / path);
+    const std::size_t at = text.find(from);
+    INFO(path << ": " << from);
+    REQUIRE(at != std::string::npos);
+    base::write_file(temp_ / path, text.replace(at, from.size(), to));
+  }
+
+  void add_line_before(const std::string& path, const std::string& next, const std::string& line) {
+    replace(path, next, line + "\n" + next);
+  }
+
+  void remove_line(const std::string& path, const std::string& line) { replace(path, line + "\n", ""); }
+
+  /// Builds the driver and runs those of its tests; the compiler's messages or those of the tests.
+  void check_passes(const std::string& chosen = "") {
+    const tests::ProcessResult built = build();
+    INFO(built.out << built.err);
+    REQUIRE(built.status == 0);
+    const tests::ProcessResult tested = test(chosen);
+    INFO(tested.out << tested.err);
+    CHECK(tested.status == 0);
+    CHECK(tested.out.find("All tests passed") != std::string::npos);
+  }
+
+  void check_does_not_build(const std::string& named) {
+    const tests::ProcessResult built = build();
+    INFO(built.out << built.err);
+    CHECK(built.status != 0);
+    CHECK(built.out.find("error") != std::string::npos);
+    CHECK(built.out.find(named) != std::string::npos);
+  }
+
+  void check_test_fails(const std::string& named, const std::string& chosen = "") {
+    const tests::ProcessResult built = build();
+    INFO(built.out << built.err);
+    REQUIRE(built.status == 0);
+    const tests::ProcessResult tested = test(chosen);
+    INFO(tested.out << tested.err);
+    CHECK(tested.status != 0);
+    CHECK(tested.out.find("FAILED") != std::string::npos);
+    CHECK(tested.out.find(named) != std::string::npos);
+  }
+
+ private:
+  tests::ProcessResult build() const { return tests::run({"cmake", "--build", (temp_ / "build").string(), "-j", "2"}); }
+  tests::ProcessResult test(const std::string& chosen) const {
+    std::vector<std::string> command = {(temp_ / "build/driver").string()};
+    if (!chosen.empty()) command.push_back(chosen);
+    return tests::run(command);
+  }
+
+  tests::TempDir temp_;
+};
+
+}  // namespace
+
+TEST_CASE("the recipe of a force law: all its steps make one, and each step that is left out is named", "[slow]") {
+  Copy copy({"sim", "tests/sim/bodies.h", "tests/sim/force/test_law_list.cpp", "docs/reference/scenario.md"},
+            "add_subdirectory(sim)", "glidelab::sim");
+  const std::string law = "sim/force/laws/toy_law.cpp", list = "sim/force/law_list.h";
+  const std::string line = "  LAW(toy) \\", page = "docs/reference/scenario.md";
+  const std::string row = "| `toy` | -c v abs(v) log(1 + abs(v)/v_0) | `c_kg_m`, at least 0; `v_0_m_s`, above 0 | – |";
+  copy.take("tests/recipes/force_law/toy_law.cpp", law);
+  copy.add_line_before(list, "  LAW(constant)", line);
+  copy.add_line_before(page, "| `constant` |", row);
+  copy.take("tests/recipes/force_law/test_toy_law.cpp", "tests/sim/force/laws/test_toy_law.cpp");
+  copy.check_passes();
+
+  copy.remove_line(page, row);
+  copy.check_test_fails("\n  toy\n");
+  copy.add_line_before(page, "| `constant` |", row);
+
+  const std::string slope = "double slope_n_s_m(double v_m_s, int direction, const Contact&) const override";
+  copy.replace(law, slope, "double other(double v_m_s, int direction, const Contact&) const");
+  copy.check_does_not_build("slope_n_s_m");
+  copy.replace(law, "double other(double v_m_s, int direction, const Contact&) const", slope);
+
+  copy.remove_line(list, line);
+  copy.check_does_not_build("laws::toy()");
+  copy.add_line_before(list, "  LAW(constant)", line);
+
+  copy.remove(law);
+  copy.check_does_not_build("laws::toy()");
+}
+
+TEST_CASE("the recipe of a bandwidth rule: all its steps make one, and each step that is left out is named", "[slow]") {
+  Copy copy({"core/experiment", "core/math", "core/motion", "core/result", "core/track",
+             "tests/core/motion/bandwidth/test_bandwidth_rule.cpp", "docs/guide/bandwidth.md"},
+            "add_subdirectory(core/motion)", "glidelab::motion");
+  const std::string rule = "core/motion/bandwidth/rule_toy.cpp", list = "core/motion/bandwidth/bandwidth_rule.cpp";
+  const std::string line = "  RULE(kToy) \\", page = "docs/guide/bandwidth.md";
+  const std::string row = "| `toy` | the geometric mean of plug-in and ebbs | what these two assume | – |";
+  // Not how near each rule comes to the best bandwidth, which takes minutes where nothing is optimised.
+  const std::string chosen = "every rule states what it does and assumes*,the toy rule*,a motion that is too short*";
+  copy.take("tests/recipes/bandwidth_rule/rule_toy.cpp", rule);
+  copy.add_line_before(list, "  RULE(kIntersectionOfIntervals)", line);
+  copy.add_line_before(page, "| `rsc` |", row);
+  copy.take("tests/recipes/bandwidth_rule/test_rule_toy.cpp", "tests/core/motion/bandwidth/test_rule_toy.cpp");
+  copy.check_passes(chosen);
+
+  copy.remove_line(page, row);
+  copy.check_test_fails("\n  toy\n", chosen);
+  copy.add_line_before(page, "| `rsc` |", row);
+
+  copy.remove_line(list, line);
+  copy.check_test_fails("\n  toy\n", chosen);
+  copy.add_line_before(list, "  RULE(kIntersectionOfIntervals)", line);
+
+  copy.replace(rule, "\"what these two assume\",", "");
+  copy.check_does_not_build("rule_toy.cpp");
+
+  copy.remove(rule);
+  copy.check_does_not_build("kToy");
+}
+
+TEST_CASE("the recipe of an effect: all its steps make one, and each step that is left out is named", "[slow]") {
+  Copy copy({"diagnose/effects", "diagnose/model", "tests/diagnose/effects/test_effect_library.cpp",
+             "docs/reference/effects.md"},
+            "glidelab_room(effects FOLDERS diagnose LINK glidelab::base)", "glidelab::effects");
+  const std::string effect = "diagnose/effects/toy_effect.cpp", list = "diagnose/effects/effect_list.h";
+  const std::string next = "  EFFECT(smoothing_bias)", line = "  EFFECT(toy_effect) \\";
+  const std::string page = "docs/reference/effects.md", next_row = "| `smoothing_bias` |";
+  const std::string row = "| `toy_effect` | spring | a force -k x | `k_n_m` (0) | a range of x |";
+  copy.take("tests/recipes/effect/toy_effect.cpp", effect);
+  copy.add_line_before(list, next, line);
+  copy.add_line_before(page, next_row, row);
+  copy.take("tests/recipes/effect/test_toy_effect.cpp", "tests/diagnose/effects/test_toy_effect.cpp");
+  copy.check_passes();
+
+  copy.remove_line(page, row);
+  copy.check_test_fails("\n  toy_effect\n");
+  copy.add_line_before(page, next_row, row);
+
+  const std::string member = ".both_signs = false,\n";
+  copy.replace(effect, member, "\n");
+  copy.check_does_not_build("both_signs");
+  copy.replace(effect, "Search::amplitude,\n", "Search::amplitude,\n      " + member);
+
+  copy.remove_line(list, line);
+  copy.check_does_not_build("toy_effect");
+  copy.add_line_before(list, next, line);
+
+  copy.remove(effect);
+  copy.check_does_not_build("effects::toy_effect()");
+}
