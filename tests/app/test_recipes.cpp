@@ -206,3 +206,50 @@ TEST_CASE("the recipe of an effect: all its steps make one, and each step that i
   copy.remove(effect);
   copy.check_does_not_build("effects::toy_effect()");
 }
+
+TEST_CASE("the recipe of a camera defect: all its steps make one, and each step that is left out is named", "[slow]") {
+  Copy copy({"sim", "render", "tests/temp_dir.h", "tests/render/made_clip.h",
+             "tests/render/scenario/test_scenario_sections.cpp", "docs/reference/scenario.md"},
+            "add_subdirectory(sim)\nadd_subdirectory(render)", "glidelab::render");
+  const std::string toy = "tests/recipes/camera_defect/", data = "render/scenario/scenario_data.h";
+  const std::string section = "render/scenario/sections/dust_section.cpp", list = "render/scenario/scenario_sections.h";
+  const std::string next = "  SECTION(vignetting)", line = "  SECTION(dust) \\", member = "  Dust dust;";
+  const std::string page = "docs/reference/scenario.md", next_of_page = "[vignetting]   ";
+  const std::string keys = "[dust]\nx_px = 0.0\ny_px = 0.0\nradius_px = 0.0\npasses = 1.0\n";
+  copy.add_line_before(data, "#include \"render/sensor/sensor.h\"", "#include \"render/sensor/dust.h\"");
+  copy.add_line_before(data, "  Vignetting vignetting;", member);
+  copy.take(toy + "dust_section.cpp", section);
+  copy.add_line_before(list, next, line);
+  copy.take(toy + "dust.h", "render/sensor/dust.h");
+  copy.take(toy + "dust.cpp", "render/sensor/dust.cpp");
+  const std::string seen = "readout_.read(expected(frame, readout_.seen_by(rect)),";
+  const std::string behind = "readout_.read(behind(scenario_.dust, expected(frame, readout_.seen_by(rect))),";
+  copy.replace("render/film/clip_renderer.cpp", seen, behind);  // 8 bits, then 16
+  copy.replace("render/film/clip_renderer.cpp", seen, behind);
+  copy.add_line_before(page, next_of_page, keys);
+  copy.take(toy + "test_dust.cpp", "tests/render/sensor/test_dust.cpp");
+  copy.check_passes();
+
+  copy.remove_line(page, keys);
+  copy.check_test_fails("\"dust\"");
+  copy.add_line_before(page, next_of_page, keys);
+
+  copy.replace("render/film/clip_renderer.cpp", behind, seen);
+  copy.check_test_fails("behind opaque dust");
+  copy.replace("render/film/clip_renderer.cpp", seen, behind);
+
+  const std::string ideal = "  .ideal = no_dust";
+  copy.replace(section, ideal, "");
+  copy.check_does_not_build("ideal");
+  copy.replace(section, ".truth = dust_truth,", ".truth = dust_truth,\n" + ideal);
+
+  copy.remove_line(list, line);
+  copy.check_does_not_build("dust");
+  copy.add_line_before(list, next, line);
+
+  copy.remove(section);
+  copy.check_does_not_build("sections::dust");
+
+  copy.remove_line(data, member);
+  copy.check_does_not_build("dust");
+}

@@ -1,0 +1,16 @@
+/// A round speck on the sensor's cover glass: the example of docs/extending.md.
+#pragma once
+
+#include "render/image/float_picture.h"
+
+namespace glidelab::render {
+
+struct Dust {
+  double x_px = 0.0, y_px = 0.0, radius_px = 0.0;
+  double passes = 1.0;  ///< the part of the light that comes through
+};
+
+/// The expected electrons behind the speck.
+FloatPicture behind(const Dust& dust, FloatPicture expected_e);
+
+}  // namespace glidelab::render
