@@ -24,6 +24,7 @@ project(recipe LANGUAGES CXX)
 include(cmake/Room.cmake)
 add_subdirectory(base)
 {}
+set_source_files_properties({} TARGET_DIRECTORY {} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 find_package(Catch2 REQUIRED)
 file(WRITE ${{CMAKE_BINARY_DIR}}/test_paths.h "#pragma once
 namespace glidelab::tests {{
@@ -39,11 +40,14 @@ target_link_libraries(driver PRIVATE {} Catch2::Catch2)
 /// A tree with some of the folders and files, a program `driver` of the tests among them, and one build folder.
 class Copy {
  public:
-  /// `rooms` are lines of CMake that make the target `room`, which the driver links to.
-  Copy(std::vector<std::string> paths, const std::string& rooms, const std::string& room) {
+  /// `rooms` are lines of CMake that make the target `room`, which the driver links to. `toy` is the source that a
+  /// recipe adds, compiled apart from its folder.
+  Copy(std::vector<std::string> paths, const std::string& rooms, const std::string& room, const std::string& toy)
+      : toy_(toy) {
     paths.insert(paths.end(), {"base", "cmake", "tests/test_main.cpp", "tests/catch.h"});
     for (const std::string& path : paths) take(path, path);
-    base::write_file(temp_ / "CMakeLists.txt", fmt::format(kBuildOfCopy, rooms, room));
+    base::write_file(temp_ / "CMakeLists.txt",
+                     fmt::format(kBuildOfCopy, rooms, (temp_ / toy).string(), "glidelab_" + room, "glidelab_" + room));
     const tests::ProcessResult configured =
         tests::run({"cmake", "-S", (temp_ / ".").string(), "-B", (temp_ / "build").string(), "-G", "Ninja",
                     "-DCMAKE_BUILD_TYPE=Debug", "-DGLIDELAB_WERROR=ON"});
@@ -51,7 +55,7 @@ class Copy {
     REQUIRE(configured.status == 0);
   }
 
-  /// A file or folder of the source tree.
+  /// Puts a file or folder of the source tree into the copy.
   void take(const std::string& from, const std::string& to) {
     fs::create_directories((temp_ / to).parent_path());
     fs::copy(fs::path(tests::kSourceDir) / from, temp_ / to, fs::copy_options::recursive);
@@ -74,7 +78,7 @@ class Copy {
 
   void remove_line(const std::string& path, const std::string& line) { replace(path, line + "\n", ""); }
 
-  /// Builds the driver and runs those of its tests; the compiler's messages or those of the tests.
+  /// Builds the driver, and its tests of these names pass; all of them without names.
   void check_passes(const std::string& chosen = "") {
     const tests::ProcessResult built = build();
     INFO(built.out << built.err);
@@ -85,13 +89,18 @@ class Copy {
     CHECK(tested.out.find("All tests passed") != std::string::npos);
   }
 
-  void check_does_not_build(const std::string& named) {
-    const tests::ProcessResult built = build();
-    INFO(built.out << built.err);
-    CHECK(built.status != 0);
-    CHECK(built.out.find("error") != std::string::npos);
-    CHECK(built.out.find(named) != std::string::npos);
+  /// The toy does not compile with `to` where `from` stands first; the file is put back.
+  void check_does_not_compile(const std::string& path, const std::string& from, const std::string& to,
+                              const std::string& named) {
+    const std::string kept = base::read_file(temp_ / path);
+    const fs::file_time_type kept_time = fs::last_write_time(temp_ / path);
+    replace(path, from, to);
+    check_says(tests::run({"ninja", "-C", (temp_ / "build").string(), (temp_ / toy_).string() + "^"}), named);
+    base::write_file(temp_ / path, kept);
+    fs::last_write_time(temp_ / path, kept_time);  // nothing else was built of it
   }
+
+  void check_does_not_build(const std::string& named) { check_says(build(), named); }
 
   void check_test_fails(const std::string& named, const std::string& chosen = "") {
     const tests::ProcessResult built = build();
@@ -105,6 +114,12 @@ class Copy {
   }
 
  private:
+  static void check_says(const tests::ProcessResult& built, const std::string& named) {
+    INFO(built.out << built.err);
+    CHECK(built.status != 0);
+    CHECK(built.out.find("error") != std::string::npos);
+    CHECK(built.out.find(named) != std::string::npos);
+  }
   tests::ProcessResult build() const { return tests::run({"cmake", "--build", (temp_ / "build").string(), "-j", "2"}); }
   tests::ProcessResult test(const std::string& chosen) const {
     std::vector<std::string> command = {(temp_ / "build/driver").string()};
@@ -113,13 +128,14 @@ class Copy {
   }
 
   tests::TempDir temp_;
+  std::string toy_;
 };
 
 }  // namespace
 
 TEST_CASE("the recipe of a force law: all its steps make one, and each step that is left out is named", "[slow]") {
   Copy copy({"sim", "tests/sim/bodies.h", "tests/sim/force/test_law_list.cpp", "docs/reference/scenario.md"},
-            "add_subdirectory(sim)", "glidelab::sim");
+            "add_subdirectory(sim)", "sim", "sim/force/laws/toy_law.cpp");
   const std::string law = "sim/force/laws/toy_law.cpp", list = "sim/force/law_list.h";
   const std::string line = "  LAW(toy) \\", page = "docs/reference/scenario.md";
   const std::string row = "| `toy` | -c v abs(v) log(1 + abs(v)/v_0) | `c_kg_m`, at least 0; `v_0_m_s`, above 0 | – |";
@@ -134,14 +150,9 @@ TEST_CASE("the recipe of a force law: all its steps make one, and each step that
   copy.add_line_before(page, "| `constant` |", row);
 
   const std::string slope = "double slope_n_s_m(double v_m_s, int direction, const Contact&) const override";
-  copy.replace(law, slope, "double other(double v_m_s, int direction, const Contact&) const");
-  copy.check_does_not_build("slope_n_s_m");
-  copy.replace(law, "double other(double v_m_s, int direction, const Contact&) const", slope);
-
-  copy.remove_line(list, line);
-  copy.check_does_not_build("laws::toy()");
-  copy.add_line_before(list, "  LAW(constant)", line);
-
+  copy.check_does_not_compile(law, slope, "double other(double v_m_s, int direction, const Contact&) const",
+                              "slope_n_s_m");
+  copy.check_does_not_compile(list, line + "\n", "", "laws::toy()");
   copy.remove(law);
   copy.check_does_not_build("laws::toy()");
 }
@@ -149,7 +160,7 @@ TEST_CASE("the recipe of a force law: all its steps make one, and each step that
 TEST_CASE("the recipe of a bandwidth rule: all its steps make one, and each step that is left out is named", "[slow]") {
   Copy copy({"core/experiment", "core/math", "core/motion", "core/result", "core/track",
              "tests/core/motion/bandwidth/test_bandwidth_rule.cpp", "docs/guide/bandwidth.md"},
-            "add_subdirectory(core/motion)", "glidelab::motion");
+            "add_subdirectory(core/motion)", "motion", "core/motion/bandwidth/rule_toy.cpp");
   const std::string rule = "core/motion/bandwidth/rule_toy.cpp", list = "core/motion/bandwidth/bandwidth_rule.cpp";
   const std::string line = "  RULE(kToy) \\", page = "docs/guide/bandwidth.md";
   const std::string row = "| `toy` | the geometric mean of plug-in and ebbs | what these two assume | – |";
@@ -165,12 +176,11 @@ TEST_CASE("the recipe of a bandwidth rule: all its steps make one, and each step
   copy.check_test_fails("\n  toy\n", chosen);
   copy.add_line_before(page, "| `rsc` |", row);
 
+  copy.check_does_not_compile(rule, "\"what these two assume\",", "", "between_two");
+
   copy.remove_line(list, line);
   copy.check_test_fails("\n  toy\n", chosen);
   copy.add_line_before(list, "  RULE(kIntersectionOfIntervals)", line);
-
-  copy.replace(rule, "\"what these two assume\",", "");
-  copy.check_does_not_build("rule_toy.cpp");
 
   copy.remove(rule);
   copy.check_does_not_build("kToy");
@@ -179,7 +189,8 @@ TEST_CASE("the recipe of a bandwidth rule: all its steps make one, and each step
 TEST_CASE("the recipe of an effect: all its steps make one, and each step that is left out is named", "[slow]") {
   Copy copy({"diagnose/effects", "diagnose/model", "tests/diagnose/effects/test_effect_library.cpp",
              "docs/reference/effects.md"},
-            "glidelab_room(effects FOLDERS diagnose LINK glidelab::base)", "glidelab::effects");
+            "glidelab_room(effects FOLDERS diagnose LINK glidelab::base)", "effects",
+            "diagnose/effects/toy_effect.cpp");
   const std::string effect = "diagnose/effects/toy_effect.cpp", list = "diagnose/effects/effect_list.h";
   const std::string next = "  EFFECT(smoothing_bias)", line = "  EFFECT(toy_effect) \\";
   const std::string page = "docs/reference/effects.md", next_row = "| `smoothing_bias` |";
@@ -194,15 +205,8 @@ TEST_CASE("the recipe of an effect: all its steps make one, and each step that i
   copy.check_test_fails("\n  toy_effect\n");
   copy.add_line_before(page, next_row, row);
 
-  const std::string member = ".both_signs = false,\n";
-  copy.replace(effect, member, "\n");
-  copy.check_does_not_build("both_signs");
-  copy.replace(effect, "Search::amplitude,\n", "Search::amplitude,\n      " + member);
-
-  copy.remove_line(list, line);
-  copy.check_does_not_build("toy_effect");
-  copy.add_line_before(list, next, line);
-
+  copy.check_does_not_compile(effect, ".both_signs = false,", "", "both_signs");
+  copy.check_does_not_compile(list, line + "\n", "", "ids::toy_effect");
   copy.remove(effect);
   copy.check_does_not_build("effects::toy_effect()");
 }
@@ -210,7 +214,7 @@ TEST_CASE("the recipe of an effect: all its steps make one, and each step that i
 TEST_CASE("the recipe of a camera defect: all its steps make one, and each step that is left out is named", "[slow]") {
   Copy copy({"sim", "render", "tests/temp_dir.h", "tests/render/made_clip.h",
              "tests/render/scenario/test_scenario_sections.cpp", "docs/reference/scenario.md"},
-            "add_subdirectory(sim)\nadd_subdirectory(render)", "glidelab::render");
+            "add_subdirectory(sim)\nadd_subdirectory(render)", "render", "render/scenario/sections/dust_section.cpp");
   const std::string toy = "tests/recipes/camera_defect/", data = "render/scenario/scenario_data.h";
   const std::string section = "render/scenario/sections/dust_section.cpp", list = "render/scenario/scenario_sections.h";
   const std::string next = "  SECTION(vignetting)", line = "  SECTION(dust) \\", member = "  Dust dust;";
@@ -234,22 +238,13 @@ TEST_CASE("the recipe of a camera defect: all its steps make one, and each step 
   copy.check_test_fails("\"dust\"");
   copy.add_line_before(page, next_of_page, keys);
 
+  copy.check_does_not_compile(section, "  .ideal = no_dust", "", "ideal");
+  copy.check_does_not_compile(list, line + "\n", "", "sections::dust");
+  copy.check_does_not_compile(data, member + "\n", "", "scenario.dust");
+
   copy.replace("render/film/clip_renderer.cpp", behind, seen);
   copy.check_test_fails("behind opaque dust");
-  copy.replace("render/film/clip_renderer.cpp", seen, behind);
-
-  const std::string ideal = "  .ideal = no_dust";
-  copy.replace(section, ideal, "");
-  copy.check_does_not_build("ideal");
-  copy.replace(section, ".truth = dust_truth,", ".truth = dust_truth,\n" + ideal);
-
-  copy.remove_line(list, line);
-  copy.check_does_not_build("dust");
-  copy.add_line_before(list, next, line);
 
   copy.remove(section);
   copy.check_does_not_build("sections::dust");
-
-  copy.remove_line(data, member);
-  copy.check_does_not_build("dust");
 }
