@@ -28,7 +28,7 @@ std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free,
 struct GlsInput {
   double bandwidth_s = 0.0;
   std::vector<double> autocovariance;
-  std::vector<double> noise_factor = {};  ///< of every point of the motion (speed_noise.h); empty: 1
+  std::vector<double> noise_factor = {};  ///< of every point of the motion (speed_dependent_noise.h); empty: 1
   double k_start_1_s = 0.0;               ///< where the search for k begins
   double scale_sd_relative = 0.0;
   double mass_kg = 0.0;  ///< with a known force only

@@ -47,7 +47,7 @@ struct LineInput {
   std::size_t track_points = 0;
   std::vector<double> t_s;                ///< of the measured positions
   bool forced = false;                    ///< a known force acts
-  std::vector<double> noise_factor = {};  ///< of each measured position's noise (speed_noise.h); empty: 1
+  std::vector<double> noise_factor = {};  ///< of each measured position's noise (speed_dependent_noise.h); empty: 1
   std::vector<double> v_m_s;
   std::vector<double> a_m_s2;          ///< with the known force's part F/m taken off
   std::vector<KernelRow> rows;         ///< over the measured positions

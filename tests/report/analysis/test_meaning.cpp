@@ -158,7 +158,7 @@ TEST_CASE(
                   {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
   CHECK(tells(report::plan_page("p", plan), "smaller ones may still act"));
   plan.effects.front().seen = false;
-  CHECK(tells(report::plan_page("p", plan), "would say nothing"));
+  CHECK(tells(report::plan_page("p", plan), "would mean nothing"));
 }
 
 TEST_CASE("a check says at the top whether to analyse, to record again or to mend, and how well positions are known") {

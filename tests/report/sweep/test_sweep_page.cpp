@@ -77,7 +77,7 @@ TEST_CASE("a sweep's page names the best of several given bandwidths, for each q
   add("mu", "phase-diagram h=0.04 s", 4e-4);
   CHECK(has(report::sweep_meaning(of),
             "Of the 2 given bandwidths of the lines the least rms error is that of h=0.04 s in K/m (0.001 1/s), µ "
-            "(0.0004), α (0.003°). Two whose errors differ by less than 10 % may be alike."));  // 2 / sqrt(400)
+            "(0.0004), α (0.003°). Two whose errors differ by less than 10 % may be equivalent."));  // 2 / sqrt(400)
   of.overall.back().groups.front().statistics.rms = 6e-4;
   CHECK(has(report::sweep_meaning(of), "h=0.04 s in K/m (0.001 1/s); h=0.02 s in µ (0.0005); h=0.04 s in α"));
 }
@@ -115,7 +115,7 @@ TEST_CASE("where runs have no answer the page compares like runs, or says that i
   const std::string none = report::sweep_meaning(of);
   CHECK_FALSE(has(none, "times as much"));
   CHECK(has(none, "along rate_hz it is not compared: some runs have no answer"));
-  CHECK(has(none, "drawn"));
+  CHECK(has(none, "random values"));
   plots = report::sweep_plots(of.axes[0], "mu");
   CHECK(has(plots[0].drawing.script, "'trajectory, unlike runs'"));
   CHECK(has(plots[0].caption, "unlike runs: some have no answer"));
