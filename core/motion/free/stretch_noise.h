@@ -12,8 +12,8 @@ namespace glidelab::core {
 
 PositionNoise noise_at(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
-/// The noise's factor at every point of the motion (speed_dependent_noise.h; 1 outside of the stretches), or nothing where it is
-/// one everywhere.
+/// The noise's factor at every point of the motion (speed_dependent_noise.h; 1 outside of the stretches), or nothing
+/// where it is one everywhere.
 std::vector<double> noise_factors(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
 /// The step of a recording's rounding where that is most of its noise and the motion is so slow that one position in
