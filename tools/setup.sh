@@ -50,9 +50,13 @@ skipped_in() {
   grep -hoE '^[[:space:]]*skipped: .*' "$1" | sed 's/^ *//' | sort -u || true  # a line of its own: commands are in the log as well
 }
 
-# build PRESET [TARGET…]: configures and builds in build/PRESET.
+# What the program alone is configured with: nothing is looked for that tests and benchmarks take (packages-test.txt).
+program_only=(-DGLIDELAB_TESTS=OFF)
+with=()
+
+# build PRESET [TARGET…]: configures with the options in the array `with` and builds in build/PRESET.
 build() {
   local preset=$1
   shift
-  (cd "$root" && cmake --preset "$preset" --log-level=NOTICE >&2 && cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} >&2)
+  (cd "$root" && cmake --preset "$preset" "${with[@]}" --log-level=NOTICE >&2 && cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} >&2)
 }
