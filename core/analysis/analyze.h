@@ -10,11 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "core/experiment/bare_track.h"
+#include "base/long_work.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/analyze_motion.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {

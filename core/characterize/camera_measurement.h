@@ -1,4 +1,13 @@
+/// A measured camera as plain data, and as a file with the keys of a scenario's [sensor].
+///
 /// The result of photon transfer, as plain data. report/ writes it as JSON, table and page.
+///
+/// A measured camera as a file: the keys of a scenario's [sensor], each with its standard deviation in a comment.
+///
+/// A number that was not measured but has a limit is written as that limit, so that a rehearsal with the file errs on
+/// the side of caution; the comment says so. A number without a limit is written as nan, which no reader accepts:
+/// whoever uses the file has to decide. A dark signal that was not measured is left out; at exposures of milliseconds
+/// it does not matter.
 #pragma once
 
 #include <cstddef>
@@ -57,5 +66,8 @@ struct CameraMeasurement {
   double saturation_dn = 0.0;           ///< above dark; the 70 % refer to it
   std::vector<std::string> notes;       ///< what a reader should know
 };
+
+/// TOML 1.0. Numbers with no more digits than their standard deviations support.
+std::string camera_toml(const CameraMeasurement& camera);
 
 }  // namespace glidelab::core

@@ -1,11 +1,19 @@
+/// The result of a check of a recording, as plain data, with the collector of its findings.
+///
 /// The result of a check of a recording, as plain data (check_recording.h makes it).
 ///
 /// Lengths of the set-up in metres, of the image in pixels; brightness as a share of the largest code.
+///
+/// Wording that the findings of a check share, and a collector for the findings about one subject.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result/results.h"
@@ -80,7 +88,7 @@ struct ClipCheck {
   double top_speed_m_s = 0.0;
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, with the stated exposure
-  /// From the lengthening of the marker with its speed (marker_smear.h), with the corresponding smear at the top speed.
+  /// From the lengthening of the marker with its speed (check_clip.h), with the corresponding smear at the top speed.
   /// Only if the exposure is above twice the stated one (less may be the camera's tone curve) or none is stated, and
   /// the smear is above half the marker's diameter (less may be perspective: in one clip speed and position go
   /// together).
@@ -104,6 +112,33 @@ struct RecordingCheck {
   std::string plumb_failure;      ///< why the plumb line gives no angle; empty if it does, or if there is none
   std::vector<Finding> findings;  ///< the most severe first
   bool usable = true;             ///< no finding is Severity::unusable
+};
+
+inline std::string percent(double share) {
+  return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+/// At most six names, and how many more there are.
+inline std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  const std::size_t shown = std::min(kMost, names.size());
+  std::string text =
+      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+  return text;
+}
+
+/// Collects the findings about one subject; `findings` outlive it.
+class FindingBook {
+ public:
+  FindingBook(std::vector<Finding>& findings, std::string about) : findings_(findings), about_(std::move(about)) {}
+  void add(Severity severity, std::string found, std::string advice = {}) {
+    findings_.push_back({severity, about_, std::move(found), std::move(advice)});
+  }
+
+ private:
+  std::vector<Finding>& findings_;
+  std::string about_;
 };
 
 }  // namespace glidelab::core

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/check/finding_words.h"
+#include "core/check/recording_check.h"
 #include "core/check/statement_findings.h"
 #include "core/pictures/frames/frame_source.h"
 

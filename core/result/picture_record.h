@@ -43,7 +43,7 @@ struct BlockSteps {
   double count = 0.0;  ///< steps of each
 };
 
-/// How much resting pixels of about one brightness change from frame to frame (level_noise.h), codes.
+/// How much resting pixels of about one brightness change from frame to frame (camera_traces.h), codes.
 struct NoiseAtLevel {
   double level_code = 0.0;  ///< their mean
   double sd_code = 0.0;     ///< of one pixel

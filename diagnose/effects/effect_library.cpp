@@ -56,4 +56,17 @@ std::size_t first_alike(std::size_t effect, bool filmed) {
   return same ? effect_index(alike.id) : effect;
 }
 
+EffectValues::EffectValues() {
+  static const auto absent = [] {
+    std::array<std::array<double, kMostParameters>, kEffects> values{};
+    for (const EffectInfo& effect : all_effects()) {
+      for (const EffectParameter& parameter : effect.parameters) {
+        values[parameter.slot.effect][parameter.slot.parameter] = parameter.absent;
+      }
+    }
+    return values;
+  }();
+  values_ = absent;
+}
+
 }  // namespace glidelab::diagnose

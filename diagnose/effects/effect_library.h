@@ -1,11 +1,18 @@
+/// effect_library: All effects of effect_list.h, each defined in its own file, and the sizes of all at once.
+///
 /// All effects of effect_list.h, each defined in its own file.
+///
+/// The sizes of all effects at once, as one motion feels them.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_list.h"
 
 namespace glidelab::diagnose {
 
@@ -24,5 +31,20 @@ std::vector<std::string> effect_words();
 /// The first of the effects that no experiment of tracks tells apart from this one: a wrong scale and a wrong frame
 /// rate; of positions alone, not `filmed`, a camera and a table that shake. An effect without such a double: itself.
 std::size_t first_alike(std::size_t effect, bool filmed);
+
+class EffectValues {
+ public:
+  /// All absent.
+  EffectValues();
+
+  double& operator[](const EffectSlot& slot) { return values_[slot.effect][slot.parameter]; }
+  double operator[](const EffectSlot& slot) const { return values_[slot.effect][slot.parameter]; }
+
+  /// An effect's parameters in order.
+  const double* of(std::size_t effect) const { return values_[effect].data(); }
+
+ private:
+  std::array<std::array<double, kMostParameters>, kEffects> values_;
+};
 
 }  // namespace glidelab::diagnose

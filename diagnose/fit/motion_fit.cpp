@@ -9,7 +9,7 @@
 #include "base/errors.h"
 #include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
-#include "diagnose/fit/common_limits.h"
+#include "diagnose/fit/fit_model.h"
 
 namespace glidelab::diagnose {
 namespace {

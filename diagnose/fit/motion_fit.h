@@ -5,7 +5,7 @@
 /// weighted with the noise of each motion; what is stated joins as data of its own: inclinations with their standard
 /// deviation, masses with theirs, the camera's and plane's errors c_k ~ N(0, 1). Gauss and Newton's steps damped by
 /// Levenberg and Marquardt, derivatives by finite differences, each motion's own parameters eliminated. An effect's
-/// common parameter stays within its range (effect_ranges.h): it stops at the edge, the others go on.
+/// common parameter stays within its range (fit_model.h): it stops at the edge, the others go on.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/fit/linearised_motion.h"
-#include "diagnose/fit/parameter_layout.h"
+#include "diagnose/fit/fit_model.h"
 #include "diagnose/tracks/track_set.h"
 
 namespace glidelab::diagnose {

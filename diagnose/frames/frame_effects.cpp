@@ -7,9 +7,8 @@
 
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/common_limits.h"
-#include "diagnose/frames/smooth_residual.h"
-#include "diagnose/frames/timing_noise.h"
+#include "diagnose/fit/fit_model.h"
+#include "diagnose/frames/point_scatter.h"
 
 namespace glidelab::diagnose {
 namespace {

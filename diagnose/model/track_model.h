@@ -2,7 +2,7 @@
 ///
 ///     m dv/dt = m g sin(alpha) - K v - sign(v) mu m g cos(alpha) + a known force + an unnamed one
 ///
-/// sliding, changed by the laws of the effects that act (effects/effect_law.h); at v = 0 the glider stays while
+/// sliding, changed by the laws of the effects that act (diagnose/effects/effect.h); at v = 0 the glider stays while
 /// friction of up to its limit, whichever way, can hold it. Runge and Kutta's fourth order in equal parts of every
 /// frame interval, or over several frames, with a polynomial of fifth order between (steps of at most 12.6 ms; k h at
 /// most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and at t_r: a smooth function of all
@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "diagnose/effects/effect_values.h"
+#include "diagnose/effects/effect_library.h"
 
 namespace glidelab::diagnose {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/math/dense.h"
-#include "diagnose/fit/common_limits.h"
-#include "diagnose/next/next_clip.h"
+#include "diagnose/fit/fit_model.h"
+#include "diagnose/next/next_changes.h"
 
 namespace glidelab::diagnose {
 namespace {

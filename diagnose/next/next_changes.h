@@ -1,3 +1,6 @@
+/// next_changes: What an experimenter could do next: further clips that differ in one thing, each as a fit expects it,
+/// or further measurements.
+///
 /// What an experimenter could do next: one further clip that differs in one thing, or one further measurement of what
 /// is stated.
 ///
@@ -5,7 +8,12 @@
 /// so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions so far: for tracks
 /// sd² (1 + c v²), c from `wider` of the motions (0 where that is empty); for films as in whitening.h. Half the
 /// exposure leaves a quarter of what grows with the speed. SI units.
+///
+/// A further clip (next_changes.h) as a fit expects it: the set of tracks that holds nothing but it, and the fit's
+/// parameters for it.
 #pragma once
+
+#include <Eigen/Core>
 
 #include <vector>
 
@@ -24,5 +32,20 @@ std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nomin
 
 /// How many, and of which kinds, in the order of ChangeKind.
 ChangesWeighed weighed(const std::vector<Change>& changes);
+
+/// Where a new set-up's inclination stands among the common parameters: behind those of the others.
+Eigen::Index new_alpha(const TrackSet& set);
+
+/// A fit's parameters for the change's clip. What every clip has of its own is as in the clips so far, on average. The
+/// change must have a clip.
+FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& change);
+
+struct NextMotion {
+  TrackSet set;  ///< the set-ups and masses so far and the change's, with its clip as the only one
+  Moved moved;   ///< empty where the clip cannot be made: fewer than 12 positions within the range so far
+};
+
+/// The change's clip as the fit makes it, without noise, cut where it leaves the places so far.
+NextMotion next_motion(const TrackSet& set, const MotionFit& fit, const Change& change);
 
 }  // namespace glidelab::diagnose

@@ -1,3 +1,13 @@
+/// twin_camera: How an experiment was filmed, as sections of a scenario, with the noise law of its pixels.
+///
+/// The noise of resting pixels against their brightness, compared with shot noise and a linear sensor:
+///
+///     variance = dark + gain level      (codes²; level in codes above the black)
+///
+/// The light's own noise grows as its root, and `gain` is the codes of one electron; `dark` holds read noise and
+/// rounding (1/12). Weighted least squares over the levels that were seen, neither below 0. What lies off that line is
+/// a tone curve, a codec or a camera's own smoothing.
+///
 /// How an experiment was filmed, as far as its folder and calibration show, written as sections of a scenario.
 ///
 /// The calibration gives the camera and where the pattern of the plane stands before it (p_C = R p_P + s); the marker's
@@ -16,10 +26,19 @@
 
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/camera_model.h"
+#include "core/result/picture_record.h"
 #include "core/result/results.h"
-#include "diagnose/pictures/noise_law.h"
 
 namespace glidelab::diagnose {
+
+struct NoiseLaw {
+  double gain_code = 0.0, gain_sd = 0.0;
+  double dark_code2 = 0.0;
+  double at(double level_code) const { return dark_code2 + gain_code * level_code; }  ///< codes²
+};
+
+/// Nothing of fewer than three levels, or of levels that are all one.
+std::optional<NoiseLaw> noise_law(const std::vector<core::NoiseAtLevel>& levels);
 
 /// Of the first folder that has clips made of images, and of its first such clip.
 struct Filming {

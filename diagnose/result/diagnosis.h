@@ -1,6 +1,12 @@
+/// diagnosis: What a diagnosis says, as plain data, with effects that cannot be told apart taken as one.
+///
 /// What a diagnosis says, as plain data; report/ writes it as diagnosis.json and a page.
+///
+/// Effects that these data cannot tell apart, as one set: which effects are in it, and how likely it is that one of
+/// them acts.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -80,7 +86,7 @@ struct GapOfParameter {
   std::optional<DiagnosedParameter> alone = {}, together = {};
 };
 
-/// 95 %, over clips (clip_interval.h).
+/// 95 %, over clips (gap_sizes.h).
 struct GapInterval {
   double low = 0.0, high = 0.0;
 };
@@ -95,7 +101,7 @@ struct GapValue {
   double value = 0.0, sd = 0.0;
 };
 
-/// Measured less modelled acceleration over a stretch of speeds (phase_gap.h), m/s².
+/// Measured less modelled acceleration over a stretch of speeds (domain_gaps.h), m/s².
 struct PhaseBin {
   double from_m_s = 0.0, to_m_s = 0.0;
   double v_m_s = 0.0;  ///< mean over its points
@@ -186,7 +192,7 @@ struct MeasuredMotion {
   std::vector<double> v_m_s, a_m_s2;  ///< smoothed, of the points that the lines rest on
 };
 
-/// What a reader must know before the verdict (verdict_limits.h); also in the notes.
+/// What a reader must know before the verdict (verdict_details.h); also in the notes.
 struct VerdictLimits {
   std::vector<NegativeLoss> driving;
   std::vector<ContradictedIncline> contradicted;
@@ -221,5 +227,16 @@ struct Diagnosis {
 /// Whether the nominal model follows the positions to within their noise, and the verdict is unknown for what is stated
 /// alone: an inclination that the motion contradicts, a drag or friction below zero.
 bool only_statements_fail(const Diagnosis& diagnosis);
+
+/// An explanation that names effects and nothing else.
+struct NamedExplanation {
+  std::vector<std::string> ids;
+  double probability = 0.0;
+};
+
+/// Fills `alike` and `joint_probability` of each effect of a diagnosis that has its `equivalent_to`: the sum over all
+/// explanations that hold it or one of those, each counted once. `words` says what an id is for a person.
+void join_alike(const std::vector<NamedExplanation>& explanations,
+                const std::function<std::string(const std::string& id)>& words, Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

@@ -1,4 +1,4 @@
-/// What a reader of a diagnosis should know besides the verdict, as data; report/diagnosis/note_words.h puts it into
+/// What a reader of a diagnosis should know besides the verdict, as data; report/diagnosis/diagnosis_words.h puts it into
 /// words.
 #pragma once
 

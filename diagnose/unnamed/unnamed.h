@@ -1,3 +1,7 @@
+/// unnamed: Explanations without a name: all their families, those over members (clips, masses, set-ups) made here.
+///
+/// Families of unnamed.h that differ between clips, masses or set-ups.
+///
 /// Explanations without a name: smooth forces and displacements in each variable, and sizes that differ between clips,
 /// masses or set-ups for no stated reason. They stand for what is not in the list of effects.
 ///
@@ -12,6 +16,8 @@
 #include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
+
+void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families);
 
 /// All families around a fit.
 std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/fit/score_space.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 
 namespace glidelab::diagnose {
 

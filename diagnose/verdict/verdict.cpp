@@ -12,12 +12,10 @@
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/next_experiment.h"
-#include "diagnose/result/alike_effects.h"
+#include "diagnose/result/diagnosis.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
-#include "diagnose/verdict/derived_parameters.h"
-#include "diagnose/verdict/verdict_limits.h"
-#include "diagnose/verdict/verdict_regions.h"
+#include "diagnose/verdict/verdict_details.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -11,7 +11,6 @@
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
-#include "diagnose/weigh/losses_beside.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "base/parallel.h"
+#include "base/long_work.h"
 
 namespace glidelab::diagnose {
 namespace {

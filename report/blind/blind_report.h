@@ -1,7 +1,12 @@
+/// The results of blind cases: a file, a text, a page; with the targets, and what a score means.
+///
+/// The targets for blind cases, and what their score means in words.
+///
 /// The results of blind cases: a file, a text, a page.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,6 +14,34 @@
 #include "validate/blind/blind_score.h"
 
 namespace glidelab::report {
+
+/// Calibration error that is wanted at most.
+inline constexpr double kWantedCalibration = 0.05;
+
+struct BlindTarget {
+  std::string what;
+  validate::BlindShare share;
+  double wanted = 0.0;  ///< of the share
+  bool at_most = false;
+};
+/// All of them, whether or not there are cases that say anything about one.
+std::vector<BlindTarget> blind_targets(const validate::BlindScore& score);
+
+/// That of a key, of no cases where there is none.
+validate::BlindShare share_of(const std::map<std::string, validate::BlindShare>& shares, const std::string& key);
+
+/// Whether the share reaches what is wanted; of a share of no cases that says nothing.
+bool is_met(const BlindTarget& target);
+
+/// "at least 95 %"
+std::string wanted_text(const BlindTarget& target);
+
+/// "96 % (122 of 127)", a dash of none.
+std::string blind_percent(const validate::BlindShare& share);
+
+/// What a verdict on an experiment like these is worth: how often it is right, with the 95 % interval of Clopper and
+/// Pearson, whether its probabilities can be taken at their word, and which targets are missed. HTML.
+std::string blind_meaning(const validate::BlindScore& score);
 
 struct BlindRun {
   std::uint64_t seed = 0;

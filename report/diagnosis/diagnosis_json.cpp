@@ -6,11 +6,8 @@
 
 #include "base/math/normal95.h"
 #include "report/analysis/camera_plots.h"
-#include "report/diagnosis/explanation_text.h"
+#include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/line_report.h"
-#include "report/diagnosis/line_words.h"
-#include "report/diagnosis/next_step_words.h"
-#include "report/diagnosis/note_words.h"
 #include "report/diagnosis/verdict_words.h"
 #include "report/text/json_numbers.h"
 

@@ -1,4 +1,8 @@
+/// The gap of a diagnosis as plots: how large, where in which clip, in the phase plane, and a twin beside its data.
+///
 /// The gap of a diagnosis as plots: how large in each domain, where in which clip, and in the phase plane.
+///
+/// A twin compared with the data that it was made from.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +11,7 @@
 
 #include "diagnose/result/diagnosis.h"
 #include "report/html/plot.h"
+#include "validate/film/twin_motions.h"
 
 namespace glidelab::report {
 
@@ -31,5 +36,8 @@ struct ResidualMap {
 /// width. Each curve has as many noise_m as residuals.
 ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, const std::string& variable,
                          std::size_t cells);
+
+/// What the measured positions lie off the twin's, over the time, beside noise alone; and a(v) of both.
+std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions);
 
 }  // namespace glidelab::report

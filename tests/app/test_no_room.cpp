@@ -1,12 +1,12 @@
 /// Where there is no room for what a command writes: one clear message, and nothing half-written.
 #include <fmt/format.h>
-#include <sys/mount.h>
+#include <render/camera/camera.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/app/left_behind.h"
 #include "tests/app/made_track.h"

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "base/parallel.h"
+#include "base/files/file_io.h"
+#include "base/long_work.h"
 #include "validate/blind/case/blind_effects.h"
-#include "validate/blind/case/blind_scene_effects.h"
+#include "validate/blind/case/blind_filmed_effects.h"
 
 namespace glidelab::validate {
 namespace {

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "validate/blind/blind_score.h"
 #include "validate/blind/case/blind_filmed_case.h"
 

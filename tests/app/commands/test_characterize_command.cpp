@@ -1,7 +1,7 @@
 /// `glidelab characterize`: files, JSON, exit statuses, nothing half-written.
 #include <nlohmann/json.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/toml/strict_toml.h"
 #include "tests/app/run_process.h"
 #include "tests/catch.h"

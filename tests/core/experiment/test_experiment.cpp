@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "core/experiment/folder_files.h"
+#include "base/files/file_io.h"
+#include "core/experiment/file_names.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 

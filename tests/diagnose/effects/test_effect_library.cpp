@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/text/size_text.h"
+#include "base/text/number_text.h"
 #include "diagnose/model/track_model.h"
 #include "test_paths.h"
 #include "tests/catch.h"

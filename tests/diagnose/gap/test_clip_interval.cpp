@@ -1,4 +1,4 @@
-#include "diagnose/gap/clip_interval.h"
+#include "diagnose/gap/gap_sizes.h"
 
 #include <cmath>
 #include <random>

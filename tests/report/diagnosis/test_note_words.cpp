@@ -1,9 +1,8 @@
 /// Notes and next steps of a diagnosis as sentences.
-#include "report/diagnosis/note_words.h"
+#include "report/diagnosis/diagnosis_words.h"
 
 #include <vector>
 
-#include "report/diagnosis/next_step_words.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

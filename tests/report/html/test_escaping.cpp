@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/analysis/analysis_report.h"
 #include "report/blind/blind_report.h"
 #include "report/characterize/camera_report.h"

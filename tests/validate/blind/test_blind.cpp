@@ -3,7 +3,7 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
 #include "diagnose/effects/effect_library.h"
 #include "tests/catch.h"

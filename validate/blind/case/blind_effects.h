@@ -1,3 +1,7 @@
+/// blind_effects: What a blind case has besides the nominal law: effects of forces, of camera, of clock.
+///
+/// Effects of effects.md that lie in the camera, its clock and the noise of positions, not in the forces.
+///
 /// What a blind case has besides the nominal law: the effects that a diagnosis may name, and some that are not on its
 /// list.
 #pragma once
@@ -5,9 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "validate/blind/case/blind_effect.h"
+#include "validate/blind/case/blind_design.h"
 
 namespace glidelab::validate {
+
+const std::vector<DrawnEffect>& seen_library();
 
 /// Ids of effects.md that tracks can show.
 const std::vector<std::string>& library_effects();

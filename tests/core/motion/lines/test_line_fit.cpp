@@ -5,7 +5,6 @@
 #include <random>
 
 #include "core/motion/bandwidth/rule_lines.h"
-#include "core/motion/lines/stretch_points.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 

@@ -1,11 +1,19 @@
+/// read_sweep: Reads a sweep's file, axis by axis (docs/reference/sweep.md).
+///
+/// Reads one [[vary]] of a sweep's file: its keys, and where their values come from (docs/reference/sweep.md).
+///
 /// Reads a sweep's file (docs/reference/sweep.md).
 #pragma once
 
 #include <filesystem>
 
+#include "base/toml/strict_toml.h"
 #include "validate/study/sweep/design/sweep.h"
 
 namespace glidelab::validate {
+
+/// What is wrong is recorded in the table's file. Cameras are sought from `folder`.
+Axis read_axis(const base::TomlTable& table, Design design, const std::filesystem::path& folder);
 
 /// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,
 /// a value that the scenario refuses (each value of each axis is tried, the others at their first ones), with the line
