@@ -199,6 +199,44 @@ struct VerdictLimits {
   std::optional<SetAside> set_aside;
 };
 
+/// One cause in the sequence that explains the gap, each added beside those before it.
+struct ExplainedCause {
+  std::string id;
+  double share = 0.0;                                ///< (g²_{i-1} - g²_i)/(g²_0 - 1), g the gap of held-out clips
+  std::optional<GapInterval> share_interval95 = {};  ///< over clips
+  double gap_after = 0.0;                            ///< g_i
+};
+
+/// What is left of the gap beside the causes that were named.
+struct GapRemainder {
+  double share = 1.0;              ///< of the excess g²_0 - 1: what the causes' shares leave to 1
+  double gap = 1.0;                ///< of held-out clips, with all causes in the model
+  double acceleration_m_s2 = 0.0;  ///< rms of the random acceleration that would make it (remainder.h); 0: none is seen
+  double clip_scatter_m_s2 = 0.0;  ///< sd, from clip to clip, of the acceleration by friction and inclination
+  double drag_scatter = 0.0;       ///< relative sd, from clip to clip, of K
+  std::vector<GapRegion> regions = {};
+};
+
+/// Gaps of held-out clips, or of fits, with parameters that are a clip's own, a configuration's (mass and set-up), or
+/// common to all; all are root mean squares of residuals over the noise, reduced by the freedom that the fits take.
+struct GapLevels {
+  double all = 1.0;
+  std::optional<double> configuration = {};  ///< none where there is one configuration alone
+  std::optional<double> clip = {};           ///< none where there is one clip alone
+  /// K/m and mu of each configuration by itself, for the table: where configuration_friction or configuration_drag is
+  /// named, or the law holds within configurations and not across them.
+  bool holds_within = false;
+};
+
+/// K/m, mu, alpha, v_lim of one configuration with the named causes in the model; the intervals count the remainder.
+struct RecoveredConfiguration {
+  std::string group;
+  double mass_kg = 0.0;
+  double incline_deg = 0.0;                               ///< as stated
+  std::vector<std::string> with = {};                     ///< ids of the causes in the model
+  core::Quantity k_over_m_1_s, mu, alpha_deg, v_lim_m_s;  ///< undetermined ones say why
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::none;
   std::size_t points = 0;  ///< positions that took part
@@ -209,6 +247,11 @@ struct Diagnosis {
   std::vector<GapRegion> regions;
   std::vector<GapCurve> curves;
   std::optional<GapSizes> gap;
+  std::vector<ExplainedCause> explained;  ///< in order
+  std::optional<GapRemainder> remainder;  ///< none where the gap before is not above its floor, or of lines
+  std::vector<std::string> traces;        ///< ids: seen, but of no consequence to gap or parameters
+  std::optional<GapLevels> levels;        ///< none of lines
+  std::vector<RecoveredConfiguration> recovered;
   NextStep next;
   VerdictLimits limits;
   Isolability isolability;
