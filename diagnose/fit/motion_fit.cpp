@@ -265,6 +265,13 @@ MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effe
   return fit;
 }
 
+MotionFit linearise_again(const TrackSet& set, const MotionFit& fit) {
+  MotionFit again = fit;
+  linearise_all(set, again, Derivatives::central);
+  again.cost = cost_of(again);
+  return again;
+}
+
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
   const ParameterLayout layout(set, {});
   MotionFit best;

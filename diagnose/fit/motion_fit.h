@@ -47,6 +47,9 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
 /// Residuals and derivatives at a point, nothing fitted.
 MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at);
 
+/// A fit as it stands, with residuals and derivatives by the noise of another set of the same motions.
+MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
+
 /// The nominal model from a first guess of its own.
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late = {});
 

@@ -65,6 +65,17 @@ std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, 
   });
 }
 
+std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, std::span<const ClipSquares> before,
+                                          std::span<const ClipSquares> after) {
+  if (first.size() < kFewestClips || first.size() != before.size() || first.size() != after.size()) return {};
+  for (std::size_t c = 0; c <= first.size(); ++c) {
+    if (!(rms(first, c) > 1.0)) return {};
+  }
+  const auto square = [](std::span<const ClipSquares> of, std::size_t c) { return rms(of, c) * rms(of, c); };
+  return jackknife(first.size(),
+                   [&](std::size_t c) { return (square(before, c) - square(after, c)) / (square(first, c) - 1.0); });
+}
+
 namespace {
 
 constexpr std::size_t kPlotted = 250;  // residuals of a motion

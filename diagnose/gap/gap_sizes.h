@@ -10,8 +10,8 @@
 /// each other, although each one's model comes from the others. Fewer than three clips have no interval: one difference
 /// between two tells nothing of the next.
 ///
-/// How large the gap is in each domain, before and after: positions (held_out.h), phase plane (domain_gaps.h), parameters
-/// (held_out.h, domain_gaps.h), images.
+/// How large the gap is in each domain, before and after: positions (held_out.h), phase plane (domain_gaps.h),
+/// parameters (held_out.h, domain_gaps.h), images.
 #pragma once
 
 #include <optional>
@@ -42,6 +42,11 @@ std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips);
 /// Of (before - after)/(before - 1), the clips being the same in both. None for fewer than three clips, nor where
 /// `before` without one of them is not above 1.
 std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after);
+
+/// Of (before - after)/(first - 1), in squares of the gaps, the clips being the same in all three. None for fewer than
+/// three clips, nor where `first` without one of them is not above 1.
+std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, std::span<const ClipSquares> before,
+                                          std::span<const ClipSquares> after);
 
 /// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips (gap_sizes.h).
 /// `best` has a named effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut

@@ -16,6 +16,7 @@ constexpr std::size_t kMostPositions = 30000;  // of all motions
 TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every) {
   TrackedMotion part = motion;
   part.whitening.clear();
+  part.remainder = {};
   const auto pick = [&](auto& values) {
     if (values.empty()) return;
     std::size_t kept = 0;

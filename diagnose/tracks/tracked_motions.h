@@ -43,6 +43,13 @@ struct PositionNoise {
   double lasting_gain = 0.0, lasting_log_evidence = 0.0;  ///< of what a codec hands on from frame to frame
 };
 
+/// An unmodelled remainder as a covariance beside the noise (causes/remainder.h): over the noise, 1 + U L U' with U'U
+/// = 1.
+struct Remainder {
+  Eigen::MatrixXd span;    ///< U, a row a point
+  Eigen::VectorXd shrink;  ///< 1 - 1/sqrt(1 + L): what whitening takes off along each column of U
+};
+
 /// One stretch of motion without a bump or a rest in it; it may turn.
 struct TrackedMotion {
   std::size_t clip = 0;     ///< index in TrackSet::clips
@@ -63,7 +70,8 @@ struct TrackedMotion {
   std::vector<double> along_px;  ///< of the image, along the motion; empty: not filmed, or hardly moving
   /// Of consecutive points, all in all: makes white noise of theirs over sd_of() (whitening.h). Empty: it is white.
   std::vector<Eigen::MatrixXd> whitening;
-  KnownForce known;  ///< where one was recorded
+  Remainder remainder;  ///< none: its span has no columns
+  KnownForce known;     ///< where one was recorded
 
   double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
 };

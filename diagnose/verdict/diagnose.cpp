@@ -4,9 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "base/errors.h"
 #include "core/analysis/analyze.h"
+#include "diagnose/causes/cause_sequence.h"
+#include "diagnose/causes/cause_weighing.h"
+#include "diagnose/causes/gap_levels.h"
+#include "diagnose/causes/recovered.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/frame_effects.h"
 #include "diagnose/frames/missing_frames.h"
@@ -202,6 +208,90 @@ void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion
   }
 }
 
+constexpr double kLeft = 0.5;  // probability of something without a name from which on a remainder is weighed
+constexpr double kHalf = 0.5;  // of the excess: what a verdict's causes take at least
+constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
+
+/// Probabilities of a comparison that counts a remainder as noise, as a verdict: where the gap is above its floor, what
+/// the remainder makes is unknown, and so is all of it where the named causes take less than half.
+void settle(const CauseSequence& sequence, Comparison& comparison) {
+  if (!sequence.is_gap()) return;
+  comparison.unknown += std::exchange(comparison.none, 0.0);
+  if (sequence.named_share < kHalf) comparison.unknown = 1.0;
+}
+
+GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& sizes, double part_s) {
+  GapRemainder remainder;
+  for (const ExplainedCause& cause : sequence.causes) remainder.share -= cause.share;
+  remainder.gap = sequence.gap_after;
+  if (part_s > 0.0) remainder.acceleration_m_s2 = std::sqrt(sizes.q_m2_s3 / part_s);
+  remainder.clip_scatter_m_s2 = sizes.force_m_s2;
+  remainder.drag_scatter = sizes.drag;
+  return remainder;
+}
+
+/// The verdict, the causes in order, what remains, and what K/m, mu and alpha are with the causes in the model.
+Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvidence pictures,
+                      const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress) {
+  const std::set<std::size_t> without(left_out.begin(), left_out.end());
+  const MotionFit& nominal = first.fits.front();
+  std::optional<WeighedCauses> weighed;
+  if (first.unknown > kLeft) {
+    weighed = weigh_causes(set, first, without, jobs, &pictures,
+                           [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
+  }
+  progress("measuring the gap", 0.9);
+  const Comparison& by = weighed ? weighed->comparison : first;
+  const TrackSet& with = weighed ? weighed->set : set;
+  const Hypothesis* best = best_named(with, by);
+  const bool names =
+      best != nullptr && best->fit > 0 && (weighed || verdict_by(by.none, by.unknown) == Verdict::effect);
+  const CauseSequence sequence =
+      sequence_of(set, nominal, with, names ? by.fits[static_cast<std::size_t>(best->fit)] : nominal, without);
+  Diagnosis diagnosis;
+  if (weighed) {
+    settle(sequence, weighed->comparison);
+    const NoiseAlone noise_alone{set, nominal, sequence.named};
+    diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
+  } else {
+    diagnosis = verdict_of(set, first, std::move(pictures));
+  }
+  diagnosis.explained = sequence.causes;
+  if (getenv("GLDBG")) {
+    for (auto& c : sequence.causes)
+      fprintf(stderr, "DBG %s share %.3f gap %.3f [%.2f %.2f]\n", c.id.c_str(), c.share, c.gap_after,
+              c.share_interval95 ? c.share_interval95->low : NAN, c.share_interval95 ? c.share_interval95->high : NAN);
+    fprintf(stderr, "DBG first none %.3f unk %.3f g0 %.3f se %.3f\n", first.none, first.unknown, sequence.gap_before,
+            sequence.standard_error);
+    if (weighed)
+      for (size_t i = 0; i < weighed->comparison.all.size() && i < 60; ++i) {
+        auto& h = weighed->comparison.all[i];
+        std::string n;
+        for (auto e : h.effects) n += std::string(effect_list()[e].id) + "+";
+        if (h.log_evidence > -900)
+          fprintf(stderr, "DBG  %s%s p %.3f ev %.1f fit %d\n", n.c_str(), h.unnamed ? "UNNAMED" : "", h.probability,
+                  h.log_evidence, h.fit);
+      }
+    if (weighed)
+      fprintf(stderr, "DBG sizes q %.2e force %.2e drag %.2e a %.2e\n", weighed->sizes.q_m2_s3,
+              weighed->sizes.force_m_s2, weighed->sizes.drag, std::sqrt(weighed->sizes.q_m2_s3 / weighed->part_s));
+  }
+  const RemainderSizes sizes = weighed ? weighed->sizes : RemainderSizes{};
+  if (sequence.is_gap()) {
+    diagnosis.remainder = remainder_of(sequence, sizes, weighed ? weighed->part_s : 0.0);
+    diagnosis.remainder->regions = diagnosis.regions;
+  }
+  diagnosis.levels = levels_of(set, nominal, jobs);
+  diagnosis.recovered = recovered_of(set, diagnosis.verdict == Verdict::effect ? sequence.named : nominal, sizes);
+  if (set.clips.size() < 2) {
+    for (DiagnosedEffect& effect : diagnosis.effects) {
+      effect.probability = std::min(effect.probability, kMostOfOneClip);
+      effect.joint_probability = std::min(effect.joint_probability, kMostOfOneClip);
+    }
+  }
+  return diagnosis;
+}
+
 }  // namespace
 
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
@@ -239,8 +329,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
       comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.5, 0.9));
     }
   }
-  progress("measuring the gap", 0.9);
-  Diagnosis diagnosis = verdict_of(set, comparison, std::move(pictures));
+  Diagnosis diagnosis = with_causes(set, comparison, std::move(pictures), without, options.jobs, progress);
   add_speeds(results, diagnosis.measured);
   for (const core::CalibrationResult& of : results.calibrations) {
     diagnosis.calibrations.push_back({of.experiment, of.rests});

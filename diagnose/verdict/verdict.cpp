@@ -117,7 +117,8 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
   return count;
 }
 
-void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& diagnosis) {
+void add_ranking(const TrackSet& set, const Comparison& comparison, const NoiseAlone* noise_alone,
+                 Diagnosis& diagnosis) {
   std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
   for (const Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
@@ -129,7 +130,12 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& d
                              {}};
     if (hypothesis.fit >= 0 && set.clips.size() > 1) {
       const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
-      if (is_new) gap->second = held_out_gap(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]).value;
+      if (is_new) {
+        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+        gap->second = noise_alone != nullptr
+                          ? held_out_gap(noise_alone->set, linearise_again(noise_alone->set, fit)).value
+                          : held_out_gap(set, fit).value;
+      }
       ranked.gap_after = gap->second;
     }
     diagnosis.ranking.push_back(std::move(ranked));
@@ -205,7 +211,8 @@ std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
 
 }  // namespace
 
-Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures) {
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures,
+                     const NoiseAlone* noise_alone) {
   Diagnosis diagnosis;
   diagnosis.notes = set.notes;
   diagnosis.none = comparison.none;
@@ -222,21 +229,23 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == Verdict::effect && best != nullptr) {
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
-    for (const std::size_t e : best->effects) {
+    for (const std::size_t e : noise_alone != nullptr ? noise_alone->best.effects : best->effects) {
       const EffectInfo& info = effect_list()[e];
       diagnosis.effects.push_back({std::string(info.id), std::string(to_text(info.stage)), std::string(info.words),
                                    comparison.effect_probability[e], equivalents(comparison, *best, e),
                                    parameters_of(set, comparison, pictures, *best, e)});
     }
-    std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
-                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    if (noise_alone == nullptr) {  // else they stand by the share that they take
+      std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
+                       [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    }
     join_alike(
         named_explanations(comparison),
         [](const std::string& id) { return std::string(effect_list()[effect_index(id)].words); }, diagnosis);
     diagnosis.stage = diagnosis.effects.front().stage;
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
-  add_ranking(set, comparison, diagnosis);
+  add_ranking(set, comparison, noise_alone, diagnosis);
   const bool beside_named = diagnosis.verdict == Verdict::unknown && !comparison.all.front().effects.empty();
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
   const bool wrong_way =
@@ -252,7 +261,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
-  if (diagnosis.verdict == Verdict::unknown && !wrong_way && set.clips.size() > 1) {
+  if (diagnosis.verdict == Verdict::unknown && !wrong_way && set.clips.size() > 1 && noise_alone == nullptr) {
     // The likeliest function without a name stands in for what is missing.
     const UnnamedFamily* family = likeliest_shared(families);
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;
@@ -261,12 +270,15 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
       gap_fit = &with;
     }
   }
-  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.verdict == Verdict::unknown, diagnosis.notes);
+  const TrackSet& gap_set = noise_alone != nullptr ? noise_alone->set : set;
+  const MotionFit& gap_nominal = noise_alone != nullptr ? noise_alone->nominal : nominal;
+  if (noise_alone != nullptr) gap_fit = diagnosis.verdict == Verdict::effect ? &noise_alone->best : &gap_nominal;
+  diagnosis.gap = gap_of(gap_set, gap_nominal, *gap_fit, diagnosis.verdict == Verdict::unknown, diagnosis.notes);
   if (fit != &nominal) diagnosis.limits = limits_of(set, *fit);
   for (const NegativeLoss& one : diagnosis.limits.driving) diagnosis.notes.emplace_back(one);
   for (const ContradictedIncline& one : diagnosis.limits.contradicted) diagnosis.notes.emplace_back(one);
   if (diagnosis.limits.set_aside) diagnosis.notes.emplace_back(*diagnosis.limits.set_aside);
-  diagnosis.residuals = residuals_of(set, nominal, *gap_fit);
+  diagnosis.residuals = residuals_of(gap_set, gap_nominal, *gap_fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
   Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == Verdict::unknown, pictures.filming);
   diagnosis.measured = measured_of(set, twin);

@@ -95,6 +95,8 @@ void give_trifles_to_their_effects(Comparison& comparison) {
   }
 }
 
+}  // namespace
+
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
   double seen = 0.0;
@@ -119,6 +121,7 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   double sum = 0.0;
   for (double& l : logs) sum += l = std::exp(l - most);
   comparison.effect_probability.assign(list.size(), 0.0);
+  comparison.none = comparison.unknown = 0.0;
   for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
   if (set.pictures) give_trifles_to_their_effects(comparison);
   for (const Hypothesis& hypothesis : comparison.all) {
@@ -133,8 +136,6 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   std::stable_sort(comparison.all.begin(), comparison.all.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
-
-}  // namespace
 
 Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs,
                               const PictureEvidence* pictures, const std::function<void(double)>& done) {

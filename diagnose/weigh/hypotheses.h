@@ -10,6 +10,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "diagnose/weigh/hypothesis.h"
@@ -24,5 +25,8 @@ struct PictureEvidence;
 Comparison compare_hypotheses(
     const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1,
     const PictureEvidence* pictures = nullptr, const std::function<void(double)>& done = [](double) {});
+
+/// Probabilities of all hypotheses by their evidence and the prior odds; they then stand by falling probability.
+void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison);
 
 }  // namespace glidelab::diagnose
