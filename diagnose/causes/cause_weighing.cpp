@@ -19,10 +19,11 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFirst = 6;   // explanations among which the first remainder is sought
-constexpr double kDecades = 9.2;    // ln of 10^4: over which sizes are uniform in their logarithm
-constexpr double kLeastSeen = 2.0;  // standard deviations: a smaller size is not told from none
-constexpr double kFamilies = 3.0;   // ln of some twenty functions without a name, of which the likeliest is taken
+constexpr std::size_t kFirst = 6;      // explanations among which the first remainder is sought
+constexpr double kDecades = 9.2;       // ln of 10^4: over which sizes are uniform in their logarithm
+constexpr double kLeastSeen = 2.0;     // standard deviations: a smaller size is not told from none
+constexpr double kFamilies = 3.0;      // ln of some twenty functions without a name, of which the likeliest is taken
+constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their own
 constexpr double kHalf = 0.5;
 constexpr double kNotWeighed = 1e3;  // log evidence that what was not fitted is behind
 
@@ -113,6 +114,24 @@ const Hypothesis* pure_of(const Comparison& comparison, int fit) {
   return nullptr;
 }
 
+/// The fits that are weighed anew: the nominal one, and those of the likeliest explanations.
+std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
+  std::vector<Hypothesis> fitted;
+  for (const Hypothesis& one : comparison.all) {
+    if (one.fit > 0 && !one.unnamed) fitted.push_back(one);
+  }
+  std::sort(fitted.begin(), fitted.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  std::vector<std::size_t> worth = {0};
+  for (const Hypothesis& one : fitted) {
+    const auto fit = static_cast<std::size_t>(one.fit);
+    // Single effects always: a remainder of their own may serve them better than the common one.
+    if (worth.size() >= kProfiled && one.effects.size() > 1) continue;
+    if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
+  }
+  return worth;
+}
+
 /// Nothing, the two likeliest single effects and the likeliest pair: beside these a function without a name is weighed.
 std::vector<Hypothesis> beside(const Comparison& comparison) {
   std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
@@ -182,7 +201,9 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   // Each fit with a remainder of its own.
   std::vector<MotionFit> noise_alone(comparison.fits.size());
   profiles.assign(comparison.fits.size(), {});
-  base::for_each_parallel(comparison.fits.size(), jobs, [&](std::size_t f) {
+  const std::vector<std::size_t> worth = worth_profiling(comparison);
+  base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
+    const std::size_t f = worth[k];
     noise_alone[f] = linearise_again(set, comparison.fits[f]);
     profiles[f] = profile_of(set, noise_alone[f], &weighed.sizes);
   });
@@ -198,9 +219,10 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   }
   for (Hypothesis& one : comparison.all) {
     const int fit = one.fit >= 0 ? one.fit : one.effects.empty() ? 0 : -1;
-    one.log_evidence = fit < 0 || one.unnamed ? -kNotWeighed
-                                              : profiles[static_cast<std::size_t>(fit)].log_evidence - nothing +
-                                                    std::exchange(one.unnamed_log_evidence, 0.0);
+    const double profile = fit < 0 ? 0.0 : profiles[static_cast<std::size_t>(fit)].log_evidence;
+    one.log_evidence = fit < 0 || one.unnamed || !std::isfinite(profile)
+                           ? -kNotWeighed
+                           : profile - nothing + std::exchange(one.unnamed_log_evidence, 0.0);
   }
   std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed; });
   for (const Hypothesis& named : beside(comparison)) {

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kMostParts = 24, kFewestParts = 6;
 constexpr std::size_t kPointsOfPart = 4;  // at least, on average
 constexpr double kUnseen = 1e-12;         // of the largest square
+constexpr double kRounding = 1e-13;
 
 /// What the parts' columns rest on.
 struct Parts {
@@ -84,6 +85,15 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& shapes, double part_s, const Rema
   return root;
 }
 
+/// A factor f of one motion costs what Student's t with four degrees of freedom would ask for it, 4 log f.
+constexpr double kTails = 4.0;
+
+double price_of(const RemainderSizes& sizes) {
+  double price = 0.0;
+  for (const double f : sizes.wider) price += kTails * std::log(f);
+  return price;
+}
+
 }  // namespace
 
 RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra) {
@@ -125,11 +135,14 @@ RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const 
   scale_ = (scale_.array() + 1e-30).sqrt().inverse();
 }
 
-void RemainderSpace::add(const Motion& motion, const RemainderSizes& sizes, double wider, Sums& sums) const {
+RemainderSpace::Sums RemainderSpace::sums_of(std::size_t i, const RemainderSizes& sizes, double wider) const {
+  const Motion& motion = motions_[i];
+  Sums sums;
   const Eigen::MatrixXd root = root_of(motion.shapes, motion.part_s, sizes, wider);
   const Eigen::MatrixXd b_root = base::product(motion.b_b, root), z_root = base::product(motion.z_b, root);
   Eigen::MatrixXd inner = base::transposed_product(root, b_root);
-  inner.diagonal().array() += 1.0;
+  // Rounding of products of noise that is far smaller than the remainder must not make it indefinite.
+  inner.diagonal().array() += 1.0 + kRounding * inner.diagonal().maxCoeff();
   const Eigen::MatrixXd lower = base::cholesky_lower(inner);
   sums.log_determinant += 2.0 * lower.diagonal().array().log().sum();
   const Eigen::MatrixXd half = base::solve_lower(lower, z_root.transpose());
@@ -141,22 +154,27 @@ void RemainderSpace::add(const Motion& motion, const RemainderSizes& sizes, doub
   sums.log_determinant += 2.0 * own_lower.diagonal().array().log().sum();
   const Eigen::MatrixXd own_half = base::solve_lower(own_lower, z.bottomLeftCorner(motion.own, many));
   const Eigen::MatrixXd rest = z.topLeftCorner(many, many) - base::transposed_product(own_half, own_half);
-  sums.square += rest(0, 0);
-  sums.right += rest.col(0).tail(many - 1);
-  sums.normal += rest.bottomRightCorner(many - 1, many - 1);
+  sums.square = rest(0, 0);
+  sums.right = rest.col(0).tail(many - 1);
+  sums.normal = rest.bottomRightCorner(many - 1, many - 1);
+  return sums;
 }
 
-RemainderSpace::Sums RemainderSpace::sums_of(const RemainderSizes& sizes) const {
+RemainderSpace::Sums RemainderSpace::stated() const {
   Sums sums;
   sums.square = stated_square_;
   sums.right = stated_right_;
   sums.normal = Eigen::MatrixXd(stated_weight_.asDiagonal());
-  for (std::size_t i = 0; i < motions_.size(); ++i) add(motions_[i], sizes, sizes.of(i), sums);
   return sums;
 }
 
-double RemainderSpace::log_likelihood(const RemainderSizes& sizes) const {
-  const Sums sums = sums_of(sizes);
+RemainderSpace::Sums RemainderSpace::sums_of(const RemainderSizes& sizes) const {
+  Sums sums = stated();
+  for (std::size_t i = 0; i < motions_.size(); ++i) sums.add(sums_of(i, sizes, sizes.of(i)), 1.0);
+  return sums;
+}
+
+double RemainderSpace::log_likelihood(const Sums& sums) const {
   // Scaled, and held back where the data know nothing: such a direction costs every explanation the same.
   Eigen::MatrixXd scaled = scale_.asDiagonal() * sums.normal * scale_.asDiagonal();
   scaled.diagonal().array() += kUnseen;
@@ -166,6 +184,10 @@ double RemainderSpace::log_likelihood(const RemainderSizes& sizes) const {
   log -= lower.diagonal().array().log().sum() - scale_.array().log().sum();
   if (extra_ > 0) log -= static_cast<double>(extra_) * std::log(extra_sd_);
   return log;
+}
+
+double RemainderSpace::log_likelihood(const RemainderSizes& sizes) const {
+  return log_likelihood(sums_of(sizes)) - price_of(sizes);
 }
 
 RemainderSpace::Solution RemainderSpace::solve(const RemainderSizes& sizes) const {
@@ -179,7 +201,6 @@ RemainderSpace::Solution RemainderSpace::solve(const RemainderSizes& sizes) cons
 RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) const {
   // What each size may be at most: a tenth of g at any speed, half of the drag.
   constexpr double kMostForce = 1.0, kMostDrag = 0.7, kDecades = 6.0;
-  const double q_most = kMostForce * kMostForce * part_s_;
   Best best;
   if (start != nullptr) best.sizes = *start;
   best.log_likelihood = log_likelihood(best.sizes);
@@ -188,51 +209,56 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
     sizes.*member = value;
     const double log = log_likelihood(sizes);
     if (log <= best.log_likelihood) return false;
-    best = {sizes, log};
+    best.sizes = std::move(sizes);
+    best.log_likelihood = log;
     return true;
   };
-  const auto along = [&](double RemainderSizes::*member, double most, double decades) {
+  const auto along = [&](double RemainderSizes::*member, double most, double decades, double step) {
     look(member, 0.0);
-    for (double power = 0.0; power <= decades; power += 0.5) look(member, most * std::pow(10.0, -power));
+    for (double power = 0.0; power <= decades; power += step) look(member, most * std::pow(10.0, -power));
   };
   const auto refine = [&](double RemainderSizes::*member, double ratio) {
     for (int way = 0; way < 2; ++way, ratio = 1.0 / ratio) {
-      for (int step = 0; step < 4 && best.sizes.*member > 0.0; ++step) {
+      for (int step = 0; step < 6 && best.sizes.*member > 0.0; ++step) {
         if (!look(member, best.sizes.*member * ratio)) break;
       }
     }
   };
-  for (int round = 0; round < 2; ++round) {
-    if (start == nullptr || round == 0) {
-      along(&RemainderSizes::q_m2_s3, q_most, 2.0 * kDecades);
-      along(&RemainderSizes::force_m_s2, kMostForce, kDecades);
-      along(&RemainderSizes::drag, kMostDrag, 0.5 * kDecades);
-    }
-    for (const double ratio : {1.8, 1.2}) {
-      refine(&RemainderSizes::q_m2_s3, ratio * ratio);
-      refine(&RemainderSizes::force_m_s2, ratio);
-      refine(&RemainderSizes::drag, ratio);
-    }
-    // A motion that is far worse than its like has a remainder of its own; a factor f costs what Student's t with four
-    // degrees of freedom would ask for it, 4 log f.
-    constexpr double kTails = 4.0;
-    best.sizes.wider.resize(motions_.size(), 1.0);
-    for (std::size_t i = 0; i < motions_.size() && motions_.size() > 2; ++i) {
-      double worth = best.log_likelihood;
-      RemainderSizes with = best.sizes, chosen = best.sizes;
-      for (const double f : {1.0, 2.0, 4.0, 8.0, 16.0}) {
-        with.wider[i] = f;
-        const double log = log_likelihood(with) - kTails * std::log(f / best.sizes.wider[i]);
-        if (log <= worth) continue;
-        worth = log;
-        chosen = with;
-      }
-      best.sizes = chosen;
-      best.log_likelihood = worth;
-    }
-    // From here on the price of the factors is in the likelihood that is compared.
+  const double q_most = kMostForce * kMostForce * part_s_;
+  if (start == nullptr || start->q_m2_s3 == 0.0) along(&RemainderSizes::q_m2_s3, q_most, 2.0 * kDecades, 1.0);
+  if (start == nullptr || start->force_m_s2 == 0.0) along(&RemainderSizes::force_m_s2, kMostForce, kDecades, 1.0);
+  if (start == nullptr || start->drag == 0.0) along(&RemainderSizes::drag, kMostDrag, 0.5 * kDecades, 0.75);
+  for (const double ratio : {3.0, 1.4}) {
+    refine(&RemainderSizes::q_m2_s3, ratio * ratio);
+    refine(&RemainderSizes::force_m_s2, ratio);
+    refine(&RemainderSizes::drag, ratio);
   }
+  if (motions_.size() > 2) widen_the_worst(best);
+  refine(&RemainderSizes::q_m2_s3, 1.4 * 1.4);
+  refine(&RemainderSizes::force_m_s2, 1.4);
   return best;
+}
+
+void RemainderSpace::widen_the_worst(Best& best) const {
+  best.sizes.wider.resize(motions_.size(), 1.0);
+  Sums sums = sums_of(best.sizes);
+  double price = price_of(best.sizes);
+  best.log_likelihood = log_likelihood(sums) - price;
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const double now = best.sizes.wider[i];
+    Sums others = sums;
+    others.add(sums_of(i, best.sizes, now), -1.0);
+    for (const double f : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+      Sums with = others;
+      with.add(sums_of(i, best.sizes, f), 1.0);
+      const double log = log_likelihood(with) - price - kTails * std::log(f / now);
+      if (log <= best.log_likelihood) continue;
+      best.log_likelihood = log;
+      best.sizes.wider[i] = f;
+      sums = std::move(with);
+    }
+    price += kTails * std::log(best.sizes.wider[i] / now);
+  }
 }
 
 void add_remainder(const MotionFit& fit, const RemainderSizes& sizes, TrackSet& set) {

@@ -46,7 +46,8 @@ class RemainderSpace {
   RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra = nullptr);
 
   /// Log likelihood of the positions, parameters integrated out over flat priors, statements and the extra columns'
-  /// sizes over theirs; up to a constant that all fits to one set share (less 0.5 log(2 pi) a parameter).
+  /// sizes over theirs; up to a constant that all fits to one set share (less 0.5 log(2 pi) a parameter). A motion's
+  /// factor f costs 4 log f.
   double log_likelihood(const RemainderSizes& sizes) const;
 
   struct Best {
@@ -80,9 +81,18 @@ class RemainderSpace {
     double square = 0.0;
     Eigen::VectorXd right;
     Eigen::MatrixXd normal;
+    void add(const Sums& of, double sign) {
+      log_determinant += sign * of.log_determinant;
+      square += sign * of.square;
+      right += sign * of.right;
+      normal += sign * of.normal;
+    }
   };
+  Sums stated() const;
+  Sums sums_of(std::size_t motion, const RemainderSizes& sizes, double wider) const;
   Sums sums_of(const RemainderSizes& sizes) const;
-  void add(const Motion& motion, const RemainderSizes& sizes, double wider, Sums& sums) const;
+  double log_likelihood(const Sums& sums) const;
+  void widen_the_worst(Best& best) const;
 
   std::vector<Motion> motions_;
   Eigen::VectorXd stated_weight_, stated_right_;
