@@ -1,0 +1,102 @@
+#include "report/diagnosis/diagnosis_answer.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "base/text/number_text.h"
+#include "report/diagnosis/cause_waterfall.h"
+#include "report/diagnosis/cause_words.h"
+#include "report/diagnosis/diagnosis_plots.h"
+#include "report/diagnosis/verdict_words.h"
+#include "report/text/display_text.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string region_size(const diagnose::GapRegion& region) {
+  const NamedUnit of = name_and_unit(region.unit);
+  const std::string& unit = of.unit.empty() ? region.unit : of.unit;
+  return region.size_sd ? size_and_sd_text(region.size, *region.size_sd, unit) : size_text(region.size, 2, unit);
+}
+
+/// Of texts, the first row its header.
+std::string html_of(const std::vector<std::vector<std::string>>& rows) {
+  const auto cells = [](const std::vector<std::string>& row) {
+    std::vector<std::string> html;
+    for (const std::string& cell : row) html.push_back(escape(cell));
+    return html;
+  };
+  HtmlTable table(cells(rows.front()));
+  for (std::size_t r = 1; r < rows.size(); ++r) table.row(cells(rows[r]));
+  return table.str();
+}
+
+std::string paragraph(const std::string& words, const char* kind = "") {
+  return words.empty() ? "" : fmt::format("<p{}>{}</p>\n", kind, escape(words));
+}
+
+std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.recovered.empty()) return {};
+  std::string text = "<h2>K/m, µ, α and limit velocity</h2>\n";
+  for (const RecoveredTable& table : recovered_tables(diagnosis)) {
+    text += paragraph(fmt::format("Of each configuration, {}. The standard deviations count what is left as well.",
+                                  with_words(table.with)));
+    text += html_of(table.rows);
+    for (const std::string& why : table.why) text += paragraph(why + ".", " class=\"soft\"");
+  }
+  return text;
+}
+
+/// What differs from one configuration to the next, where an effect has a value of each.
+std::string member_section(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    const auto rows = member_rows(effect);
+    if (rows.empty() || rows.size() < 3) continue;  // of one alone nothing differs
+    text += fmt::format("<h3>{}</h3>\n", effect_html(effect.id)) + html_of(rows);
+  }
+  return text.empty() ? text : "<h2>What differs</h2>\n" + text;
+}
+
+/// The curve that would fill the gap is the answer only where nothing has a name.
+Html rest_section(const diagnose::Diagnosis& diagnosis) {
+  std::string words;
+  if (diagnosis.remainder) {
+    words = paragraph(remainder_words(*diagnosis.remainder));
+    if (!diagnosis.remainder->regions.empty()) words += region_table(diagnosis.remainder->regions);
+  }
+  words += paragraph(levels_words(diagnosis));
+  Html html = words;
+  const bool without_name = diagnosis.verdict == diagnose::Verdict::unknown;
+  if (without_name && !diagnosis.curves.empty()) html += figures({where_plots(diagnosis).front()});
+  if (words.empty() && html.plots().empty()) return {};
+  return "<h2>Where the rest lies</h2>\n" + html;
+}
+
+}  // namespace
+
+std::string region_table(const std::vector<diagnose::GapRegion>& regions) {
+  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where surest"}, 2);
+  for (const diagnose::GapRegion& region : regions) {
+    table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
+               escape(region.what), base::number_text(region.from, 3), base::number_text(region.to, 3),
+               region.lacking ? "not known" : escape(region_size(region)),
+               region.at && !region.lacking ? base::number_text(*region.at, 3) : "–",
+               base::number_text(region.excess, 2)});
+  }
+  return table.empty() ? "" : table.str();
+}
+
+Html answer_sections(const diagnose::Diagnosis& diagnosis) {
+  Html html;
+  const std::vector<Plot> waterfall = waterfall_plots(diagnosis);
+  if (!waterfall.empty()) html += "<h2>What explains the gap</h2>\n" + figures(waterfall);
+  html += member_section(diagnosis) + recovered_section(diagnosis);
+  html += rest_section(diagnosis);
+  html += next_step_note(diagnosis);
+  return html;
+}
+
+}  // namespace glidelab::report
