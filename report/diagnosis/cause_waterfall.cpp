@@ -18,7 +18,7 @@ constexpr double kAboveBar = 0.30;  // of its name
 constexpr double kBelow = 0.14;     // of a bar's middle under its row, to make room for the name
 constexpr double kRoom = 3.0;       // percent, at both ends
 constexpr int kWidth = 520, kRowPoints = 46, kFramePoints = 84;  // narrow: readable on a telephone
-constexpr std::size_t kLongLine = 52;  // characters that fit beside each other in the usual size
+constexpr std::size_t kLongLine = 54;  // characters that fit beside each other in the usual size
 
 struct Row {
   std::string name;
@@ -79,7 +79,7 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
                           std::min(bar.from, bar.to), middle - kThick, std::max(bar.from, bar.to), middle + kThick,
                           rows[i].hue);
     script += fmt::format("set label {} at 0.8, {} left noenhanced{}\n", gnuplot_quoted(rows[i].name),
-                          row + kAboveBar - kBelow + 0.04, rows[i].name.size() > kLongLine ? " font ',11'" : "");
+                          row + kAboveBar - kBelow + 0.04, rows[i].name.size() > kLongLine ? " font ',12'" : "");
     if (i + 1 < rows.size()) {
       script += fmt::format("set arrow from {0},{1} to {0},{2} nohead lw 1 dt 3 lc rgb '#555555'\n", bar.to,
                             middle - kThick, middle - 1.0 + kThick);

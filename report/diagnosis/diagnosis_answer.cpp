@@ -41,8 +41,8 @@ std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.recovered.empty()) return {};
   std::string text = "<h2>K/m, µ, α and limit velocity</h2>\n";
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
-    text += paragraph(fmt::format("Of each configuration, {}. The standard deviations count what is left as well.",
-                                  with_words(table.with)));
+    text += paragraph(fmt::format("Of each configuration, {}.{}", with_words(table.with),
+                                  diagnosis.remainder ? " The standard deviations count what is left as well." : ""));
     text += html_of(table.rows);
     for (const std::string& why : table.why) text += paragraph(why + ".", " class=\"soft\"");
   }
@@ -60,19 +60,34 @@ std::string member_section(const diagnose::Diagnosis& diagnosis) {
   return text.empty() ? text : "<h2>What differs</h2>\n" + text;
 }
 
-/// The curve that would fill the gap is the answer only where nothing has a name.
+constexpr std::size_t kPlacesTold = 4;
+
+/// Where nothing has a name, the curve that would fill the gap over the variable that matters most.
+std::vector<Plot> likeliest_curve(const diagnose::Diagnosis& diagnosis,
+                                  const std::vector<diagnose::GapRegion>& regions) {
+  if (diagnosis.verdict != diagnose::Verdict::unknown || regions.empty()) return {};
+  for (const diagnose::GapCurve& curve : diagnosis.curves) {
+    if (curve.variable != regions.front().variable || curve.what != regions.front().what) continue;
+    diagnose::Diagnosis alone;
+    alone.curves = {curve};
+    return where_plots(alone);
+  }
+  return {};
+}
+
 Html rest_section(const diagnose::Diagnosis& diagnosis) {
   std::string words;
+  std::vector<diagnose::GapRegion> regions;
   if (diagnosis.remainder) {
     words = paragraph(remainder_words(*diagnosis.remainder));
-    if (!diagnosis.remainder->regions.empty()) words += region_table(diagnosis.remainder->regions);
+    regions = diagnosis.remainder->regions;
+  } else if (diagnosis.verdict == diagnose::Verdict::unknown) {
+    regions = diagnosis.regions;
   }
-  words += paragraph(levels_words(diagnosis));
-  Html html = words;
-  const bool without_name = diagnosis.verdict == diagnose::Verdict::unknown;
-  if (without_name && !diagnosis.curves.empty()) html += figures({where_plots(diagnosis).front()});
-  if (words.empty() && html.plots().empty()) return {};
-  return "<h2>Where the rest lies</h2>\n" + html;
+  if (regions.size() > kPlacesTold) regions.resize(kPlacesTold);
+  words += region_table(regions) + paragraph(levels_words(diagnosis));
+  if (words.empty()) return {};
+  return "<h2>Where the rest lies</h2>\n" + words + figures(likeliest_curve(diagnosis, regions));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace glidelab::report {
 
-/// What a size is of what images show has a parameter's key for its unit.
+/// Places of a gap; empty without any. A size that images show has a parameter's key for its unit.
 std::string region_table(const std::vector<diagnose::GapRegion>& regions);
 
 /// Parts that there is nothing to say of are left out. Not of a table of lines.

@@ -307,7 +307,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::CalibrationRests& of : diagnosis.calibrations) {
     document["calibration_rests"].push_back(rests_json(of));
   }
-  document["notes"] = notes_words(diagnosis.notes);
+  document["notes"] = notes_words(diagnosis);
   return json_text(document);
 }
 

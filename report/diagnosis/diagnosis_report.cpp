@@ -351,7 +351,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips");
   }
   if (sequence.empty()) text += "\nnext: " + wrapped(next_step_words(diagnosis.next));
-  for (const std::string& note : notes_words(diagnosis.notes)) text += "note: " + wrapped(note);
+  for (const std::string& note : notes_words(diagnosis)) text += "note: " + wrapped(note);
   return text;
 }
 

@@ -278,7 +278,17 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
       sentences(diagnosis.limits.contradicted), sure);
 }
 
-/// What is left depends on, and how large it is.
+/// Behind a verdict: the first set-up, and how many more; each has its note.
+std::string contradicted_words(const diagnose::Diagnosis& diagnosis) {
+  const std::vector<diagnose::ContradictedIncline>& all = diagnosis.limits.contradicted;
+  std::string text = note_words(as_told(all.front(), diagnosis));
+  if (all.size() > 1) {
+    text += fmt::format(" The motion contradicts {} more set-up{}.", all.size() - 1, all.size() > 2 ? "s" : "");
+  }
+  return text;
+}
+
+/// What the gap depends on most, and how large it is there.
 std::string first_region_words(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.regions.empty()) return "";
   const diagnose::GapRegion& region = diagnosis.regions.front();
@@ -352,7 +362,7 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
     if (!limits.contradicted.empty()) text = sentences(limits.contradicted) + " " + text;
   } else if (!only_statements_fail(diagnosis)) {
     if (!limits.driving.empty()) text += " " + sentences(limits.driving);
-    if (!limits.contradicted.empty()) text += " " + sentences(limits.contradicted);
+    if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);
   }
   return limits.set_aside ? note_words(*limits.set_aside) + " " + text : text;
 }
@@ -424,7 +434,7 @@ std::string next_step_note(const diagnose::Diagnosis& diagnosis) {
 
 std::string note_paragraphs(const diagnose::Diagnosis& diagnosis) {
   std::string text;
-  for (const std::string& note : notes_words(diagnosis.notes)) {
+  for (const std::string& note : notes_words(diagnosis)) {
     text += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   }
   return text;
