@@ -12,12 +12,12 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kAll = 100.0;      // percent of the excess
-constexpr double kThick = 0.17;     // half of a bar, rows being 1 apart
-constexpr double kAboveBar = 0.30;  // of its name
-constexpr double kBelow = 0.14;     // of a bar's middle under its row, to make room for the name
-constexpr double kRoom = 3.0;       // percent, at both ends
-constexpr int kWidth = 520, kRowPoints = 46, kFramePoints = 84;  // narrow: readable on a telephone
+constexpr double kAll = 100.0;       // percent of the excess
+constexpr double kThick = 0.15;      // half of a bar, rows being 1 apart
+constexpr double kNameAbove = 0.24;  // of a row: its name, above the bar
+constexpr double kBelow = 0.14;      // of a bar's middle under its row, to make room for the name
+constexpr double kRoom = 3.0;        // percent, at both ends
+constexpr int kWidth = 520, kRowPoints = 54, kFramePoints = 84;  // narrow: readable on a telephone
 constexpr std::size_t kLongLine = 54;  // characters that fit beside each other in the usual size
 
 struct Row {
@@ -78,10 +78,10 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
     script += fmt::format("set object rectangle from {},{} to {},{} fc rgb '{}' fs solid 0.85 noborder\n",
                           std::min(bar.from, bar.to), middle - kThick, std::max(bar.from, bar.to), middle + kThick,
                           rows[i].hue);
-    script += fmt::format("set label {} at 0.8, {} left noenhanced{}\n", gnuplot_quoted(rows[i].name),
-                          row + kAboveBar - kBelow + 0.04, rows[i].name.size() > kLongLine ? " font ',12'" : "");
+    script += fmt::format("set label {} at 0.8, {} left front noenhanced{}\n", gnuplot_quoted(rows[i].name),
+                          row + kNameAbove, rows[i].name.size() > kLongLine ? " font ',12'" : "");
     if (i + 1 < rows.size()) {
-      script += fmt::format("set arrow from {0},{1} to {0},{2} nohead lw 1 dt 3 lc rgb '#555555'\n", bar.to,
+      script += fmt::format("set arrow from {0},{1} to {0},{2} nohead back lw 1 dt 3 lc rgb '#888888'\n", bar.to,
                             middle - kThick, middle - 1.0 + kThick);
     }
   }

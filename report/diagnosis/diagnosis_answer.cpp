@@ -87,7 +87,8 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
   if (regions.size() > kPlacesTold) regions.resize(kPlacesTold);
   words += region_table(regions) + paragraph(levels_words(diagnosis));
   if (words.empty()) return {};
-  return "<h2>Where the rest lies</h2>\n" + words + figures(likeliest_curve(diagnosis, regions));
+  return fmt::format("<h2>Where the {} lies</h2>\n", diagnosis.remainder ? "rest" : "gap") + words +
+         figures(likeliest_curve(diagnosis, regions));
 }
 
 }  // namespace
@@ -95,8 +96,10 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
 std::string region_table(const std::vector<diagnose::GapRegion>& regions) {
   HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where surest"}, 2);
   for (const diagnose::GapRegion& region : regions) {
-    table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
-               escape(region.what), base::number_text(region.from, 3), base::number_text(region.to, 3),
+    const bool named = region.variable == "group";  // a set-up has a number that no reader knows
+    const std::string over = named ? "one of the set-ups" : axis_of(region.variable);
+    table.row({escape(over + (region.clip.empty() ? "" : " of " + region.clip)), escape(region.what),
+               named ? "–" : base::number_text(region.from, 3), named ? "–" : base::number_text(region.to, 3),
                region.lacking ? "not known" : escape(region_size(region)),
                region.at && !region.lacking ? base::number_text(*region.at, 3) : "–",
                base::number_text(region.excess, 2)});

@@ -102,5 +102,8 @@ TEST_CASE("where nothing has a name the curve over what matters most is open, an
   of.regions = of.remainder->regions;
   of.regions.front().what = "friction";
   of.remainder.reset();
+  CHECK(shows(open_part(), "<h2>Where the gap lies</h2>"));
   CHECK(shows(open_part(), "<td>friction</td>"));
+  of.regions.front().variable = "group";
+  CHECK(shows(open_part(), "one of the set-ups of m2-up"));
 }
