@@ -55,6 +55,14 @@ std::string percent(double probability) {
   return fmt::format("{:.0f} %", 100.0 * probability);
 }
 
+std::string list_of(const std::vector<std::string>& words, const std::string& last) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
+  }
+  return text;
+}
+
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -142,13 +150,20 @@ struct Sentence {
         drag ? "drag" : "friction", base::size_and_sd_text(of.value, of.sd, drag ? "N s/m" : ""));
   }
   std::string operator()(const diagnose::ContradictedIncline& of) const {
-    const double sd = kDegrees * of.motion_sd_rad;
-    return fmt::format(
-        "The inclination of set-up \"{}\" is {:.2f} ± {:.2g}° {}, and the motion says {:.{}f} ± {:.1g}° by the {} "
-        "({:.3g} standard deviations apart).",
-        of.group, kDegrees * of.stated_rad, kDegrees * of.stated_sd_rad,
-        of.against == "plumb" ? "by the plumb line" : "as " + of.against, kDegrees * of.motion_rad, decimals_for(sd),
-        sd, of.named ? "model with the named effects" : "nominal model", of.z);
+    const auto with_sd = [](double angle_rad, double sd_rad) {
+      const double sd = kDegrees * sd_rad;
+      return fmt::format("{:.{}f} ± {:.{}f}°", kDegrees * angle_rad, decimals_for(sd), sd, decimals_for(sd));
+    };
+    const std::string stated = fmt::format("The inclination of set-up \"{}\" is {} {}, and the motion says ", of.group,
+                                           with_sd(of.stated_rad, of.stated_sd_rad),
+                                           of.against == "plumb" ? "by the plumb line" : "as " + of.against);
+    if (!(of.motion_sd_rad > 0.0)) {
+      return stated +
+             fmt::format("{:.2f}° by the nominal model, which leaves out what is missing.", kDegrees * of.motion_rad);
+    }
+    return stated + fmt::format("{} by the {} ({:.3g} standard deviations apart).",
+                                with_sd(of.motion_rad, of.motion_sd_rad),
+                                of.named ? "model with the named effects" : "nominal model", of.z);
   }
   std::string operator()(const diagnose::BeyondGravity& of) const {
     return fmt::format(
@@ -174,6 +189,21 @@ struct Sentence {
 
 std::string note_words(const diagnose::Note& note) {
   return std::visit(Sentence{}, note);
+}
+
+diagnose::ContradictedIncline as_told(diagnose::ContradictedIncline of, const diagnose::Diagnosis& diagnosis) {
+  const bool missing = diagnosis.verdict != diagnose::Verdict::none && !only_statements_fail(diagnosis);
+  if (missing && !of.named) of.motion_sd_rad = 0.0;
+  return of;
+}
+
+std::vector<std::string> notes_words(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::string> sentences;
+  for (const diagnose::Note& note : diagnosis.notes) {
+    const auto* const incline = std::get_if<diagnose::ContradictedIncline>(&note);
+    sentences.push_back(incline != nullptr ? note_words(as_told(*incline, diagnosis)) : note_words(note));
+  }
+  return sentences;
 }
 
 std::vector<std::string> notes_words(const std::vector<diagnose::Note>& notes) {

@@ -31,9 +31,19 @@ std::string explanation_html(const diagnose::Explanation& explanation);
 /// A probability for a person: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
 std::string percent(double probability);
 
+/// "a, b and c", or with another last word: "a, b, or c".
+std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ");
+
 std::string note_words(const diagnose::Note& note);
 
 std::vector<std::string> notes_words(const std::vector<diagnose::Note>& notes);
+
+/// Without the standard deviation of the motion's angle (0) where that is the nominal model's and something is missing:
+/// such an angle may be off by many of them.
+diagnose::ContradictedIncline as_told(diagnose::ContradictedIncline of, const diagnose::Diagnosis& diagnosis);
+
+/// The diagnosis' notes, angles as_told().
+std::vector<std::string> notes_words(const diagnose::Diagnosis& diagnosis);
 
 /// Empty where no step was looked for.
 std::string next_step_words(const diagnose::NextStep& step);

@@ -245,7 +245,7 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n",
                           escape(title), lines.lines);
   body += line_tiles(diagnosis);
-  body += diagnosis_meaning(diagnosis);
+  body += diagnosis_meaning(diagnosis) + next_step_note(diagnosis) + note_paragraphs(diagnosis);
   body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));
   const std::vector<Plot> left = line_plots(lines);
   if (!left.empty() || !diagnosis.regions.empty()) {

@@ -8,6 +8,7 @@
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/effects/effect_list.h"
+#include "report/diagnosis/cause_words.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/html/html.h"
 
@@ -202,14 +203,6 @@ std::string times(double gap) {
   return gap < 10.0 ? fmt::format("{:.2f}", gap) : fmt::format("{:.0f}", gap);
 }
 
-std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ") {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
-  }
-  return text;
-}
-
 std::string count_in_words(std::size_t count) {
   static const std::array<const char*, 9> kWords = {"two",   "three", "four", "five", "six",
                                                     "seven", "eight", "nine", "ten"};
@@ -239,13 +232,15 @@ std::string in_words(const std::string& variable) {
   return variable;
 }
 
-std::string clip_gap_words(const diagnose::Diagnosis& diagnosis) {
+/// `sequence`: what is left with the causes in the model is told already.
+std::string clip_gap_words(const diagnose::Diagnosis& diagnosis, bool sequence = false) {
   if (!diagnosis.gap) return "";
   const diagnose::GapSizes& gap = *diagnosis.gap;
   std::string text = fmt::format(
       " Held-out clips lie {} times as far from the nominal model (drag proportional to the speed, dry friction, "
       "gravity) as their noise explains",
       times(gap.before));
+  if (sequence) return text + ".";
   if (diagnosis.verdict == diagnose::Verdict::effect && gap.shrink) {
     const bool one = diagnosis.effects.size() == 1;
     text += fmt::format("; with {} in the model, {} times (1 is the floor)",
@@ -283,17 +278,52 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
       sentences(diagnosis.limits.contradicted), sure);
 }
 
-/// "3.6 ± 0.2 mm at 0.34 m", or the size alone where a curve is not what tells it.
-std::string largest_words(const diagnose::GapRegion& region) {
-  if (!region.at || !region.size_sd) return base::size_text(region.size, 2, region.unit);
-  const std::string unit = base::name_and_unit(region.variable).unit;
-  return fmt::format("{} {} {}", base::size_and_sd_text(region.size, *region.size_sd, region.unit),
-                     region.variable == "t_s" ? "after" : "at", base::size_text(*region.at, 3, unit));
+/// Behind a verdict: the first set-up, and how many more; each has its note.
+std::string contradicted_words(const diagnose::Diagnosis& diagnosis) {
+  const std::vector<diagnose::ContradictedIncline>& all = diagnosis.limits.contradicted;
+  std::string text = note_words(as_told(all.front(), diagnosis));
+  if (all.size() > 1) {
+    text += fmt::format(" The motion contradicts {} more set-up{}.", all.size() - 1, all.size() > 2 ? "s" : "");
+  }
+  return text;
+}
+
+/// What the gap depends on most, and how large it is there.
+std::string first_region_words(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.regions.empty()) return "";
+  const diagnose::GapRegion& region = diagnosis.regions.front();
+  std::string text = fmt::format(" What is left depends most on {}", in_words(region.variable));
+  if (!region.clip.empty()) text += " and is largest in clip " + region.clip;
+  if (region.lacking) {
+    return text + fmt::format(
+                      ": {}. These data do not tell how large it is: the estimate, {}, is far more than the nominal "
+                      "model lacks anywhere ({}).",
+                      region.what, base::size_text(region.size, 2, region.unit),
+                      base::size_text(*region.lacking, 2, region.unit));
+  }
+  return text + fmt::format(": {} of up to {}.", region.what, largest_words(region));
+}
+
+/// Behind the sentence of the causes: how sure they are, and of `unknown` where the rest lies.
+std::string beside_sequence(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  if (diagnosis.verdict == diagnose::Verdict::effect) {
+    const std::string sure = sureness_words(diagnosis);
+    if (!sure.empty()) text = " " + sure;
+  }
+  if (diagnosis.verdict == diagnose::Verdict::unknown) {
+    const std::string clearest = diagnosis.remainder ? clearest_words(*diagnosis.remainder) : "";
+    text = clearest.empty() ? first_region_words(diagnosis) : " " + clearest;
+  }
+  return text + clip_gap_words(diagnosis, true);
 }
 
 std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   if (only_statements_fail(diagnosis)) {
     return wrongly_stated_words(diagnosis) + clip_gap_words(diagnosis);
+  }
+  if (const std::string sequence = sequence_words(diagnosis); !sequence.empty()) {
+    return sequence + beside_sequence(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::none && !diagnosis.ranking.empty() &&
       diagnosis.ranking.front().probability > diagnosis.none) {
@@ -312,23 +342,9 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
            clip_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {
-    std::string text = fmt::format("Something is missing, and it is none of the effects that this program knows ({}).",
-                                   percent(diagnosis.unknown));
-    if (!diagnosis.regions.empty()) {
-      const diagnose::GapRegion& region = diagnosis.regions.front();
-      text += fmt::format(" What is left depends most on {}", in_words(region.variable));
-      if (!region.clip.empty()) text = text + " and is largest in clip " + region.clip;
-      if (region.lacking) {
-        text += fmt::format(
-            ": {}. These data do not tell how large it is: the estimate, {}, is far more than the nominal model lacks "
-            "anywhere ({}).",
-            region.what, base::size_text(region.size, 2, region.unit),
-            base::size_text(*region.lacking, 2, region.unit));
-      } else {
-        text += fmt::format(": {} of up to {}.", region.what, largest_words(region));
-      }
-    }
-    return text + clip_gap_words(diagnosis);
+    return fmt::format("Something is missing, and it is none of the effects that this program knows ({}).",
+                       percent(diagnosis.unknown)) +
+           first_region_words(diagnosis) + clip_gap_words(diagnosis);
   }
   std::vector<std::string> words;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) words.push_back(claim(effect));
@@ -346,7 +362,7 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
     if (!limits.contradicted.empty()) text = sentences(limits.contradicted) + " " + text;
   } else if (!only_statements_fail(diagnosis)) {
     if (!limits.driving.empty()) text += " " + sentences(limits.driving);
-    if (!limits.contradicted.empty()) text += " " + sentences(limits.contradicted);
+    if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);
   }
   return limits.set_aside ? note_words(*limits.set_aside) + " " + text : text;
 }
@@ -368,9 +384,11 @@ std::string consequence(const diagnose::Diagnosis& diagnosis) {
                            diagnosis.effects.front().equivalent_to.empty();
     if (lost_only)
       return " An analysis of these data reports the losses that it finds, and corrects the times after them.";
-    return " An analysis of these data leaves this out: its K/m, µ and inclination are those of a law without it, and "
-           "may be "
-           "off by more than their stated errors.";
+    const char* const below = diagnosis.recovered.empty() ? "" : " The table below gives them with it in the model.";
+    return std::string(
+               " An analysis of these data leaves this out: its K/m, µ and inclination are those of a law without it, "
+               "and may be off by more than their stated errors.") +
+           below;
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {
     return " Until the cause is found, K/m, µ and the inclination from an analysis of these data are numbers of a fit; "
@@ -401,10 +419,22 @@ std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string
 }
 
 std::string diagnosis_meaning(const diagnose::Diagnosis& diagnosis) {
-  std::string text = meaning_section(fmt::format("<p>{}{}</p>\n<p class=\"note\"><b>What to record next.</b> {}</p>\n",
-                                                 escape(verdict_words(diagnosis)), consequence(diagnosis),
-                                                 escape(next_step_words(diagnosis.next))));
-  for (const std::string& note : notes_words(diagnosis.notes)) {
+  // The answer stands out where there is a sentence of its own for it.
+  std::string verdict = escape(verdict_words(diagnosis));
+  const std::string lead = diagnosis.lines ? std::string() : escape(sequence_words(diagnosis));
+  if (const std::size_t at = verdict.find(lead); !lead.empty() && at != std::string::npos) {
+    verdict = fmt::format("{}<b>{}</b>{}", verdict.substr(0, at), lead, verdict.substr(at + lead.size()));
+  }
+  return meaning_section(fmt::format("<p>{}{}</p>\n", verdict, consequence(diagnosis)));
+}
+
+std::string next_step_note(const diagnose::Diagnosis& diagnosis) {
+  return fmt::format("<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(next_step_words(diagnosis.next)));
+}
+
+std::string note_paragraphs(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  for (const std::string& note : notes_words(diagnosis)) {
     text += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   }
   return text;

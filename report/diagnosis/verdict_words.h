@@ -39,7 +39,14 @@ inline constexpr const char* kNominalModel = "nominal model";  ///< as plots the
 /// Tiles for nothing, for something without a name, and for the gap, which is called `gap_words`; HTML.
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words);
 
-/// "What this means": the summary, what follows for the numbers of an analysis, what to record next, limits. HTML.
+/// "What this means": the summary, its answer in bold where it is a sequence of causes, and what follows for the
+/// numbers of an analysis. HTML.
 std::string diagnosis_meaning(const diagnose::Diagnosis& diagnosis);
+
+/// What to record next, in a box. HTML.
+std::string next_step_note(const diagnose::Diagnosis& diagnosis);
+
+/// Each note as a paragraph. HTML.
+std::string note_paragraphs(const diagnose::Diagnosis& diagnosis);
 
 }  // namespace glidelab::report

@@ -173,6 +173,9 @@ nav ul { columns: 16rem; padding-left: 1.2rem; }
 .note { border-left: 4px solid var(--accent); background: var(--tint); padding: 0.5rem 0.9rem; margin: 0.8rem 0;
         max-width: 78ch; }
 .note ul { margin: 0; padding-left: 1.2rem; }
+details.part { border-bottom: 1px solid var(--line); }
+details.part > summary { cursor: pointer; padding: 0.5rem 0; font-weight: 600; }
+details.part[open] { padding-bottom: 0.8rem; }
 .good { color: var(--good); } .bad { color: var(--bad); }
 /* Plots are drawn on white paper; their hues stay, photographs and videos are as they are. */
 @media screen and (prefers-color-scheme: dark) {

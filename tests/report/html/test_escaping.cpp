@@ -74,6 +74,13 @@ diagnose::Diagnosis evil_diagnosis() {
   of.stage = kEvil;
   of.next = diagnose::RecordForEffect{kEvil, diagnose::Alternative{{{kEvil}}, {{kEvil}}}};
   of.regions = {{"t_s", 0.0, 1.0, 5.0, 1e-3, kEvil, kEvil, kEvil, {}, 1e-4, 0, 0.5}};
+  of.effects.front().parameters.push_back({"mu." + kEvil, 1.0, 0.1, "", ""});
+  of.effects.front().parameters.push_back({"mu.2" + kEvil, 1.0, 0.1, "", ""});
+  of.explained = {{kEvil, 0.9, diagnose::GapInterval{0.8, 0.95}, 1.2}};
+  of.remainder = diagnose::GapRemainder{0.1, 1.2, 1e-3, 1e-3, 0.01, of.regions};
+  of.traces = {kEvil};
+  of.recovered = {{kEvil, 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}},
+                  {"other", 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}}};
   of.limits.contradicted = {{kEvil, kEvil, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
   of.notes = {diagnose::NoFreeMotion{kEvil, 12},       diagnose::StatementsDisagree{kEvil, kEvil, kEvil, 7.0},
               diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
