@@ -19,6 +19,7 @@
 /// No member has a default: the compiler refuses an effect that leaves one out.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -43,8 +44,11 @@ struct GliderConstants {
   double weight_n = 0.0;
   double cos_alpha = 1.0;
   double mu = 0.0;
-  double x_mid_m = 0.0;      ///< of the set-up
-  double x_mid_all_m = 0.0;  ///< of all set-ups
+  double x_mid_m = 0.0;                  ///< of the set-up
+  double x_mid_all_m = 0.0;              ///< of all set-ups
+  double x_low_m = 0.0, x_high_m = 0.0;  ///< of the positions of all set-ups
+  double clip = 0.0;                     ///< its number, from 0, in the order of the file
+  bool driven = false;                   ///< by a force that was recorded
 };
 
 struct GliderState {
@@ -70,11 +74,14 @@ struct DryFriction {
 enum class SeenBy { lens, plane, scale, mount };
 
 struct EffectLaw {
-  std::size_t size = 0;  ///< the parameter that is 0 where the effect is absent
+  std::size_t size = 0;   ///< the first parameter that is 0 where the effect is absent,
+  std::size_t sizes = 1;  ///< and how many are: it acts where one of them is not 0
   void (*resistance)(const double* p, const GliderConstants& glider, const GliderState& at, Resistance& of) = nullptr;
   double (*force_n)(const double* p, const GliderConstants& glider, const GliderState& at) = nullptr;
-  void (*friction)(const double* p, double v, DryFriction& of) = nullptr;
-  double (*inertia_kg)(const double* p) = nullptr;  ///< beside the mass that weighs
+  void (*friction)(const double* p, const GliderConstants& glider, const GliderState& at, DryFriction& of) = nullptr;
+  double (*inertia_kg)(const double* p, const GliderConstants& glider) = nullptr;  ///< beside the mass that weighs
+  double (*known_factor)(const double* p) = nullptr;  ///< the force that acts over the recorded one
+  double (*known_late_s)(const double* p) = nullptr;  ///< how much later it acts than recorded
   /// As fast as it makes the motion change: a step is at most 0.3 of its inverse.
   double (*rate_1_s)(const double* p, double mass_kg) = nullptr;
   /// The measured x of what stands at `x_m` and was seen at `seen_m` so far.
@@ -84,8 +91,12 @@ struct EffectLaw {
   double (*row_s)(const double* p) =
       nullptr;  ///< how much later a row is exposed than the one above, over what is stated
 
+  bool acts(const double* p) const {
+    return std::any_of(p + size, p + size + sizes, [](double value) { return value != 0.0; });
+  }
   bool moves() const {
-    return resistance != nullptr || force_n != nullptr || friction != nullptr || inertia_kg != nullptr;
+    return resistance != nullptr || force_n != nullptr || friction != nullptr || inertia_kg != nullptr ||
+           known_factor != nullptr || known_late_s != nullptr;
   }
 };
 
@@ -188,7 +199,11 @@ enum class ShownAs {
   itself,
   one_more,      ///< n from n - 1, s from s - 1
   inverse_root,  ///< v_c from 1/v_c²
+  together,      ///< by what all of its kind make together (derived_parameters() of verdict_details.h), under one key
 };
+
+/// Who has a value of its own of a parameter. A configuration is a mass on a set-up.
+enum class Each { experiment, configuration, clip, motion };
 
 /// One free parameter of an effect.
 struct EffectParameter {
@@ -198,15 +213,19 @@ struct EffectParameter {
   double step;           ///< for the finite difference of the motion by it
   Reach reach = Reach::stated;
   ShownAs shown_as = ShownAs::itself;
-  bool own = false;          ///< each motion has its own
+  Each each = Each::experiment;
   bool only_filmed = false;  ///< fitted to filmed motions only
-  EffectSlot slot = {};      ///< where its value stands; by the list
+  /// Standard deviation that holds it back at 0 where the data leave it open, as a deviation of every clip from a mean
+  /// that is fitted too; 0: nothing does.
+  double held_sd = 0.0;
+  EffectSlot slot = {};  ///< where its value stands; by the list
 };
 
 /// How the first fit is found.
 enum class Search {
   amplitude,  ///< one parameter that acts in proportion
   shape,      ///< a second one is searched on a grid
+  spread,     ///< many sizes of one kind, each as likely positive as negative
   wave,       ///< a frequency, with a phase in every motion
   pushes,     ///< a time, with a size in every motion
   frames,     ///< frames that are missing: found one by one

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -76,10 +77,34 @@ bool touches(const TrackSet& set, const Global& global, std::size_t motion) {
   if (global.kind == Global::Kind::mass) return of.mass == global.index;
   if (global.kind == Global::Kind::mode) return global.index < of.shared_m.size() && !of.shared_m[global.index].empty();
   if (global.kind == Global::Kind::scale) return of.scale_sd > 0.0;
+  if (global.kind != Global::Kind::effect) return true;
+  if (global.parameter->each == Each::configuration) return global.configuration == Configuration{of.group, of.mass};
+  if (global.parameter->each == Each::clip) return global.index == of.clip;
   return true;
 }
 
-ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects) : effects_(std::move(effects)) {
+std::vector<Configuration> configurations_of(const TrackSet& set) {
+  std::set<Configuration> configurations;
+  for (const TrackedMotion& motion : set.motions) configurations.insert({motion.group, motion.mass});
+  return {configurations.begin(), configurations.end()};
+}
+
+ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects)
+    : effects_(std::move(effects)), configurations_(configurations_of(set)), places_(range_of_places(set)) {
+  std::set<std::size_t> clips;
+  for (const TrackedMotion& motion : set.motions) clips.insert(motion.clip);
+  clips_.assign(clips.begin(), clips.end());
+  add_common(set);
+  for (const std::size_t effect : effects_) add_effect(set, effect);
+}
+
+ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like)
+    : effects_(std::move(effects)), configurations_(like.configurations_), clips_(like.clips_), places_(like.places_) {
+  add_common(set);
+  for (const std::size_t effect : effects_) add_effect(set, effect);
+}
+
+void ParameterLayout::add_common(const TrackSet& set) {
   using Kind = Global::Kind;
   globals_.push_back({Kind::k});
   globals_.push_back({Kind::mu});
@@ -91,14 +116,31 @@ ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> e
   const bool scale =
       std::any_of(set.motions.begin(), set.motions.end(), [](const auto& m) { return m.scale_sd > 0.0; });
   if (scale) globals_.push_back({Kind::scale});
-  for (const std::size_t effect : effects_) {
-    for (const EffectParameter& parameter : effect_list()[effect].parameters) {
-      if (parameter.only_filmed && !set.pictures) continue;
-      if (parameter.own) {
+}
+
+void ParameterLayout::add_effect(const TrackSet& set, std::size_t effect) {
+  for (const EffectParameter& parameter : effect_list()[effect].parameters) {
+    if (parameter.only_filmed && !set.pictures) continue;
+    Global global{Global::Kind::effect, 0, &parameter, effect, parameter.step, range_of(set, parameter)};
+    switch (parameter.each) {
+      case Each::experiment:
+        globals_.push_back(global);
+        break;
+      case Each::configuration:
+        for (const Configuration& configuration : configurations_) {
+          global.configuration = configuration;
+          globals_.push_back(global);
+        }
+        break;
+      case Each::clip:
+        for (const std::size_t clip : clips_) {
+          global.index = clip;
+          globals_.push_back(global);
+        }
+        break;
+      case Each::motion:
         own_.push_back(&parameter);
-      } else {
-        globals_.push_back({Kind::effect, 0, &parameter, effect, parameter.step, range_of(set, parameter)});
-      }
+        break;
     }
   }
 }
@@ -118,6 +160,14 @@ std::size_t ParameterLayout::first_of(std::size_t effect) const {
   return globals_.size();
 }
 
+std::vector<std::size_t> ParameterLayout::all_of(const EffectSlot& slot) const {
+  std::vector<std::size_t> found;
+  for (std::size_t g = 0; g < globals_.size(); ++g) {
+    if (globals_[g].parameter != nullptr && globals_[g].parameter->slot == slot) found.push_back(g);
+  }
+  return found;
+}
+
 TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
                     const UnnamedForce* unnamed) {
   const TrackedMotion& data = set.motions[motion];
@@ -126,6 +176,9 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
   model.gravity_m_s2 = set.gravity_m_s2;
   model.x_mid_m = set.groups[data.group].x_mid_m;
   model.x_mid_all_m = set.x_mid_m;
+  model.x_low_m = layout.places().low;
+  model.x_high_m = layout.places().high;
+  model.clip = data.clip;
   model.known = data.known.t_s.empty() ? nullptr : &data.known;
   model.unnamed = unnamed;
   model.row_px = data.row_px;

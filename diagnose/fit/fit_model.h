@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 
+#include <compare>
 #include <cstddef>
 #include <vector>
 
@@ -56,31 +57,54 @@ ParameterRange range_of_places(const TrackSet& set);
 /// Whether a motion begins with its clip, so that a hand could be in it.
 bool begins_with_its_clip(const TrackSet& set, const TrackedMotion& motion);
 
+/// A mass on a set-up.
+struct Configuration {
+  std::size_t group = 0, mass = 0;
+  auto operator<=>(const Configuration&) const = default;
+};
+
+/// Those of a set's motions, in order.
+std::vector<Configuration> configurations_of(const TrackSet& set);
+
 /// Which parameters there are, and where they stand.
 class ParameterLayout {
  public:
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects);
+  /// For motions that `like` does not know: an effect's parameters are those of its configurations and clips, and its
+  /// places are the same.
+  ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like);
 
   struct Global {
     enum class Kind { k, mu, alpha, mass, mode, scale, effect } kind;
-    std::size_t index = 0;  ///< of the group, mass or mode
+    std::size_t index = 0;  ///< of the group, mass, mode, or clip
     const EffectParameter* parameter = nullptr;
     std::size_t effect = 0;
     double step = 0.0;
-    ParameterRange range = {};  ///< of an effect: what it may be
+    ParameterRange range = {};         ///< of an effect: what it may be
+    Configuration configuration = {};  ///< of Each::configuration
   };
   const std::vector<Global>& globals() const { return globals_; }
   const std::vector<const EffectParameter*>& own() const { return own_; }  ///< after x0, v0
   const std::vector<std::size_t>& effects() const { return effects_; }
+  const ParameterRange& places() const { return places_; }  ///< of all positions
   /// Index among globals of an effect's first parameter that is not own.
   std::size_t first_of(std::size_t effect) const;
+  /// The indices among globals of one parameter of an effect: more than one where each configuration or clip has its
+  /// own.
+  std::vector<std::size_t> all_of(const EffectSlot& slot) const;
   /// Ranges that hold where a fit starts: what was found in whole clips may lie beyond what a part of them shows.
   void widen_to(const Eigen::VectorXd& start);
 
  private:
+  void add_common(const TrackSet& set);
+  void add_effect(const TrackSet& set, std::size_t effect);
+
   std::vector<Global> globals_;
   std::vector<const EffectParameter*> own_;
   std::vector<std::size_t> effects_;
+  std::vector<Configuration> configurations_;
+  std::vector<std::size_t> clips_;
+  ParameterRange places_;
 };
 
 struct FitPoint {

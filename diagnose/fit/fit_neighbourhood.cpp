@@ -215,6 +215,34 @@ ScoreColumn ScoreSpace::of_own(std::size_t i, EffectSlot size, double step, Effe
   return project(changes);
 }
 
+ScoreColumn ScoreSpace::of_parameter(const ParameterLayout::Global& global) const {
+  std::vector<Eigen::VectorXd> changes(set_.motions.size());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (!touches(set_, global, i)) continue;
+    TrackModel model = model_of(set_, *fit_.layout, fit_.at, i);
+    double& size = model.effects[global.parameter->slot];
+    const double absent = size;
+    size = absent + global.step;
+    const Moved above = moved_by(i, model);
+    size = absent - global.step;
+    changes[i] = difference(above.x_m, moved_by(i, model).x_m, 2.0 * global.step);
+  }
+  return project(changes);
+}
+
+SpreadSeen ScoreSpace::seen(const std::vector<ScoreColumn>& columns) const {
+  const auto n = std::ssize(columns);
+  Eigen::MatrixXd rest(points_, n), common(residual_.common.size(), n);
+  for (Eigen::Index c = 0; c < n; ++c) {
+    rest.col(c) = columns[static_cast<std::size_t>(c)].rest;
+    common.col(c) = columns[static_cast<std::size_t>(c)].common;
+  }
+  SpreadSeen seen;
+  seen.products = base::transposed_product(rest, rest) - base::transposed_product(common, common);
+  seen.scores = base::transposed_product(rest, residual_.rest) - base::transposed_product(common, residual_.common);
+  return seen;
+}
+
 double ScoreSpace::dot(const ScoreColumn& a, const ScoreColumn& b) const {
   return a.rest.dot(b.rest) - a.common.dot(b.common);
 }

@@ -69,6 +69,12 @@ struct ScoreColumn {
   Eigen::VectorXd common;  ///< its products with the whitened common parameters
 };
 
+/// Products of columns with each other and with what a fit leaves.
+struct SpreadSeen {
+  Eigen::MatrixXd products;
+  Eigen::VectorXd scores;
+};
+
 class ScoreSpace {
  public:
   ScoreSpace(const TrackSet& set, const MotionFit& fit);
@@ -83,6 +89,11 @@ class ScoreSpace {
   ScoreColumn of_effect(std::size_t effect, const std::vector<double>& shape) const;
   /// By one motion's own size of an effect, another parameter of which has this value.
   ScoreColumn of_own(std::size_t motion, EffectSlot size, double step, EffectSlot shape, double shape_value) const;
+
+  /// By one of the common parameters of an effect that the fit lacks, in a layout that has it.
+  ScoreColumn of_parameter(const ParameterLayout::Global& global) const;
+  /// <c_i, c_j> of all, and <c_i, r>.
+  SpreadSeen seen(const std::vector<ScoreColumn>& columns) const;
 
   double dot(const ScoreColumn& a, const ScoreColumn& b) const;
   const ScoreColumn& residual() const { return residual_; }

@@ -51,6 +51,9 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
       case Global::Kind::scale:
         statements.push_back({g, 0.0, 1.0, "", true});
         break;
+      case Global::Kind::effect:
+        if (global.parameter->held_sd > 0.0) statements.push_back({g, 0.0, global.parameter->held_sd, "", false});
+        break;
       default:
         break;
     }

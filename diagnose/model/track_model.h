@@ -9,6 +9,7 @@
 /// parameters, so that its derivatives follow by finite differences. SI units.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -33,9 +34,11 @@ struct TrackModel {
   double k_n_s_m = 0.0;
   double mu = 0.0;
   double alpha_rad = 0.0;
-  double x_mid_m = 0.0;      ///< of the set-up
-  double x_mid_all_m = 0.0;  ///< of all set-ups
-  double x0_m = 0.0;         ///< at the first of the times
+  double x_mid_m = 0.0;                  ///< of the set-up
+  double x_mid_all_m = 0.0;              ///< of all set-ups
+  double x_low_m = 0.0, x_high_m = 0.0;  ///< of the positions of all set-ups
+  std::size_t clip = 0;                  ///< its number
+  double x0_m = 0.0;                     ///< at the first of the times
   double v0_m_s = 0.0;
   EffectValues effects;
   const KnownForce* known = nullptr;

@@ -306,7 +306,7 @@ FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& cha
 NextMotion next_motion(const TrackSet& set, const MotionFit& fit, const Change& change) {
   TrackSet one = with_clip(set, change);
   TrackedMotion& motion = one.motions.front();
-  const ParameterLayout layout(one, fit.effects);
+  const ParameterLayout layout(one, fit.effects, *fit.layout);
   const FitPoint at = next_point(set, fit, change);
   Moved moved = move(model_of(one, layout, at, 0), motion.t_s);
   const ParameterRange places = range_of_places(set);

@@ -11,9 +11,9 @@
 ///
 ///     log L = sum over motions of  -f log s_i - q_i/(2 s_i²) - (log|V| + log|B' V^-1 B|)/2 - (log(s_i/s)/0.3)²/2
 ///
-/// V a stretch's covariance over s², B what is set aside as slow (position_noise.h), q_i the squares that are left under
-/// V^-1, f their number less the columns of B; each motion's white noise s_i at its likeliest, some 30 % about s, their
-/// mean. Of a codec that predicts images from those before, what is known of its errors is added.
+/// V a stretch's covariance over s², B what is set aside as slow (position_noise.h), q_i the squares that are left
+/// under V^-1, f their number less the columns of B; each motion's white noise s_i at its likeliest, some 30 % about s,
+/// their mean. Of a codec that predicts images from those before, what is known of its errors is added.
 ///
 /// The noise of positions, measured: how much is white, how much neighbouring frames share (whitening.h), and how much
 /// grows with the speed.

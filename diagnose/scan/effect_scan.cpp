@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/long_work.h"
@@ -12,7 +14,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kDerivativeFloor = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
+constexpr std::size_t kFewestScattered = 3;  // clips that have a spread
+constexpr double kDerivativeFloor = 1e-15;   // of the raw square: below, the derivatives' errors are all that is left
 
 EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
@@ -50,6 +53,56 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   return scan;
 }
 
+/// Whether sizes of their own can differ in these data.
+bool can_spread(const TrackSet& set, const EffectInfo& info) {
+  std::map<Configuration, std::set<std::size_t>> clips;  // of each configuration
+  for (const TrackedMotion& motion : set.motions) clips[{motion.group, motion.mass}].insert(motion.clip);
+  switch (info.parameters.front().each) {
+    case Each::configuration:
+      return clips.size() > 1;
+    case Each::clip:  // of one configuration, and enough for a spread
+      return set.clips.size() >= kFewestScattered &&
+             std::any_of(clips.begin(), clips.end(), [](const auto& of_one) { return of_one.second.size() > 1; });
+    default:
+      return true;
+  }
+}
+
+EffectScan scan_spread(const ScoreSpace& space, std::size_t effect) {
+  EffectScan scan;
+  scan.effect = effect;
+  if (!can_spread(space.set(), effect_list()[effect])) return scan;
+  const ParameterLayout layout(space.set(), {effect});
+  std::vector<ScoreColumn> columns;
+  std::vector<const ParameterLayout::Global*> of;
+  for (const ParameterLayout::Global& global : layout.globals()) {
+    if (global.kind != ParameterLayout::Global::Kind::effect) continue;
+    columns.push_back(space.of_parameter(global));
+    of.push_back(&global);
+  }
+  SpreadSeen seen = space.seen(columns);
+  // Sizes over the spread that holds them back, so that those of different kinds are alike.
+  Eigen::VectorXd unit(std::ssize(of));
+  double most = 0.0;
+  for (Eigen::Index g = 0; g < unit.size(); ++g) {
+    const auto i = static_cast<std::size_t>(g);
+    unit[g] = of[i]->parameter->held_sd;
+    most = std::max(most, unit[g] * std::sqrt(seen_square(space, columns[i])));
+  }
+  if (!(most >= kVisible_sd) || !seen.products.allFinite() || !seen.scores.allFinite()) return scan;
+  const SpreadEvidence evidence =
+      log_spread_evidence(unit.asDiagonal() * seen.products * unit.asDiagonal(), unit.cwiseProduct(seen.scores));
+  if (evidence.mean.size() == 0) return scan;
+  scan.visible = true;
+  scan.gain = evidence.free_gain;
+  scan.log_evidence = evidence.log_evidence;
+  for (Eigen::Index g = 0; g < unit.size(); ++g) {
+    const auto& range = of[static_cast<std::size_t>(g)]->range;
+    scan.values.push_back(std::clamp(unit[g] * evidence.mean[g], 0.9 * range.low, 0.9 * range.high));
+  }
+  return scan;
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> effect_shapes(const TrackSet& set, std::size_t effect) {
@@ -74,6 +127,8 @@ EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
       return scan_waves(space, effect, find_wave(space));
     case Search::pushes:
       return scan_pushes(space, effect);
+    case Search::spread:
+      return scan_spread(space, effect);
     case Search::amplitude:
     case Search::shape:
     case Search::rows:

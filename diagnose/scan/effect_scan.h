@@ -3,7 +3,8 @@
 /// How well each effect on the list would explain the residuals of a fit, in the linear neighbourhood of that fit.
 ///
 /// An amplitude is a score test; a second parameter is searched on a grid and its evidence averaged over it; a wave has
-/// one amplitude and one frequency for all motions and a free phase in each (averaged over); a push has a size in each
+/// one amplitude and one frequency for all motions and a free phase in each (averaged over); sizes of one kind, such as
+/// each clip's, are drawn from one normal distribution, whose width is averaged over; a push has a size in each
 /// motion and one time; nine times in ten pushes go along the motions and are about alike, as one hand's are.
 ///
 /// How well two effects together would explain the residuals of a fit, in the linear neighbourhood of that fit.

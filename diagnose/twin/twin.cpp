@@ -121,11 +121,14 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// The forces of a model with the effects that act in it.
 TwinForces forces_of(const TrackModel& model) {
   const std::vector<EffectInfo>& list = effect_list();
-  const auto acts = [&](std::size_t e) { return model.effects.of(e)[list[e].law.size] != 0.0; };
+  const auto acts = [&](std::size_t e) {
+    return list[e].twin.force != nullptr && list[e].law.acts(model.effects.of(e));
+  };
   const double m = model.mass_kg;
   double inertia_kg = m;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    if (list[e].law.inertia_kg != nullptr) inertia_kg += list[e].law.inertia_kg(model.effects.of(e));
+    if (list[e].law.inertia_kg != nullptr && acts(e))
+      inertia_kg += list[e].law.inertia_kg(model.effects.of(e), {.mass_kg = m});
   }
   TwinForces forces;
   forces.part = m / inertia_kg;
@@ -133,8 +136,11 @@ TwinForces forces_of(const TrackModel& model) {
   forces.mu = forces.part * model.mu;
   forces.normal_n = m * model.gravity_m_s2 * std::cos(model.alpha_rad);
   forces.along_n = m * model.gravity_m_s2 * std::sin(model.alpha_rad);
-  for (std::size_t e = 0; e < list.size(); ++e) {
-    if (list[e].twin.force != nullptr && acts(e)) list[e].twin.force(model.effects.of(e), forces);
+  for (const bool of_configuration : {true, false}) {  // whose K and mu others change
+    for (std::size_t e = 0; e < list.size(); ++e) {
+      if (!acts(e) || (list[e].parameters.front().each == Each::configuration) != of_configuration) continue;
+      list[e].twin.force(model.effects.of(e), forces);
+    }
   }
   return forces;
 }

@@ -81,6 +81,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     if (globals[g].parameter == nullptr || globals[g].effect != effect || globals[g].parameter->key.empty()) continue;
+    if (globals[g].parameter->shown_as == ShownAs::together) continue;
     const auto known = std::find_if(parameters.begin(), parameters.end(),
                                     [&](const auto& p) { return p.key == globals[g].parameter->key; });
     const auto at = static_cast<Eigen::Index>(g);

@@ -1,12 +1,9 @@
 #include "diagnose/verdict/verdict_details.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 #include <span>
 #include <string>
@@ -14,19 +11,12 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/gap/held_out.h"
+#include "diagnose/verdict/own_sizes.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kSameScale = 1.05;
-
-/// The group's name, with its inclination where another set-up has that name.
-std::string own_name(const TrackSet& set, std::size_t group) {
-  const auto named = [&](const TrackGroup& other) { return other.name == set.groups[group].name; };
-  if (std::count_if(set.groups.begin(), set.groups.end(), named) == 1) return set.groups[group].name;
-  return fmt::format("{} ({:.6g} deg)", set.groups[group].name,
-                     set.groups[group].stated_rad * 180.0 / std::numbers::pi);
-}
 
 /// `share` of the way from the set-up's own middle to that of all.
 std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, double share_sd) {
@@ -54,6 +44,7 @@ double px_per_m(const PictureEvidence& pictures) {
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
                                                    const PictureEvidence& pictures,
                                                    const std::vector<DiagnosedParameter>& known) {
+  if (std::vector<DiagnosedParameter> own = own_sizes(set, fit, effect); !own.empty()) return own;
   const auto& globals = fit.layout->globals();
   const auto at = [&](const EffectSlot& slot) {
     return std::find_if(globals.begin(), globals.end(), [&](const ParameterLayout::Global& global) {

@@ -8,6 +8,8 @@
 ///                        x_mid + w (x_mid of all - x_mid) with the fitted share w
 ///     camera_motion      amplitude_px = amplitude_m times the pixels of a metre along the motion
 ///
+/// and those of own_sizes.h.
+///
 /// Where there are several set-ups, x_mid_m has a key for each, "x_mid_m.NAME".
 ///
 /// Which statements the data contradict, and which part of the data is set aside: limits that a reader must know before
