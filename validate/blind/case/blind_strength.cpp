@@ -130,15 +130,12 @@ class LawFit {
     for (int step = 0; step < kMostFitSteps; ++step) {
       const Seen now = step == 0 ? without_ : seen_with(fitted.design, fitted.puts);
       const Eigen::VectorXd d = difference(seen, now, design_.noise_sd_m);
-      Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(d.size() + many, many);
+      Eigen::MatrixXd columns = derivatives(fitted, now, many);
       Eigen::VectorXd left = Eigen::VectorXd::Zero(columns.rows()), scale = Eigen::VectorXd::Ones(many);
       left.head(d.size()) = d;
       for (Eigen::Index n = 0; n < std::ssize(list_); ++n) {
-        const Nuisance& one = list_[static_cast<std::size_t>(n)];
-        columns.col(n).head(d.size()) = derivative(fitted, one, now);
-        if (!std::isfinite(one.sd)) continue;
-        columns(d.size() + n, n) = 1.0 / one.sd;
-        left[d.size() + n] = -at[n] / one.sd;
+        const double sd = list_[static_cast<std::size_t>(n)].sd;
+        if (std::isfinite(sd)) left[d.size() + n] = -at[n] / sd;
       }
       if (more) {
         columns.col(many - 1).head(d.size()) = *more;
@@ -174,6 +171,24 @@ class LawFit {
     return std::nullopt;
   }
 
+  /// The first step alone, to first order in all that acts; a size of each of `more` is fitted as well.
+  SettledFit first_step(const Seen& seen, const std::vector<Eigen::VectorXd>& more) const {
+    const Eigen::VectorXd d = difference(seen, without_, design_.noise_sd_m);
+    const Eigen::Index own = std::ssize(list_), many = own + std::ssize(more);
+    if (at_start_.size() == 0) at_start_ = derivatives({design_, puts_}, without_, own);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(at_start_.rows(), many);
+    columns.leftCols(own) = at_start_;
+    for (std::size_t m = 0; m < more.size(); ++m) {
+      columns.col(own + static_cast<Eigen::Index>(m)).head(d.size()) = more[m];
+    }
+    for (Eigen::Index n = 0; n < many; ++n) columns.col(n) /= std::max(columns.col(n).norm(), 1e-12);
+    Eigen::VectorXd left = Eigen::VectorXd::Zero(columns.rows());
+    left.head(d.size()) = d;
+    left -= base::product(columns, base::least_squares(columns, left));
+    const double chi2 = left.squaredNorm();
+    return {std::move(columns), std::move(left), chi2};
+  }
+
   const Seen& without() const { return without_; }
   const std::vector<Nuisance>& parameters() const { return list_; }
 
@@ -185,6 +200,19 @@ class LawFit {
       if (!(fitted.masses[m].true_kg > kLeft * design_.masses[m].true_kg)) return true;
     }
     return false;
+  }
+
+  /// By each of the list, and what is stated of it in rows below; `many` columns, the rest 0.
+  Eigen::MatrixXd derivatives(const FittedLaw& at, const Seen& now, Eigen::Index many) const {
+    Eigen::Index points = 0;
+    for (const auto& clip : now) points += std::ssize(clip);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(points + many, many);
+    for (Eigen::Index n = 0; n < std::ssize(list_); ++n) {
+      const Nuisance& one = list_[static_cast<std::size_t>(n)];
+      columns.col(n).head(points) = derivative(at, one, now);
+      if (std::isfinite(one.sd)) columns(points + n, n) = 1.0 / one.sd;
+    }
+    return columns;
   }
 
   Eigen::VectorXd derivative(const FittedLaw& at, const Nuisance& one, const Seen& now) const {
@@ -201,6 +229,7 @@ class LawFit {
   std::vector<BlindPut> puts_;
   std::vector<Nuisance> list_;
   Seen without_;
+  mutable Eigen::MatrixXd at_start_;  // derivatives there, once they are asked for
 };
 
 std::size_t finite_positions(const Seen& seen) {
@@ -218,9 +247,10 @@ double held_out_chi2(const BlindDesign& design, const LawFit& law, const Settled
   constexpr double kRidge = 1e-9;  // of columns of length 1: what no other clip knows of
   std::vector<Eigen::Index> shared;
   std::vector<std::vector<Eigen::Index>> starts(design.clips.size());
-  for (std::size_t n = 0; n < law.parameters().size(); ++n) {
-    const auto clip = law.parameters()[n].clip;
-    (clip ? starts[*clip] : shared).push_back(static_cast<Eigen::Index>(n));
+  for (Eigen::Index n = 0; n < fit.columns.cols(); ++n) {
+    std::optional<std::size_t> clip;
+    if (n < std::ssize(law.parameters())) clip = law.parameters()[static_cast<std::size_t>(n)].clip;
+    (clip ? starts[*clip] : shared).push_back(n);
   }
   Eigen::Index points = 0;
   for (const BlindClip& clip : design.clips) points += static_cast<Eigen::Index>(clip.frames);
@@ -290,6 +320,18 @@ std::optional<double> BlindDetection::excess(const std::vector<BlindPut>& acting
   const std::optional<SettledFit> settled = law.fit(seen);
   if (!settled) return std::nullopt;
   return held_out_chi2(design_, law, *settled) / static_cast<double>(points);
+}
+
+double BlindDetection::first_order_excess(const std::vector<BlindPut>& acting,
+                                          const std::vector<BlindPut>& known) const {
+  const LawFit& law = fit_->nominal;
+  const Seen seen = seen_with(design_, acting);
+  std::vector<Eigen::VectorXd> more;
+  for (const BlindPut& put : known) {
+    more.push_back(difference(seen_with(design_, {put}), law.without(), design_.noise_sd_m));
+  }
+  const auto points = static_cast<double>(std::max<std::size_t>(1, finite_positions(seen)));
+  return held_out_chi2(design_, law, law.first_step(seen, more)) / points;
 }
 
 std::optional<BlindStrength> size_for(const BlindDetection& detection, const BlindEffect& effect, double wanted) {

@@ -40,6 +40,9 @@ class BlindDetection {
   /// g² - 1 of a law that has the `known` effects in it, their sizes fitted too, on positions that the `acting` ones
   /// made. Nothing where the fit does not settle, or where no position is of a glider that moves.
   std::optional<double> excess(const std::vector<BlindPut>& acting, const std::vector<BlindPut>& known) const;
+  /// The same to first order in all that acts, without a fit: good for small excesses, and fast. The positions of a
+  /// known effect at its size are the direction that is fitted.
+  double first_order_excess(const std::vector<BlindPut>& acting, const std::vector<BlindPut>& known) const;
   /// Of each frame of each clip, nominal.
   const std::vector<std::vector<double>>& speed_m_s() const { return speed_m_s_; }
 

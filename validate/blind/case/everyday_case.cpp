@@ -23,6 +23,8 @@ constexpr int kMostEverydayDraws = 600;
 constexpr int kDesignsPerCause = 8;    // of which none may show an effect that moves a track little
 constexpr double kLongestTrack = 1.3;  // m, on either side of the middle
 constexpr double kFilmedAtRest = 0.3;  // s
+constexpr double kFirstGuess = 0.2;    // of the largest size
+constexpr double kNoExcess = 1e-12;
 
 /// What a case asks for; it stays while designs are drawn.
 struct Wanted {
@@ -49,23 +51,25 @@ double seen_share(const std::vector<double>& shares) {
   return sum;
 }
 
-/// The size of an effect that makes this excess, to a twentieth; none where its largest does not reach it.
-std::optional<double> size_of_excess(const BlindDetection& detection, const BlindEffect& effect, double wanted) {
-  constexpr double kNearWanted = 0.05;
-  constexpr int kMostSizeSteps = 12;
-  double low = 0.0, high = effect.largest;
+/// The size of an effect that makes this excess to first order, to a tenth, looked for from `guess` on; none where its
+/// largest does not reach it.
+std::optional<double> size_of_excess(const BlindDetection& detection, const BlindEffect& effect, double wanted,
+                                     double guess) {
+  constexpr double kNearWanted = 0.1;
+  constexpr int kMostSizeSteps = 16;
+  double low = 0.0, high = effect.largest, size = std::min(guess, high);
   if (!(high > 0.0)) return std::nullopt;
-  const auto excess = [&](double size) { return detection.excess({{&effect, size}}, {}); };
-  const auto at_most = excess(high);
-  if (at_most && *at_most < wanted * (1.0 - kNearWanted)) return std::nullopt;
-  // Where the fit to the largest does not settle, it is looked for from below.
-  double size = at_most ? high * std::sqrt(wanted / *at_most) : 0.1 * high;
   for (int i = 0; i < kMostSizeSteps; ++i) {
-    const auto at = excess(size);
-    if (at && std::abs(*at / wanted - 1.0) <= kNearWanted) return size;
-    (at && *at < wanted ? low : high) = size;
-    const double next = at ? size * std::sqrt(wanted / std::max(*at, 1e-6 * wanted)) : 0.5 * (low + high);
-    size = next > low && next < high && i % 3 != 2 ? next : 0.5 * (low + high);
+    const double at = detection.first_order_excess({{&effect, size}}, {});
+    if (std::abs(at / wanted - 1.0) <= kNearWanted) return size;
+    if (at < wanted && size == effect.largest) return std::nullopt;
+    (at < wanted ? low : high) = size;
+    const double next = size * std::sqrt(wanted / std::max(at, 1e-6 * wanted));
+    if (next >= effect.largest && high == effect.largest) {
+      size = high;
+    } else {
+      size = next > low && next < high && i % 4 != 3 ? next : 0.5 * (low + high);
+    }
   }
   return std::nullopt;
 }
@@ -75,6 +79,7 @@ struct Drawn {
   std::vector<BlindEffect> effects;
   std::vector<double> sizes;
   std::vector<EverydayDirt> dirt;
+  std::vector<double> own_excess;  // of each at size 1 of its effect
   double dirt_size = 0.0;
   BlindEffect all_dirt;
 
@@ -130,15 +135,32 @@ bool draw_sizes(const BlindDetection& detection, const Wanted& wanted, BlindRand
   const double of_first = uniform(random, 0.5, 0.66);
   for (std::size_t e = 0; e < drawn.effects.size(); ++e) {
     const double part = drawn.effects.size() < 2 ? 1.0 : e == 0 ? of_first : 1.0 - of_first;
-    const auto size = size_of_excess(detection, drawn.effects[e], part * (1.0 - of_dirt) * excess);
+    const auto size = size_of_excess(detection, drawn.effects[e], part * (1.0 - of_dirt) * excess,
+                                     kFirstGuess * drawn.effects[e].largest);
     if (!size) return false;
     drawn.sizes.push_back(*size);
+  }
+  if (drawn.effects.size() == 2) {
+    const auto puts = drawn.causes();
+    const double both = detection.first_order_excess(puts, {});
+    const double left =
+        std::min(detection.first_order_excess(puts, {puts[0]}), detection.first_order_excess(puts, {puts[1]}));
+    if ((1.0 - of_dirt) * left < kLeastSecond * both) return false;  // the two look alike here
   }
   const int of_noise = (one.noise.clicked_sd_m > 0.0 ? 1 : 0) + (one.noise.rounded_m > 0.0 ? 1 : 0);
   const auto many = static_cast<std::size_t>(std::max(2, one_of(random, {3, 4, 5}) - of_noise));
   drawn.dirt = draw_dirt(many, fair_names(drawn), one.design, random);
+  double weights = 0.0;
+  for (EverydayDirt& dirt : drawn.dirt) {
+    const double own = detection.first_order_excess({{&dirt.effect, 1.0}}, {});
+    const double weight = log_uniform(random, 0.5, 2.0);
+    weights += weight;
+    drawn.own_excess.push_back(own);
+    dirt.part = std::sqrt(weight * of_dirt * excess / std::max(own, kNoExcess));
+  }
+  for (EverydayDirt& dirt : drawn.dirt) dirt.part = std::min(dirt.part / std::sqrt(weights), dirt.effect.largest);
   drawn.all_dirt = all_of_dirt(drawn.dirt);
-  const auto size = size_of_excess(detection, drawn.all_dirt, of_dirt * excess);
+  const auto size = size_of_excess(detection, drawn.all_dirt, of_dirt * excess, 1.0);
   if (!size) return false;
   drawn.dirt_size = *size;
   return true;
@@ -166,7 +188,7 @@ bool is_finite(const std::vector<std::vector<double>>& x_m) {
   });
 }
 
-void tell_truth(const BlindDetection& detection, const Drawn& drawn, EverydayCase& one) {
+void tell_truth(const Drawn& drawn, EverydayCase& one) {
   double points = 0.0;
   for (const auto& clip : one.x_m) points += static_cast<double>(clip.size());
   for (std::size_t e = 0; e < drawn.effects.size(); ++e) {
@@ -177,9 +199,11 @@ void tell_truth(const BlindDetection& detection, const Drawn& drawn, EverydayCas
     const auto end = parameters.find("end");
     one.truth.equals.push_back(equals_of(effect.id, one.design, end != parameters.end() && end->second > 0.0));
   }
-  for (const EverydayDirt& dirt : drawn.dirt) {
-    const double own = detection.excess({{&dirt.effect, drawn.dirt_size}}, {}).value_or(0.0);
-    one.truth.dirt.push_back({dirt.id, drawn.dirt_size * dirt.amplitude, dirt.unit, own, dirt.effects});
+  for (std::size_t d = 0; d < drawn.dirt.size(); ++d) {
+    const EverydayDirt& dirt = drawn.dirt[d];
+    const double size = dirt.size_at(drawn.dirt_size);
+    one.truth.dirt.push_back(
+        {dirt.id, size * dirt.amplitude, dirt.unit, size * size * drawn.own_excess[d], dirt.effects});
   }
   one.truth.configurations = everyday_configurations(one.design, drawn.causes(), one.x_m);
 }
@@ -312,7 +336,7 @@ EverydayCase make_everyday_case(std::uint64_t seed, std::size_t index, const Eve
     if (!measure(detection, wanted, drawn, one.truth)) continue;
     one.x_m = filmed(one.design, drawn.everything());
     if (!is_finite(one.x_m)) continue;
-    tell_truth(detection, drawn, one);
+    tell_truth(drawn, one);
     for (auto& clip : one.x_m) clip = with_noise(std::move(clip), one.noise, random);
     return one;
   }

@@ -45,7 +45,7 @@ struct ActingDirt {
   std::string id;
   double size = 0.0;
   std::string unit;
-  double excess = 0.0;               ///< its own, beside nothing
+  double excess = 0.0;               ///< its own beside nothing, taken to grow as the square of its size
   std::vector<std::string> effects;  ///< fair names for it
 };
 

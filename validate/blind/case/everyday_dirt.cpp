@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "validate/blind/case/everyday_causes.h"
 
@@ -173,10 +172,9 @@ std::vector<EverydayDirt> draw_dirt(std::size_t many, const std::vector<std::str
 BlindEffect all_of_dirt(const std::vector<EverydayDirt>& dirt) {
   BlindEffect all;
   all.id = "dirt";
-  all.largest = std::numeric_limits<double>::infinity();
-  for (const EverydayDirt& one : dirt) all.largest = std::min(all.largest, one.effect.largest);
+  for (const EverydayDirt& one : dirt) all.largest = std::max(all.largest, one.effect.largest / one.part);
   all.put = [dirt](double size, std::size_t clip, BlindFilm& film) {
-    for (const EverydayDirt& one : dirt) one.effect.put(size, clip, film);
+    for (const EverydayDirt& one : dirt) one.effect.put(one.size_at(size), clip, film);
   };
   return all;
 }

@@ -1,8 +1,8 @@
 /// The small imperfections of an experiment as a student records it; none of them is on the list.
 ///
-/// Each is an alteration of forces or of what is seen, of an amplitude that is drawn below its `most`; all of a case
-/// grow with one common size, so that together they make a wanted part of the excess. `s a` is the amplitude a times
-/// that size, z a deviate of each clip:
+/// Each is an alteration of forces or of what is seen by an amplitude below its most. Each gets a part of the excess
+/// that dirt is to make, between a fourth and four times another's, as far as its most allows; then all grow with one
+/// common size until they make that excess together. `s a` is the amplitude at that size, z a deviate of each clip:
 ///
 ///     scattered_friction   mu (1 + s a z)                         a up to 15 %
 ///     wavy_track           slope + s a waves(x), 0.15 to 1.2 m    a up to 4 mrad
@@ -17,6 +17,7 @@
 /// in the noise of a position, and has no part of the excess.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,14 @@ namespace glidelab::validate {
 
 struct EverydayDirt {
   std::string id;
-  double amplitude = 0.0;  ///< in `unit`, at size 1
+  double amplitude = 0.0;  ///< in `unit`, at size 1 of `effect`
   std::string unit;
   std::vector<std::string> effects;  ///< ids of effects.md that are a fair name for it
-  BlindEffect effect;                ///< its size 1 is the amplitude; `largest` where that is the most
+  BlindEffect effect;                ///< `largest` where the amplitude is the most
+  double part = 1.0;                 ///< size of `effect` at the common size 1
+
+  /// Size of `effect` at a common size.
+  double size_at(double common) const { return std::min(common * part, effect.largest); }
 };
 
 /// What is random in single positions; noise_sd_m of the design is the sd of all three together.
