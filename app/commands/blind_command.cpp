@@ -90,11 +90,18 @@ void add_blind(CLI::App& app, Command& chosen) {
       ->add_option("--only", options->blind.only,
                    "Give every case this effect; default: none, one, two, or one that is not on the list")
       ->type_name("EFFECT");
-  command->add_flag(
+  CLI::Option* pictures = command->add_flag(
       "--pictures", options->blind.pictures,
       "Film the experiments as rendered clips instead of tracks; their effects are those that images show");
-  command->add_flag("--leave-out", options->blind.leave_out,
-                    "Diagnose each case of one effect again with that effect taken off the list");
+  CLI::Option* leave_out =
+      command->add_flag("--leave-out", options->blind.leave_out,
+                        "Diagnose each case of one effect again with that effect taken off the list");
+  command
+      ->add_flag("--everyday", options->blind.everyday,
+                 "Tracks as students record them: one cause, two, none or one off the list, each beside three to five "
+                 "small imperfections")
+      ->excludes(pictures)
+      ->excludes(leave_out);
   add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");
   command->callback([options, &chosen] { chosen = [options] { blind(*options); }; });
 }

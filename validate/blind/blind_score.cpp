@@ -35,7 +35,9 @@ BlindVerdict verdict_of(const Json& document) {
   verdict.none = document.at("probability").at("none");
   verdict.unknown = document.at("probability").at("unknown");
   for (const Json& effect : document.at("effects")) {
-    verdict.effects.push_back({effect.at("id"), effect.at("probability"), effect.at("equivalent_to")});
+    const double alone = effect.at("probability");
+    verdict.effects.push_back(
+        {effect.at("id"), alone, effect.at("equivalent_to"), effect.value("joint_probability", alone)});
   }
   for (const Json& ranked : document.at("ranking")) {
     BlindRanked one{split(ranked.at("id")),
@@ -54,6 +56,7 @@ BlindVerdict verdict_of(const Json& document) {
     verdict.gap_after = gap.at("after");
     verdict.gap_error = gap.at("standard_error");
   }
+  verdict.sequence = read_blind_sequence(document);
   return verdict;
 }
 

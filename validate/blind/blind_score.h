@@ -18,7 +18,9 @@
 #include <string_view>
 #include <vector>
 
+#include "validate/blind/blind_sequence.h"
 #include "validate/blind/case/blind_case.h"
+#include "validate/blind/case/everyday_case.h"
 #include "validate/truth/binomial.h"
 
 namespace glidelab::validate {
@@ -27,6 +29,7 @@ struct BlindNamed {
   std::string id;
   double probability = 0.0;
   std::vector<std::string> equivalent_to;
+  double joint = 0.0;  ///< probability that it or one of those acts
 };
 
 struct BlindRanked {
@@ -46,6 +49,7 @@ struct BlindVerdict {
   std::vector<std::string> where;  ///< variables of the regions, the largest excess first
   double none = 0.0, unknown = 0.0, points = 0.0;
   double gap_before = 0.0, gap_after = 0.0, gap_error = 0.0;
+  BlindSequence sequence;
 };
 
 /// InputError where the file is not a diagnosis.
@@ -65,6 +69,8 @@ struct BlindOutcome {
   BlindVerdict verdict;
   std::optional<BlindVerdict> left_out;  ///< with the true effect taken from the list
   bool filmed = false;
+  std::optional<EverydayTruth> everyday;  ///< of an everyday case
+  std::optional<double> seconds;          ///< that its diagnosis took, where it was measured
 };
 
 /// scale_error and frame_rate_error give one word; so do camera_motion and base_vibration on tracks.
