@@ -132,6 +132,7 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& d
       if (is_new) gap->second = held_out_gap(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]).value;
       ranked.gap_after = gap->second;
     }
+    ranked.converged = hypothesis.converged;
     diagnosis.ranking.push_back(std::move(ranked));
   }
   // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
