@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
+#include "core/check/motion_look.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 #include "core/track/track_data.h"
@@ -171,6 +173,23 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
 
 }  // namespace
 
+namespace {
+
+/// Of what is stated to be free.
+MotionLook look_between(const ClipSetup& setup, const TrackData& track) {
+  const auto& t = track.t_s;
+  const auto from = setup.start_s ? std::lower_bound(t.begin(), t.end(), *setup.start_s) - t.begin() : 0;
+  const auto to = setup.end_s ? std::upper_bound(t.begin(), t.end(), *setup.end_s) - t.begin() : std::ssize(t);
+  const auto first = static_cast<std::size_t>(from),
+             many = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, to - from));
+  std::span<const MarkerSighting> sightings;
+  if (track.sightings.size() == t.size()) sightings = std::span(track.sightings).subspan(first, many);
+  return look_at_motion(std::span(t).subspan(first, many), std::span(track.x_m).subspan(first, many), sightings,
+                        !track.force_n.empty());
+}
+
+}  // namespace
+
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const ClipAttempt& attempt,
                      const ClipWatches& watches) {
   const TrackData& track = attempt.track;
@@ -192,6 +211,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
     const auto [least, most] = std::minmax_element(track.x_m.begin(), track.x_m.end());
     clip.way_m = *most - *least;
   }
+  clip.motion = look_between(setup, track);
   const Speeds speeds = speeds_of(track);
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;

@@ -57,6 +57,16 @@ struct PatternCheck {
   double covered = 0.0;  ///< share of the image's 8 x 6 equal parts that hold a corner
 };
 
+/// Of the positions alone (motion_look.h).
+struct MotionLook {
+  double way_m = 0.0;
+  std::optional<double> acceleration_m_s2;  ///< typical size; none where noise hides it, or a force was recorded
+  std::size_t turns = 0;
+  bool oscillates = false;
+  double bend = 0.0;    ///< of the path in the image: sagitta over length
+  bool smooth = false;  ///< smoother than any measurement
+};
+
 struct ClipCheck {
   std::string name;
   std::string failure;      ///< why nothing more is known; else empty
@@ -95,6 +105,7 @@ struct ClipCheck {
   std::optional<double> measured_exposure_s, measured_blur_px;
   double longest_blur_px = 0.0;  ///< with an exposure as long as the frame time
   std::optional<double> position_noise_m;
+  MotionLook motion;
   std::optional<AgainstLaunch> against_launch;  ///< of the motion, as the analysis will find it
   double inside_pattern = 1.0;                  ///< share of the sightings within the outline of all corners seen
   std::vector<PixelPlace> path;                 ///< at most 200 positions

@@ -157,7 +157,7 @@ ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
   }
   clip.mass_kg = table.number("mass_kg", base::above(0.0));
   clip.mass_sd_kg = table.number_or("mass_sd_kg", 0.0, base::at_least(0.0));
-  clip.incline_rad = table.number("incline_deg", base::between_open(-90.0, 90.0)) * kRadiansPerDegree;
+  clip.incline_rad = table.number("incline_deg", base::between(-90.0, 90.0)) * kRadiansPerDegree;
   if (const auto sd_deg = table.maybe_number("incline_sd_deg", base::at_least(0.0))) {
     clip.incline_sd_rad = *sd_deg * kRadiansPerDegree;
   }

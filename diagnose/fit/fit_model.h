@@ -33,6 +33,11 @@ inline constexpr double kVisible_sd = 4.0;
 /// Standard deviation that holds back an inclination which nobody states: as good as free.
 inline constexpr double kOpenInclination_rad = 0.35;
 
+/// Near the vertical the inclination is taken as stated, to within a plumb line's error where none is stated. Where
+/// nothing but falls was recorded mu is held at 0 and not determined: next to no force presses on a track, and together
+/// with a free inclination mu would imitate any constant force.
+inline constexpr double kFallInclination_rad = 0.0175, kFallFriction = 1e-4;
+
 /// Log evidence from which on something is acted upon without being weighed against anything else.
 inline constexpr double kBeyondDoubt = 5.0;
 

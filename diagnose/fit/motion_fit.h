@@ -53,6 +53,14 @@ MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
 /// The nominal model from a first guess of its own.
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late = {});
 
+/// One more effect than `base` has, from where a search puts it. Where that leads to a worse fit than `base`, which is
+/// the same model with the effect absent, the fit starts again from there, by small steps; the better of the two. So
+/// its cost is never above that of `base`.
+MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_t effect, const FitPoint& start);
+
+/// `fit`, or, where `base` fits better, one that starts there with the effect that `fit` has more, absent.
+MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit);
+
 /// The point of a fit in the layout of more effects, which are absent but for `values` (in the order of the new
 /// effects' global parameters).
 FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effect, const std::vector<double>& values,

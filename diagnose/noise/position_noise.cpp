@@ -158,14 +158,12 @@ Likelihood NoiseLikelihood::of(const NoiseShape& shape) const {
 NoiseLikelihood::Left NoiseLikelihood::with(const NoiseChunk& chunk, const NoiseShape& shape, Left left) const {
   const Eigen::Index n = chunk.off_px.size(), k = chunk.slow.cols();
   const Eigen::MatrixXd lower = base::cholesky_lower(covariance_of(chunk.frames, shape, pilot_px_));
-  Eigen::MatrixXd both(n, k + 1);
-  both << chunk.slow, chunk.off_px;
-  both = base::solve_lower(lower, both);
-  left.logs += 2.0 * lower.diagonal().array().log().sum();
-  const Eigen::MatrixXd normal = base::transposed_product(both, both);
-  // The last pivot's square is what the slow columns leave of the residuals; the others' make log |B'V^-1 B|.
+  const Eigen::MatrixXd slow = base::solve_lower(lower, chunk.slow), off = base::solve_lower(lower, chunk.off_px);
+  const Eigen::MatrixXd normal = base::transposed_product(slow, slow);
+  // As the squares of what is left and not as a difference of squares: nearly all of a residual may be slow.
+  const Eigen::MatrixXd taken = base::solve_positive(normal, base::transposed_product(slow, off));
+  left.square += (off - base::product(slow, taken)).squaredNorm();
   const Eigen::MatrixXd factor = base::cholesky_lower(normal);
-  left.square += factor(k, k) * factor(k, k);
   for (Eigen::Index c = 0; c < k; ++c) left.logs += 2.0 * std::log(factor(c, c));
   left.freedom += static_cast<double>(n - k);
   return left;

@@ -54,6 +54,7 @@ struct RankedExplanation {
   std::size_t parameters = 0;                   ///< more than the nominal model has
   std::optional<double> gap_after;              ///< of held-out clips; where it was fitted in full
   std::optional<ImpossibleSize> left_out = {};  ///< why it was not weighed, where it was not
+  bool converged = true;                        ///< false: its fit has not come to a minimum; it gains at least so much
 };
 
 struct GapRegion {

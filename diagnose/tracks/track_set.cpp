@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "base/math/dense.h"
+#include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
+#include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
@@ -87,9 +89,12 @@ std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedM
 
 namespace {
 
-constexpr std::size_t kFewestPoints = 12;
-constexpr double kOutlier = 5.0;         // standard deviations off the neighbours
-constexpr double kLongestBridge = 0.08;  // s of disputed frames within a motion that are bridged
+// Of a motion: its start takes two, and the noise shows in five. A short piece of a clip that holds a longer one is
+// what a bump or a hand has left, and tells less than it may mislead.
+constexpr std::size_t kFewestPoints = 6, kFewestOfPiece = 12;
+constexpr std::size_t kFewestForNoise = 8;  // residuals off the neighbours
+constexpr double kOutlier = 5.0;            // standard deviations off the neighbours
+constexpr double kLongestBridge = 0.08;     // s of disputed frames within a motion that are bridged
 constexpr double kLeastNoise_m = 1e-9;
 
 enum class Kind { no, free, disputed };
@@ -166,9 +171,11 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   const double first = clip.motion.front().t_s;
   // Where it borders on something else, the border is known to about a bandwidth.
   double from = clip.motion[run.from].t_s, to = clip.motion[run.to].t_s;
-  if (run.from > 0 && !(all && clip.motion[run.from - 1].left_out == core::LeftOut::no_marker))
-    from += clip.bandwidth_s;
-  if (run.to + 1 < clip.motion.size()) to -= clip.bandwidth_s;
+  // where it is not stated.
+  const auto before = run.from > 0 ? clip.motion[run.from - 1].left_out : core::LeftOut::before_start;
+  const auto after = run.to + 1 < clip.motion.size() ? clip.motion[run.to + 1].left_out : core::LeftOut::after_end;
+  if (before != core::LeftOut::before_start && !(all && before == core::LeftOut::no_marker)) from += clip.bandwidth_s;
+  if (after != core::LeftOut::after_end) to -= clip.bandwidth_s;
   for (std::size_t i = run.from; i <= run.to; ++i) {
     const core::MotionPoint& point = clip.motion[i];
     if (kind_of(point, all) != Kind::free || point.t_s < from || point.t_s > to) continue;
@@ -195,6 +202,15 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   }
   add_pixel_modes(clip, frames, camera_modes, motion);
   return motion;
+}
+
+/// What the positions of a clip are rounded to; 0 where they are not.
+double step_of(const core::ClipResult& clip) {
+  std::vector<double> x_m;
+  for (const core::MotionPoint& point : clip.motion) {
+    if (point.measured_m) x_m.push_back(*point.measured_m);
+  }
+  return core::rounding_step(x_m);
 }
 
 /// The plumb lines and readings of a set-up: every one once, however many clips have it.
@@ -280,15 +296,41 @@ double neighbour_residual(const std::vector<double>& t, const std::vector<double
   return off / std::sqrt(gain);
 }
 
+namespace {
+
+/// Off the neighbours, of points that are no outliers and have none beside them.
+std::vector<double> neighbour_residuals(const std::vector<double>& t_s, const std::vector<double>& x_m,
+                                        const std::vector<char>& outlier) {
+  std::vector<double> residuals;
+  for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
+    if (outlier[i - 2] || outlier[i - 1] || outlier[i] || outlier[i + 1] || outlier[i + 2]) continue;
+    residuals.push_back(neighbour_residual(t_s, x_m, i));
+  }
+  return residuals;
+}
+
+}  // namespace
+
 void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s) {
   const auto measure = [&](const std::vector<std::vector<double>>& x_m) {
+    std::vector<std::size_t> of_short;
+    std::vector<double> together;
     for (std::size_t i = 0; i < motions.size(); ++i) {
       TrackedMotion& motion = motions[i];
       std::vector<double> t_s = motion.t_s;
       for (std::size_t p = 0; p < t_s.size() && !late_s.empty(); ++p) t_s[p] += late_s[i][p];
-      motion.sd_m = std::max(neighbour_noise(t_s, x_m.empty() ? motion.x_m : x_m[i], motion.outlier), kLeastNoise_m);
+      const std::vector<double>& x = x_m.empty() ? motion.x_m : x_m[i];
+      motion.sd_m = std::max(neighbour_noise(t_s, x, motion.outlier), kLeastNoise_m);
       motion.wider.clear();
+      const std::vector<double> own = neighbour_residuals(t_s, x, motion.outlier);
+      if (own.size() >= kFewestForNoise) continue;
+      of_short.push_back(i);
+      for (const double off : own) together.push_back(std::abs(off));
     }
+    // Of short motions all together tell it.
+    if (together.size() < kFewestForNoise) return;
+    const double sd_m = std::max(core::kSdOverMedian * core::median_of(std::move(together)), kLeastNoise_m);
+    for (const std::size_t i : of_short) motions[i].sd_m = sd_m;
   };
   measure({});
   constexpr int kRounds = 3;  // the weights are the noise without the errors between pixels
@@ -297,21 +339,20 @@ void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::v
   });
   for (int round = 0; filmed && round < kRounds; ++round) measure(without_pixel_errors(motions));
   share_noise(motions);
+  for (TrackedMotion& motion : motions) add_rounding(motion);
 }
 
 double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>& x_m,
                        const std::vector<char>& outlier) {
   const double pilot = core::pilot_noise(t_s, x_m);
   double sum = 0.0, count = 0.0;
-  for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
-    if (outlier[i - 2] || outlier[i - 1] || outlier[i] || outlier[i + 1] || outlier[i + 2]) continue;
-    const double off = neighbour_residual(t_s, x_m, i);
+  for (const double off : neighbour_residuals(t_s, x_m, outlier)) {
     if (std::abs(off) > kOutlier * pilot) continue;
     sum += off * off;
     count += 1.0;
   }
   // The pilot's figure holds what rounding makes; it stands where hardly a point is left.
-  return count < 8.0 ? pilot : std::max(std::sqrt(sum / count), 0.7 * pilot);
+  return count < static_cast<double>(kFewestForNoise) ? pilot : std::max(std::sqrt(sum / count), 0.7 * pilot);
 }
 
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all) {
@@ -334,10 +375,17 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     }
     bool any = false;
     const double excess = calibration_excess(results, clip.experiment);
+    std::vector<TrackedMotion> of_clip;
+    std::size_t longest = 0;
     for (const Run& run : runs_of(clip, all)) {
-      TrackedMotion motion = motion_of(clip, run, all, camera_modes, excess);
-      if (motion.t_s.size() < kFewestPoints) continue;
+      of_clip.push_back(motion_of(clip, run, all, camera_modes, excess));
+      longest = std::max(longest, of_clip.back().t_s.size());
+    }
+    const double step_m = step_of(clip);
+    for (TrackedMotion& motion : of_clip) {
+      if (motion.t_s.size() < std::max(kFewestPoints, std::min(longest, kFewestOfPiece))) continue;
       motion.clip = c;
+      motion.step_m = step_m;
       motion.group = group_of(results, setups, c, set);
       motion.mass = mass_of(setups[c], set);
       set.modes = std::max(set.modes, motion.shared_m.size());

@@ -13,6 +13,14 @@ constexpr std::size_t kMostPositions = 30000;  // of all motions
 
 }  // namespace
 
+bool is_fall(const TrackGroup& group) {
+  return std::abs(group.stated_rad) >= kFall_rad - 1e-9;
+}
+
+bool only_falls(const TrackSet& set) {
+  return !set.groups.empty() && std::all_of(set.groups.begin(), set.groups.end(), is_fall);
+}
+
 TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every) {
   TrackedMotion part = motion;
   part.whitening.clear();

@@ -64,6 +64,7 @@ struct TrackedMotion {
   std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
   /// Where among them errors by the place between pixels begin (track_set.h).
   std::size_t first_pixel_mode = std::numeric_limits<std::size_t>::max();
+  double step_m = 0.0;           ///< all positions of its clip are whole multiples of it (rounded); 0: of none
   double scale_sd = 0.0;         ///< relative
   double m_per_px = 0.0;         ///< along the motion; 0: not filmed
   std::vector<double> row_px;    ///< of the image, where the marker is; empty: not filmed
@@ -93,6 +94,11 @@ struct TrackGroup {
   std::vector<InclineStatement> statements;  ///< those with a known uncertainty
   double x_mid_m = 0.0;                      ///< middle of the range of x
 };
+
+/// From this stated inclination on a motion is a fall: sin(alpha) is known to 0.3 % where alpha is to a degree, and the
+/// normal force is less than a sixth of the weight.
+inline constexpr double kFall_rad = 80.0 * 3.14159265358979 / 180.0;
+bool is_fall(const TrackGroup& group);
 
 struct TrackedClip {
   std::string name;
@@ -124,6 +130,9 @@ struct TrackSet {
   std::size_t left_out = 0;  ///< of these, all or none
   std::size_t moving = 0;    ///< frames of free motion and disputed ones
 };
+
+/// Whether nothing but falls was recorded.
+bool only_falls(const TrackSet& set);
 
 /// Points from, from + every, ... before `to` of a motion; without its whitening.
 TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every = 1);

@@ -22,8 +22,10 @@
 #include "diagnose/noise/position_noise.h"
 #include "diagnose/pictures/picture_evidence.h"
 #include "diagnose/pictures/twin_camera.h"
+#include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/tracked_motions.h"
+#include "diagnose/tracks/usable_motions.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/verdict.h"
@@ -100,6 +102,7 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
     }
   }
   if (!free.empty()) set.notes.emplace_back(NoInclination{std::move(free)});
+  if (only_falls(set)) set.notes.emplace_back(OnlyFalls{});
   if (!mixed.empty()) set.notes.emplace_back(SplitSetUps{std::move(mixed)});
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
@@ -146,6 +149,12 @@ void settle_noise(TrackSet& set) {
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
   const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
   if (missing.count > 0 && set.pictures) refit();
+  // Of rounded positions neighbours tell no noise but that of rounding, which is known.
+  if (noise_is_rounding(set)) {
+    refit();
+    set_tails_aside(set, missing.fit);
+    return;
+  }
   if (find_position_noise(set, missing.fit)) {
     refit();
     set_tails_aside(set, missing.fit);
@@ -299,6 +308,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
                            const std::vector<std::optional<core::CameraSettings>>& cameras,
                            const std::vector<core::Experiment>& folders) {
   const std::vector<std::size_t> without = indices(options.without);
+  require_usable_motions(results, setups);
   TrackSet set = track_set(results, setups, true);
   check(setups, set);
   note_limits(setups, set);

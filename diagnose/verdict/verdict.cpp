@@ -139,6 +139,7 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, const NoiseA
       }
       ranked.gap_after = gap->second;
     }
+    ranked.converged = hypothesis.converged;
     diagnosis.ranking.push_back(std::move(ranked));
   }
   // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.

@@ -47,7 +47,8 @@ Found alone(const TrackSet& set, std::size_t effect, Comparison& comparison) {
 Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan& scan, const Found& leader) {
   const FitPoint start = with_effect(set, around, scan.effect, scan.values, scan.own);
   Found found;
-  found.fit = fit_motions(set, {around.effects.front(), scan.effect}, start, leader.fit.late);
+  found.fit = no_worse_than(set, leader.fit, scan.effect,
+                            fit_motions(set, {around.effects.front(), scan.effect}, start, leader.fit.late));
   const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = found.fit.effects;
   found.hypothesis.gain = leader.hypothesis.gain + gain;
@@ -99,8 +100,8 @@ Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison)
   const MotionFit around = without_one(set, both, both.effects.back());
   const EffectScan scan = scan_effect(ScoreSpace(set, around), both.effects.front());
   Found found;
-  found.fit = both;
-  const double gain = 0.5 * (leader.fit.cost - both.cost);
+  found.fit = no_worse_than(set, leader.fit, both.effects.front(), both);
+  const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = {both.effects.back(), both.effects.front()};
   found.hypothesis.gain = leader.hypothesis.gain + gain;
   found.hypothesis.log_evidence = leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + gain;

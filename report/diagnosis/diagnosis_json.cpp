@@ -275,6 +275,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
       put(one, "log_likelihood_gain", std::optional<double>(), why);
     }
     one["parameters"] = ranked.parameters;
+    one["converged"] = ranked.converged;
     if (ranked.gap_after) put(one, "gap_after", *ranked.gap_after);
     document["ranking"].push_back(std::move(one));
   }

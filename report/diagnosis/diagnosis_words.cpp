@@ -134,6 +134,11 @@ struct Sentence {
         "only in the inclination (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
         ups(of.groups), of.groups.size() > 1 ? "have" : "has");
   }
+  std::string operator()(const diagnose::OnlyFalls&) const {
+    return "The motions are falls, with an inclination of 80 degrees or more: next to no force presses on a track, and "
+           "µ is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 "
+           "degree.";
+  }
   std::string operator()(const diagnose::SplitSetUps& of) const {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a set-up of its own.",
                        ups(of.groups));

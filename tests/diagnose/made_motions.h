@@ -109,11 +109,12 @@ struct MadeExperiment {
 /// the next but one by its square.
 inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, const MadeEffect& effect, unsigned seed,
                                       double noise_m = 3e-5, std::size_t frames = 150, double rate_hz = 100.0,
-                                      double incline_sd_deg = 0.05, double follows = 0.0) {
+                                      double incline_sd_deg = 0.05, double follows = 0.0,
+                                      const MadeGlider& glider = {}) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   MadeExperiment made;
-  made.results.gravity_m_s2 = MadeGlider{}.gravity_m_s2;
+  made.results.gravity_m_s2 = glider.gravity_m_s2;
   for (std::size_t c = 0; c < launches.size(); ++c) {
     core::ClipSetup setup;
     setup.name = "clip" + std::to_string(c);
@@ -127,7 +128,7 @@ inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, c
     track.frame_rate_hz = rate_hz;
     std::size_t frame = 0;
     double error = 0.0, kept = 0.0;  // of the error before
-    for (const double x : made_motion({}, launches[c], effect, frames, rate_hz)) {
+    for (const double x : made_motion(glider, launches[c], effect, frames, rate_hz)) {
       if (effect.lost && effect.lost(c, frame++)) continue;
       track.frame.push_back(track.t_s.size());
       track.t_s.push_back(static_cast<double>(track.t_s.size()) / rate_hz);

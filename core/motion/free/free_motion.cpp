@@ -116,6 +116,22 @@ constexpr double kLeastShareAlong =
     0.05;  // of the points against the launch: below that, what moves along it does not count
 constexpr double kLeastOfLongest = 0.574;  // of the longest: 4^(-2/5), see the header
 
+/// Of every point, 0 at rest. What is stated to be free motion is no rest: it goes on as the motion beside it.
+std::vector<int> directions(const MotionRuns& runs, const ClipSetup& setup) {
+  std::vector<int> direction = runs.direction;
+  for (const PointRange& range : ranges_of(runs.direction)) {
+    if (direction[range.from] != 0) continue;
+    const int before = range.from > 0 ? direction[range.from - 1] : 0;
+    const int after = range.to < direction.size() ? runs.direction[range.to] : 0;
+    const bool stated = (before != 0 || setup.start_s) && (after != 0 || setup.end_s);
+    if (!stated || (before != 0 && after != 0 && !(setup.start_s && setup.end_s))) continue;
+    const std::size_t middle = before == 0 ? range.from : after == 0 ? range.to : (range.from + range.to) / 2;
+    fill_range(direction, {range.from, middle}, before);
+    fill_range(direction, {middle, range.to}, after);
+  }
+  return direction;
+}
+
 class Finder {
  public:
   Finder(const Motion& motion, const ClipSetup& setup)
@@ -123,7 +139,7 @@ class Finder {
         setup_(setup),
         pilot_(first_smoothing(motion)),
         runs_(find_runs(motion, pilot_)),
-        direction_(runs_.direction),
+        direction_(directions(runs_, setup)),
         n_(motion.t_s.size()) {}
 
   FreeMotion find() {
@@ -286,7 +302,7 @@ class Finder {
   const ClipSetup& setup_;
   const Pilot pilot_;
   const MotionRuns runs_;
-  const std::vector<int>& direction_;  // of every point; 0 at rest
+  const std::vector<int> direction_;  // of every point; 0 at rest
   const std::size_t n_;
   std::vector<LeftOut> reason_;
 };

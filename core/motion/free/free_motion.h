@@ -72,7 +72,7 @@ struct FreeMotion {
 };
 
 /// The setup's start_s and end_s, where given, are taken at their word: nothing after the one counts as hand, nothing
-/// before the other as stop, and with both everything between is free where it moves.
+/// before the other as stop or rest, and with both everything between is free, at rest or not.
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
 
 /// Free stretches joined where the motion turns.
