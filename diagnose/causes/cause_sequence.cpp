@@ -146,7 +146,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     if (!best) break;
     ExplainedCause cause = cause_of(left[which], first, here, *best, set.pieces);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
-    if (!sequence.causes.empty() && !is_worth(cause)) break;
+    if (sequence.causes.empty() ? !(cause.share > kLeastShare) : !is_worth(cause)) break;
     sequence.causes.push_back(std::move(cause));
     here = std::move(*best);
   }

@@ -266,25 +266,6 @@ Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvide
     diagnosis = verdict_of(set, first, std::move(pictures));
   }
   diagnosis.explained = sequence.causes;
-  if (getenv("GLDBG")) {
-    for (auto& c : sequence.causes)
-      fprintf(stderr, "DBG %s share %.3f gap %.3f [%.2f %.2f]\n", c.id.c_str(), c.share, c.gap_after,
-              c.share_interval95 ? c.share_interval95->low : NAN, c.share_interval95 ? c.share_interval95->high : NAN);
-    fprintf(stderr, "DBG first none %.3f unk %.3f g0 %.3f se %.3f\n", first.none, first.unknown, sequence.gap_before,
-            sequence.standard_error);
-    if (weighed)
-      for (size_t i = 0; i < weighed->comparison.all.size() && i < 60; ++i) {
-        auto& h = weighed->comparison.all[i];
-        std::string n;
-        for (auto e : h.effects) n += std::string(effect_list()[e].id) + "+";
-        if (h.log_evidence > -900)
-          fprintf(stderr, "DBG  %s%s p %.3f ev %.1f fit %d\n", n.c_str(), h.unnamed ? "UNNAMED" : "", h.probability,
-                  h.log_evidence, h.fit);
-      }
-    if (weighed)
-      fprintf(stderr, "DBG sizes q %.2e force %.2e drag %.2e a %.2e\n", weighed->sizes.q_m2_s3,
-              weighed->sizes.force_m_s2, weighed->sizes.drag, std::sqrt(weighed->sizes.q_m2_s3 / weighed->part_s));
-  }
   const RemainderSizes sizes = weighed ? weighed->sizes : RemainderSizes{};
   if (sequence.is_gap()) {
     diagnosis.remainder = remainder_of(sequence, sizes, weighed ? weighed->part_s : 0.0);
