@@ -273,13 +273,20 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
 /// Where a fit stands, with one more effect that is absent; its other parameters as `like`, which has it, has them.
 FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t effect, const MotionFit& like) {
   FitPoint point = with_effect(set, base, effect, {}, {});
+  std::vector<std::size_t> effects = base.effects;
+  effects.push_back(effect);
+  const ParameterLayout layout(set, effects);
   const EffectInfo& info = effect_list()[effect];
-  Eigen::Index global = base.at.global.size(), there = static_cast<Eigen::Index>(like.layout->first_of(effect));
-  for (std::size_t p = 0; p < info.parameters.size(); ++p) {
-    const EffectParameter& parameter = info.parameters[p];
-    if (parameter.own || (parameter.only_filmed && !set.pictures)) continue;
-    point.global[global++] = p == info.law.size ? 0.0 : like.at.global[there];
-    ++there;
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    // Each parameter of an effect of many sizes is one of them.
+    const bool is_size = global.parameter == &info.parameters[info.law.size] || info.search == Search::spread;
+    if (global.kind != Global::Kind::effect || global.effect != effect || is_size) continue;
+    for (std::size_t k = 0; k < like.layout->globals().size(); ++k) {
+      const Global& other = like.layout->globals()[k];
+      if (other.parameter != global.parameter || other.index != global.index) continue;
+      point.global[static_cast<Eigen::Index>(g)] = like.at.global[static_cast<Eigen::Index>(k)];
+    }
   }
   return point;
 }
@@ -307,7 +314,9 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
   MotionFit best = fit_motions(set, effects, start, base.late);
   // A size from a linear estimate far from the minimum may be off by decades.
   const auto size = base.at.global.size();
-  const bool has_size = effect_list()[effect].law.size == 0 && !effect_list()[effect].parameters[0].own;
+  const bool has_size = effect_list()[effect].law.size == 0 &&
+                        effect_list()[effect].parameters[0].each == Each::experiment &&
+                        effect_list()[effect].search != Search::spread;
   for (const double part : {0.1, 0.01, 10.0}) {
     if (!has_size || best.cost <= base.cost) break;
     FitPoint other = start;

@@ -2,18 +2,18 @@
 ///
 /// The named effects of the camera and its clock as sections of a scenario, and what no key can express.
 ///
-/// What each effect makes of the camera stands in its own file (diagnose/effects/effect.h): exactly what [clock], [camera]
-/// exposure, [shutter] and [light] say; of the same kind a codec of unknown strength, a pan with one phase for all
-/// clips, a focal length or a direction that was changed after the calibration.
+/// What each effect makes of the camera stands in its own file (diagnose/effects/effect.h): exactly what [clock],
+/// [camera] exposure, [shutter] and [light] say; of the same kind a codec of unknown strength, a pan with one phase for
+/// all clips, a focal length or a direction that was changed after the calibration.
 ///
 /// The simulation that behaves like the data: the fitted motions as a scenario file.
 ///
 /// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
-/// Each effect says what force of a scenario it is (diagnose/effects/effect.h), or that no scenario can say it; additional
-/// inertia is all forces, gravity with them, less by the factor m/(m + m_w): m dv/dt is then the same. Camera and clock
-/// are those of twin.h. A scenario has no forces that depend on the place or the time, and none that was
-/// recorded: what needs one is listed, and the twin lacks it. The camera is that of the folder as far as it is known
-/// (twin_camera.h); what is assumed stands in the file's first lines. x counts from the middle of the data.
+/// Each effect says what force of a scenario it is (diagnose/effects/effect.h), or that no scenario can say it;
+/// additional inertia is all forces, gravity with them, less by the factor m/(m + m_w): m dv/dt is then the same.
+/// Camera and clock are those of twin.h. A scenario has no forces that depend on the place or the time, and none that
+/// was recorded: what needs one is listed, and the twin lacks it. The camera is that of the folder as far as it is
+/// known (twin_camera.h); what is assumed stands in the file's first lines. x counts from the middle of the data.
 #pragma once
 
 #include <string>

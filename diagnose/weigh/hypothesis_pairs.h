@@ -15,8 +15,8 @@
 
 namespace glidelab::diagnose {
 
-/// Leading effects each with a second one; pairs that show only together (effect_scan.h); and in place of one of the best
-/// pair's two, whatever shows better beside the other. `nominal` is the neighbourhood of the first fit.
+/// Leading effects each with a second one; pairs that show only together (effect_scan.h); and in place of one of the
+/// best pair's two, whatever shows better beside the other. `nominal` is the neighbourhood of the first fit.
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
                Comparison& comparison);
 

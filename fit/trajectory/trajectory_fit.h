@@ -20,8 +20,8 @@
 ///     cos(alpha)
 ///
 /// with a start (x0, v0) for every block b of free motion. Levenberg and Marquardt's method with sensitivities that
-/// carry the jump at v = 0 (sim/sensitivity/sensitivity.h), from several starts; the starts x0, v0 are eliminated block by
-/// block. Where the noise is white and Gaussian this is the maximum of the likelihood, and its covariance the
+/// carry the jump at v = 0 (sim/sensitivity/sensitivity.h), from several starts; the starts x0, v0 are eliminated block
+/// by block. Where the noise is white and Gaussian this is the maximum of the likelihood, and its covariance the
 /// Cramer-Rao bound.
 ///
 /// Uncertainty: correlated noise by the sandwich H^-1 J'W Gamma W J H^-1; where the residuals are larger than the noise

@@ -20,8 +20,8 @@
 /// The true camera: a pinhole with a pose, seen through a lens.
 ///
 /// Frames (CONVENTIONS.md): W world, C camera (x right, y down, z forward); p_W = X_WC * p_C. A point at (X, Y, Z)_C
-/// has the undistorted coordinates (x, y) = (X/Z, Y/Z), the lens moves it to (x_d, y_d) (render/camera/camera.h), and it
-/// appears at the pixel (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0).
+/// has the undistorted coordinates (x, y) = (X/Z, Y/Z), the lens moves it to (x_d, y_d) (render/camera/camera.h), and
+/// it appears at the pixel (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0).
 ///
 /// A camera that does not keep still, and one whose focus was changed after the calibration.
 ///

@@ -6,10 +6,10 @@
 ///     I(p) = (1 + h . d) (b + a (2 E1 - 1) (2 E2 - 1)),   d = p - c,   Ei = pixel_edge(ni . d, ni, s)
 ///
 /// with the corner c, the edges' normals n1, n2, the lens's blur s, and the light's slope h. The pixel's square is
-/// averaged over exactly for each edge alone (core/pictures/image/pixel_signal.h), so that a sharp image does not pull the corner
-/// towards certain phases of the pixels; where both edges cross one pixel it is exact to second order for right angles.
-/// A blur of another shape keeps the image point-symmetric about c and so does not move it. Pixels; the centre of the
-/// first pixel is (0, 0).
+/// averaged over exactly for each edge alone (core/pictures/image/pixel_signal.h), so that a sharp image does not pull
+/// the corner towards certain phases of the pixels; where both edges cross one pixel it is exact to second order for
+/// right angles. A blur of another shape keeps the image point-symmetric about c and so does not move it. Pixels; the
+/// centre of the first pixel is (0, 0).
 ///
 /// The inner corners of a chessboard pattern in an image: found, put in the contract's order, and refined.
 ///

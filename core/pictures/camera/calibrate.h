@@ -3,7 +3,8 @@
 /// The uncertainty of a camera's terms that were fitted together with the poses of its views.
 ///
 /// With the poses eliminated, M = J - P (P'P)^-1 P'J of every view, an error e of the corners changes the camera's
-/// terms by S^-1 sum of M'e, S = sum of M'M; so their covariance is S^-1 [sum of M'V M] S^-1, V that of corner_errors.h.
+/// terms by S^-1 sum of M'e, S = sum of M'M; so their covariance is S^-1 [sum of M'V M] S^-1, V that of
+/// corner_errors.h.
 ///
 /// The camera from views of the calibration pattern, by least squares over all corners (Zhang 2000;
 /// cv::calibrateCamera).
