@@ -31,6 +31,7 @@ void friction_along(const double* p, const GliderConstants& glider, const Glider
   const double u = static_cast<double>(kBumps - 1) * (at.x - glider.x_low_m) / (glider.x_high_m - glider.x_low_m);
   double more = 0.0;
   for (std::size_t j = 0; j < kBumps; ++j) {
+    if (p[j] == 0.0) continue;
     const double off = u - static_cast<double>(j);
     more += p[j] * (std::exp(-0.5 * off * off) - means[j]);
   }
