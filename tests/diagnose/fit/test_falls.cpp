@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -85,10 +86,13 @@ TEST_CASE(
     const diagnose::Diagnosis diagnosis =
         diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
     CHECK(diagnosis.verdict == diagnose::Verdict::effect);
-    REQUIRE_FALSE(diagnosis.effects.empty());
-    CHECK(diagnosis.effects.front().id == "quadratic_drag");
-    REQUIRE_FALSE(diagnosis.effects.front().parameters.empty());
-    const diagnose::DiagnosedParameter& c = diagnosis.effects.front().parameters.front();
+    // Beside it the scatter of single positions may be named: what it is read off is the nominal fit's, a hundred
+    // deviations off.
+    const auto drag = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                   [](const auto& effect) { return effect.id == "quadratic_drag"; });
+    REQUIRE(drag != diagnosis.effects.end());
+    REQUIRE_FALSE(drag->parameters.empty());
+    const diagnose::DiagnosedParameter& c = drag->parameters.front();
     CHECK(c.key == "c_kg_m");
     CHECK(std::abs(c.value - kC_kg_m) < 3.0 * c.sd);
     CHECK(c.sd < 0.1 * kC_kg_m);
