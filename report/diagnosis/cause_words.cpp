@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <set>
 
 #include "base/text/number_text.h"
 #include "report/diagnosis/diagnosis_words.h"
