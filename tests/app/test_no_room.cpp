@@ -1,6 +1,6 @@
 /// Where there is no room for what a command writes: one clear message, and nothing half-written.
 #include <fmt/format.h>
-#include <render/camera/camera.h>
+#include <sys/mount.h>
 
 #include <filesystem>
 #include <string>

@@ -35,7 +35,8 @@ TEST_CASE("a fit with one more effect ends no worse than without it, from wherev
     std::vector<double> values;
     for (const diagnose::EffectParameter& parameter : diagnose::effect_list()[effect].parameters) {
       const diagnose::ParameterRange range = diagnose::range_of(set, parameter);
-      if (!parameter.own) values.push_back(values.empty() ? 0.9 * range.high : 0.5 * (range.low + range.high));
+      if (parameter.each == diagnose::Each::experiment)
+        values.push_back(values.empty() ? 0.9 * range.high : 0.5 * (range.low + range.high));
     }
     const diagnose::FitPoint start = diagnose::with_effect(set, nominal, effect, values, {});
     led_away += !(diagnose::fit_motions(set, {effect}, start).cost <= nominal.cost) ? 1 : 0;
