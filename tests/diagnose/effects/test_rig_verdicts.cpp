@@ -25,7 +25,7 @@ double way(double v) {
   return v < 0.0 ? -1.0 : 1.0;
 }
 
-/// A motor that pulls to and fro, linear from tenth to tenth of a second, as its samples at 100 Hz have it.
+/// A motor that pulls to and fro, linear from tenth to tenth of a second, as its samples at 50 Hz have it.
 double pull_n(double t) {
   const auto at = [](double tenths) { return 0.25 * std::sin(0.7 * tenths) + 0.15 * std::sin(1.7 * tenths); };
   const double before = std::floor(10.0 * t + 1e-9), part = 10.0 * t - before;
@@ -34,7 +34,7 @@ double pull_n(double t) {
 
 diagnose::Diagnosis diagnosed(const std::vector<MadeLaunch>& launches, const MadeEffect& effect, unsigned seed,
                               std::vector<std::string> without = {}) {
-  const auto made = tests::made_experiment(launches, effect, seed);
+  const auto made = tests::made_experiment(launches, effect, seed, 2e-5, 75, 50.0);
   return diagnose::diagnose_results(made.results, made.setups, {.without = std::move(without), .jobs = 2});
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("a friction that changes along the track is named, with how far and wh
   // Over the range of the positions s has the mean 0, and mu is the mean.
   double low = 0.0, high = 0.0, mean = 0.0, square = 0.0;
   for (const MadeLaunch& launch : twelve()) {
-    for (const double x : tests::made_motion(kGlider, launch, along, 150, 100.0)) {
+    for (const double x : tests::made_motion(kGlider, launch, along, 75, 50.0)) {
       low = std::min(low, x);
       high = std::max(high, x);
     }
