@@ -64,7 +64,11 @@ void blind(const BlindCommand& options) {
         return fmt::format("{} of {} cases are kept in {}; the same command continues with the rest",
                            validate::kept_cases(wanted, out), wanted.cases, out.string());
       });
-  run.score = validate::score_blind(run.outcomes);
+  if (wanted.everyday) {
+    run.everyday = validate::score_everyday(run.outcomes);
+  } else {
+    run.score = validate::score_blind(run.outcomes);
+  }
   const std::string json = report::blind_json(run);
   base::StagedOutput staged(out);
   base::write_file(staged.dir() / "blind.json", json);

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "base/text/number_text.h"
+#include "report/blind/everyday_report.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
@@ -267,6 +268,7 @@ std::string cases_table(const BlindRun& run) {
 }  // namespace
 
 std::string blind_json(const BlindRun& run) {
+  if (run.everyday) return everyday_json(run);
   const validate::BlindScore& score = run.score;
   Json document;
   document["format"] = 1;
@@ -314,6 +316,7 @@ std::string blind_json(const BlindRun& run) {
 }
 
 std::string blind_text(const BlindRun& run) {
+  if (run.everyday) return everyday_text(run);
   const validate::BlindScore& score = run.score;
   std::vector<std::vector<std::string>> rows = {
       {"of " + std::to_string(run.outcomes.size()) + " blind cases", "found", "wanted"}};
@@ -338,6 +341,7 @@ std::string blind_text(const BlindRun& run) {
 }
 
 Page blind_page(const BlindRun& run) {
+  if (run.everyday) return everyday_page(run);
   const validate::BlindScore& score = run.score;
   Html body = fmt::format(
       "<h1>Blind cases</h1>\n<p class=\"soft\">{} experiments{}, seed {}, made by a generator that shares no "

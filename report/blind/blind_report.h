@@ -7,11 +7,13 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "report/html/html.h"
 #include "validate/blind/blind_score.h"
+#include "validate/blind/everyday_score.h"
 
 namespace glidelab::report {
 
@@ -47,7 +49,8 @@ struct BlindRun {
   std::uint64_t seed = 0;
   std::vector<validate::BlindOutcome> outcomes;
   validate::BlindScore score;
-  bool pictures = false;  ///< filmed experiments, not tracks
+  bool pictures = false;                                 ///< filmed experiments, not tracks
+  std::optional<validate::EverydayScore> everyday = {};  ///< of everyday cases; `score` is then empty
 };
 
 /// The score and every case's outcome, with a newline at its end. No number in it is NaN.

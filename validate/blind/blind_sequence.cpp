@@ -14,7 +14,7 @@ const SequenceJson& value_of(const SequenceJson& object, const char* key) {
 }
 
 BlindRecovered recovered_of(const SequenceJson& object) {
-  BlindRecovered one{object.at("group"), object.at("mass_kg"), {}};
+  BlindRecovered one{object.at("group"), object.at("mass_kg"), object.at("incline_deg"), {}};
   for (const char* key : {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"}) {
     const SequenceJson& quantity = value_of(object, key);
     const SequenceJson& interval = quantity.is_object() ? value_of(quantity, "interval95") : quantity;

@@ -21,7 +21,7 @@ struct BlindInterval {
 
 struct BlindRecovered {
   std::string group;
-  double mass_kg = 0.0;
+  double mass_kg = 0.0, incline_deg = 0.0;          ///< as stated
   std::map<std::string, BlindInterval> interval95;  ///< by key (k_over_m_1_s, mu, alpha_deg, v_lim_m_s), where told
 };
 

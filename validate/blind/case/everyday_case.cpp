@@ -208,6 +208,13 @@ void tell_truth(const Drawn& drawn, EverydayCase& one) {
   one.truth.configurations = everyday_configurations(one.design, drawn.causes(), one.x_m);
 }
 
+BlindRandom random_of(std::uint64_t seed, std::size_t index) {
+  constexpr std::uint32_t kEveryday = 0x65767279;  // other draws than those of the clean cases of this seed
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         static_cast<std::uint32_t>(index), kEveryday};
+  return BlindRandom(sequence);
+}
+
 Wanted draw_wanted(BlindRandom& random, const EverydayDraw& draw) {
   const double lot = uniform(random, 0.0, 1.0);
   Wanted wanted;
@@ -307,11 +314,13 @@ BlindDesign draw_everyday_design(BlindRandom& random) {
   return design;
 }
 
+EverydayClass everyday_class(std::uint64_t seed, std::size_t index) {
+  BlindRandom random = random_of(seed, index);
+  return draw_wanted(random, {}).kind;
+}
+
 EverydayCase make_everyday_case(std::uint64_t seed, std::size_t index, const EverydayDraw& draw) {
-  constexpr std::uint32_t kEveryday = 0x65767279;  // other draws than those of the clean cases of this seed
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         static_cast<std::uint32_t>(index), kEveryday};
-  BlindRandom random(sequence);
+  BlindRandom random = random_of(seed, index);
   const Wanted wanted = draw_wanted(random, draw);
   std::vector<std::string> ids;
   for (int attempt = 0; attempt < kMostEverydayDraws; ++attempt) {

@@ -69,6 +69,9 @@ struct EverydayDraw {
   std::string only;  ///< an effect that every case has; empty: all classes
 };
 
+/// The class of a case, without making it.
+EverydayClass everyday_class(std::uint64_t seed, std::size_t index);
+
 /// NumericalError where no design of many shows the wanted causes.
 EverydayCase make_everyday_case(std::uint64_t seed, std::size_t index, const EverydayDraw& draw = {});
 
