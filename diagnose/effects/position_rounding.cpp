@@ -1,4 +1,4 @@
-/// Positions that are whole multiples of a step. They show it themselves (diagnose/noise/position_rounding.h).
+/// Positions that are whole multiples of a step. They show it themselves (diagnose/tracks/rounded_positions.h).
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

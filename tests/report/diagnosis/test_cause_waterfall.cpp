@@ -23,7 +23,7 @@ TEST_CASE("each bar of the waterfall begins where the one before ends, and ends 
   }
 }
 
-TEST_CASE("the waterfall names the gap before, each cause with its share, and what is left; gnuplot draws it") {
+TEST_CASE("the waterfall names the gap before, each cause with its share, and what is left, and gnuplot draws it") {
   diagnose::Diagnosis of = tests::two_causes();
   of.explained.back().share_interval95.reset();
   const auto plots = report::waterfall_plots(of);
