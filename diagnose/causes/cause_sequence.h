@@ -4,8 +4,9 @@
 ///     share_i = (g²_{i-1} - g²_i) / (g²_0 - 1),        g the gap of held-out clips (held_out.h), g_0 of the nominal
 ///     model
 ///
-/// The causes that a verdict names come first, the one with the largest share first of them; then others of the list,
-/// each fitted in full beside all before it. The gap is by the position noise alone, as the contract has it, whatever
+/// The causes that a verdict names come first, the one with the largest share first of them, and what differs from clip
+/// to clip after the laws that all clips have in common; then others of the list, each fitted in full beside all before
+/// it. The gap is by the position noise alone, as the contract has it, whatever
 /// remainder the causes were weighed with. Intervals are over clips (gap_sizes.h). A single clip is held out in
 /// quarters, and has no interval.
 #pragma once

@@ -27,10 +27,29 @@ constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their
 constexpr double kHalf = 0.5;
 constexpr double kNotWeighed = 1e3;  // log evidence that what was not fitted is behind
 
+/// Sizes of one kind, drawn from one normal distribution whose width is uniform in its logarithm; -n log(width) and
+/// what their squares and the width itself cost. `sd`, how well the data tell each.
+struct Spread {
+  std::vector<double> sizes, sds;
+
+  double log_prior() const {
+    double square = 0.0, least = std::numeric_limits<double>::infinity();
+    for (const double size : sizes) square += size * size;
+    for (const double sd : sds) least = std::min(least, sd);
+    const auto n = static_cast<double>(sizes.size());
+    const double width = std::max(std::sqrt(square / n), least);
+    double log = 0.5 * std::log(std::numbers::pi / n) - std::log(kDecades) - 0.5 * square / (width * width);
+    // What the data do not tell has its prior's width, and costs nothing.
+    for (const double sd : sds) log -= std::log(std::max(width, sd));
+    return log;
+  }
+};
+
 /// Log prior density of a fit's effects at its parameters, and sqrt(2 pi) for each, which the likelihood leaves out.
 double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution) {
   double log = 0.0;
   const double root = 0.5 * std::log(2.0 * std::numbers::pi);
+  std::map<const EffectParameter*, Spread> spreads;
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const auto& of = globals[g];
@@ -38,14 +57,22 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
     const auto at = static_cast<Eigen::Index>(g);
     const double sd = std::sqrt(std::max(0.0, solution.covariance(at, at)));
     const EffectInfo& info = effect_list()[of.effect];
-    if (of.parameter == &info.parameters.front()) {
-      const double size = std::max(std::abs(fit.at.global[at] + solution.change[at]), kLeastSeen * sd);
+    const double fitted = fit.at.global[at] + solution.change[at];
+    if (info.search == Search::spread) {
+      // Bumps along the track are of one kind; so is what each clip or configuration has of one parameter.
+      const bool of_all = of.parameter->each == Each::experiment;
+      Spread& spread = spreads[of_all ? &info.parameters.front() : of.parameter];
+      spread.sizes.push_back(fitted);
+      spread.sds.push_back(sd);
+    } else if (of.parameter == &info.parameters.front()) {
+      const double size = std::max(std::abs(fitted), kLeastSeen * sd);
       log += root - std::log(size * kDecades * (info.both_signs ? 2.0 : 1.0));
     } else {
       // What the data do not tell has its prior's width, and costs nothing.
       log += root - std::log(std::max(of.range.high - of.range.low, sd / std::exp(-root)));
     }
   }
+  for (const auto& [parameter, spread] : spreads) log += spread.log_prior();
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     for (Eigen::Index o = 2; o < fit.motions[i].own.cols(); ++o) {
       const double seen = std::abs(fit.at.own[i][o]) * fit.motions[i].own.col(o).norm();

@@ -8,7 +8,8 @@
 ///     log evidence = max over the remainder's sizes of log L(positions; explanation, remainder)
 ///                    + log prior density of the effect's parameters at the fit
 ///
-/// Sizes of effects and functions without a name are uniform in their logarithm over four decades, other parameters
+/// Sizes of effects and functions without a name are uniform in their logarithm over four decades, and so is the width
+/// of the normal distribution that sizes of one kind are drawn from (of each clip, say); other parameters are uniform
 /// over their ranges. The explanations are those that the search of hypotheses.h finds when the remainder of the best
 /// one so far counts as noise. Functions without a name compete as before, with remainders of their own.
 #pragma once

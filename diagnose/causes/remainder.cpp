@@ -233,9 +233,16 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
     refine(&RemainderSizes::force_m_s2, ratio);
     refine(&RemainderSizes::drag, ratio);
   }
-  if (motions_.size() > 2) widen_the_worst(best);
-  refine(&RemainderSizes::q_m2_s3, 1.4 * 1.4);
-  refine(&RemainderSizes::force_m_s2, 1.4);
+  // What makes one motion worse leaves the others with less, and that shows it the more.
+  constexpr int kRounds = 4;
+  constexpr double kSettled = 0.1;  // log likelihood
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = best.log_likelihood;
+    if (motions_.size() > 2) widen_the_worst(best);
+    refine(&RemainderSizes::q_m2_s3, 1.4 * 1.4);
+    refine(&RemainderSizes::force_m_s2, 1.4);
+    if (best.log_likelihood < before + kSettled) break;
+  }
   return best;
 }
 

@@ -235,6 +235,11 @@ enum class Search {
   lines,      ///< only a table of lines tells
 };
 
+/// Whether such an effect shows in the motion as a whole, not in single frames or in the images alone.
+constexpr bool shows_in_motion(Search search) {
+  return search != Search::frames && search != Search::noise && search != Search::pictures;
+}
+
 /// What a search on a grid goes by.
 struct ShapeReach {
   double x_low_m, x_high_m;  ///< of the positions

@@ -163,6 +163,7 @@ NoiseLikelihood::Left NoiseLikelihood::with(const NoiseChunk& chunk, const Noise
   // As the squares of what is left and not as a difference of squares: nearly all of a residual may be slow.
   const Eigen::MatrixXd taken = base::solve_positive(normal, base::transposed_product(slow, off));
   left.square += (off - base::product(slow, taken)).squaredNorm();
+  left.logs += 2.0 * lower.diagonal().array().log().sum();
   const Eigen::MatrixXd factor = base::cholesky_lower(normal);
   for (Eigen::Index c = 0; c < k; ++c) left.logs += 2.0 * std::log(factor(c, c));
   left.freedom += static_cast<double>(n - k);

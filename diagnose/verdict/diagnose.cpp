@@ -221,10 +221,9 @@ constexpr double kLeft = 0.5;  // probability of something without a name from w
 constexpr double kHalf = 0.5;  // of the excess: what a verdict's causes take at least
 constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 
-/// Probabilities of a comparison that counts a remainder as noise, as a verdict: where the gap is above its floor, what
-/// the remainder makes is unknown, and so is all of it where the named causes take less than half.
+/// Probabilities of a comparison that counts a remainder as noise, as a verdict on a gap above its floor: what the
+/// remainder makes is unknown, and so is all of it where the named causes take less than half.
 void settle(const CauseSequence& sequence, Comparison& comparison) {
-  if (!sequence.is_gap()) return;
   comparison.unknown += std::exchange(comparison.none, 0.0);
   if (sequence.named_share < kHalf) comparison.unknown = 1.0;
 }
@@ -258,8 +257,9 @@ Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvide
   const CauseSequence sequence =
       sequence_of(set, nominal, with, names ? by.fits[static_cast<std::size_t>(best->fit)] : nominal, without);
   Diagnosis diagnosis;
-  if (weighed) {
-    settle(sequence, weighed->comparison);
+  // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
+  if (weighed && sequence.is_gap()) settle(sequence, weighed->comparison);
+  if (weighed && sequence.is_gap() && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
   } else {

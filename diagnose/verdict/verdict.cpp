@@ -211,6 +211,17 @@ std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
   return measured;
 }
 
+/// The causes that moved the gap by the share that they take, then what of the explanation no motion shows.
+std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone* noise_alone) {
+  if (noise_alone == nullptr) return best.effects;
+  std::vector<std::size_t> effects = noise_alone->best.effects;
+  for (const std::size_t e : best.effects) {
+    if (!shows_in_motion(effect_list()[e].search) && std::find(effects.begin(), effects.end(), e) == effects.end())
+      effects.push_back(e);
+  }
+  return effects;
+}
+
 }  // namespace
 
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures,
@@ -231,7 +242,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == Verdict::effect && best != nullptr) {
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
-    for (const std::size_t e : noise_alone != nullptr ? noise_alone->best.effects : best->effects) {
+    for (const std::size_t e : named_effects(*best, noise_alone)) {
       const EffectInfo& info = effect_list()[e];
       diagnosis.effects.push_back({std::string(info.id), std::string(to_text(info.stage)), std::string(info.words),
                                    comparison.effect_probability[e], equivalents(comparison, *best, e),

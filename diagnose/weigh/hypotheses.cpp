@@ -22,11 +22,6 @@ constexpr double kNoLossSeen = -3.0;  // log evidence of lost frames where none 
 constexpr double kTrifle = 6.0;       // log evidence below which something unnamed shows weakly
 constexpr double kTriflePart = 0.01;  // of that of the effects, below which it leaves them their name
 
-bool moves(std::size_t effect) {
-  const Search search = effect_list()[effect].search;
-  return search != Search::frames && search != Search::noise && search != Search::pictures;
-}
-
 void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) {
   std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
   for (const Hypothesis& pair : leaders_of(comparison, 2, 2)) around.push_back(pair);
@@ -101,7 +96,8 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   const auto& list = effect_list();
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    const bool tracked = list[e].search != Search::pictures && (!moves(e) || comparison.scans[e].visible);
+    const bool tracked =
+        list[e].search != Search::pictures && (!shows_in_motion(list[e].search) || comparison.scans[e].visible);
     const bool shown = tracked || comparison.in_pictures.contains(e);
     const bool candidate = !without.contains(e) && shown;
     seen += candidate ? 1.0 : 0.0;

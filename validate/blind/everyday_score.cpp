@@ -100,7 +100,7 @@ bool is_fair(const BlindOutcome& outcome, const EverydaySaying& saying) {
     all += dirt.excess;
     if (!saying.names.empty() && holds(dirt.effects, saying.names.front().id)) fair += dirt.excess;
   }
-  return fair >= kHalf * all;
+  return fair > 0.0 && fair >= kHalf * all;
 }
 
 /// What a diagnosis states of its verdict, and whether that is right.

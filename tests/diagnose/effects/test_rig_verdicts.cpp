@@ -1,4 +1,6 @@
 // What rigs have: an experiment with one such effect, made by the tests' own generator, has it named with its size.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -42,12 +44,13 @@ diagnose::Diagnosis diagnosed(const std::vector<MadeLaunch>& launches, const Mad
 /// of it.
 void check_named(const diagnose::Diagnosis& diagnosis, const std::string& id, const std::string& key, double size) {
   INFO(id);
+  std::string ranking;
   for (const auto& ranked : diagnosis.ranking) {
     if (ranked.probability < 1e-3) continue;
-    std::string ids;
-    for (const auto& one : ranked.explanation.effects) ids += one + " ";
-    UNSCOPED_INFO(ids << ranked.probability << " evidence " << ranked.log_evidence_gain);
+    for (const auto& one : ranked.explanation.effects) ranking += one + " ";
+    ranking += fmt::format("{:.4f}, evidence {:.2f}\n", ranked.probability, ranked.log_evidence_gain);
   }
+  INFO(ranking);
   INFO("none " << diagnosis.none << " unknown " << diagnosis.unknown);
   REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   REQUIRE(diagnosis.effects.size() == 1);

@@ -5,6 +5,7 @@
 #include "base/files/file_io.h"
 #include "report/analysis/analysis_report.h"
 #include "report/blind/blind_report.h"
+#include "report/blind/everyday_report.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"
 #include "report/coverage/coverage_report.h"
@@ -278,6 +279,29 @@ TEST_CASE("the page of blind cases has every name from a file as text") {
   run.score.left_out = {{kEvil, {1, 1}}};
   run.score.confusion = {{kEvil, {{kEvil, 1}}}};
   check_is_text(report::blind_page(run));
+}
+
+TEST_CASE("the page of everyday cases has every name from a file as text") {
+  validate::BlindOutcome outcome;
+  outcome.causes = {{kEvil, 1.0, {}, kEvil, 20.0}};
+  outcome.verdict.verdict = outcome.verdict.why = kEvil;
+  outcome.verdict.effects = {{kEvil, 0.9, {kEvil}}};
+  outcome.verdict.sequence.explained = {{kEvil, 0.7}};
+  outcome.everyday.emplace();
+  outcome.everyday->shares = {0.8};
+  outcome.everyday->equals = {{kEvil}};
+  outcome.everyday->dirt = {{kEvil, 0.1, kEvil, 0.6, {kEvil}}};
+  report::BlindRun run;
+  run.outcomes = {outcome};
+  run.everyday.emplace();
+  validate::EverydayMethod method;
+  method.name = kEvil;
+  method.main_first[kEvil][kEvil] = {1, 1};
+  run.everyday->methods = {method};
+  run.everyday->covered[kEvil][kEvil] = {1, 1};
+  run.everyday->calibration[kEvil] = {1, 0.9, 1.0, 0.1};
+  run.everyday->cases[kEvil] = 1;
+  check_is_text(report::everyday_page(run));
 }
 
 TEST_CASE("every page that report can make is among those whose texts are tested here") {
