@@ -42,7 +42,7 @@ struct GlsInput {
   double scale_sd_relative = 0.0;
   double mass_kg = 0.0;  ///< with a known force only
   double mass_sd_kg = 0.0;
-  std::vector<double> law_m_s2;               ///< with a known force only: f(v(t)) at every point (bandwidth.h)
+  std::vector<double> law_m_s2;               ///< with a known force only: f(v(t)) at every point (rule_lines.h)
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData
 };
 
