@@ -13,6 +13,7 @@
 /// difference between two tells nothing of the next.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>

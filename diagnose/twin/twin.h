@@ -1,8 +1,10 @@
 /// The simulation that behaves like the data: the fitted motions, forces, camera and clock as a scenario file.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "diagnose/fit/motion_fit.h"
