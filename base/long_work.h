@@ -1,11 +1,4 @@
-/// base/ Long work: how it reports its progress, how it is stopped, and how it is shared out among threads.
-///
-/// How a long computation reports its progress, and how it is stopped.
-///
-/// Pieces of work on several threads, with errors that are thrown where the work was started.
-///
-/// Of the pieces that failed, the exception of the one with the smallest number is rethrown; once one has failed, no
-/// new piece is begun.
+/// Long work: how it reports its progress, how it is stopped, and how it is shared out among threads.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +35,8 @@ class FlagOnThrow {
 };
 
 /// Runs `worker(next)` on up to `jobs` threads, this one among them; each worker calls next() for the number of its
-/// next piece until that says `count`.
+/// next piece until that says `count`. Errors are thrown where the work was started: of the pieces that failed, the
+/// exception of the one with the smallest number is rethrown. Once one has failed, no new piece is begun.
 template <typename Worker>
 void in_parallel(int jobs, std::size_t count, const Worker& worker) {
   const std::size_t threads = std::min(count, static_cast<std::size_t>(std::max(jobs, 1)));

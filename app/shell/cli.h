@@ -1,10 +1,4 @@
-/// app/shell/ The program: its commands, one line each; it reads the command line, runs one, and turns what that throws
-/// into an exit status.
-///
-/// The commands, one file each. add_…() declares a command's options; if the user chose it, `chosen` becomes its
-/// work.
-///
-/// The program: reads the command line, runs the command, and turns what it throws into an exit status.
+/// The program: it reads the command line, runs one command, and turns what that throws into an exit status.
 ///
 ///     0 done, 1 wrong input, 2 wrong command line, 3 the environment failed, 4 a requirement is not met,
 ///     130 interrupted
@@ -18,6 +12,8 @@ class App;
 
 namespace glidelab::app {
 
+/// The work of a command. The commands are one file each; add_…() declares a command's options, and if the user chose
+/// it, `chosen` becomes its work.
 using Command = std::function<void()>;
 
 void add_simulate(CLI::App& app, Command& chosen);

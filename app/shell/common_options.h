@@ -1,8 +1,5 @@
-/// Options that several commands take, the recordings among them, and how a command writes files, tables and JSON.
-///
-/// The options that every command takes, and how a command writes: files, tables and JSON.
-///
-/// What the commands that take recordings (analyze, check, diagnose) have in common.
+/// Options that every command takes, those that the commands that take recordings (analyze, check, diagnose) have in
+/// common, and how a command writes: files, tables and JSON.
 #pragma once
 
 #include <cstdint>

@@ -1,10 +1,5 @@
 /// Texts of the whole program from its commands and options, as CLI11 holds them: completion for shells, and a manual
-/// page.
-///
-/// Completion for shells, from the commands and options as CLI11 holds them.
-///
-/// What can be said of the whole program from its commands and options, as CLI11 holds them: a manual page. Nothing
-/// here is written by hand twice.
+/// page. Nothing here is written by hand twice.
 #pragma once
 
 #include <string>

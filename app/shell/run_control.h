@@ -1,12 +1,4 @@
 /// Control of a running command: signals that interrupt it, and its progress on standard error.
-///
-/// SIGINT, SIGTERM and SIGHUP set a flag; the work checks it, ends by itself and cleans up. A second
-/// signal, two seconds later or more, ends the process at once and leaves what it had begun.
-///
-/// Progress on standard error: a bar on a terminal, an occasional line elsewhere, nothing with --quiet; with --verbose
-/// also how long each stage took, on a line of its own.
-///
-/// Also the place where an interrupt ends the work: every call checks the flag first.
 #pragma once
 
 #include <chrono>
@@ -23,8 +15,9 @@
 
 namespace glidelab::app {
 
-/// From now on those signals set the flag. Writing beyond a size limit or to a closed pipe becomes an error that the
-/// write reports and no longer ends the process.
+/// From now on SIGINT, SIGTERM and SIGHUP set a flag; the work checks it, ends by itself and cleans up. A second
+/// signal, two seconds later or more, ends the process at once and leaves what it had begun. Writing beyond a size
+/// limit or to a closed pipe becomes an error that the write reports and no longer ends the process.
 void catch_interrupts();
 
 bool interrupted();
@@ -45,6 +38,10 @@ void throw_if_interrupted();
 /// `work`, which keeps what it has finished: InterruptedKeeping where an interrupt ends it, with what `kept` says.
 void keep_on_interrupt(const std::function<void()>& work, const std::function<std::string()>& kept);
 
+/// Progress on standard error: a bar on a terminal, an occasional line elsewhere, nothing with --quiet; with --verbose
+/// also how long each stage took, on a line of its own.
+///
+/// Also the place where an interrupt ends the work: every call checks the flag first.
 class ProgressDisplay {
  public:
   explicit ProgressDisplay(bool quiet, bool verbose = false);

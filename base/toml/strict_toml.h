@@ -1,13 +1,3 @@
-/// TOML files read strictly: tables and values, where unknown keys, wrong types and values out of range are errors that
-/// name file, line and key.
-///
-/// A single value of a TOML file: a number, a switch or a text.
-///
-/// One table of a TOML file: its values, each checked as it is asked for. strict_toml.h reads the file.
-///
-/// A value that is missing or wrong is recorded and reads as NaN, zero or an empty text until TomlFile::finish()
-/// throws.
-///
 /// TOML files read strictly: unknown keys, wrong types and values out of range are errors that name file, line and key.
 ///
 /// All of a file's errors are collected and thrown together by finish(). Until then a value that is missing or wrong
@@ -31,6 +21,7 @@
 
 namespace glidelab::base {
 
+/// A single value of a TOML file: a number, a switch or a text.
 using TomlScalar = std::variant<double, bool, std::string>;
 
 /// The allowed values, and their description for messages. Numbers that are not finite are never allowed.
@@ -50,7 +41,8 @@ Range between_open(double low, double high);  ///< neither end allowed
 
 struct TomlNode;
 
-/// One table of the file, which remembers the keys that were asked for. Cheap to copy; lives as long as its TomlFile.
+/// One table of the file, which checks each value as it is asked for and remembers the keys that were asked for. Cheap
+/// to copy; lives as long as its TomlFile.
 class TomlTable {
  public:
   bool has(std::string_view key) const;

@@ -1,9 +1,5 @@
 /// From images to x(t) of every clip: what a clip's images show in pixels, and where that lies along the line of
-/// motion.
-///
-/// What one clip's images show, in pixels: the marker in every frame, the frames' times, and anything else of note.
-///
-/// From images to x(t): one function per folder hides everything that has to do with images.
+/// motion. One function per folder, tracks_of(), hides everything that has to do with images.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -27,6 +23,7 @@
 
 namespace glidelab::core {
 
+/// What one clip's images show, in pixels: the marker in every frame, the frames' times, and anything else of note.
 struct SeenClip {
   TrackedMarker marker;
   std::vector<double> frame_t_s;  ///< of all frames

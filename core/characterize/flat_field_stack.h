@@ -1,8 +1,4 @@
-/// The frames of one set of flat fields, read strictly, and their statistics tile by tile.
-///
-/// One frame of a flat-field folder, read strictly: a wrong frame spoils a variance without a trace.
-///
-/// The statistics of the frames of one set: mean and temporal variance, tile by tile.
+/// The frames of one set of flat fields, read strictly, and their statistics tile by tile: mean and temporal variance.
 ///
 /// An image is cut into tiles, and the pixels of a tile into four cells by their place in the 2 x 2 mosaic of a colour
 /// sensor (on a monochrome one the four are alike). With y_pf the code of pixel p in frame f, and m_f the mean of the
@@ -40,8 +36,9 @@ struct FrameForm {
 /// InputError if the file is not a grey image of at least kSmallestFlatFieldPx pixels each way.
 FrameForm form_of(const std::filesystem::path& file);
 
-/// Grey codes; a colour file counts as grey where its three channels are equal. InputError (file, found, expected) for
-/// a file that is no image, one with colours, one of another size or depth, and a code above `largest_code`.
+/// One frame of a flat-field folder, read strictly, for a wrong frame spoils a variance without a trace. Grey codes; a
+/// colour file counts as grey where its three channels are equal. InputError (file, found, expected) for a file that is
+/// no image, one with colours, one of another size or depth, and a code above `largest_code`.
 cv::Mat read_flat_field_frame(const std::filesystem::path& file, const FrameForm& form, int largest_code);
 
 /// InputError where `frame`, of `file`, equals `last`, the one before: copies are no measurement of noise. Frames that

@@ -1,10 +1,5 @@
-/// The arithmetic of photon transfer: from the statistics of the frames to the numbers and their errors.
-///
-/// The arithmetic of photon transfer, from the statistics of the frames and the decisions about them to the numbers,
-/// and the jackknife that repeats it without one tile at a time.
-///
-/// Errors common to all tiles of the images, which the jackknife over tiles cannot see: the drift of the dark level
-/// from frame to frame and from set to set, and what rounding to whole codes hides.
+/// The arithmetic of photon transfer: from the statistics of the frames and the decisions about them to the numbers and
+/// their errors. The jackknife repeats it without one tile at a time.
 #pragma once
 
 #include <cstddef>
@@ -94,6 +89,8 @@ PhotonNumbers photon_numbers(const Evidence& evidence, std::optional<std::size_t
 /// Standard deviations of the numbers: sqrt((T - 1) / T sum (number without tile t - mean)²).
 PhotonNumbers jackknife_sd(const Evidence& evidence, std::size_t tiles);
 
+/// Errors common to all tiles of the images, which the jackknife over tiles cannot see: the drift of the dark level
+/// from frame to frame and from set to set, and what rounding to whole codes hides.
 struct SharedErrors {
   double offset_dn = 0.0;  ///< standard deviations
   double dark_slope_dn_s = 0.0;

@@ -1,9 +1,5 @@
-/// The measurements of one clip, from its track and its images, the exposure time from the marker's smear among them.
-///
-/// The exposure time, from the lengthening of the marker's image with its speed.
-///
-/// The measurements of one clip, from its track and its images: speeds, size and smear of the marker, light, steps that
-/// are too short.
+/// The measurements of one clip, from its track and its images: speeds, size and smear of the marker, the exposure time
+/// from that smear, light, steps that are too short.
 #pragma once
 
 #include <optional>
@@ -19,6 +15,7 @@
 
 namespace glidelab::core {
 
+/// The exposure time, from the lengthening of the marker's image with its speed.
 struct MarkerSmear {
   double exposure_s = 0.0, sd_s = 0.0;
 };

@@ -1,11 +1,6 @@
-/// A check of a recording before any analysis: first the images of the pattern, then the clips.
-///
-/// The images of the pattern before any analysis: in which of them it is found, how well one camera explains them, how
-/// much of the image they cover.
-///
 /// A check of a recording before any analysis: are pattern and marker found, are the images and times good enough?
 ///
-/// The images pass once through the functions of the analysis (tracks_of: calibration, tracking, restitution); a clip
+/// The images pass once through the functions of the analysis (tracks_of: calibration, tracking, restitution). A clip
 /// in which no marker of the stated diameter is found is read again for other sizes. The lines a(v) of the tracks give
 /// the direction of the launch and the inclination, which are compared with what is stated (statement_findings.h). What
 /// cannot be used is a finding here, not an error.
@@ -27,7 +22,9 @@ struct CheckedPattern {
   std::optional<SeenPattern> seen;  ///< the corners and the camera, where there is one
 };
 
-/// For an experiment with [calibration]; images are read `jobs` at a time. check.failure says what is wrong with them.
+/// The images of the pattern: in which of them it is found, how well one camera explains them, how much of the image
+/// they cover. For an experiment with [calibration]; images are read `jobs` at a time. check.failure says what is wrong
+/// with them.
 CheckedPattern check_pattern(const Experiment& experiment, int jobs);
 
 /// The share of a path that lies within the convex hull of all corners, where the lens is known; nothing for an empty

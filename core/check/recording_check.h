@@ -1,10 +1,7 @@
-/// The result of a check of a recording, as plain data, with the collector of its findings.
+/// The result of a check of a recording as plain data (check_recording.h makes it), the wording that its findings
+/// share, and their collector.
 ///
-/// The result of a check of a recording, as plain data (check_recording.h makes it).
-///
-/// Lengths of the set-up in metres, of the image in pixels; brightness as a share of the largest code.
-///
-/// Wording that the findings of a check share, and a collector for the findings about one subject.
+/// Lengths of the set-up are in metres, those of the image in pixels; brightness is a share of the largest code.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,11 +1,8 @@
-/// The clips of an experiment and the groups in which they share a set-up of the track.
-///
-/// The clips of an experiment and the set-ups of the track that they share, as plain data.
+/// The clips of an experiment, and the groups in which they share a set-up of the track and so one inclination, as
+/// plain data.
 ///
 /// Every length is in metres, every time in seconds, every angle in radians; pixels are counted from the centre of the
 /// image's first pixel. Nothing here needs a picture library, so that an analysis of tracks does without one.
-///
-/// The groups of an experiment folder: which clips share a set-up of the track, and so one inclination.
 #pragma once
 
 #include <filesystem>

@@ -1,12 +1,8 @@
-/// The experiment as it is given: a folder as plain data, or a track's file on its own.
-///
-/// The experiment folder as plain data: what a person with a track, a glider and a camera has on disk.
+/// The experiment as it is given, as plain data: the folder that a person with a track, a glider and a camera has on
+/// disk, or a track's file on its own.
 ///
 /// The form of experiment.toml is a contract with other programs (experiment_template.h explains its keys). Angles are
 /// converted to radians where the file is read; every length is in metres, every time in seconds.
-///
-/// What the analysis is given: an experiment folder, or a track's file on its own, for which options say what the
-/// analysis needs beside it.
 #pragma once
 
 #include <array>
@@ -88,6 +84,7 @@ Experiment read_experiment(const std::filesystem::path& folder, OutsideFiles out
 /// InputError where there is neither a clip nor a track: a table of lines is for `glidelab diagnose`.
 void require_clips(const Experiment& experiment);
 
+/// What the analysis needs beside a track's file that is given on its own.
 struct BareTrackOptions {
   std::string column;                 ///< of x in an exported table (track_data.h); empty: found by its header
   std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated

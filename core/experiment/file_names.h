@@ -1,12 +1,4 @@
 /// Names of files: as people give and number them, and as experiment.toml may state them.
-///
-/// Names of files as people give them.
-///
-/// The files that experiment.toml names, and where they may lie.
-///
-/// A name counts from the folder and is taken as it is written (a/../b is b). One that leaves the folder, or that is
-/// absolute, is refused unless the person who runs the program allows it: a folder that came from elsewhere cannot make
-/// the program open what is not in it. A symbolic link in the folder is followed: whoever put it there asked for it.
 #pragma once
 
 #include <filesystem>
@@ -28,6 +20,11 @@ std::string lower(std::string_view text);
 /// ".png" of "IMG_1.PNG"; empty where the name has no ending.
 std::string lower_extension(const std::filesystem::path& file);
 
+/// The files that experiment.toml names, and where they may lie.
+///
+/// A name counts from the folder and is taken as it is written (a/../b is b). One that leaves the folder, or that is
+/// absolute, is refused unless the person who runs the program allows it: a folder that came from elsewhere cannot make
+/// the program open what is not in it. A symbolic link in the folder is followed: whoever put it there asked for it.
 struct FolderFiles {
   std::filesystem::path folder;
   OutsideFiles outside = OutsideFiles::refused;

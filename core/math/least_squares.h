@@ -1,25 +1,5 @@
-/// Least squares without and with iteration: a line by its sums, orthogonal polynomials, Levenberg-Marquardt.
-///
-/// Weighted least squares of a straight line y = intercept + slope x, by its sums:
-///
-///     slope = (W Sxy - Sx Sy) / D,    intercept = (Sxx Sy - Sx Sxy) / D,    D = W Sxx - Sx^2
-///
-/// Polynomials that are orthogonal over given points and weights (Forsythe 1957): least squares without matrices.
-///
-///     p_0 = 1,   p_(k+1)(u) = (u - alpha_k) p_k(u) - beta_k p_(k-1)(u)
-///     alpha_k = sum K u p_k^2 / N_k,   beta_k = N_k / N_(k-1),   N_k = sum K p_k^2
-///
-/// The weighted fit of values y is  sum_k c_k p_k,  c_k = sum K p_k y / N_k; the c_k of white noise of unit variance
-/// and K = 1 are independent, of variance 1 / N_k. u is best scaled to about 1.
-///
-/// Levenberg-Marquardt for small dense problems: minimise sum_i w_i r_i(p)^2 over N parameters.
-///
-/// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
-/// nothing of the size of the data is stored. Units are the caller's. The loop is base/math/levenberg_marquardt.h's;
-/// it stops when a step changes every parameter by less than its `step` (an absolute measure, one for each parameter),
-/// or changes the cost by less than 1e-7 of itself (with n data that is a step of sqrt(1e-7 n) standard deviations: a
-/// hundredth for a thousand pixels). So small a step is taken without another evaluation where it is hardly damped: the
-/// cost after it is that of the linear residuals.
+/// Least squares without and with iteration: a line by its sums, orthogonal polynomials, and Levenberg and Marquardt's
+/// method for small dense problems.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -38,6 +18,9 @@
 
 namespace glidelab::core {
 
+/// Weighted least squares of a straight line y = intercept + slope x, by its sums:
+///
+///     slope = (W Sxy - Sx Sy) / D,    intercept = (Sxx Sy - Sx Sxy) / D,    D = W Sxx - Sx^2
 struct LineSums {
   double w = 0.0;
   double x = 0.0;
@@ -78,6 +61,13 @@ class PairCorrelation {
   double n_ = 0.0, mean_x_ = 0.0, mean_y_ = 0.0, xx_ = 0.0, xy_ = 0.0, yy_ = 0.0;
 };
 
+/// Polynomials that are orthogonal over given points and weights (Forsythe 1957): least squares without matrices.
+///
+///     p_0 = 1,   p_(k+1)(u) = (u - alpha_k) p_k(u) - beta_k p_(k-1)(u)
+///     alpha_k = sum K u p_k^2 / N_k,   beta_k = N_k / N_(k-1),   N_k = sum K p_k^2
+///
+/// The weighted fit of values y is  sum_k c_k p_k,  c_k = sum K p_k y / N_k; the c_k of white noise of unit variance
+/// and K = 1 are independent, of variance 1 / N_k. u is best scaled to about 1.
 class OrthogonalPolynomials {
  public:
   /// Nothing where the points carry no polynomial of the order: a norm below 1e-11 of that of the power u^k.
@@ -129,6 +119,15 @@ struct LeastSquaresFit {
   base::FitStop stop = base::FitStop::iterations;
 };
 
+/// Levenberg and Marquardt's method for small dense problems: it minimises sum_i w_i r_i(p)^2 over N parameters.
+///
+/// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
+/// nothing of the size of the data is stored. Units are the caller's. The loop is that of
+/// base/math/levenberg_marquardt.h. It stops when a step changes every parameter by less than its `step` (an absolute
+/// measure, one for each parameter), or changes the cost by less than 1e-7 of itself (with n data that is a step of
+/// sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels). So small a step is taken without another
+/// evaluation where it is hardly damped: the cost after it is that of the linear residuals.
+///
 /// `evaluate(p)` gives the NormalEquations at p, or nothing where p is outside the model's range (the step is then
 /// shortened). A residual is model minus datum. `is_hopeless(fit, equations)` is asked before each step, with the
 /// parameters and iterations so far, and ends the fit. The fit is singular where J^T W J has no inverse at its end.

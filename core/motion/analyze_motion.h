@@ -1,8 +1,6 @@
-/// The motion of one clip: smoothed, its free parts and its lines, with every frame as it is reported.
-///
-/// A clip frame by frame, as it is reported: smoothed, with the fate of each frame, and the stretches that are used.
-///
-/// From x(t) to the friction law: smoothing, the free parts of the motion, lines in a(v), and equation (13).
+/// The motion of one clip, from x(t) to the friction law: smoothing, the free parts of the motion, lines in a(v), and
+/// equation (13); and the clip frame by frame as it is reported, with the fate of each frame and the stretches that are
+/// used.
 #pragma once
 
 #include <optional>

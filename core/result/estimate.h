@@ -1,14 +1,5 @@
-/// Numbers with their uncertainty, and their agreement with what experiment.toml states.
-///
-/// Numbers with their uncertainty.
-///
-/// What experiment.toml states about a configuration, compared with what its motion shows.
-///
-/// Inclination, from the lines a = a0 - (K/m) v:
-///     both directions: g sin(alpha) = (a0- + a0+)/2                             (13)
-///     one direction:   friction brakes, so g sin(alpha) <= a0-, and g sin(alpha) >= a0+
-/// A wrong length, frame rate or gravity shows there as well as a wrong angle: a0 goes with the scale, with the square
-/// of the rate, and with g.
+/// Numbers with their uncertainty, and what experiment.toml states about a configuration compared with what its motion
+/// shows.
 #pragma once
 
 #include <optional>
@@ -51,6 +42,14 @@ struct InclineContradiction {
   bool gross = false;    ///< more than a track that was set up carelessly explains; see incline_contradiction()
 };
 
+/// The stated inclination against that of the lines a = a0 - (K/m) v:
+///
+///     both directions: g sin(alpha) = (a0- + a0+)/2                             (13)
+///     one direction:   friction brakes, so g sin(alpha) <= a0-, and g sin(alpha) >= a0+
+///
+/// A wrong length, frame rate or gravity shows there as well as a wrong angle: a0 goes with the scale, with the square
+/// of the rate, and with g.
+///
 /// Nothing where the two agree, or nothing was found to compare. They disagree by more than half a degree and three
 /// standard deviations of both together; grossly by more than one degree, a quarter of the stated angle and five
 /// standard deviations (a choice: half a degree is a track that was not levelled with care).

@@ -1,8 +1,5 @@
-/// What an analysis finds, as plain data, and the method of its lines.
-///
-/// The two ways in which core fits the lines of a phase diagram, and the estimators' names for them.
-///
-/// What an analysis finds, as plain data. report/ writes it as results.json, CSV and pages.
+/// What an analysis finds, as plain data, with the method of its lines. report/ writes it as results.json, CSV and
+/// pages.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +11,8 @@
 
 namespace glidelab::core {
 
-/// ordinary: least squares as the paper does it (line_fit.h); generalised: with the points' covariance (gls_line.h).
+/// The two ways in which core fits the lines of a phase diagram. ordinary: least squares as the paper does it
+/// (line_fit.h); generalised: with the points' covariance (gls_line.h).
 enum class LineMethod { ordinary, generalised };
 
 /// The estimator's name in options and files; fit/estimators.h lists all estimators.

@@ -1,15 +1,11 @@
-/// Tables of numbers as other programs export them: their header lines, taken apart, and their columns.
-///
-/// The header lines of an exported table, taken apart into name, unit and run of each column (column_table.h).
-///
 /// Tables of numbers as other programs export them: Tracker, Logger Pro and Vernier Graphical Analysis, PASCO Capstone,
 /// phyphox, spreadsheets.
 ///
 /// Understood, whatever the file's name: tab, semicolon or comma between fields; decimal point or decimal comma; quoted
 /// fields; LF or CRLF, a byte-order mark; titles and comments ('#') before the header; one to three header lines (a
 /// line of runs, names, short names, units); units as "Time (s)", "x [cm]", "x_mm" or in a line of their own; runs as
-/// "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of different lengths; NaN for no value.
-/// The delimiter and the decimal sign are those with which most lines are all numbers.
+/// "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of different lengths; NaN for no value. The
+/// delimiter and the decimal sign are those with which most lines are all numbers.
 #pragma once
 
 #include <filesystem>
@@ -32,8 +28,9 @@ struct TableColumn {
 std::optional<double> metres_per(std::string_view unit);
 std::optional<double> seconds_per(std::string_view unit);
 
-/// `width` columns without values. The header's lines, first to last: of runs (where all its fields speak of a run, a
-/// set or "latest"), of names, of short names (ignored), of units; each but the names may be missing.
+/// The header lines of an exported table, taken apart into name, unit and run of each of its `width` columns, which
+/// have no values yet. The lines, first to last: of runs (where all its fields speak of a run, a set or "latest"), of
+/// names, of short names (ignored), of units; each but the names may be missing.
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);
 
 struct ColumnTable {

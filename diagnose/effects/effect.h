@@ -1,22 +1,14 @@
-/// effect: An effect: its stage, its law, its twin in a scenario, and all else that the program knows about one.
+/// An effect and all that the program knows about one: its stage, its parameters, its law, its lines in a table, its
+/// twin in a scenario.
 ///
-/// Where between the world and the result an effect acts.
-///
-/// How an effect changes the motion and its observation, as functions that the model calls while it acts.
+/// While an effect acts, the model calls the functions of its law (EffectLaw), which change the motion and its
+/// observation:
 ///
 ///     (m + m_w) dv/dt = W slope - K v factor / divisor along - against + forces - sign(v) (mu W cos(alpha) + F_0)
 ///
-/// with the weight W = m g; slope, factor, divisor, along, against, mu and F_0 are those of the nominal model (sin
-/// alpha, 1, 1, 1, 0, mu, 0) until an effect changes them. `p` are the effect's parameters in the order of its file. SI
-/// units, x and v positive downhill, t true time from the clip's first frame.
-///
-/// An effect in a scenario: the forces, the camera and the clock of a simulation that behaves like the data, or why no
-/// scenario can say it.
-///
-/// What the program knows about one effect: its names and words, its parameters and how large they may be, its law, its
-/// lines in a table, its twin in a scenario, and what to record next.
-///
-/// No member has a default: the compiler refuses an effect that leaves one out.
+/// with the weight W = m g. The terms slope, factor, divisor, along, against, mu and F_0 are those of the nominal model
+/// (sin alpha, 1, 1, 1, 0, mu, 0) until an effect changes them. All is in SI units, x and v are positive downhill, and
+/// t is the true time from the clip's first frame.
 #pragma once
 
 #include <algorithm>
@@ -33,6 +25,7 @@
 
 namespace glidelab::diagnose {
 
+/// Where between the world and the result an effect acts.
 enum class Stage { dynamics, optics, timing, sensor, tracking, analysis };
 
 /// As files and pages have it: "dynamics".
@@ -73,6 +66,7 @@ struct DryFriction {
 /// The order in which changes of the measured position follow each other.
 enum class SeenBy { lens, plane, scale, mount };
 
+/// How an effect changes the motion and its observation. `p` are the effect's parameters in the order of its file.
 struct EffectLaw {
   std::size_t size = 0;   ///< the first parameter that is 0 where the effect is absent,
   std::size_t sizes = 1;  ///< and how many are: it acts where one of them is not 0
@@ -166,7 +160,8 @@ struct TwinCamera {
 /// The order in which effects change the camera: each may depend on those before.
 enum class TwinPart { exposure, clock, shutter, light, mount, codec };
 
-/// One of the three is given: why no scenario can say it, its force, or its change of the camera.
+/// An effect in a scenario, as part of a simulation that behaves like the data. One of the three is given: why no
+/// scenario can say it, its force, or its change of the camera and the clock.
 class EffectTwin {
  public:
   using Force = void (*)(const double* p, TwinForces& forces);
@@ -273,6 +268,9 @@ struct Alike {
   bool filmed = false;       ///< nor can clips
 };
 
+/// What the program knows about one effect: its names and words, its parameters and how large they may be, its law, its
+/// lines in a table, its twin in a scenario, and what to record next. No member has a default, so the compiler refuses
+/// an effect that leaves one out.
 struct EffectInfo {
   std::string_view id;
   Stage stage;

@@ -1,8 +1,4 @@
-/// effect_library: All effects of effect_list.h, each defined in its own file, and the sizes of all at once.
-///
-/// All effects of effect_list.h, each defined in its own file.
-///
-/// The sizes of all effects at once, as one motion feels them.
+/// The library of effects: all that effect_list.h names, each defined in its own file.
 #pragma once
 
 #include <array>
@@ -32,6 +28,7 @@ std::vector<std::string> effect_words();
 /// rate; of positions alone, not `filmed`, a camera and a table that shake. An effect without such a double: itself.
 std::size_t first_alike(std::size_t effect, bool filmed);
 
+/// The sizes of all effects at once, as one motion feels them.
 class EffectValues {
  public:
   /// All absent.

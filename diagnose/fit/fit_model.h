@@ -1,17 +1,7 @@
-/// fit_model: The model of a fit: its parameters, their ranges, the motion that they make, and that motion's
-/// derivatives.
+/// The model that is fitted: the nominal model with any set of effects, its parameters and their ranges, the motion
+/// that they make, and that motion's derivatives.
 ///
-/// Limits that several searches share and that must be the same in each.
-///
-/// The ranges of the effects' parameters in given data: one range for the scan, which averages evidence over it, and
-/// for the fit. A fit that went further would gain by what its evidence was never asked to pay for: a wave slower than
-/// the clips is any drift, a cable that tightens before the first position or a lens whose axis is out of the image
-/// is any bend.
-///
-/// The parameters of the nominal model with any set of effects: which there are for a set of tracks, where they stand,
-/// and the motion that they make of one track.
-///
-/// One motion at a point of the parameters: what the model leaves of its positions, and the model's derivatives.
+/// The constants are limits that several searches share and that must be the same in each.
 #pragma once
 
 #include <Eigen/Core>
@@ -51,9 +41,15 @@ struct ParameterRange {
   double low = 0.0, high = 0.0;
 };
 
-/// Sizes as the effects state them, those that go with the mass for the heaviest glider; a place within the positions,
-/// a frequency of at least two turns in the longest motion, a release after four frames and in the first two fifths of
-/// the longest one, a Stribeck speed above that at which a codec may hold the marker (TrackSet::held_m_s).
+/// The range of an effect's parameter in given data: one range for the scan, which averages evidence over it, and for
+/// the fit. A fit that went further would gain by what its evidence was never asked to pay for. A wave slower than the
+/// clips is any drift. A cable that tightens before the first position, or a lens whose axis is out of the image, is
+/// any bend.
+///
+/// Sizes are as the effects state them, those that go with the mass for the heaviest glider. A place lies within the
+/// positions. A frequency makes at least two turns in the longest motion. A release comes after four frames and in the
+/// first two fifths of the longest motion. A Stribeck speed lies above that at which a codec may hold the marker
+/// (TrackSet::held_m_s).
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
 
 /// From the least to the largest position.
@@ -71,7 +67,8 @@ struct Configuration {
 /// Those of a set's motions, in order.
 std::vector<Configuration> configurations_of(const TrackSet& set);
 
-/// Which parameters there are, and where they stand.
+/// The parameters of the nominal model with any set of effects: which there are for a set of tracks, and where they
+/// stand.
 class ParameterLayout {
  public:
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects);
@@ -131,7 +128,8 @@ std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& la
 /// What is later than stated of each point of each motion (dropped frames); empty: nothing.
 using Lateness = std::vector<std::vector<double>>;
 
-/// Residuals over the noise, and their derivatives (of the model) by the parameters, over the noise.
+/// One motion at a point of the parameters: what the model leaves of its positions, and the model's derivatives by the
+/// parameters, both over the noise.
 struct FitMotion {
   Eigen::VectorXd residual;  ///< of unit white noise
   Eigen::VectorXd plain;     ///< over each position's own noise, with what neighbours share of it

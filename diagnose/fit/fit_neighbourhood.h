@@ -1,22 +1,20 @@
-/// fit_neighbourhood: The linear neighbourhood of a fit: what is left of motions and of additions once all that was
-/// fitted has readjusted.
+/// The linear neighbourhood of a fit: what is left of motions and of additions to the model once all that was fitted
+/// has readjusted.
 ///
-/// A fit's linear neighbourhood with each motion's own parameters projected out: what is left are the common parameters
-/// and their normal equations,
+/// Each motion's own parameters are projected out. What is left are the common parameters and their normal equations,
 ///
 ///     N = sum_i G_i' G_i + statements,    g = sum_i G_i' r_i + statements,    G_i, r_i = Q_i (derivatives, residuals),
 ///
-/// in units of the noise, Q_i = 1 - A (A'A)^-1 A' of the motion's own derivatives A. A change of the common parameters
-/// by N^-1 g is the least squares' step.
+/// in units of the noise, with Q_i = 1 - A (A'A)^-1 A' of the motion's own derivatives A. A change of the common
+/// parameters by N^-1 g is the least-squares step.
 ///
-/// What a small addition to a fitted model would gain once everything that was fitted has readjusted.
+/// A small addition changes the model by c. With r the residuals, both over the noise, and J the derivatives by the
+/// fitted parameters,
 ///
-/// r, c: residuals and a change of the model, both over the noise. With J the derivatives by the fitted parameters,
+///     <a, b> = a'b - a'J (J'J + statements)^-1 J'b,
+///     gain in log likelihood of c at its best size = <c, r>² / (2 <c, c>).
 ///
-///     <a, b> = a'b - a'J (J'J + statements)^-1 J'b,        gain in log likelihood of c at its best size
-///     = <c, r>² / (2 <c, c>)
-///
-/// (Rao's score test with the nuisance projected out). Linear in the addition.
+/// This is Rao's score test with the nuisance projected out. It is linear in the addition.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,6 +38,7 @@ OwnColumns own_columns(const FitMotion& motion);
 /// Columns over a motion's points (of unit white noise) without what its own parameters can take up.
 Eigen::MatrixXd without_own(const FitMotion& motion, const base::MatrixView& columns);
 
+/// A motion's r_i and G_i.
 struct ProjectedMotion {
   Eigen::VectorXd residual;
   Eigen::MatrixXd common;
@@ -47,6 +46,7 @@ struct ProjectedMotion {
 };
 ProjectedMotion project(const FitMotion& motion);
 
+/// N and g of the common parameters.
 struct CommonNormal {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
@@ -75,6 +75,7 @@ struct SpreadSeen {
   Eigen::VectorXd scores;
 };
 
+/// What a small addition to a fitted model would gain once everything that was fitted has readjusted.
 class ScoreSpace {
  public:
   ScoreSpace(const TrackSet& set, const MotionFit& fit);

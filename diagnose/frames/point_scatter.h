@@ -1,13 +1,4 @@
-/// point_scatter: The scatter of single positions: what a smooth curve leaves of the residuals, and how it grows with
-/// the speed.
-///
-/// What remains of each motion's residuals after a smooth curve: the scatter of single positions, regardless of any
-/// force that the model lacks.
-///
-/// The curve is a least-squares sum of Gaussian bumps, as fine as it must be until neighbours no longer err alike: what
-/// the law lacks by hundreds of deviations shows a coarse one's own error, first of all at the clip's ends.
-///
-/// Position noise that grows with the speed, as uneven frame times cause it: variance sd² + (v tau)².
+/// The scatter of single positions about a smooth curve, and how it grows with the speed.
 #pragma once
 
 #include <cstddef>
@@ -23,6 +14,12 @@ struct Leftover {
   std::vector<double> v_m_s;    ///< modelled
 };
 
+/// What remains of a motion's residuals after a smooth curve: the scatter of single positions, regardless of any force
+/// that the model lacks.
+///
+/// The curve is a least-squares sum of Gaussian bumps, as fine as it must be until neighbours no longer err alike.
+/// Where the law is off by hundreds of standard deviations, a coarse curve shows an error of its own, first of all at
+/// the clip's ends.
 Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t motion);
 
 /// Residuals of single positions beside their speeds.
@@ -37,6 +34,7 @@ struct SpeedScatter {
   void add(const SpeedScatter& of_a_motion);
 };
 
+/// Position noise that grows with the speed, as uneven frame times tau cause it: variance sd² + (v tau)².
 struct SpeedNoise {
   double gain = 0.0, log_evidence = 0.0;  ///< against the same noise at all speeds
   double jitter_s = 0.0, sd_s = 0.0;

@@ -1,19 +1,19 @@
-/// gap_sizes: How large the gap is in each domain, before and after, with 95 % intervals over clips.
+/// How large the gap is in each domain, before and after, with 95 % intervals over clips.
 ///
-/// 95 % intervals over clips: how much a gap would differ with other clips of the same kind.
+/// The domains are positions (held_out.h), phase plane (domain_gaps.h), parameters (held_out.h, domain_gaps.h) and
+/// images.
 ///
-/// The jackknife: with each clip left out in turn of a pooled number T of n clips (not of the fit again), T_(c),
+/// An interval says how much a gap would differ with other clips of the same kind. It is a jackknife: with T_(c) a
+/// pooled number T of n clips from which clip c is left out (not out of the fit),
 ///
-///     se² = (n - 1)/n sum_c (T_(c) - mean)²,      T ± t(0.975, n - 1) se
+///     se² = (n - 1)/n sum_c (T_(c) - mean)²,      T ± t(0.975, n - 1) se.
 ///
 /// A root mean square is taken by its logarithm, so that its interval stays above zero. Clips count as independent of
-/// each other, although each one's model comes from the others. Fewer than three clips have no interval: one difference
-/// between two tells nothing of the next.
-///
-/// How large the gap is in each domain, before and after: positions (held_out.h), phase plane (domain_gaps.h),
-/// parameters (held_out.h, domain_gaps.h), images.
+/// each other, although each one's model comes from the others. Fewer than three clips have no interval, since one
+/// difference between two tells nothing of the next.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,9 +48,9 @@ std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, 
 std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, std::span<const ClipSquares> before,
                                           std::span<const ClipSquares> after);
 
-/// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips (gap_sizes.h).
-/// `best` has a named effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut
-/// into stretches that are fitted anew; a note says so. The domains are left empty.
+/// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips. `best` has a named
+/// effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut into stretches that
+/// are fitted anew, and a note says so. The domains are left empty.
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
                 std::vector<Note>& notes);
 

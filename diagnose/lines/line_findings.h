@@ -1,20 +1,4 @@
-/// line_findings: What a fit of lines says: how probable each explanation is, how far the lines lie off it, and where.
-///
-/// How probable each explanation of a table of lines is, and how similar two effects are in it.
-///
-/// The odds are those of tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. Each is four times as likely alone as
-/// with something without a name beside it; of that each variable (mass, set-up, both together, direction) is as likely
-/// as another.
-///
-/// Two effects are as alike as the angle between their columns is small (ln K/m and a0 of all lines, each over its
-/// scatter), the nominal model projected out. Measured sizes do not enter.
-///
-/// How far a table's lines lie off an explanation, each held out of it in turn; how far their inclinations lie off what
-/// is stated; and where lines depart from the nominal model.
-///
-/// Regions are groups of lines whose mean is off by three of its standard deviations or more, the largest first. For a
-/// group with weights w (each 1/n) the mean of the residuals r = (1 - H) y is w'r, and its standard deviation
-/// sqrt(w' (1 - H) w) times the lines' own scatter, H being the nominal model's projection.
+/// What a fit of lines says: how probable each explanation is, how far the lines lie off it, and where.
 #pragma once
 
 #include <cstddef>
@@ -34,11 +18,17 @@ struct LineExplanation {
   double probability = 0.0;  ///< 0 where a size is impossible
 };
 
-/// The nominal model first.
+/// How probable each explanation of a table of lines is, the nominal model first.
+///
+/// The odds are those of tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. Each is four times as likely alone as
+/// with something without a name beside it. Of what has no name each variable (mass, set-up, both together, direction)
+/// is as likely as another.
 std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineTerm>& named,
                                          const std::vector<LineFamily>& families);
 
-/// Of every two of the terms; `least_seen` is the size that makes one standard deviation. Scatters above 0.
+/// How similar every two of the terms are in a table of lines. They are as alike as the angle between their columns is
+/// small (ln K/m and a0 of all lines, each over its scatter), the nominal model projected out. Measured sizes do not
+/// enter. `least_seen` is the size that makes one standard deviation. The scatters are above 0.
 Isolability line_isolability(const LineData& data, const std::vector<LineTerm>& terms, double sd_log_k, double sd_a0);
 
 /// Whether terms without a name take up nearly all (a cosine of kAlike) of what this one does: beside it they say
@@ -51,13 +41,19 @@ struct LineGap {
   std::vector<Note> notes;  ///< of the inclinations
 };
 
-/// `before`: the fit of the nominal model; `after`: that of the explanation. The lines' own scatter, which is known, is
-/// the unit of the gap; the stated inclination is compared with the mean intercept, asin(a0 / g).
+/// How far a table's lines lie off an explanation, each held out of it in turn, and how far their inclinations lie off
+/// what is stated. `before` is the fit of the nominal model, `after` that of the explanation. The lines' own scatter,
+/// which is known, is the unit of the gap. The stated inclination is compared with the mean intercept, asin(a0 / g).
 LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
                  const OwnScatter& scatter);
 
-/// Intercepts (m/s²) of each mass, and of each set-up, in one direction; drag K (N s/m) of each mass and of each
-/// set-up. None where the lines' own scatter is not known.
+/// Where lines depart from the nominal model: by the intercepts (m/s²) of each mass, and of each set-up, in one
+/// direction, and by the drag K (N s/m) of each mass and of each set-up. None where the lines' own scatter is not
+/// known.
+///
+/// Regions are groups of lines whose mean is off by three of its standard deviations or more, the largest first. For a
+/// group with weights w (each 1/n) the mean of the residuals r = (1 - H) y is w'r, and its standard deviation is
+/// sqrt(w' (1 - H) w) times the lines' own scatter, H being the nominal model's projection.
 std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const LineData& data,
                                     const LineSolution& nominal, const OwnScatter& scatter);
 

@@ -1,18 +1,8 @@
-/// line_model: The model of published lines: their table, the terms that may act on it, and the fit of both.
+/// The model of published lines: their table, the terms that may act on it, and the fit of both.
 ///
-/// A table of fitted lines a = a0 - (K/m) v, as printed in a paper, in place of clips.
+/// For a line a = a0 - k v of mass m, set-up g and direction s, with k = K/m, the nominal model gives
 ///
-/// What may act beside the nominal model on a table of lines: effects with a name, and friction or drag without one.
-///
-/// What a named effect does to a line stands in its file (effects/effect.h, OnLines). Without a name, with the line's
-/// mass m, direction s and K/m: a0 - s f or ln(K/m) + d, f or d of each mass, of each set-up, of each mass in each
-/// set-up; ln(K/m) + s d.
-///
-/// Lines fitted by the nominal model and terms beside it, and how well.
-///
-/// The nominal model gives, for a line of mass m, set-up g and direction s,
-///
-///     ln(k m) = ln K,     a0 = gravity sin(alpha_g) - s mu gravity cos(alpha_g)
+///     ln(k m) = ln K,     a0 = gravity sin(alpha_g) - s mu gravity cos(alpha_g).
 ///
 /// A table states no errors: those of ln(k) and of a0 are unknown and are what the lines scatter, so that few lines
 /// carry little. Of n lines with p0 nominal parameters, p terms that leave RSS of the nominal model's RSS_0 have the
@@ -21,9 +11,9 @@
 ///
 ///     ∫ (1 + g)^((n - p0 - p) / 2) (1 + g RSS / RSS_0)^(-(n - p0) / 2) sqrt(n / (2 pi)) g^(-3/2) exp(-n / (2 g)) dg
 ///
-/// for each kind of data. Neither RSS is less than what rounding to the table's decimals leaves: lines that were
+/// for each kind of data. Neither RSS is less than what rounding to the table's decimals leaves, since lines that were
 /// calculated, and rounded, tell no more than their digits. (With g = n fixed it stays below (1 + n)^((n - p0 - p) / 2)
-/// however little is left: two causes at once would never be found where one of them explains nearly all.)
+/// however little is left. Two causes at once would never be found where one of them explains nearly all.)
 #pragma once
 
 #include <Eigen/Core>
@@ -40,6 +30,7 @@
 
 namespace glidelab::diagnose {
 
+/// A fitted line a = a0 - (K/m) v of a table, as printed in a paper, in place of clips.
 struct TableLine {
   double mass_kg = 0.0;
   double incline_deg = 0.0;
@@ -65,7 +56,8 @@ base::Issue too_few_lines(const std::string& file, std::size_t lines);
 /// The values of a member among the lines, ascending, each once.
 std::vector<double> different(const std::vector<TableLine>& lines, double TableLine::*member);
 
-/// What one unit of a term adds to ln(K/m) and to a0 (m/s²) of every line.
+/// What may act beside the nominal model on a table of lines, an effect with a name or friction or drag without one:
+/// what one unit of it adds to ln(K/m) and to a0 (m/s²) of every line.
 struct LineTerm {
   std::string id, key, stage, words;
   Eigen::VectorXd of_log_k, of_a0;
@@ -80,10 +72,12 @@ struct LineFamily {
   std::vector<LineTerm> terms;
 };
 
-/// Those of the effects that lines can show, less what is left `without`. None where all masses are the same: they are
-/// K and mu then.
+/// Those of the effects that lines can show, less what is left `without`. What each does to a line stands in its file
+/// (diagnose/effects/effect.h, OnLines). None where all masses are the same: they are K and mu then.
 std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std::vector<std::string>& without);
 
+/// Friction and drag without a name. With the line's mass m, direction s and K/m they make a0 - s f or ln(K/m) + d,
+/// with f or d of each mass, of each set-up, or of each mass in each set-up, and ln(K/m) + s d.
 std::vector<LineFamily> unnamed_families(const std::vector<TableLine>& lines);
 
 /// Effects of the speed whose lines are those of load_independent_friction, less what is left `without`.
@@ -96,6 +90,7 @@ struct LineData {
   double rounding_log_k = 0.0, rounding_a0 = 0.0;  ///< standard deviations of the numbers' own rounding
 };
 
+/// Lines fitted by the nominal model and terms beside it, and how well.
 struct LineSolution {
   Eigen::VectorXd size, sd;                    ///< of the terms; sd from what is left
   Eigen::VectorXd off_k, off_a;                ///< measured less fitted
@@ -119,8 +114,8 @@ LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& term
 
 OwnScatter own_scatter(const std::vector<TableLine>& lines);
 
-/// The logarithm of the Bayes factor above for one kind of data: `left` and `nominal_left` are root mean squares. 0
-/// where there are as many parameters as lines.
+/// The logarithm of the Bayes factor that the head of this file states, for one kind of data. `left` and `nominal_left`
+/// are root mean squares. 0 where there are as many parameters as lines.
 double log_bayes_factor(double left, double nominal_left, double lines, double nominal_parameters, double terms);
 
 /// Of both kinds together, against the nominal model. A term that acts on both is half a one of each.

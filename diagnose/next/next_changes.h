@@ -1,16 +1,10 @@
-/// next_changes: What an experimenter could do next: further clips that differ in one thing, each as a fit expects it,
-/// or further measurements.
+/// What an experimenter could do next: one further clip that differs in one thing, as a fit expects it, or one further
+/// measurement of what is stated.
 ///
-/// What an experimenter could do next: one further clip that differs in one thing, or one further measurement of what
-/// is stated.
-///
-/// A clip begins a twentieth of the range of places inside its upper or lower end. It lasts as long as the longest one
-/// so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions so far: for tracks
-/// sd² (1 + c v²), c from `wider` of the motions (0 where that is empty); for films as in whitening.h. Half the
-/// exposure leaves a quarter of what grows with the speed. SI units.
-///
-/// A further clip (next_changes.h) as a fit expects it: the set of tracks that holds nothing but it, and the fit's
-/// parameters for it.
+/// A clip begins a twentieth of the range of places inside that range's upper or lower end. It lasts as long as the
+/// longest one so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions so far:
+/// for tracks sd² (1 + c v²), with c from `wider` of the motions (0 where that is empty), for films as in whitening.h.
+/// Half the exposure leaves a quarter of what grows with the speed. SI units.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,6 +34,7 @@ Eigen::Index new_alpha(const TrackSet& set);
 /// change must have a clip.
 FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& change);
 
+/// A further clip as a fit expects it.
 struct NextMotion {
   TrackSet set;  ///< the set-ups and masses so far and the change's, with its clip as the only one
   Moved moved;   ///< empty where the clip cannot be made: fewer than 12 positions within the range so far

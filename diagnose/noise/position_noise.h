@@ -1,30 +1,22 @@
-/// position_noise: The noise of positions, measured by restricted likelihood: from which stretches, how likely a shape
-/// is, and the search.
-///
-/// Stretches of positions from which the noise is measured, and what of them is set aside as slow.
-///
-/// A stretch's residuals are r = B b + noise, b anything: B has bumps ten frames apart (30 where a codec makes images
-/// out of those before, whose errors last for up to a dozen frames), and, beside a wave, its sine and cosine and what
-/// the fit made of it. Pixels (whitening.h: unit_m).
-///
-/// How likely the noise of filmed positions has a shape (whitening.h): restricted likelihood.
-///
-///     log L = sum over motions of  -f log s_i - q_i/(2 s_i²) - (log|V| + log|B' V^-1 B|)/2 - (log(s_i/s)/0.3)²/2
-///
-/// V a stretch's covariance over s², B what is set aside as slow (position_noise.h), q_i the squares that are left
-/// under V^-1, f their number less the columns of B; each motion's white noise s_i at its likeliest, some 30 % about s,
-/// their mean. Of a codec that predicts images from those before, what is known of its errors is added.
-///
 /// The noise of positions, measured: how much is white, how much neighbouring frames share (whitening.h), and how much
 /// grows with the speed.
 ///
-/// Restricted maximum likelihood: those amplitudes and lengths that make most likely what the positions hold besides
-/// everything slow (position_noise.h: bumps are projected out, and, where one shows, a wave with what the fit made of
-/// it), so that neither the nominal model nor what it lacks goes in. The white part may differ between motions by some
-/// 30
-/// %. Of what was tracked elsewhere nobody knows the pixels: its noise may last for some frames, as a tracker's does
-/// that follows its own last image, and is white unless that shows beyond doubt. What lasts for four frames or longer
-/// may be what the model lacks, and is left to it.
+/// Restricted maximum likelihood finds those amplitudes and lengths that make most likely what the positions hold
+/// besides everything slow, so that neither the nominal model nor what it lacks goes in. The residuals of a stretch are
+/// r = B b + noise with b anything. B is what is set aside as slow: bumps ten frames apart (30 where a codec makes
+/// images out of those before, whose errors last for up to a dozen frames) and, where a wave shows, its sine and cosine
+/// and what the fit made of it. Then
+///
+///     log L = sum over motions of  -f log s_i - q_i/(2 s_i²) - (log|V| + log|B' V^-1 B|)/2 - (log(s_i/s)/0.3)²/2
+///
+/// with V a stretch's covariance over s², q_i the squares that are left under V^-1, and f their number less the columns
+/// of B. Each motion's white noise s_i is taken at its likeliest, some 30 % about s, their mean. For a codec that
+/// predicts images from those before, what is known of its errors is added. Lengths are in pixels (unit_m() of
+/// whitening.h).
+///
+/// Nobody knows the pixels of imported tracks. Their noise may last for some frames, as that of a tracker does that
+/// follows its own last image, and is taken as white unless that shows beyond doubt. What lasts for four frames or
+/// longer may be what the model lacks, and is left to it.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,6 +30,7 @@
 
 namespace glidelab::diagnose {
 
+/// A stretch of positions from which the noise is measured, and what of it is set aside as slow.
 struct NoiseChunk {
   std::size_t motion = 0;
   SeenFrames frames;
@@ -55,6 +48,7 @@ struct Likelihood {
   std::vector<double> own_px;  ///< s of each motion
 };
 
+/// How likely it is that the noise of filmed positions has a shape (whitening.h): the restricted likelihood.
 class NoiseLikelihood {
  public:
   /// `pilot_px`: about s, for the part of the covariance that has a size of its own. `handed_on`: the file's codec

@@ -1,13 +1,4 @@
-/// picture_search: What the searches in images share: the clips that they read, waves in series, and where findings go.
-///
-/// What the searches in images share: the clips that they read, and where their findings go.
-///
-/// Waves in series that several clips have in common: brightness that flickers, a scene that sways in the image.
-///
-/// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, a and b free in
-/// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known;
-/// Schwarz's penalty for what is free, and four times the median gain over all frequencies, as it is where noise is not
-/// white.
+/// What the searches in images share: the clips that they read, waves in series, and where their findings go.
 #pragma once
 
 #include <memory>
@@ -62,7 +53,13 @@ struct SeriesWave {
   double amplitude = 0.0, sd = 0.0;  ///< root mean square over the series
 };
 
-/// The strongest wave between 3 periods a series and half the sampling rate.
+/// The strongest wave, between 3 periods a series and half the sampling rate, that the series of several clips have in
+/// common: brightness that flickers, a scene that sways in the image.
+///
+/// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, with a and b free in
+/// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known.
+/// Its evidence is less by Schwarz's penalty for what is free, and by four times the median gain over all frequencies,
+/// as the gain is where noise is not white.
 SeriesWave strongest_wave(const std::vector<Series>& series);
 
 /// Amplitude at one frequency and its standard deviation (of a component), of one series.

@@ -1,9 +1,4 @@
-/// diagnosis: What a diagnosis says, as plain data, with effects that cannot be told apart taken as one.
-///
-/// What a diagnosis says, as plain data; report/ writes it as diagnosis.json and a page.
-///
-/// Effects that these data cannot tell apart, as one set: which effects are in it, and how likely it is that one of
-/// them acts.
+/// What a diagnosis says, as plain data. report/ writes it as diagnosis.json and a page.
 #pragma once
 
 #include <functional>
@@ -278,8 +273,9 @@ struct NamedExplanation {
   double probability = 0.0;
 };
 
-/// Fills `alike` and `joint_probability` of each effect of a diagnosis that has its `equivalent_to`: the sum over all
-/// explanations that hold it or one of those, each counted once. `words` says what an id is for a person.
+/// Takes effects that these data cannot tell apart as one set: which effects are in it, and how likely it is that one
+/// of them acts. Fills `alike` and `joint_probability` of each effect of a diagnosis that has its `equivalent_to`: the
+/// sum over all explanations that hold it or one of those, each counted once. `words` says what an id is for a person.
 void join_alike(const std::vector<NamedExplanation>& explanations,
                 const std::function<std::string(const std::string& id)>& words, Diagnosis& diagnosis);
 

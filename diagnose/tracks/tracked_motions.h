@@ -1,17 +1,5 @@
-/// tracked_motions: The measured motions of an experiment as a diagnosis takes them, whole, thinned, or cut where a
-/// force drives them to and fro.
-///
-/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated.
-///
-/// Parts of motions, and thinned motions.
-///
-/// Motions that a recorded force drives to and fro, in pieces.
-///
-/// What the model lacks in force adds up twice over the time, and a turn that comes a little early starts the next run
-/// elsewhere: over tens of turns chi² has a local minimum for every order in which the modelled motion turns and rests,
-/// and no fit converges to the right one. A piece turns twice, so that it holds both directions, and has a start of its
-/// own; it is cut half way between turns, where the glider is fast. What shows over longer than a piece only, such as a
-/// slow drift, is lost.
+/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated, whole,
+/// thinned, or cut where a force drives them to and fro.
 #pragma once
 
 #include <Eigen/Core>
@@ -106,7 +94,7 @@ struct TrackedClip {
   double duration_s = 0.0;
   std::size_t frames = 0;
   double bandwidth_s = 0.0;  ///< of the analysis' smoothing
-  /// As the analysis finds them (core/lost_frames.h), in the file's times from the clip's first frame.
+  /// As the analysis finds them (core/motion/free/lost_frames.h), in the file's times from the clip's first frame.
   std::vector<core::LostFrames> lost = {};
 };
 
@@ -118,7 +106,7 @@ struct TrackSet {
   std::vector<TrackedMotion> motions;
   double x_mid_m = 0.0;    ///< middle of the range of x of all set-ups
   std::size_t modes = 0;   ///< shared errors of camera and plane
-  bool pieces = false;     ///< clips are pieces of a single one (tracked_motions.h)
+  bool pieces = false;     ///< clips are pieces of a single one (cut_driven_motions())
   bool pictures = false;   ///< at least one clip was filmed
   bool lossy = false;      ///< at least one has been through a codec with loss,
   bool handed_on = false;  ///< and one that predicts images from those before:
@@ -137,12 +125,20 @@ bool only_falls(const TrackSet& set);
 /// Points from, from + every, ... before `to` of a motion; without its whitening.
 TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every = 1);
 
-/// Of more than 30,000 positions in all (but for motions with a recorded force: tracked_motions.h) every second, third,
-/// ... is kept, with a note: enough for any law. What single frames show needs neighbours, and is weaker then. Motions
-/// that have fewer than `fewest` left go.
+/// Of more than 30,000 positions in all (but for motions with a recorded force: cut_driven_motions()) every second,
+/// third, ... is kept, with a note: enough for any law. What single frames show needs neighbours, and is weaker then.
+/// Motions that have fewer than `fewest` left go.
 void thin_out(TrackSet& set, std::size_t fewest);
 
-/// Motions with a recorded force that turn more than four times are cut; of all pieces 40 at most are weighed, and of
+/// Cuts motions that a recorded force drives to and fro into pieces.
+///
+/// What the model lacks in force adds up twice over the time, and a turn that comes a little early starts the next run
+/// elsewhere. Over tens of turns chi² then has a local minimum for every order in which the modelled motion turns and
+/// rests, and no fit converges to the right one. A piece turns twice, so that it holds both directions, and has a start
+/// of its own. It is cut half way between turns, where the glider is fast. What shows over longer than a piece only,
+/// such as a slow drift, is lost.
+///
+/// Motions with a recorded force that turn more than four times are cut. Of all pieces 40 at most are weighed, and of
 /// their positions 8000, both spread evenly over clips and time (notes say so). Pieces of fewer than `fewest` points
 /// go. The pieces of a clip that is the only one become clips of their own, so that each can be held out.
 void cut_driven_motions(TrackSet& set, std::size_t fewest);

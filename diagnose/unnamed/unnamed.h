@@ -1,14 +1,10 @@
-/// unnamed: Explanations without a name: all their families, those over members (clips, masses, set-ups) made here.
-///
-/// Families of unnamed.h that differ between clips, masses or set-ups.
-///
 /// Explanations without a name: smooth forces and displacements in each variable, and sizes that differ between clips,
 /// masses or set-ups for no stated reason. They stand for what is not in the list of effects.
 ///
-/// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), tau unknown over four decades;
-/// or one of these bumps at an unknown position; or one step there. Its evidence is exact in the linear neighbourhood
-/// of a fit. Forces are functions of v, x or t, displacements of x or t (also waves in x), lateness of t. Displacements
-/// of each clip, and a lateness, may settle from the clip's start on.
+/// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), with tau unknown over four
+/// decades; or one of these bumps at an unknown position; or one step there. Its evidence is exact in the linear
+/// neighbourhood of a fit. Forces are functions of v, x or t, displacements of x or t (also waves in x), lateness of t.
+/// Displacements of each clip, and a lateness, may settle from the clip's start on.
 #pragma once
 
 #include <vector>
@@ -17,6 +13,7 @@
 
 namespace glidelab::diagnose {
 
+/// Families that differ between members: clips, masses or set-ups.
 void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families);
 
 /// All families around a fit.

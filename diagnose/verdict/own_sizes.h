@@ -1,5 +1,5 @@
-/// own_sizes: What is told of an effect whose sizes only together say something: deviations of each configuration or
-/// clip from a common mu or K, a friction along the track, a drag of each direction.
+/// The sizes that are told of an effect whose parameters say something only together: deviations of each configuration
+/// or clip from a common mu or K, a friction along the track, a drag of each direction.
 ///
 ///     direction_dependent_drag   k_plus_n_s_m, k_minus_n_s_m: K (1 + d) and K (1 - d), towards larger x and back
 ///     place_friction             sd: root mean square of s over the range of positions; s.at X m: s there
@@ -7,8 +7,8 @@
 ///     configuration_drag         sd_n_s_m: of K; k_n_s_m.NAME: K of each
 ///     clip_scatter               sd_mu, sd_k_n_s_m: standard deviations of mu and K over the clips
 ///
-/// Each with the standard deviation that the fit's covariance gives it to first order; that of a spread holds where it
-/// is larger than the sizes' own errors.
+/// Each comes with the standard deviation that the fit's covariance gives it to first order. That of a spread holds
+/// where it is larger than the sizes' own errors.
 #pragma once
 
 #include <string>

@@ -1,26 +1,4 @@
-/// verdict_details: What a verdict says in detail: derived parameters, limits that a reader must know, regions in which
-/// a gap lies.
-///
-/// Parameters that the list of effects states for an effect but that no fit has as such.
-///
-///     track_bow          x_mid_m: middle of the range of x of all clips of a set-up
-///     damping_gradient   x_mid_m: the same; with one K(x) for set-ups at several places, where K is K itself,
-///                        x_mid + w (x_mid of all - x_mid) with the fitted share w
-///     camera_motion      amplitude_px = amplitude_m times the pixels of a metre along the motion
-///
-/// and those of own_sizes.h.
-///
-/// Where there are several set-ups, x_mid_m has a key for each, "x_mid_m.NAME".
-///
-/// Which statements the data contradict, and which part of the data is set aside: limits that a reader must know before
-/// the verdict.
-///
-/// Drag and friction take energy from a glider. A nominal fit that has them give some, by more than five standard
-/// deviations, explains nothing, however well it follows the positions: "nothing is missing" is no verdict then, and
-/// its probability belongs to what has no name.
-///
-/// Where a gap lies: the regions of each variable in which something unnamed would act, and those in which a named
-/// effect shows in the images.
+/// The details of a verdict: derived parameters, limits that a reader must know, and regions in which a gap lies.
 #pragma once
 
 #include <string>
@@ -35,17 +13,31 @@
 
 namespace glidelab::diagnose {
 
-/// `known` are the effect's parameters so far; a key that stands there already is left as it is. For tracks, whose
+/// Parameters that the list of effects states for an effect but that no fit has as such.
+///
+///     track_bow          x_mid_m: middle of the range of x of all clips of a set-up
+///     damping_gradient   x_mid_m: the same; with one K(x) for set-ups at several places, where K is K itself,
+///                        x_mid + w (x_mid of all - x_mid) with the fitted share w
+///     camera_motion      amplitude_px = amplitude_m times the pixels of a metre along the motion
+///
+/// and those of own_sizes.h. Where there are several set-ups, x_mid_m has a key for each, "x_mid_m.NAME".
+///
+/// `known` are the effect's parameters so far. A key that stands there already is left as it is. For tracks, whose
 /// camera nobody knows, and for cameras whose pixels differ in size by more than 5 %, no pixels are stated.
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
                                                    const PictureEvidence& pictures,
                                                    const std::vector<DiagnosedParameter>& known);
 
-/// Of the fit that the verdict rests on.
+/// Limits that a reader must know before the verdict, of the fit that the verdict rests on: which statements the data
+/// contradict, and which part of the data is set aside.
+///
+/// Drag and friction take energy from a glider. A nominal fit that has them give some, by more than five standard
+/// deviations, explains nothing, however well it follows the positions: "nothing is missing" is no verdict then, and
+/// its probability belongs to what has no name.
 VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit);
 
-/// Regions and curves of the families that are worth it, corrected for as many looks. `nominal` is the fit of the usual
-/// model, for what it lacks.
+/// Where a gap lies: regions and curves of each variable in which something unnamed would act, of the families that are
+/// worth it, corrected for as many looks. `nominal` is the fit of the usual model, for what it lacks.
 void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
                  Diagnosis& diagnosis);
 
@@ -68,7 +60,7 @@ Lacking most_lacking(const TrackSet& set, const MotionFit& nominal);
 bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
                     const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis);
 
-/// Where in the data a named effect shows that only images tell.
+/// Where a gap lies: the regions in which a named effect shows that only images tell.
 void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

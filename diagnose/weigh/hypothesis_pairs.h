@@ -1,11 +1,4 @@
-/// hypothesis_pairs: Explanations by two things at once: two effects, or missing frames beside an effect.
-///
-/// Explanations by two effects at once.
-///
-/// Frames that are missing beside another effect.
-///
-/// Next to a force or a displacement that the nominal model lacks, losses that no jump shows by itself do not count
-/// (missing_frames.h): any curve looks like a row of them. With that effect in the fit they do.
+/// Explanations by two things at once: two effects, or missing frames beside an effect.
 #pragma once
 
 #include <set>
@@ -20,8 +13,11 @@ namespace glidelab::diagnose {
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
                Comparison& comparison);
 
-/// Looks for missing frames along the fits of the likeliest effects, alone or beside the losses that are known; what is
+/// Looks for missing frames along the fits of the likeliest effects, alone or beside the losses that are known. What is
 /// found joins the comparison. Nothing is done where no frame is missing for all to see. `nominal` is the nominal fit.
+///
+/// Next to a force or a displacement that the nominal model lacks, losses that no jump shows by itself do not count
+/// (missing_frames.h): any curve looks like a row of them. With that effect in the fit they do.
 void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std::set<std::size_t>& without,
                        const Work& work, Comparison& comparison);
 

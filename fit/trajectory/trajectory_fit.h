@@ -1,23 +1,9 @@
-/// fit/ The fit of the whole motion to the measured positions: what it is given, what it finds, and how certain that
-/// is.
-///
-/// What a fit of the whole motion (trajectory_fit.h) is given and what it finds.
-///
-/// The uncertainty of a fit of the whole motion (trajectory_fit.h): the noise's covariance, what residuals scatter
-/// beyond it, and what errors of the camera and the scale do.
-///
-/// With P the derivatives by the common parameters without the part that a block's own start can take up, and H = sum
-/// of P'P / s^2: covariance H^-1 [sum of P' Gamma P / s^4] H^-1, widened as trajectory_fit.h says. Where there are four
-/// blocks or more they are left out one at a time (the jackknife, to first order: -(H - H_b)^-1 P_b' r_b / s^2), and
-/// that covariance, which knows of no noise model (rounded positions that move slowly err together), counts where one
-/// of its variances is above the other's by more than chance makes it (chi2_ratio_limit, n - 1 degrees of freedom).
-///
-/// The fit of the whole motion: equation (8) with its reversals to the measured positions themselves, no smoothing.
+/// The fit of the whole motion to the measured positions themselves: equation (8) with its reversals, no smoothing.
 ///
 /// For all clips of one configuration at once, by least squares weighted with each clip's noise:
 ///
-///     x_i = x(t_i; k, d, f, x0_b, v0_b) + noise,     dv/dt = d - k v - sign(v) f,     d = g sin(alpha),  f = mu g
-///     cos(alpha)
+///     x_i = x(t_i; k, d, f, x0_b, v0_b) + noise,
+///     dv/dt = d - k v - sign(v) f,     d = g sin(alpha),  f = mu g cos(alpha)
 ///
 /// with a start (x0, v0) for every block b of free motion. Levenberg and Marquardt's method with sensitivities that
 /// carry the jump at v = 0 (sim/sensitivity/sensitivity.h), from several starts; the starts x0, v0 are eliminated block
@@ -25,13 +11,8 @@
 /// Cramer-Rao bound.
 ///
 /// Uncertainty: correlated noise by the sandwich H^-1 J'W Gamma W J H^-1; where the residuals are larger than the noise
-/// explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is
-/// added, with its degrees of freedom; the errors of the camera and the plane, and of the scale, are propagated as
-/// signed shifts (trajectory_fit.h).
-///
-/// Robust: from the least squares on, Huber's weights (1 up to 1.5 deviations, 1.5 over the deviations beyond; the
-/// scale is 1.4826 times each block's median residual) until they settle, then least squares without the positions
-/// that are off by more than 4 of these. Positions without outliers lose next to nothing by it (6 in 1e5 normal ones).
+/// explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is added, with
+/// its degrees of freedom; the errors of the camera and the plane, and of the scale, are propagated as signed shifts.
 #pragma once
 
 #include <Eigen/Core>
@@ -83,6 +64,15 @@ struct Linearised {
 /// Variance of the noise of one position of the block.
 double variance_of(const FitBlock& fit);
 
+/// The uncertainty of a fit of the whole motion: the noise's covariance, what residuals scatter beyond it, and what
+/// errors of the camera and the scale do.
+///
+/// With P the derivatives by the common parameters without the part that a block's own start can take up, and H = sum
+/// of P'P / s^2: covariance H^-1 [sum of P' Gamma P / s^4] H^-1, widened by the scores of pieces as the head of this
+/// file says. Where there are four blocks or more they are left out one at a time (the jackknife, to first order: -(H -
+/// H_b)^-1 P_b' r_b / s^2), and that covariance, which knows of no noise model (rounded positions that move slowly err
+/// together), counts where one of its variances is above the other's by more than chance makes it (chi2_ratio_limit,
+/// with n - 1 degrees of freedom).
 class TrajectoryUncertainty {
  public:
   /// At the minimum; all of it must outlive this.
@@ -103,6 +93,9 @@ class TrajectoryUncertainty {
   Eigen::MatrixXd normal_, inverse_;
 };
 
+/// Robust: from the least squares on, Huber's weights (1 up to 1.5 deviations, 1.5 over the deviations beyond; the
+/// scale is 1.4826 times each block's median residual) until they settle, then least squares without the positions that
+/// are off by more than 4 of these. Positions without outliers lose next to nothing by it (6 in 1e5 normal ones).
 struct TrajectoryOptions {
   bool robust = false;
 };

@@ -1,37 +1,8 @@
-/// render/ The true camera: a pinhole with a pose, seen through a lens, on a mount that does not keep still.
-///
-/// What a lens does to directions: undistorted coordinates (x, y) = (X/Z, Y/Z) become distorted ones, as calibration
-/// programs write them. With r² = x² + y²:
-///
-/// Brown-Conrady (5 coefficients) and its rational form (8):
-///
-///     R   = (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶)
-///     x_d = x R + 2 p1 x y + p2 (r² + 2 x²)
-///     y_d = y R + p1 (r² + 2 y²) + 2 p2 x y
-///
-/// Fisheye, equidistant: theta = atan(r), theta_d = theta (1 + k1 theta² + k2 theta⁴ + k3 theta⁶ + k4 theta⁸),
-/// (x_d, y_d) = (x, y) theta_d / r; directions less than 90 degrees off the axis.
-///
-/// Sources: D. C. Brown, "Close-range camera calibration", Photogrammetric Engineering 37 (1971), in the order of terms
-/// that calibration programs print; J. Kannala and S. S. Brandt, "A generic camera model and calibration method for
-/// conventional, wide-angle, and fish-eye lenses", IEEE TPAMI 28 (2006). Everything here is in double; validity ends
-/// where the mapping folds over.
-///
-/// The true camera: a pinhole with a pose, seen through a lens.
+/// The true camera: a pinhole with a pose, seen through a lens, on a mount that does not keep still.
 ///
 /// Frames (CONVENTIONS.md): W world, C camera (x right, y down, z forward); p_W = X_WC * p_C. A point at (X, Y, Z)_C
-/// has the undistorted coordinates (x, y) = (X/Z, Y/Z), the lens moves it to (x_d, y_d) (render/camera/camera.h), and
-/// it appears at the pixel (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0).
-///
-/// A camera that does not keep still, and one whose focus was changed after the calibration.
-///
-/// Each motion is along or about one of the camera's own axes: X_WC(t) = X_WC T(x, y, z) R_y(pan) R_x(tilt) R_z(roll),
-/// where each of the six is the sum over the motions of that axis of
-///
-///     offset + drift t + amplitude sin(2 pi f t + phase),
-///
-/// t counted from the clip's first exposure. The calibration's images are taken with all six at 0, and with the focal
-/// length that the camera's section says; the clips with (1 + focal_change) of it.
+/// has the undistorted coordinates (x, y) = (X/Z, Y/Z), the lens moves it to (x_d, y_d), and it appears at the pixel
+/// (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0). Everything here is in double.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,6 +16,22 @@ namespace glidelab::render {
 
 enum class LensModel { brown_conrady, rational, fisheye };
 
+/// What a lens does to directions: undistorted coordinates (x, y) = (X/Z, Y/Z) become distorted ones, as calibration
+/// programs write them. With r² = x² + y²:
+///
+/// Brown-Conrady (5 coefficients) and its rational form (8):
+///
+///     R   = (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶)
+///     x_d = x R + 2 p1 x y + p2 (r² + 2 x²)
+///     y_d = y R + p1 (r² + 2 y²) + 2 p2 x y
+///
+/// Fisheye, equidistant: theta = atan(r), theta_d = theta (1 + k1 theta² + k2 theta⁴ + k3 theta⁶ + k4 theta⁸), (x_d,
+/// y_d) = (x, y) theta_d / r; directions less than 90 degrees off the axis.
+///
+/// Validity ends where the mapping folds over. Sources: D. C. Brown, "Close-range camera calibration", Photogrammetric
+/// Engineering 37 (1971), in the order of terms that calibration programs print; J. Kannala and S. S. Brandt, "A
+/// generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses", IEEE TPAMI 28
+/// (2006).
 struct Lens {
   double k1 = 0.0;
   double k2 = 0.0;
@@ -124,6 +111,15 @@ struct MountMotion {
   double phase_rad = 0.0;
 };
 
+/// A camera that does not keep still, and one whose focus was changed after the calibration.
+///
+/// Each motion is along or about one of the camera's own axes: X_WC(t) = X_WC T(x, y, z) R_y(pan) R_x(tilt) R_z(roll),
+/// where each of the six is the sum over the motions of that axis of
+///
+///     offset + drift t + amplitude sin(2 pi f t + phase),
+///
+/// t counted from the clip's first exposure. The calibration's images are taken with all six at 0, and with the focal
+/// length that the camera's section says; the clips with (1 + focal_change) of it.
 struct Mount {
   double focal_change = 0.0;
   std::vector<MountMotion> motions;

@@ -1,22 +1,5 @@
-/// Times of exposure: when a clip's frames and each frame's rows are exposed, and what the file says about it.
-///
-/// Which row of the image is exposed when.
-///
-/// All rows are exposed equally long. A global shutter starts them together; a rolling one starts a row
-/// `line_readout_s` after the one before, from the image's top row or from its bottom row on. A frame's time belongs
-/// to the middle of the exposure of the image's middle row (height - 1)/2, as the experiment folder says.
-///
-/// When the frames of a clip are really exposed, which of them reach the file, and what the file says about their
-/// times.
-///
-///     start of slot k = k / (rate (1 + error)) + jitter_k        (jitter_0 = 0; normal, white)
-///     stamp of slot k = k / rate + jitter_k (1 + error), rounded to the tick: the same instant on the camera's own
-///     clock
-///
-/// A slot's image is recorded; or dropped: it is not in the file, and in a file of constant rate the later ones move
-/// up; or duplicated: the file has the image before, repeated, as software does that fills an empty slot. The first
-/// slot is always recorded. A function of the seed, the clip and the
-/// slot.
+/// Times of exposure: when a clip's frames and each frame's rows are really exposed, which frames reach the file, and
+/// what the file says about their times.
 #pragma once
 
 #include <cmath>
@@ -25,6 +8,11 @@
 
 namespace glidelab::render {
 
+/// Which row of the image is exposed when.
+///
+/// All rows are exposed equally long. A global shutter starts them together; a rolling one starts a row
+/// `line_readout_s` after the one before, from the image's top row or from its bottom row on. A frame's time belongs to
+/// the middle of the exposure of the image's middle row (height - 1)/2, as the experiment folder says.
 struct Shutter {
   bool rolling = false;
   double line_readout_s = 0.0;  ///< 0 for a global shutter
@@ -51,6 +39,16 @@ inline constexpr double kLargestJitter = 5.9;
 
 enum class FrameFate { recorded, dropped, duplicated };
 
+/// When the frames of a clip are really exposed, which of them reach the file, and what the file says about their
+/// times. A function of the seed, the clip and the slot.
+///
+///     start of slot k = k / (rate (1 + error)) + jitter_k        (jitter_0 = 0; normal, white)
+///     stamp of slot k = k / rate + jitter_k (1 + error), rounded to the tick: the same instant on the camera's
+///                       own clock
+///
+/// A slot's image is recorded; or dropped: it is not in the file, and in a file of constant rate the later ones move
+/// up; or duplicated: the file has the image before, repeated, as software does that fills an empty slot. The first
+/// slot is always recorded.
 class FrameClock {
  public:
   FrameClock(const ClockSetup& setup, double frame_rate_hz, std::uint64_t seed, std::uint32_t stream);

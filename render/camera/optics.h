@@ -1,26 +1,4 @@
 /// Optics of the true camera: sharpness, how light falls off towards the corners, and the exact ray of every pixel.
-///
-/// Sharpness: the thin lens's disc of confusion, and a Gaussian core of diffraction.
-///
-/// A lens of the focal length f = s d / (s + d), s = focal_px · pixel pitch being the distance from lens to sensor and
-/// d the focus distance, with the aperture D = f / N: a point at depth Z is spread evenly over a disc of the diameter
-/// D |1/Z - 1/d| in undistorted coordinates, times focal_px in the image. A point a of the aperture sees the point
-/// (X, Y, Z) at (X/Z, Y/Z) - a (1/Z - 1/d). The core is a Gaussian with sigma = 0.42 lambda N s / f, the one nearest to
-/// Airy's disc, and in quadrature what else blurs (`core_px`). The pixel's square is integrated over besides. Source:
-/// M. Born and E. Wolf, Principles of Optics, 8.5.2; B. Zhang et al., Applied Optics 46 (2007), for 0.42.
-///
-/// How much darker the image is towards its corners.
-///
-/// cos⁴: the illumination of a flat sensor behind a simple lens, cos⁴ of the angle between the ray and the optical
-/// axis. Radial: a table of gains over the distance from the principal point in pixels, linear between its entries;
-/// it multiplies the former. Applied to the light, before the sensor.
-///
-/// The exact inverse of the camera's mapping at every pixel, its derivative there, and how much light gets there.
-///
-/// For the pixel (u, v) the table gives the undistorted coordinates (x, y) of the ray through its centre, and the
-/// Jacobian d(x, y)/d(u, v). Within a pixel the mapping is taken as linear; the neglected second order is below
-/// |d²x/du²|/8, 3e-5 px for the strongest lens that `why_not_one_to_one` lets pass in an image of 800 px. Computed in
-/// double and rounded once to single precision: 2^-25 of half the image's width, 1e-5 px.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,6 +11,14 @@
 
 namespace glidelab::render {
 
+/// Sharpness: the thin lens's disc of confusion, and a Gaussian core of diffraction.
+///
+/// A lens of the focal length f = s d / (s + d), s = focal_px · pixel pitch being the distance from lens to sensor and
+/// d the focus distance, with the aperture D = f / N: a point at depth Z is spread evenly over a disc of the diameter D
+/// |1/Z - 1/d| in undistorted coordinates, times focal_px in the image. A point a of the aperture sees the point (X, Y,
+/// Z) at (X/Z, Y/Z) - a (1/Z - 1/d). The core is a Gaussian with sigma = 0.42 lambda N s / f, the one nearest to Airy's
+/// disc, and in quadrature what else blurs (`core_px`). The pixel's square is integrated over besides. Source: M. Born
+/// and E. Wolf, Principles of Optics, 8.5.2; B. Zhang et al., Applied Optics 46 (2007), for 0.42.
 struct Focus {
   double f_number = 0.0;
   double focus_distance_m = 0.0;
@@ -61,6 +47,11 @@ struct FocusSample {
 /// exact covariance, 1/4 and 1 on the diagonal. `count` is even: samples come in opposite pairs.
 std::vector<FocusSample> focus_samples(std::size_t count);
 
+/// How much darker the image is towards its corners.
+///
+/// cos⁴: the illumination of a flat sensor behind a simple lens, cos⁴ of the angle between the ray and the optical
+/// axis. Radial: a table of gains over the distance from the principal point in pixels, linear between its entries; it
+/// multiplies the former. Applied to the light, before the sensor.
 struct Vignetting {
   bool cos4 = false;
   std::vector<Eigen::Vector2d> radial;  ///< (radius_px, gain), radii rising from 0 to beyond the farthest corner
@@ -96,6 +87,12 @@ inline bool overlap(const RayBounds& a, const RayBounds& b) {
 /// The image is cut into tiles of kRayTile x kRayTile pixels, from its first pixel on.
 inline constexpr int kRayTile = 8;
 
+/// The exact inverse of the camera's mapping at every pixel, its derivative there, and how much light gets there.
+///
+/// For the pixel (u, v) the table gives the undistorted coordinates (x, y) of the ray through its centre, and the
+/// Jacobian d(x, y)/d(u, v). Within a pixel the mapping is taken as linear; the neglected second order is below
+/// |d²x/du²|/8, 3e-5 px for the strongest lens that `why_not_one_to_one` lets pass in an image of 800 px. Computed in
+/// double and rounded once to single precision: 2^-25 of half the image's width, 1e-5 px.
 struct RayTable {
   int width = 0;
   int height = 0;

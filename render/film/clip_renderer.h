@@ -1,8 +1,4 @@
 /// Clips as the sensor reads them out: the frames of one, one after the other, and all clips of a scenario.
-///
-/// Frames of one clip, one after the other, as the sensor reads them out: for a file, or for a consumer in memory.
-///
-/// The clips of a scenario, to be drawn by any caller: what they share is made once.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +17,7 @@
 
 namespace glidelab::render {
 
+/// Frames of one clip, one after the other, as the sensor reads them out: for a file, or for a consumer in memory.
 class ClipRenderer {
  public:
   /// `background_e` is what stands still, in electrons; it and `rays` are shared and outlive this. `stream` keys the
@@ -85,7 +82,8 @@ struct Stage {
 /// several threads at once.
 std::shared_ptr<const Stage> set_stage(const Scenario& scenario, int jobs, const std::function<void()>& drawn = {});
 
-/// Not to be moved or copied: renderers refer to it.
+/// The clips of a scenario, to be drawn by any caller: what they share is made once. Not to be moved or copied:
+/// renderers refer to it.
 class ClipSet {
  public:
   explicit ClipSet(const Scenario& scenario, int jobs = 1, const std::function<void()>& drawn = {});

@@ -1,9 +1,5 @@
-/// A scenario rendered to an experiment folder, with the poses of its calibration board, and its truth to the folder
-/// beside it.
-///
-/// The poses in which the chessboard is held before the camera.
-///
-/// A scenario rendered to an experiment folder, and its truth to the folder beside it.
+/// A scenario rendered to an experiment folder, with the poses in which the chessboard is held before the camera, and
+/// its truth to the folder beside it.
 #pragma once
 
 #include <cstdint>

@@ -1,19 +1,5 @@
-/// Files of the truth: what a render writes beside the clips (experiment.toml, true values, true marker, ideal frames).
-///
-/// The text files of the two folders: experiment.toml, and the truth beside it.
-///
-/// Where the marker truly is in each frame's image, for the truth folder.
-///
-/// A frame shows the marker as it is at the middle of the exposure of the row that its centre lies on (with a global
-/// shutter, of any row). Centre: the projection of the sphere's centre. Centroid: of the area of the sphere's sharp
-/// image at that instant, which differs by what perspective and lens do to a sphere (some 1e-3 px of a small one).
-///
-/// The second product of a render: frames as a perfect camera would take them, and where the marker is in each.
-///
-/// Ideal frames are sharp in every way (no lens distortion, no blur, an instant for an exposure, no vignetting, an
-/// even light, a mount at rest, no noise), by the same pinhole at rest, at each frame's time (the middle of the middle
-/// row's exposure; slot by slot of a clock without error, jitter, dropped and repeated frames). They have 8 bits: the
-/// code is 0.75 · 255 times the radiance, rounded and limited to 255, so that white is 191.
+/// What a render writes beside the clips: experiment.toml, and the truth, which is the true values, the marker's true
+/// place in every frame, and ideal frames.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +25,11 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed);
 /// Where the pattern's first corner, projected on the line of motion of this inclination, lies on the track.
 double x_origin_m(const Scenario& scenario, double incline_rad);
 
+/// Where the marker truly is in a frame's image, for the truth folder.
+///
+/// A frame shows the marker as it is at the middle of the exposure of the row that its centre lies on (with a global
+/// shutter, of any row). Centre: the projection of the sphere's centre. Centroid: of the area of the sphere's sharp
+/// image at that instant, which differs by what perspective and lens do to a sphere (some 1e-3 px of a small one).
 struct MarkerInPicture {
   double t_s = 0.0;  ///< the instant, on the recording's clock
   double x_m = 0.0;  ///< on the track, then
@@ -50,6 +41,13 @@ struct MarkerInPicture {
 std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const sim::Body& body,
                                                  const FrameMotion& frame);
 
+/// The second product of a render: frames as a perfect camera would take them, and where the marker is in each.
+///
+/// Ideal frames are sharp in every way (no lens distortion, no blur, an instant for an exposure, no vignetting, an even
+/// light, a mount at rest, no noise), by the same pinhole at rest, at each frame's time (the middle of the middle row's
+/// exposure; slot by slot of a clock without error, jitter, dropped and repeated frames). They have 8 bits: the code is
+/// 0.75 · 255 times the radiance, rounded and limited to 255, so that white is 191.
+///
 /// Writes `ideal-<clip>.mkv` (FFV1) and `ideal-<clip>.csv` (frame,t_s,u_px,v_px: the projection of the marker's centre,
 /// for the frames that hold it) of every clip into `truth_dir`, on up to `jobs` threads.
 void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& truth_dir, int jobs);

@@ -1,20 +1,4 @@
 /// The background of a frame: the scene at rest as a camera sees it that moves, and spots of reflected light.
-///
-/// A scene at rest, seen by a camera that moves.
-///
-/// The scene is ray-cast once, over a margin around the image and finer than its pixels (kFine to a pixel), and each
-/// fine place then holds the mean over a pixel's square about it: what a pixel shows whose ray leads there. A frame
-/// takes each pixel from where its ray leads at that instant, bilinearly between fine places. The directions are exact
-/// (one projection every 16 px along a row, linear between them); within 1/kFine of a pixel an image is taken as
-/// linear, which errs where a straight edge along rows or columns enters a pixel, by 1/(4 kFine) of its contrast at
-/// most. A camera that is moved sideways sees parallax: by the depth of what the still camera sees there, so that
-/// within a pixel or two of an edge in depth the image is an estimate.
-///
-/// Spots of reflected light in a frame (render/scenario/scenario_data.h).
-///
-/// A spot's image is a Gaussian about the projection of its middle, with the standard deviation radius · focal/Z
-/// along both axes; each pixel gets its exact integral over the pixel. It is drawn up to six standard deviations.
-/// During the exposure it moves; with a rolling shutter it is taken at the time of its middle's row, without shear.
 #pragma once
 
 #include <optional>
@@ -30,8 +14,18 @@
 
 namespace glidelab::render {
 
+/// Fine places to a pixel, along either axis.
 inline constexpr int kFine = 4;
 
+/// A scene at rest, seen by a camera that moves.
+///
+/// The scene is ray-cast once, over a margin around the image and finer than its pixels (kFine to a pixel), and each
+/// fine place then holds the mean over a pixel's square about it: what a pixel shows whose ray leads there. A frame
+/// takes each pixel from where its ray leads at that instant, bilinearly between fine places. The directions are exact
+/// (one projection every 16 px along a row, linear between them); within 1/kFine of a pixel an image is taken as
+/// linear, which errs where a straight edge along rows or columns enters a pixel, by 1/(4 kFine) of its contrast at
+/// most. A camera that is moved sideways sees parallax: by the depth of what the still camera sees there, so that
+/// within a pixel or two of an edge in depth the image is an estimate.
 struct FinePicture {
   Camera camera;         ///< at rest, of the image's own size
   RayTable rays;         ///< of it
@@ -54,6 +48,11 @@ void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int
              std::span<float> values);
 
 /// Adds the spot, `white_e` for a radiance of 1, to the pixels of `within`; gives the pixels that it changed.
+///
+/// A spot (render/scenario/scenario_data.h) is in the image a Gaussian about the projection of its middle, with the
+/// standard deviation radius · focal/Z along both axes; each pixel gets its exact integral over the pixel. It is drawn
+/// up to six standard deviations. During the exposure it moves; with a rolling shutter it is taken at the time of its
+/// middle's row, without shear.
 PixelRect add_reflection(const Scenario& scenario, const RayTable& rays, const sim::Body& body,
                          const Reflection& reflection, const FrameMotion& frame, double white_e,
                          const PixelRect& within, FloatPicture& picture);

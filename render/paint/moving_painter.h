@@ -1,15 +1,6 @@
 /// The painter of what moves, over the exposure, in the rectangle of pixels that it touches; with the glider's
 /// outlines.
 ///
-/// The glider's outlines as one view sees them, in undistorted coordinates, where straight edges are straight lines.
-///
-/// An outline moves with the body's shift s along the track: the line through the images of p + s d and q + s d is
-/// (p + s d) x (q + s d) = p x q + s (p - q) x d, linear in s. So what holds of a line at both ends of a range of
-/// shifts holds within it, and a tile of pixels (optics.h) that lies on one side of all lines at both ends is
-/// decided without a look at its pixels.
-///
-/// Draws what moves, over the exposure, in the rectangle of pixels that it touches.
-///
 /// Every shape's coverage of a pixel is that of the half-planes that bound it there, each by the exact area that a
 /// straight line cuts off the unit square: outlines are projected exactly, the lens is taken as linear within a pixel,
 /// and the sphere is taken in quarters of a pixel with its curvature corrected to first order in 1/radius. Light is
@@ -71,6 +62,13 @@ struct InTile {
 };
 InTile place_in_tile(const Polygon& polygon, const RayBounds& tile, const ShiftRange& shifts);
 
+/// The glider's outlines as one view sees them, in undistorted coordinates, where straight edges are straight lines.
+///
+/// An outline moves with the body's shift s along the track: the line through the images of p + s d and q + s d is (p +
+/// s d) x (q + s d) = p x q + s (p - q) x d, linear in s. So what holds of a line at both ends of a range of shifts
+/// holds within it, and a tile of pixels (optics.h) that lies on one side of all lines at both ends is decided without
+/// a look at its pixels.
+///
 /// What a view shows of a body that stands at x_m = middle on its track, give or take the shifts. In the order in which
 /// they are drawn: a box's faces, then its patches, the next box. NumericalError where a part is not before the camera.
 class Shapes {

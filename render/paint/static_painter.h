@@ -1,10 +1,5 @@
-/// The painter of what stands still, once for each set-up: where its parts are in the image, and which rays are cast.
-///
-/// Where in the image the parts of a scene are: rectangles of pixels that hold them.
-///
-/// Which rays are cast at what stands still: how many a pixel, and where they go.
-///
-/// Renders what stands still, once for each set-up, by ray casting in a fragment shader.
+/// The painter of what stands still, once for each set-up, by ray casting in a fragment shader: where its parts are in
+/// the image, how many rays are cast at each pixel, and where they go.
 ///
 /// A pixel is the mean of the radiance over its square, by rays through the exact inverse of the lens: 4 where all is
 /// even (found by a first pass), and where it changes within the pixel or its neighbours 16, or 64 at edges. They are
@@ -27,7 +22,8 @@
 
 namespace glidelab::render {
 
-/// The whole image where a part of the box's edges is not before the camera.
+/// The rectangle of pixels that holds the box. The whole image where a part of the box's edges is not before the
+/// camera.
 PixelRect pixels_of(const Camera& camera, const StaticBox& box);
 
 /// The pixels that the board and the plumb line may change, with `reach_px` around; empty without either.

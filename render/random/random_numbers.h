@@ -1,23 +1,10 @@
-/// Random numbers as a function of counter and key: Philox, which stream is for what, rows of words, normal and Poisson
-/// deviates.
-///
-/// Philox4x32-10: random numbers as a function of a counter and a key, with no state.
+/// Random numbers as a function of a counter and a key, with no state: Philox4x32-10, the words of a row of pixels,
+/// normal and Poisson deviates.
 ///
 /// Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC '11.
 /// Ten rounds of two 32 x 32 -> 64 bit multiplications; passes TestU01's BigCrush. Every value is a pure function of
-/// its inputs, so that it is the same in any order and on any number of threads.
-///
-/// The random words of a row of pixels: Philox4x32-10, in groups of 32 pixels of 8 blocks each (sensor.h says what
-/// for).
-///
-/// Two normal deviates of two random words, by Box and Muller's method in single precision: at most 5.9 standard
-/// deviations. Only IEEE-exact operations, so that every way to vectorise it gives the same bits.
-///
-/// Exact Poisson numbers for small means, from two uniform words each.
-///
-/// Poisson(mean) is the sum of Poisson(n), n the whole part of the mean, and Poisson(the rest): the first by inversion
-/// of a tabulated distribution (found through a guide, so that it takes a few steps at any mean), the second by
-/// sequential inversion. Exact to the 2^-32 of a uniform word.
+/// its inputs, so that it is the same in any order and on any number of threads. streams.h says which stream is for
+/// what.
 #pragma once
 
 #include <array>
@@ -72,6 +59,9 @@ struct RowNoise {
   PhiloxKey key;
 };
 
+/// The random words of a row of pixels: Philox4x32-10, in groups of 32 pixels of 8 blocks each (sensor.h says what
+/// for).
+///
 /// Words of the blocks first_block, first_block + 1, …, 8 blocks a group, into `words` (32 a group): word j of block b
 /// of group g at 32 g + 8 j + b. RandomPurpose::pixel_noise.
 void row_words(std::uint32_t first_block, int groups, const RowNoise& noise, std::uint32_t* words, Simd simd);
@@ -117,13 +107,19 @@ struct NormalPair {
   float z1;
 };
 
-/// Two normal deviates of two words (Box and Muller).
+/// Two normal deviates of two random words, by Box and Muller's method in single precision: at most 5.9 standard
+/// deviations. Only IEEE-exact operations, so that every way to vectorise it gives the same bits.
 inline NormalPair normal_pair(std::uint32_t word0, std::uint32_t word1) {
   const PolarPair pair = polar_pair(word0, word1);
   const float radius = std::sqrt(pair.square);
   return {radius * pair.cosine, radius * pair.sine};
 }
 
+/// Exact Poisson numbers for small means, from two uniform words each.
+///
+/// Poisson(mean) is the sum of Poisson(n), n the whole part of the mean, and Poisson(the rest): the first by inversion
+/// of a tabulated distribution (found through a guide, so that it takes a few steps at any mean), the second by
+/// sequential inversion. Exact to the 2^-32 of a uniform word.
 class PoissonTable {
  public:
   /// For means in [0, largest_mean).

@@ -1,9 +1,4 @@
-/// A scenario from its TOML file, with the camera file whose values it takes over.
-///
-/// A camera of the catalogue (docs/reference/cameras.md): the values that a scenario takes over where it has none of
-/// its own.
-///
-/// A scenario from its TOML file (docs/reference/scenario.md).
+/// A scenario from its TOML file (docs/reference/scenario.md), with the camera file whose values it takes over.
 #pragma once
 
 #include <filesystem>
@@ -15,6 +10,8 @@
 
 namespace glidelab::render {
 
+/// A camera of the catalogue (docs/reference/cameras.md): the values that a scenario takes over where it has none of
+/// its own.
 struct CameraFile {
   std::string name;
   std::string price_class;

@@ -1,15 +1,7 @@
 /// What a scenario holds: the true motions, the light as it changes, and everything that stands before the camera and
 /// in it.
 ///
-/// The light of a scene as it changes from image to image and from place to place.
-///
-/// Flicker: all light is multiplied by 1 + depth cos(2 pi f t + phase), t counted from the clip's first exposure; a row
-/// gets its mean over the row's exposure [a, a + T], 1 + depth sinc(pi f T) cos(2 pi f (a + T/2) + phase). Still
-/// images do not flicker. A reflection is a round spot of light with a Gaussian profile, added to what stands there;
-/// it follows its own velocity, and the glider's motion times `follow`.
-///
-/// What a scenario holds: the true motions, and everything that stands before the camera and in it. SI units and
-/// radians; pixels where the name says so. scenario.h reads it, scenario_sections.h names its sections.
+/// SI units and radians; pixels where the name says so. scenario.h reads it, scenario_sections.h names its sections.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,6 +21,8 @@
 
 namespace glidelab::render {
 
+/// A round spot of light with a Gaussian profile, added to what stands there; it follows its own velocity, and the
+/// glider's motion times `follow`.
 struct Reflection {
   Eigen::Vector3d position_W =
       Eigen::Vector3d::Zero();  ///< at the clip's start; with `follow`, when the glider is at x = 0
@@ -39,6 +33,11 @@ struct Reflection {
   bool in_front = false;  ///< of the glider; else it hides the spot
 };
 
+/// The light of a scene as it changes from image to image and from place to place.
+///
+/// Flicker: all light is multiplied by 1 + depth cos(2 pi f t + phase), t counted from the clip's first exposure; a row
+/// gets its mean over the row's exposure [a, a + T], 1 + depth sinc(pi f T) cos(2 pi f (a + T/2) + phase). Still images
+/// do not flicker.
 struct Light {
   double level = 1.0;                                        ///< of all light
   Eigen::Vector2d gradient_per_m = Eigen::Vector2d::Zero();  ///< light is times exp(gradient · (x, y)) in the world

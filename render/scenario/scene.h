@@ -1,17 +1,9 @@
-/// The laboratory of a scenario, as the painters draw it: what stands still, what moves, and how a scenario makes them.
-///
-/// What stands still before the camera: wall, boxes (track, feet, table), the plumb line and the calibration pattern.
+/// The laboratory of a scenario, as the painters draw it for each image: what stands still, what moves, and how a
+/// scenario makes them.
 ///
 /// World frame, metres. Radiance is relative: a white surface that faces the camera side, at the middle of the light,
 /// has radiance 1. A surface's radiance is albedo * light(position) * (ambient + diffuse part), Lambertian, with soft
 /// shadows of the boxes; that is a plausible laboratory, not a claim about a real one.
-///
-/// What moves along the track, as the moving painter draws it: boxes, flat patches on them, and the marker's sphere.
-///
-/// All positions are in the world frame for the body at x = 0 on the track; at x it stands shifted by x * direction_W.
-/// The painter draws the boxes in the given order, each over the ones before, and the marker over all of them.
-///
-/// The laboratory of a scenario: what the painters get to draw for each image.
 ///
 /// The line of motion of a set-up with inclination a passes through the world's origin, off the plane z = 0 by the
 /// marker's height, along (cos a, -sin a, 0) (track.downhill = +1) or (-cos a, -sin a, 0) (-1).
@@ -63,6 +55,7 @@ struct PlumbLine {
   double albedo = 0.03;
 };
 
+/// What stands still before the camera: wall, boxes (track, feet, table), the plumb line and the calibration pattern.
 struct StaticScene {
   double wall_z_m = -0.6;
   double wall_albedo = 0.4;
@@ -112,6 +105,10 @@ struct MarkerSphere {
   double radiance = 0.0;
 };
 
+/// What moves along the track, as the moving painter draws it: boxes, flat patches on them, and the marker's sphere.
+///
+/// All positions are in the world frame for the body at x = 0 on the track; at x it stands shifted by x * direction_W.
+/// The painter draws the boxes in the given order, each over the ones before, and the marker over all of them.
 struct MovingBody {
   Eigen::Vector3d direction_W = Eigen::Vector3d::UnitX();  ///< the track's +x, of length 1
   std::vector<MovingBox> boxes;

@@ -1,27 +1,7 @@
-/// From light to codes in a sensor: fixed patterns, noise, saturation, gain, offset, quantisation, tone curve.
+/// From light to codes in a sensor: fixed patterns, shot noise, read noise, saturation, gain, offset, quantisation; and
+/// the tone curve behind it.
 ///
-/// From linear light to the codes of a video: what a camera does to the converter's codes before it writes them.
-///
-///     linear   y = x
-///     gamma    y = x^(1 / gamma)
-///     bt709    y = 4.5 x below 0.018, else 1.099 x^0.45 - 0.099       (ITU-R BT.709, the transfer of HD video)
-///     table    straight lines between points that rise from (0, 0) to (1, 1)
-///
-/// x is the code above black over that of white, y likewise, both from 0 to 1.
-///
-/// How the pixels of one sensor differ from one another: the same in all frames and views of a camera.
-///
-///     response_p = max(0, 1 + PRNU z1)            0 for a dead pixel
-///     dark_p     = dark signal * exposure         more by an exponentially distributed signal for a hot pixel
-///     offset_p   = DSNU z2
-///
-/// with z1, z2 standard normal, white over the sensor (EMVA standard 1288: photo response and dark signal
-/// non-uniformity; DSNU at the exposure of the clip). A function of the seed and the
-/// pixel's place alone (RandomPurpose::fixed_pattern).
-///
-/// From light to codes in a sensor: fixed patterns, shot noise, read noise, saturation, gain, offset, quantisation.
-///
-///     expected  = light response_p + dark_p                     (of pixel p; sensor.h)
+///     expected  = light response_p + dark_p                     (of pixel p; FixedPattern)
 ///     electrons = min(Poisson(expected), full well) + Normal(0, read noise) + offset_p
 ///     code      = round(gain electrons + offset), limited to 0 … 2^bits - 1 as a converter does
 ///
@@ -50,6 +30,14 @@
 
 namespace glidelab::render {
 
+/// From linear light to the codes of a video: what a camera does to the converter's codes before it writes them.
+///
+///     linear   y = x
+///     gamma    y = x^(1 / gamma)
+///     bt709    y = 4.5 x below 0.018, else 1.099 x^0.45 - 0.099       (ITU-R BT.709, the transfer of HD video)
+///     table    straight lines between points that rise from (0, 0) to (1, 1)
+///
+/// x is the code above black over that of white, y likewise, both from 0 to 1.
 struct ToneCurve {
   enum class Kind { linear, gamma, bt709, table };
   Kind kind = Kind::linear;
@@ -77,7 +65,16 @@ struct PixelSpread {
   bool operator==(const PixelSpread&) const = default;
 };
 
-/// Row by row, for each pixel.
+/// How the pixels of one sensor differ from one another, row by row, for each pixel: the same in all frames and views
+/// of a camera.
+///
+///     response_p = max(0, 1 + PRNU z1)            0 for a dead pixel
+///     dark_p     = dark signal * exposure         more by an exponentially distributed signal for a hot pixel
+///     offset_p   = DSNU z2
+///
+/// with z1, z2 standard normal, white over the sensor (EMVA standard 1288: photo response and dark signal
+/// non-uniformity; DSNU at the exposure of the clip). A function of the seed and the pixel's place alone
+/// (RandomPurpose::fixed_pattern).
 struct FixedPattern {
   int width = 0;
   int height = 0;

@@ -1,16 +1,5 @@
-/// The writer of clips and stills: their format on disk, and libav, which is used there and nowhere else.
-///
-/// How a clip lies on disk: lossless (FFV1, uncompressed, a folder of 16-bit PNG for more than 8 bits), or as cameras
-/// write it (MJPEG, H.264), in Matroska, AVI or MP4.
-///
-/// Clips through libavformat and libavcodec (there and nowhere else).
-///
-/// Writes grey clips and stills.
-///
-/// A clip has a constant rate, frame k at k / frame_rate, or a time stamp for every frame. Matroska rounds stamps to
-/// its tick of 1 ms and carries the exact rate beside them; MP4 counts in 1/90000 s; AVI has a constant rate and no
-/// rounding. Every write is checked: a full disk is an EnvironmentError that names the file, at the frame, at finish()
-/// or never.
+/// The writer of grey clips and stills: their format on disk, and libavformat and libavcodec, which are used there and
+/// nowhere else.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +26,8 @@ struct Compression {
   int gop = 30;                             ///< of h264: frames from one key frame to the next
 };
 
+/// How a clip lies on disk: lossless (FFV1, uncompressed, a folder of 16-bit PNG for more than 8 bits), or as cameras
+/// write it (MJPEG, H.264), in Matroska, AVI or MP4.
 struct VideoFormat {
   Codec codec = Codec::ffv1;
   int width = 0;  ///< even for h264, and height too
@@ -59,6 +50,12 @@ bool fits(Codec codec, Container container);
 std::string file_name_of(Codec codec, const Compression& compression, const std::string& clip);
 std::string file_name_of(Codec codec, const std::string& clip);
 
+/// Writes the frames of one grey clip.
+///
+/// A clip has a constant rate, frame k at k / frame_rate, or a time stamp for every frame. Matroska rounds stamps to
+/// its tick of 1 ms and carries the exact rate beside them; MP4 counts in 1/90000 s; AVI has a constant rate and no
+/// rounding. Every write is checked: a full disk is an EnvironmentError that names the file, at the frame, at finish()
+/// or never.
 class VideoWriter {
  public:
   virtual ~VideoWriter() = default;
@@ -71,7 +68,8 @@ class VideoWriter {
   virtual void finish() = 0;
 };
 
-/// For every codec but png. EnvironmentError where the file cannot be written or the encoder is missing.
+/// A clip through libavformat and libavcodec, for every codec but png. EnvironmentError where the file cannot be
+/// written or the encoder is missing.
 std::unique_ptr<VideoWriter> open_libav(const std::filesystem::path& path, const VideoFormat& format);
 
 }  // namespace glidelab::render

@@ -1,8 +1,4 @@
-/// report/ report.html of `analyze`: one self-contained page, and what its numbers say in words.
-///
-/// What the numbers say, in words, at the head of a page.
-///
-/// report.html of `analyze`: one self-contained page.
+/// report.html of `analyze`: one self-contained page, with what its numbers say in words at its head.
 #pragma once
 
 #include <string>

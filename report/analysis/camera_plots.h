@@ -1,14 +1,5 @@
-/// Plots of the camera's remaining errors: the calibration's residuals over the image, and pixel locking.
-///
-/// What a camera's images leave that its model does not have: the calibration's residuals over the image, and pixels'
-/// noise over their brightness.
-///
-/// Pixel locking: does the error of a centre follow where in its pixel the centre lies?
-///
-/// For every marker centre, along the image's axis in which it moves most: its phase (distance from the pixel's
-/// middle, -0.5 to 0.5 px) and its error in pixels, that is the measured position minus the smoothed one (or, in a
-/// rehearsal, minus the true one) times the pixels a metre of its clip. A finder that is drawn towards whole pixels
-/// shows a wave; its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
+/// Plots of what a camera's images leave that its model does not have: the calibration's residuals over the image,
+/// pixels' noise over their brightness, and pixel locking.
 #pragma once
 
 #include <optional>
@@ -32,7 +23,9 @@ Plot noise_plot(const diagnose::PictureCurve& curve);
 /// Root mean square of a curve's distances from what was fitted, over their standard deviations.
 double curve_excess(const diagnose::PictureCurve& curve);
 
-/// One centre.
+/// One marker's centre, along the image's axis in which the marker moves most: its phase (distance from the pixel's
+/// middle) and its error in pixels, that is the measured position minus the smoothed one (or, in a rehearsal, minus the
+/// true one) times the pixels a metre of its clip.
 struct PixelPhase {
   double phase_px = 0.0;  ///< from the middle of its pixel, -0.5 to 0.5
   double error_px = 0.0;
@@ -44,6 +37,8 @@ std::vector<PixelPhase> phase_points(const core::AnalysisResults& results);
 std::vector<PixelPhase> phase_points(const core::AnalysisResults& results,
                                      const validate::RestitutionComparison& restitution);
 
+/// Does the error of a centre follow where in its pixel the centre lies? A finder that is drawn towards whole pixels
+/// shows a wave; its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
 struct PixelLocking {
   double amplitude_px = 0.0;  ///< of the first harmonic
   double sd_px = 0.0;         ///< of A and of B, the errors taken as independent

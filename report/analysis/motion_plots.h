@@ -1,11 +1,5 @@
-/// Plots of the motion: x(t), v(t) and a(t) of a clip, and a(v) with the fitted lines.
-///
-/// The lines a = a0 - (K/m) v that an analysis fitted, one for each direction of motion at most.
-///
-/// x(t), v(t) and a(t) of one clip, as measured and smoothed, with what was left out in grey.
-///
-/// a(v) diagrams as the paper's figures 6 to 9: points of all masses on one stated inclination, their lines, and the
-/// gap at v = 0.
+/// Plots of the motion: x(t), v(t) and a(t) of a clip, and a(v) with the lines a = a0 - (K/m) v that an analysis
+/// fitted, one for each direction of motion at most.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +24,8 @@ inline double line_at(const core::LineFit& line, double v_m_s) {
   return line.a0_m_s2.value - line.k_over_m_1_s.value * v_m_s;
 }
 
-/// Three plots, or none if no frame has a position.
+/// x(t), v(t) and a(t) of one clip, as measured and smoothed, with what was left out in grey: three plots, or none if
+/// no frame has a position.
 std::vector<Plot> motion_plots(const core::ClipResult& clip);
 
 /// The configurations of one stated inclination: what one diagram shows.
@@ -49,8 +44,9 @@ std::string configuration_label(const core::AnalysisResults& results, const Phas
 /// the line's own intervals; 0 of a line without errors.
 double line_half95_m_s2(const core::LineFit& line, double v_m_s);
 
-/// The diagram, its detail near v = 0, and the residuals of the lines, each with the lines' 95 % bands and the bars of
-/// some points; none if no point is used. Where a known force was applied, a - F/m stands for a.
+/// a(v) diagrams as the paper's figures 6 to 9: points of all masses on one stated inclination, their lines, and the
+/// gap at v = 0. The diagram, its detail near v = 0, and the residuals of the lines, each with the lines' 95 % bands
+/// and the bars of some points; none if no point is used. Where a known force was applied, a - F/m stands for a.
 std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group);
 
 }  // namespace glidelab::report

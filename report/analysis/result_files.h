@@ -1,12 +1,4 @@
-/// Result files of an analysis, as other programs read them: results.json, and tables of each clip's motion.
-///
-/// Files of one clip's smoothed motion, as tables.
-///
-/// results.json: what an analysis found, in the form that other programs read.
-///
-/// A quantity that the data do not determine is null, and the object "why" beside it says why. Beyond what the form
-/// asks for, clips hold their stretches, what was left out, notes and the name of their CSV; configurations their group
-/// and lines; every folder's calibration stands in "calibrations" where there are several.
+/// Result files of an analysis, as other programs read them: results.json, and tables of each clip's smoothed motion.
 #pragma once
 
 #include <string>
@@ -42,7 +34,12 @@ std::vector<std::string> motion_file_names(const core::AnalysisResults& results)
 /// NumericalError if a value is not finite.
 std::string phase_csv(const core::ClipResult& clip);
 
-/// The text of results.json. It depends on the results alone.
+/// The text of results.json: what an analysis found, in the form that other programs read. It depends on the results
+/// alone.
+///
+/// A quantity that the data do not determine is null, and the object "why" beside it says why. Beyond what the form
+/// asks for, clips hold their stretches, what was left out, notes and the name of their CSV; configurations their group
+/// and lines; every folder's calibration stands in "calibrations" where there are several.
 std::string results_json(const core::AnalysisResults& results);
 
 /// "fisheye" or "brown-conrady": a fisheye's distortion has four terms, k1 to k4, the other five.

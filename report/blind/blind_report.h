@@ -1,8 +1,4 @@
-/// The results of blind cases: a file, a text, a page; with the targets, and what a score means.
-///
-/// The targets for blind cases, and what their score means in words.
-///
-/// The results of blind cases: a file, a text, a page.
+/// The results of blind cases: a file, a text, a page; with the targets, and what a score means in words.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,4 @@
-/// A measured camera as a page, a table and characterize.json.
-///
-/// A measured camera as characterize.json, as a table, and as the rows that table, page and JSON share.
-///
-/// The page of a measured camera: its numbers, the photon-transfer diagram, what was noticed.
+/// A measured camera as characterize.json, as a table and as a page, and the rows that these three share.
 #pragma once
 
 #include <string>
@@ -32,7 +28,8 @@ std::string camera_json(const core::CameraMeasurement& camera);
 /// The same as a table for a terminal, with notes and reasons below.
 std::string camera_text(const core::CameraMeasurement& camera);
 
-/// A self-contained HTML page. EnvironmentError if gnuplot fails.
+/// The page of a measured camera, self-contained HTML: its numbers, the photon-transfer diagram, what was noticed.
+/// EnvironmentError if gnuplot fails.
 Page camera_report(const core::CameraMeasurement& camera);
 
 }  // namespace glidelab::report

@@ -1,8 +1,4 @@
-/// What `glidelab check` found: check.json, a page, and text for a terminal.
-///
-/// check.json: what `glidelab check` found (docs/reference/check.md).
-///
-/// What `glidelab check` found, for people: a page, and text for a terminal.
+/// What `glidelab check` found: check.json (docs/reference/check.md), a page, and text for a terminal.
 #pragma once
 
 #include <string>

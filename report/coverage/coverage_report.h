@@ -1,8 +1,5 @@
-/// How often intervals hold the truth: coverage.json, its table for a terminal, its page, its plots.
-///
-/// Plots of how often intervals hold the truth (validate/study/coverage/interval_coverage.h).
-///
-/// coverage.json, its table for a terminal, and its page.
+/// How often intervals hold the truth (validate/study/coverage/interval_coverage.h): coverage.json, its table for a
+/// terminal, its page, its plots.
 #pragma once
 
 #include <string>

@@ -1,8 +1,4 @@
-/// A diagnosis for people: report.html of `diagnose`, and text for a terminal.
-///
-/// report.html of `diagnose`: one self-contained page.
-///
-/// A diagnosis for a terminal.
+/// A diagnosis for people: report.html of `diagnose`, one self-contained page, and text for a terminal.
 #pragma once
 
 #include <string>

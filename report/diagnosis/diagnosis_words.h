@@ -1,10 +1,6 @@
-/// Words of a diagnosis: names of its explanations, its notes as sentences, and what to record next.
-///
-/// Explanations and verdicts as ids (for files and terminals) and as names (for people).
-///
-/// Notes of a diagnosis (diagnose/result/note.h) as sentences.
-///
-/// What to record next (diagnose/result/next_step.h) as a sentence or two.
+/// Words of a diagnosis: its explanations and verdicts as ids (for files and terminals) and as names (for people), its
+/// notes (diagnose/result/note.h) as sentences, and what to record next (diagnose/result/next_step.h) as a sentence or
+/// two.
 #pragma once
 
 #include <string>

@@ -1,8 +1,5 @@
-/// The gap of a diagnosis as plots: how large, where in which clip, in the phase plane, and a twin beside its data.
-///
-/// The gap of a diagnosis as plots: how large in each domain, where in which clip, and in the phase plane.
-///
-/// A twin compared with the data that it was made from.
+/// The gap of a diagnosis as plots: how large in each domain, where in which clip, and in the phase plane; and a twin
+/// compared with the data that it was made from.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,5 @@
-/// The page of a diagnosis of published lines, with its plots.
-///
-/// The plots of a table of lines.
-///
-/// The page of a diagnosis of published lines: the page of motions speaks of clips, positions and their noise.
+/// The page of a diagnosis of published lines, with its plots. The page of motions does not serve: it speaks of clips,
+/// positions and their noise.
 #pragma once
 
 #include <string>

@@ -1,10 +1,5 @@
-/// The verdict in plain words, of clips and of published lines, and as the lead of a page.
-///
-/// What a table of lines says, in plain words.
-///
-/// The verdict in plain words, of clips and of published lines.
-///
-/// What stands first on the page of a diagnosis, of clips and of lines alike: tiles, and what they mean in words.
+/// The verdict in plain words, of clips and of published lines, and what stands first on the page of either: tiles, and
+/// what they mean in words.
 #pragma once
 
 #include <string>
@@ -13,7 +8,8 @@
 
 namespace glidelab::report {
 
-/// A paragraph for somebody who knows the experiment and no statistics. `diagnosis.lines` is there.
+/// What a table of lines says, in plain words: a paragraph for somebody who knows the experiment and no statistics.
+/// `diagnosis.lines` is there.
 std::string line_words(const diagnose::Diagnosis& diagnosis);
 
 /// "a friction of each mass by itself"
@@ -22,7 +18,8 @@ std::string unnamed_words(const diagnose::UnnamedInLines& of);
 /// Why an explanation was not weighed: "force would have to be -3.1 mN, and it cannot be below zero".
 std::string impossible_words(const diagnose::ImpossibleSize& size);
 
-/// A paragraph for somebody who knows the experiment and no statistics.
+/// The verdict of clips or of published lines in plain words: a paragraph for somebody who knows the experiment and no
+/// statistics.
 std::string verdict_words(const diagnose::Diagnosis& diagnosis);
 
 /// Why a gap has no interval over clips; empty where clips are not too few.

@@ -1,9 +1,5 @@
 /// The pieces of a self-contained page: style, tables, images as data URIs, typeset numbers.
 ///
-/// Typesetting of the numbers on a page: a minus sign in place of a hyphen, and no line that begins with a unit.
-///
-/// The pieces of a self-contained page: style, tables, images as data URIs.
-///
 /// Plots are drawn when the page is made, all in one run of gnuplot; beside the page their files are laid in a folder
 /// "plots". Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.
 #pragma once
@@ -19,9 +15,9 @@
 namespace glidelab::report {
 
 /// HTML in which a hyphen before a number is a minus sign (U+2212), and a number keeps to its unit and to its ± by
-/// no-break spaces (U+00A0). Not touched: tags, what stands in code, script and style elements, and a hyphen right
-/// behind a letter of any alphabet, a digit, another hyphen, "_", "." or "]" ("m1-2", "maß-2", "1e-07", "2026-11-23").
-/// A unit is one that pages use.
+/// no-break spaces (U+00A0), so that no line begins with a unit. Not touched: tags, what stands in code, script and
+/// style elements, and a hyphen right behind a letter of any alphabet, a digit, another hyphen, "_", "." or "]"
+/// ("m1-2", "maß-2", "1e-07", "2026-11-23"). A unit is one that pages use.
 std::string typeset_numbers(std::string_view html);
 
 /// The text with &, <, >, quotes and apostrophes as entities; fit for content and for attributes in quotes.

@@ -1,13 +1,5 @@
-/// A plot before it is drawn: columns and commands, colours and frame, axes, and which points of a long series it
-/// needs.
-///
-/// A plot before it is drawn: columns of numbers, and the commands of gnuplot that draw them.
-///
-/// What all plots share: colours that colour-blind readers can tell apart, also in grey print, and the frame of a plot.
-///
-/// An axis of numbers whose labels do not run into each other.
-///
-/// Which points of a long series a plot needs: what is drawn must look the same, and a page must stay small.
+/// A plot before it is drawn: columns of numbers and the commands of gnuplot that draw them, the colours and the frame
+/// that all plots share, axes whose labels do not run into each other, and which points of a long series a plot needs.
 #pragma once
 
 #include <array>
@@ -55,7 +47,8 @@ struct Plot {
   std::string description;  ///< for the alt attribute; the plot's files are named after it
 };
 
-/// Okabe and Ito, "Color universal design" (2008), without the yellow that white paper swallows.
+/// Colours that colour-blind readers can tell apart, also in grey print; Okabe and Ito, "Color universal design"
+/// (2008), without the yellow that white paper swallows.
 inline constexpr std::array<std::string_view, 7> kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                             "#56b4e9", "#e69f00", "#000000"};
 /// What stands behind the data or is left out; the ground of such a stretch.
@@ -126,8 +119,8 @@ class ValueAxis {
 };
 
 /// Indices (rising) of about `most` points that keep the outline of a line through all of them: the first, the last,
-/// and the lowest and highest of each of most/2 equal parts. All of them where there are no more than `most`, or
-/// than four.
+/// and the lowest and highest of each of most/2 equal parts. All of them where there are no more than `most`, or than
+/// four. What is drawn must look the same, and a page must stay small.
 std::vector<std::size_t> outline(std::span<const double> y, std::size_t most);
 
 /// Indices of `most` points at equal distance, the first and the last among them (of 1 the first alone), or of all

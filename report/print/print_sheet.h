@@ -1,17 +1,5 @@
 /// Sheets to print to scale: the chessboard for the calibration, and markers to cut out; the only place that knows of
-/// Cairo.
-///
-/// A sheet of paper to draw on to scale; the only place that knows of Cairo.
-///
-/// Metres from the sheet's top left corner, x to the right, y down. What is drawn comes out as a PDF or SVG page of
-/// that size, or as grey pixels (to look at, and for tests).
-///
-/// Sheets to print to scale: the chessboard for the calibration, and markers to cut out.
-///
-/// The board's long row of squares lies along the paper's long side. Its left corner squares are black, its right ones
-/// white, so that an image tells which way it lies (the order of core/pictures/board/chessboard.h): the longer row of
-/// inner corners is odd, the shorter one even. Around it stays white paper, and below it a line of known length that
-/// shows whether the printer kept the scale. Metres.
+/// Cairo. All lengths are in metres.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +19,10 @@ struct SheetPicture {
   std::vector<std::uint8_t> grey;  ///< row by row, 0 black to 255 white
 };
 
+/// A sheet of paper to draw on to scale.
+///
+/// Metres from the sheet's top left corner, x to the right, y down. What is drawn comes out as a PDF or SVG page of
+/// that size, or as grey pixels (to look at, and for tests).
 class SheetCanvas {
  public:
   /// White paper that becomes a file.
@@ -71,6 +63,12 @@ std::span<const Paper> papers();
 /// InputError (of `--paper`) where there is none of this name.
 const Paper& paper_of(const std::string& name);
 
+/// The chessboard for the calibration.
+///
+/// The board's long row of squares lies along the paper's long side. Its left corner squares are black, its right ones
+/// white, so that an image tells which way it lies (the order of core/pictures/board/chessboard.h): the longer row of
+/// inner corners is odd, the shorter one even. Around it stays white paper, and below it a line of known length that
+/// shows whether the printer kept the scale.
 struct BoardSheet {
   Paper paper;
   int columns = 9;  ///< inner corners of the longer row, odd

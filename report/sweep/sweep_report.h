@@ -1,9 +1,5 @@
-/// report.html of `sweep`: error, stated standard deviation and coverage over each varied key, and mu over mass.
-///
-/// The section of a sweep's page on whether mu falls with mass (validate/study/sweep/mass_study.h, as part of the
-/// summary).
-///
-/// report.html of `sweep`: error, stated standard deviation and coverage of every quantity over each varied key.
+/// report.html of `sweep`: error, stated standard deviation and coverage of every quantity over each varied key, and mu
+/// over mass.
 #pragma once
 
 #include <string>
@@ -14,7 +10,9 @@
 
 namespace glidelab::report {
 
-/// HTML: the answer in words where the sweep names what was published, and the table. Empty of any other sweep.
+/// The section of a sweep's page on whether mu falls with mass (validate/study/sweep/mass_study.h, as part of the
+/// summary). HTML: the answer in words where the sweep names what was published, and the table. Empty of any other
+/// sweep.
 std::string mass_study_section(const validate::MassStudy& study);
 
 /// EnvironmentError if gnuplot fails.

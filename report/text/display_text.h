@@ -1,19 +1,6 @@
-/// Text for people: what quantities, results and effects are called, sizes in the units that people use, tables for a
-/// terminal.
-///
-/// What a page calls the recovered quantities (core/result/quantity.h) and the estimators (fit/estimators.h).
-///
-/// What a result's configurations are called, and the files it is written to. A clip's name is any text; a file's name
-/// is not.
-///
-/// What effects are called on pages, beside the ids that stand in files and options: the names that the effects' own
-/// files give them (diagnose/effects/).
-///
-/// A file's keys as a person reads them, with sizes in the units that people use (base/text/number_text.h).
-///
-/// Intervals of a gap as a person reads them.
-///
-/// A table for a terminal.
+/// Text for people: what the recovered quantities (core/result/quantity.h), the estimators (fit/estimators.h), the
+/// configurations and files of a result, and the effects are called, a file's keys with sizes in the units that people
+/// use (base/text/number_text.h), intervals of a gap, and tables for a terminal.
 #pragma once
 
 #include <array>
@@ -61,15 +48,18 @@ std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::Configur
 /// 2°, plunger". Text from a file: to be escaped.
 std::string configuration_name(const core::AnalysisResults& results, const core::ConfigurationResult& configuration);
 
-/// The text with '/', '%' and control characters written as %XX, so that it names one file of a folder.
+/// The text with '/', '%' and control characters written as %XX, so that it names one file of a folder. A clip's name
+/// is any text; a file's name is not.
 std::string file_name_part(std::string_view text);
 
 /// `phase-<clip>.csv` for each clip of the results; where clips of two folders bear one name, the folder's name stands
 /// before it (and a number behind it where that is the same as well).
 std::vector<std::string> phase_file_names(const core::AnalysisResults& results);
 
-/// "quadratic drag + rolling shutter" of "quadratic_drag + rolling_shutter"; "none" and "unknown" are told
-/// in words too. What is the id of no effect (a cause without a name, in words already) stays as it is.
+/// What effects are called on pages, beside the ids that stand in files and options, by the names that the effects' own
+/// files give them (diagnose/effects/): "quadratic drag + rolling shutter" of "quadratic_drag + rolling_shutter";
+/// "none" and "unknown" are told in words too. What is the id of no effect (a cause without a name, in words already)
+/// stays as it is.
 std::string effect_name(std::string_view ids);
 
 /// What the letters beside the effect's size mean: "a force −c v |v|"; empty where its size is a word, or an id is of

@@ -1,10 +1,5 @@
-/// report.html of `validate`, its plots of truth against estimate, and comparison.json.
-///
-/// comparison.json: each recovered value beside its truth.
-///
-/// Truth against estimate as plots: errors in units of their standard deviation, and restitution over the field.
-///
-/// report.html of `validate`: truth, recovered value and error first, then all that an analysis shows.
+/// report.html of `validate`: truth, recovered value and error first, then all that an analysis shows; its plots of
+/// truth against estimate, and comparison.json.
 #pragma once
 
 #include <string>
@@ -19,11 +14,13 @@
 
 namespace glidelab::report {
 
-/// The document, with a newline at its end. No number in it is NaN; what is missing is null with its reason in "why".
+/// comparison.json: each recovered value beside its truth, with a newline at its end. No number in it is NaN; what is
+/// missing is null with its reason in "why".
 std::string comparison_json(const validate::Comparison& comparison);
 
-/// Errors of the recovered values, of the positions over the field, and of the centres within their pixels; each only
-/// where there is something to compare.
+/// Truth against estimate: errors of the recovered values in units of their standard deviation, restitution errors of
+/// the positions over the field, and errors of the centres within their pixels; each only where there is something to
+/// compare.
 std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison);
 
 /// `previews` is empty or has one for each clip of the results. EnvironmentError if gnuplot fails.

@@ -1,10 +1,5 @@
 /// The motions of a scenario: which gliders, under which forces, launched how, and the true K/m, mu and terminal
-/// velocity.
-///
-/// What an analysis is compared with: K/m and mu of a body, and its terminal velocity.
-///
-/// The motions of a scenario: which gliders, under which forces, launched how. What the camera sees of them is
-/// render's.
+/// velocity, with which an analysis is compared. What the camera sees of them is render's.
 #pragma once
 
 #include <memory>

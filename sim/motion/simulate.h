@@ -1,21 +1,5 @@
-/// The motion of a body as a hybrid system: slide up, slide down, stick; each slide one stretch that the solver moves.
-///
-/// One stretch of sliding in one direction, as the system that the solver moves.
-///
-///     y = (x, w, E)     x' = v,     m v' = net force(v, direction),     E' = -(net force - m g sin(alpha)) v
-///
-/// v depends on nothing but itself, so |v| rises or falls all along, and whether it can reach 0 in finite time is known
-/// from the force at v -> 0, F0:
-///   * F0 against the direction: it does, and v = 0 is a root. The variable is w = v.
-///   * F0 along the direction: it does not; no root. w = v.
-///   * F0 = 0 (a level track without Coulomb friction): only where a force falls no faster than |v|^p, p < 1. Then
-///     w = |v|^(1-p), which goes through 0 at a finite rate. Else |v| falls for ever, and w = ln |v| keeps it accurate
-///     and its sign sure, so that rounding never makes a false root.
-/// Where w = v, a term with an infinite slope at rest is a straight line between 0 and `least_speed_m_s`, a little
-/// above the absolute tolerance of v: no solver resolves it there. It changes v by less than that speed (1e-12 m/s as
-/// simulate() has it, which is 1e-11 m over 10 s).
-///
-/// The motion of a body as a hybrid system: slide up, slide down, stick.
+/// The motion of a body as a hybrid system: slide up, slide down, stick; each slide is one stretch that the solver
+/// moves.
 ///
 ///     m dv/dt = m g sin(alpha) + sum of forces(v, sign v)     while sliding;     v = 0     while sticking.
 ///
@@ -23,7 +7,7 @@
 /// does not exceed what static friction holds, else it slides on with the sign of the net force; the solver is
 /// reinitialised there. sign(v) is never smoothed. The forces depend on v only, so a glider that has come to rest
 /// stays, and one that has reversed never does so again. Method: CVODES, BDF with Newton and the analytic slope
-/// (sim/motion/simulate.h), tolerances in SolverOptions.
+/// (Slide::jacobian), tolerances in SolverOptions.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,6 +21,21 @@
 
 namespace glidelab::sim {
 
+/// One stretch of sliding in one direction, as the system that the solver moves.
+///
+///     y = (x, w, E)     x' = v,     m v' = net force(v, direction),     E' = -(net force - m g sin(alpha)) v
+///
+/// v depends on nothing but itself, so |v| rises or falls all along, and whether it can reach 0 in finite time is known
+/// from the force at v -> 0, F0:
+///   * F0 against the direction: it does, and v = 0 is a root. The variable is w = v.
+///   * F0 along the direction: it does not; no root. w = v.
+///   * F0 = 0 (a level track without Coulomb friction): only where a force falls no faster than |v|^p, p < 1. Then
+///     w = |v|^(1-p), which goes through 0 at a finite rate. Else |v| falls for ever, and w = ln |v| keeps it accurate
+///     and its sign sure, so that rounding never makes a false root.
+///
+/// Where w = v, a term with an infinite slope at rest is a straight line between 0 and `least_speed_m_s`, a little
+/// above the absolute tolerance of v: no solver resolves it there. It changes v by less than that speed (1e-12 m/s as
+/// simulate() has it, which is 1e-11 m over 10 s).
 class Slide {
  public:
   /// `direction` is +1 or -1.

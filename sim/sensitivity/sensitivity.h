@@ -1,32 +1,17 @@
 /// How a motion changes with the parameters of its law and with its start: by the solver, and in closed form on a
 /// track.
 ///
-/// A law of motion with parameters, as a fit needs it: the acceleration and its derivatives.
-///
-/// A motion, and how it changes with every parameter of its law and with its start.
-///
 /// With p the parameters, then x0, then v0, and S = d(x, v)/dp:
 ///
 ///     Sx' = Sv,     Sv' = (da/dx) Sx + (da/dv) Sv + da/dp                                    (while it slides)
 ///
-/// moved together with (x, v) by Adams' formulas. Where v comes to 0 at the time T, T itself depends on p,
-/// dT/dp = -Sv / a(T-), so that S jumps (saltation; Aizerman and Gantmacher 1958):
+/// Where v comes to 0 at the time T, T itself depends on p, dT/dp = -Sv / a(T-), so that S jumps (saltation; Aizerman
+/// and Gantmacher 1958):
 ///
 ///     Sx stays,     Sv(T+) = Sv(T-) a(T+) / a(T-)      slides back
 ///     Sx stays,     Sv(T+) = 0, and both stay so      sticks
 ///
 /// x has no jump in its derivative for v = 0 on both sides.
-///
-/// Motion under viscous and Coulomb friction with its derivatives in closed form: what sim/sensitivity/sensitivity.h
-/// integrates, for this law alone.
-///
-/// dv/dt = d - k v - s f, s = sign(v). From (x0, v0) while v keeps its sign, with a0 = d - s f:
-///
-///     x = x0 + v0 phi + a0 psi,   v = v0 e + a0 phi,   e = exp(-k t), phi = (1 - e)/k, psi = (t - phi)/k,
-///
-/// and the derivatives by k, d, f, x0, v0 term by term. At v = 0 (closed_forms.h: linear_stop_time_s) it sticks where
-/// |d| <= f, else turns; the derivatives jump as sensitivity.h says, and go on by the same formulas from (x_T, 0). All
-/// formulas go over into k = 0.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,6 +33,7 @@ struct LawValue {
   OdeVector by_parameter;  ///< one for each parameter of the law
 };
 
+/// A law of motion with parameters, as a fit needs it: the acceleration and its derivatives.
 class MotionLaw {
  public:
   virtual ~MotionLaw() = default;
@@ -99,15 +85,27 @@ struct SensitiveState {
   Eigen::Matrix<double, 2, Eigen::Dynamic> by_parameter;
 };
 
-/// From (x0, v0) at t = 0, at each of `times_s` (rising, not negative). A law with more than (kMostComponents - 2) / 2
-/// - 2 parameters is a std::logic_error; NumericalError where CVODES fails. A glider that sticks stays: the law does
-/// not depend on time.
+/// A motion, and how it changes with every parameter of its law and with its start: S moved together with (x, v) by
+/// Adams' formulas. From (x0, v0) at t = 0, at each of `times_s` (rising, not negative). A law with more than
+/// (kMostComponents - 2) / 2 - 2 parameters is a std::logic_error; NumericalError where CVODES fails. A glider that
+/// sticks stays: the law does not depend on time.
 std::vector<SensitiveState> simulate_sensitive(const MotionLaw& law, double x0_m, double v0_m_s,
                                                std::span<const double> times_s,
                                                const SolverOptions& options = {1e-10, 1e-12});
 
-/// By k, d, f, x0, v0, in this order, at each of `times_s` (rising, not negative). From v0 = 0 the
-/// glider sticks or moves with the drive. NumericalError where a number is not finite.
+/// Motion under viscous and Coulomb friction with its derivatives in closed form: what simulate_sensitive() integrates,
+/// for this law alone.
+///
+/// dv/dt = d - k v - s f, s = sign(v). From (x0, v0) while v keeps its sign, with a0 = d - s f:
+///
+///     x = x0 + v0 phi + a0 psi,   v = v0 e + a0 phi,   e = exp(-k t), phi = (1 - e)/k, psi = (t - phi)/k,
+///
+/// and the derivatives by k, d, f, x0, v0 term by term. At v = 0 (closed_forms.h: linear_stop_time_s) it sticks where
+/// |d| <= f, else turns; the derivatives jump as the head of this file says, and go on by the same formulas from (x_T,
+/// 0). All formulas go over into k = 0.
+///
+/// By k, d, f, x0, v0, in this order, at each of `times_s` (rising, not negative). From v0 = 0 the glider sticks or
+/// moves with the drive. NumericalError where a number is not finite.
 std::vector<SensitiveState> track_motion_sensitive(double k_1_s, double drive_m_s2, double friction_m_s2, double x0_m,
                                                    double v0_m_s, std::span<const double> times_s);
 

@@ -1,17 +1,8 @@
-/// teach/ Pages for class: the explorer on which parameters are chosen by hand, and the cases of `laws` with their
+/// Pages for class: the explorer, on which a motion's parameters are chosen by hand, and the cases of `laws` with their
 /// films.
 ///
-/// The fixed parts of the pages: the files of teach/page/explorer and teach/page/laws as strings. teach/CMakeLists.txt
-/// makes the source.
-///
-/// The page on which a motion's parameters are chosen by hand, for class: it is self-contained.
-///
-/// Its script scales, interpolates (Hermite, fifth order) and joins the orbits of teach/study/phase_explorer.h; it
-/// solves no equation of motion. It also compares itself with the reference motions and says how far it was off.
-///
-/// The film of a law on its page, and the points that run along a(v) with it.
-///
-/// The page of `laws`: each case with a film, x(t), and a(v) with its equilibrium.
+/// The strings are the fixed parts of the pages, the files of teach/page/explorer and teach/page/laws.
+/// teach/CMakeLists.txt makes their source.
 #pragma once
 
 #include <string>
@@ -33,7 +24,10 @@ extern const std::string_view kExplorerView;    ///< script: controls and drawin
 extern const std::string_view kFilmStyle;
 extern const std::string_view kFilmScript;  ///< script: the points that run along a(v) with the film
 
-/// A self-contained HTML page without plots of gnuplot.
+/// The page on which a motion's parameters are chosen by hand, for class: self-contained HTML without plots of gnuplot.
+///
+/// Its script scales, interpolates (Hermite, fifth order) and joins the orbits of teach/study/phase_explorer.h; it
+/// solves no equation of motion. It also compares itself with the reference motions and says how far it was off.
 report::Page explorer_page(const PhaseExplorer& explorer);
 
 /// The film with the browser's own controls and its rows' names over it, and a sheet for a(v). HTML.
@@ -42,8 +36,8 @@ std::string film_figure(const LawStudy& study, const LawFilm& film);
 /// Once a page: the style and the script of all its film_figure().
 std::string film_script();
 
-/// One page that needs nothing but itself. EnvironmentError where gnuplot fails; std::logic_error where there is not
-/// one film a study.
+/// The page of `laws`: each case with a film, x(t), and a(v) with its equilibrium. It needs nothing but itself.
+/// EnvironmentError where gnuplot fails; std::logic_error where there is not one film a study.
 report::Page laws_report(const std::vector<LawStudy>& studies, const std::vector<LawFilm>& films,
                          const base::Progress& progress = base::no_progress);
 

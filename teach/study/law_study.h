@@ -1,22 +1,7 @@
-/// Cases by which friction is taught: motions of a scenario, the curve a(v) with its equilibria, and a small film of
-/// them.
+/// The cases by which friction is taught: motions of a scenario, the curve a(v) on which each of them runs, with its
+/// equilibria, and a small film of them.
 ///
-/// Where a glider's a(v) passes through zero, and whether it comes back from there when it is pushed.
-///
-/// a(v) = (m g sin(alpha) + forces(v, sign v)) / m. Where it falls through zero the equilibrium is stable, where it
-/// rises unstable. v = 0 is one where static friction holds the glider, or where a(0) = 0.
-///
-/// The cases by which friction is taught: motions of a scenario, and the curve a(v) on which each of them runs.
-///
-/// a(v) = (m g sin(alpha) + forces(v, sign v)) / m for v < 0 and v > 0 (the paper's figures 1 to 3), with its
-/// equilibria (teach/study/law_study.h).
-///
-/// A small film of a scenario's motions, one above the other, each from its own start.
-///
-/// The renderer draws them (render/) as a perfect camera would take them (render/film/truth_files.h), from 3 m before
-/// the middle of the track and square to it, so that the track and all of the motions are in the image. Motions, track,
-/// glider and light are the scenario's; its camera is not. Frame k shows k / frame_rate_hz after the start; a motion
-/// that ends before the longest one keeps its last image.
+///     a(v) = (m g sin(alpha) + forces(v, sign v)) / m     for v < 0 and v > 0 (the paper's figures 1 to 3)
 #pragma once
 
 #include <filesystem>
@@ -28,6 +13,10 @@
 
 namespace glidelab::teach {
 
+/// Where a glider's a(v) passes through zero, and whether it comes back from there when it is pushed.
+///
+/// Where a(v) falls through zero the equilibrium is stable, where it rises unstable. v = 0 is one where static friction
+/// holds the glider, or where a(0) = 0.
 struct Equilibrium {
   double v_m_s = 0.0;
   bool stable = true;
@@ -69,6 +58,12 @@ inline constexpr double kFramesPerSecond = 50.0;
 /// InputError for what is wrong with the scenario.
 LawStudy study_law(const std::filesystem::path& scenario);
 
+/// A small film of a scenario's motions, one above the other, each from its own start.
+///
+/// The renderer draws them (render/) as a perfect camera would take them (render/film/truth_files.h), from 3 m before
+/// the middle of the track and square to it, so that the track and all of the motions are in the image. Motions, track,
+/// glider and light are the scenario's; its camera is not. Frame k shows k / frame_rate_hz after the start; a motion
+/// that ends before the longest one keeps its last image.
 struct LawFilm {
   std::string mp4;  ///< H.264, as browsers play it: the file's bytes
   int width_px = 0;

@@ -1,4 +1,4 @@
-/// A table of fitted lines, read only: what is made of the numbers is diagnosed_lines.cpp.
+/// A table of fitted lines, read only: what is made of the numbers is fuzz_diagnosed_lines.cpp.
 #include "diagnose/lines/line_model.h"
 #include "tests/fuzz/fuzz_target.h"
 

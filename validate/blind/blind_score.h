@@ -1,12 +1,4 @@
-/// blind_score: Diagnoses of blind cases, read from diagnosis.json, compared with the truth.
-///
-/// What a diagnosis of a blind case says, read from its diagnosis.json.
-///
-/// Diagnoses of blind cases compared with the truth.
-///
-/// Two pairs of effects are the same thing on tracks and count as one (effects.md: "cannot be told apart, always"):
-/// scale_error and frame_rate_error; camera_motion and base_vibration. Images tell the second pair apart. Weak cases
-/// gain less than 15 in log likelihood, moderate ones 15 to 50, strong ones more.
+/// Diagnoses of blind cases, read from their diagnosis.json and compared with the truth.
 #pragma once
 
 #include <cstddef>
@@ -73,14 +65,17 @@ struct BlindOutcome {
   std::optional<double> seconds;          ///< that its diagnosis took, where it was measured
 };
 
-/// scale_error and frame_rate_error give one word; so do camera_motion and base_vibration on tracks.
+/// The word by which effects are counted. Two pairs of effects are the same thing on tracks and count as one
+/// (effects.md, "Which cannot be told apart"): scale_error and frame_rate_error, camera_motion and base_vibration.
+/// Images tell the second pair apart.
 std::string blind_class(const std::string& id, bool filmed);
 /// That of the one cause.
 std::string true_class(const BlindOutcome& outcome);
 /// All that a verdict names, as classes: its effects and their equals.
 std::set<std::string> named_by(const BlindOutcome& outcome);
 
-/// "weak", "moderate", "strong"; of a pair by its weaker cause.
+/// "weak" (a gain of less than 15 in log likelihood), "moderate" (15 to 50) or "strong" (more); of a pair by its weaker
+/// cause.
 std::string_view strength_word(const BlindOutcome& outcome);
 
 struct BlindShare {

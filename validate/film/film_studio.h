@@ -1,11 +1,3 @@
-/// film_studio: Clips drawn in memory and tracked: the canvases, the frames as an analysis reads them, a calibrated
-/// camera.
-///
-/// Images in memory that frames are drawn on, reused by later frames and clips: allocating a new one costs as much as
-/// the drawing.
-///
-/// Frames that come from the renderer, in memory, where the analysis expects a file's: the same codes.
-///
 /// Clips drawn in memory and tracked, before a camera that is calibrated from drawn stills.
 #pragma once
 
@@ -40,7 +32,9 @@ struct Canvas {
 /// Whether the caller, who holds this pointer, is the only one that refers to the canvas or its pixels.
 bool is_free(const std::shared_ptr<Canvas>& canvas);
 
-/// Shared between clips, also on different threads. All canvases have one size and depth; no others are kept.
+/// Images in memory that frames are drawn on, reused by later frames and clips: allocating a new one costs as much as
+/// the drawing. Shared between clips, also on different threads. All canvases have one size and depth; no others are
+/// kept.
 class CanvasPool {
  public:
   /// A clear canvas.
@@ -54,8 +48,9 @@ class CanvasPool {
   std::vector<std::shared_ptr<Canvas>> all_;
 };
 
-/// The frames of one clip of the set. With colour wanted they are grey in all three channels, as a grey file gives
-/// them. InputError for a lossy codec, whose file holds other codes. Frames are drawn on canvases of the pool.
+/// The frames of one clip of the set, from the renderer in memory, where the analysis expects a file's: the same codes.
+/// With colour wanted they are grey in all three channels, as a grey file gives them. Frames are drawn on canvases of
+/// the pool. InputError for a lossy codec, whose file holds other codes.
 std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render::ClipSet> set, std::size_t clip,
                                                    std::uint64_t seed, bool with_color = false,
                                                    std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());

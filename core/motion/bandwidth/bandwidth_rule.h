@@ -1,16 +1,13 @@
-/// Rules that choose the bandwidth of the local cubic, their table, and the scan of bandwidths that they share.
-///
-/// Rules that choose the bandwidth of the local cubic from data, and the table that names each once.
+/// Rules that choose the bandwidth of the local cubic from data: the table that names each once, and the scan of
+/// bandwidths that they share.
 ///
 /// Every rule stands in a rule_*.cpp of its own, which begins with what it minimises and its source. `cv`, `gcv`,
 /// `cv-correlated` and `rsc` judge x; their h is converted to that for a by the constants of local_polynomial.h, which
-/// holds where x'''' varies little over the kernel. All rules here judge single points and know of no line; the
-/// default of `analyze` (rule_lines.h) serves the lines. The paper took its rule from its reference [15], which is not
-/// in its text; none of these is claimed to be it.
+/// holds where x'''' varies little over the kernel. All rules here judge single points and know of no line; the default
+/// of `analyze` (rule_lines.h) serves the lines. The paper took its rule from its reference [15], which is not in its
+/// text; none of these is claimed to be it.
 ///
 /// To add a rule: rule_<name>.cpp, which defines its BandwidthRule, and one line in bandwidth_rule.cpp.
-///
-/// What bandwidth rules share: the bandwidths that are tried, and the points that are looked at.
 #pragma once
 
 #include <cstddef>
@@ -77,6 +74,7 @@ struct Probe {
   std::size_t point = 0;
 };
 
+/// What bandwidth rules share: the bandwidths that are tried, and the points that are looked at.
 class BandwidthScan {
  public:
   explicit BandwidthScan(const BandwidthProblem& problem);

@@ -1,9 +1,5 @@
-/// The free parts of a measured motion, each in one direction, and the law that most of their points agree with.
-///
-/// The line a = a0 - k v that most points of one direction agree with, regardless of the outliers.
-///
-/// Which parts of a measured motion are free: not in the hand, not at rest, not against a stop or a bumper, and each in
-/// one direction.
+/// The free parts of a measured motion: not in the hand, not at rest, not against a stop or a bumper, and each in one
+/// direction.
 ///
 /// A first smoothing (the pilot) takes the least bandwidth at which the noise of a is 10 % of the median |a| of the
 /// moving glider. On it:
@@ -18,9 +14,10 @@
 ///    points one weight, so its points would add noise and no information.
 ///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. A
 ///    launch that nobody stated has no wrong direction.
-/// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter.
-/// Each stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an
-/// impact or a release; times of those need to be known only well enough to keep their far side out.
+///
+/// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter. Each
+/// stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an impact or
+/// a release; times of those need to be known only well enough to keep their far side out.
 #pragma once
 
 #include <cstddef>
@@ -40,6 +37,7 @@ struct LawPoints {
   std::vector<double> sd_m_s2;
 };
 
+/// The line a = a0 - k v that most points of one direction agree with, regardless of the outliers.
 struct ConsensusLine {
   double a0_m_s2 = 0.0;
   double k_1_s = 0.0;

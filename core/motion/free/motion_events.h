@@ -1,19 +1,4 @@
 /// The events of a motion: its direction at every point, where it turns or rests, and exactly when.
-///
-/// The direction of a motion at every point, where it turns and where it rests, from a first smoothing of the clip.
-///
-/// When a motion turns or stops, estimated from the positions around it.
-///
-/// Coulomb friction makes a jump where v = 0: at a reversal from a_minus to a_plus, at a stop to zero. x and v are
-/// continuous, so about the event t*, with u = t - t*,
-///
-///     u < 0:  x = x* + a_minus u^2/2 + j_minus u^3/6
-///     u > 0:  x = x* + a_plus u^2/2 + j_plus u^3/6       (at a stop both are 0)
-///
-/// is fitted by least squares to the points within a window on both sides. It is linear but for t*, which is found by
-/// Gauss and Newton's method from the given start. Both sides' a come out as well: one-sided, with v(t*) = 0 built in.
-/// The standard deviation is that of the linearised fit; noise that is correlated counts by its sum over all lags.
-/// Assumes that j varies little within the window.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +33,7 @@ void fill_range(std::vector<T>& values, const PointRange& range, const T& value)
   for (std::size_t i = range.from; i < range.to; ++i) values[i] = value;
 }
 
-/// The sign of v, and the rest, of every point come from this.
+/// A first smoothing of the clip: the sign of v, and the rest, of every point come from this.
 struct Pilot {
   double bandwidth_s = 0.0;
   std::vector<double> x_m;       ///< as measured where it is not smoothed
@@ -68,6 +53,7 @@ double still_below(const Pilot& pilot, std::size_t point);
 /// median |a| of the moving points; at most a twelfth of the time that they span. Needs four points.
 Pilot first_smoothing(const Motion& motion);
 
+/// The direction of a motion at every point, where it turns and where it rests.
 struct MotionRuns {
   std::vector<int> direction;        ///< of every point: the sign of v, 0 at rest
   std::vector<double> turns_s;       ///< times at which v changes its sign
@@ -92,6 +78,19 @@ struct EventTime {
   double after_m_s2 = 0.0;   ///< a just after; 0 at a stop
 };
 
+/// When a motion turns or stops, estimated from the positions around it.
+///
+/// Coulomb friction makes a jump where v = 0: at a reversal from a_minus to a_plus, at a stop to zero. x and v are
+/// continuous, so about the event t*, with u = t - t*,
+///
+///     u < 0:  x = x* + a_minus u^2/2 + j_minus u^3/6
+///     u > 0:  x = x* + a_plus u^2/2 + j_plus u^3/6       (at a stop both are 0)
+///
+/// is fitted by least squares to the points within a window on both sides. It is linear but for t*, which is found by
+/// Gauss and Newton's method from the given start. Both sides' a come out as well: one-sided, with v(t*) = 0 built in.
+/// The standard deviation is that of the linearised fit; noise that is correlated counts by its sum over all lags.
+/// Assumes that j varies little within the window.
+///
 /// Nothing where fewer than five points lie on a side, where the fit does not settle within the window, or where a does
 /// not have the sign that the kind of event needs.
 std::optional<EventTime> estimate_event(std::span<const double> t_s, std::span<const double> x_m, EventKind kind,

@@ -1,10 +1,5 @@
-/// The pieces of motion that the generalised line (gls_line.h) is fitted to, and their nodes.
-///
 /// What the generalised line (gls_line.h) is fitted to: free stretches up to the estimated times at which they turn or
-/// come to rest, and what is known of their noise.
-///
-/// The nodes of one piece for the generalised line (gls_line.h): smoothed points about a bandwidth apart with the parts
-/// of their covariance, and what the line's own law makes of them.
+/// come to rest, their nodes, and what is known of their noise.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -42,7 +37,7 @@ struct GlsInput {
   double scale_sd_relative = 0.0;
   double mass_kg = 0.0;  ///< with a known force only
   double mass_sd_kg = 0.0;
-  std::vector<double> law_m_s2;               ///< with a known force only: f(v(t)) at every point (bandwidth.h)
+  std::vector<double> law_m_s2;               ///< with a known force only: f(v(t)) at every point (rule_lines.h)
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData
 };
 
@@ -54,6 +49,8 @@ struct NodeResidual {
   Eigen::VectorXd y, p;
 };
 
+/// The nodes of one piece for the generalised line: smoothed points about a bandwidth apart with the parts of their
+/// covariance, and what the line's own law makes of them.
 class LineNodes {
  public:
   /// `count` nodes from the first to the last point of the piece; fewer where points are fewer.

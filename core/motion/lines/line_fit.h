@@ -1,7 +1,5 @@
-/// The line a = a0 - (K/m) v by ordinary least squares, and the smoothed points of free stretches that it is fitted to.
-///
-/// The line a = a0 - (K/m) v by ordinary least squares through smoothed points, as the paper fits it, with the effect
-/// of the position noise on its coefficients.
+/// The line a = a0 - (K/m) v by ordinary least squares through the smoothed points of free stretches, as the paper fits
+/// it, with the effect of the position noise on its coefficients.
 ///
 /// Smoothed points are correlated over the kernel, so the textbook formula for independent points is wrong here. But v
 /// and a are linear in the measured positions, and so, to first order in the noise n, are the coefficients:
@@ -19,6 +17,7 @@
 ///
 /// with X the mean square residual over that expected of the noise, where X is above 1 by more than chance makes it
 /// (chi2_ratio_limit of estimate.h).
+///
 /// An error of the camera or the plane displaces all positions by x_k(t), and so v by dv and a by da (the same sums
 /// over the kernel); to first order the line changes by
 ///
@@ -26,13 +25,6 @@
 ///
 /// Where there are four stretches or more, leaving them out one at a time (the jackknife) gives a covariance that knows
 /// of no noise model; it counts where it is the larger one by more than chance makes it.
-///
-/// The smoothed points of free stretches that count for a line, and what a line is fitted to.
-///
-/// Every stretch is smoothed with its own points alone. Within kKernelMargin bandwidths of its first or last point the
-/// kernel is not complete there; what that costs, and why these points are left out: with c the distance in bandwidths,
-/// the variance of a is 1.64 (c = 2.5), 1.17 (c = 3), 1.04 (c = 3.5) of what it is inside, and grows 500 times towards
-/// c = 0; its bias is 0.78, 0.90 and 0.97 of the inner h^2 x''''/2.
 #pragma once
 
 #include <Eigen/Core>
@@ -112,11 +104,16 @@ Quantity limit_velocity(const std::vector<LineFit>& lines);
 /// (chi2_ratio_limit); variances only grow, and n - 2 degrees of freedom are left. Whether it did. Asserts n >= 3.
 bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertainty& parts);
 
+/// Every stretch is smoothed with its own points alone. Within this many bandwidths of its first or last point the
+/// kernel is not complete there; what that costs, and why these points are left out: with c the distance in bandwidths,
+/// the variance of a is 1.64 (c = 2.5), 1.17 (c = 3), 1.04 (c = 3.5) of what it is inside, and grows 500 times towards
+/// c = 0; its bias is 0.78, 0.90 and 0.97 of the inner h^2 x''''/2.
 inline constexpr double kKernelMargin = 2.5;
 
 /// Inside a stretch a kernel with a gap is left out where the variance of a exceeds that of a complete kernel by this.
 inline constexpr double kGapVariance = 2.0;
 
+/// A smoothed point of a free stretch, and whether it counts for a line.
 struct StretchPoint {
   std::size_t point = 0;  ///< of the motion
   std::size_t stretch = 0;

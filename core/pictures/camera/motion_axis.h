@@ -1,9 +1,5 @@
-/// The line of a motion by total least squares, x along it, and what an error of the camera does to both.
-///
-/// The line of a motion (or of a thread) by total least squares, and x as the distance along it.
-///
-/// The effect of an error of the camera or the plane on the motion of one group: the line of motion is refitted through
-/// the displaced positions, and x is measured along it.
+/// The line of a motion (or of a thread) by total least squares, x as the distance along it, and what an error of the
+/// camera or the plane does to both.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -56,6 +52,8 @@ class MotionAxis {
   PlaneLine line_;
 };
 
+/// The effect of an error of the camera or the plane on the motion of one group: the line of motion is refitted through
+/// the displaced positions, and x is measured along it.
 struct ModeAxis {
   RestitutionMode mode;
   MotionAxis axis;

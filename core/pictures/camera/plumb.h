@@ -1,15 +1,7 @@
-/// The plumb line: searched for in an image as a thread, and the inclination of the motion against it.
+/// The plumb line in an image: found as a thread, and the inclination of the line of motion against it.
 ///
-/// A thin dark or bright thread in a region of an image.
-///
-/// Row by row (column by column if it runs more along the rows) its candidate positions are those that stand out from
-/// both sides; the straight line (with the lens's distortion undone) on which most of them lie is the thread. It is
-/// then fitted as a whole (thread_fit.h).
-///
-/// The plumb line in an image, and the inclination of the line of motion against it.
-///
-/// A plumb line (found by plumb.h) is parallel to the plane of motion, so that its direction, restituted to
-/// that plane, does not depend on how far in front of or behind the plane it hangs.
+/// A plumb line is parallel to the plane of motion, so that its direction, restituted to that plane, does not depend on
+/// how far in front of or behind the plane it hangs.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -33,6 +25,12 @@ struct ThreadInImage {
   std::size_t rows = 0;  ///< used by the fit
 };
 
+/// Searches a region of an image for a thin dark or bright thread.
+///
+/// Row by row (column by column if it runs more along the rows) its candidate positions are those that stand out from
+/// both sides; the straight line (with the lens's distortion undone) on which most of them lie is the thread. It is
+/// then fitted as a whole (thread_fit.h).
+///
 /// `straight` undoes the lens. The region lies inside the image, which is grey of 8 or 16 bits.
 ThreadInImage find_thread(const cv::Mat& grey, cv::Rect region,
                           const std::function<std::optional<cv::Point2d>(cv::Point2d)>& straight);

@@ -1,7 +1,5 @@
 /// From a pixel to metres in the plane of motion and back, and the calibration that makes this mapping for every group.
 ///
-/// From a pixel to metres in the plane of motion, and back.
-///
 /// With a pattern: pixel -> ray (distortion undone) -> the point where the ray meets the plane Z = -height_m of the
 /// pattern's frame P, that is the plane in which the marker's centre moves. P's pose comes from the plane views by
 /// least squares with the calibrated camera; several of them share one plane and differ by a motion in it. The outline
@@ -12,8 +10,6 @@
 /// independent modes (the columns of a square root of the covariance). A mode is the camera and the pose as an error of
 /// some standard deviations would have made them, the pose following the camera by a new fit of the plane views. Places
 /// restituted with it, minus those restituted without, are the signed displacements that such an error causes.
-///
-/// From the images of the pattern to the camera and, for each group, the mapping from pixels to its plane of motion.
 #pragma once
 
 #include <Eigen/Core>
@@ -112,6 +108,7 @@ std::vector<std::filesystem::path> planes_of(const Experiment& experiment, const
 /// All images of the pattern: views, then planes, then those of groups that have filmed clips. Some may occur twice.
 std::vector<std::filesystem::path> pattern_files(const Experiment& experiment);
 
+/// From the images of the pattern to the camera and, for each group, the mapping from pixels to its plane of motion.
 /// For an experiment with filmed clips. `seen`: the pattern, if it was found before; null: its images are read, `jobs`
 /// at a time. InputError for images that cannot be used.
 CameraAndPlanes camera_and_planes_of(const Experiment& experiment, int jobs, const SeenPattern* seen = nullptr);

@@ -1,18 +1,7 @@
 /// The frames of a clip, one after the other: from a video file or from a folder of images.
 ///
-/// The frames of a clip, one after the other: from a video file or from a folder of images.
-///
 /// A frame's time is the middle of its exposure, counted from the first frame's: k / frame_rate_hz, or the container's
 /// time stamps where the experiment says so.
-///
-/// What frames from a video and from a folder have in common: their size is checked, repeats are counted, and a
-/// decoded image becomes a Frame.
-///
-/// Frames that are images in a folder, in the order of their numbers ("2.png" before "10.png").
-///
-/// Frames of a video file, with what its container says about their times.
-///
-/// The frames of a file: a video, or a folder of images.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -113,12 +102,14 @@ class RepeatCounter {
 /// A decoded image, grey as stored, and its colours where they are asked for.
 Frame make_frame(const cv::Mat& image, bool with_color, std::size_t index);
 
-/// `size`, where given, is what every frame must measure. InputError for a folder without images, and where time stamps
-/// are asked for, which a folder does not have.
+/// Frames that are images in a folder, in the order of their numbers ("2.png" before "10.png"). `size`, where given, is
+/// what every frame must measure. InputError for a folder without images, and where time stamps are asked for, which a
+/// folder does not have.
 std::unique_ptr<FrameSource> open_frame_folder(const std::filesystem::path& folder, const CameraSettings& camera,
                                                bool with_color, std::optional<cv::Size> size);
 
-/// `size`, where given, is what every frame must measure. InputError for a file that is no video.
+/// Frames of a video file, with what its container says about their times. `size`, where given, is what every frame
+/// must measure. InputError for a file that is no video.
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& file, const CameraSettings& camera,
                                         bool with_color, std::optional<cv::Size> size);
 

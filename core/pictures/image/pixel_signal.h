@@ -1,8 +1,6 @@
-/// The signal of a pixel: the light that it receives from a blurred edge, and its noise.
+/// The signal of a pixel: the light that it receives from a straight edge that a lens has blurred, and its noise.
 ///
-/// The light that a square pixel receives from a straight edge that a lens has blurred.
-///
-/// An ideal edge, bright where s > 0, convolved with a Gaussian of standard deviation `blur` and averaged over the
+/// An ideal edge, bright where s > 0, is convolved with a Gaussian of standard deviation `blur` and averaged over the
 /// pixel's square of side 1. Along the edge's normal n the square is two boxes of widths a = |n_u| and b = |n_v|, so
 /// that
 ///
@@ -11,8 +9,6 @@
 ///
 /// exact for straight edges. Where the smaller of a and b is below 0.1, its box is taken as a Gaussian of the same
 /// variance (b^2 / 12), which changes E by less than 1e-6.
-///
-/// The noise of an image's pixels from second differences along its rows: their median is not moved by edges.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -121,7 +117,8 @@ struct EdgeCorners {
   return {value * boxes.scale, slope * boxes.scale, bend * boxes.scale};
 }
 
-/// Standard deviation of one pixel, of an image of floats.
+/// The noise of the pixels of an image of floats: the standard deviation of one pixel, from second differences along
+/// the rows, whose median is not moved by edges.
 double noise_of(const cv::Mat& values);
 
 /// The same of the image shrunk by a whole number, from some of its rows; values of 8 or 16 bits.

@@ -1,6 +1,5 @@
-/// The centre of one marker's image by least squares, and the least uncertainty that it can have.
-///
-/// The centre of one marker's image, to a hundredth of a pixel, from a least-squares fit to the pixels around it.
+/// The centre of one marker's image, to a hundredth of a pixel, by a least-squares fit to the pixels around it, and the
+/// least uncertainty that it can have.
 ///
 /// The model is an opaque shape with a blurred edge before a sloping background:
 ///
@@ -12,13 +11,6 @@
 /// (exact for a circle, to first order near any outline). a and q describe a surface that is lit from one side; they
 /// are used where the clip shows that they are needed. A plain centroid above a threshold follows the background's
 /// slope; this does not. Pixels; the centre of the first pixel is (0, 0).
-///
-/// The least uncertainty with which a disc's centre can be measured: the Cramér-Rao bound.
-///
-/// For independent Gaussian noise of standard deviation s in every pixel the covariance of any unbiased estimate is at
-/// least the inverse of Fisher's information F_ab = (1/s^2) sum over pixels of (dI/da)(dI/db). The disc is that of
-/// marker.h: radius, blurred edge (a square pixel's exact response), brightness, and a background with a slope;
-/// all eight parameters are unknown. By the symmetry of the disc only the background's slope costs the centre anything.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -92,8 +84,13 @@ struct DiscImage {
   double noise_sd = 0.0;
 };
 
-/// Least standard deviation of one coordinate (root mean square of u and v), in pixels, from the pixels within
-/// `reach_px` of the centre.
+/// The least uncertainty with which a disc's centre can be measured, the Cramér-Rao bound: the standard deviation of
+/// one coordinate (root mean square of u and v), in pixels, from the pixels within `reach_px` of the centre.
+///
+/// For independent Gaussian noise of standard deviation s in every pixel the covariance of any unbiased estimate is at
+/// least the inverse of Fisher's information F_ab = (1/s^2) sum over pixels of (dI/da)(dI/db). The disc is that of the
+/// fit: radius, blurred edge (a square pixel's exact response), brightness, and a background with a slope; all eight
+/// parameters are unknown. By the symmetry of the disc only the background's slope costs the centre anything.
 double least_centre_sd_px(const DiscImage& disc, double reach_px);
 
 }  // namespace glidelab::core

@@ -1,12 +1,4 @@
 /// The paths of objects through a clip, and which of them is the marker's.
-///
-/// The path of one object through a clip: where it was seen, where it should be next, and what resembles it.
-///
-/// Which of the paths through a clip is the marker, and in which of its frames it is seen undisturbed.
-///
-/// The marker is the path nearest to start_px in the first frames where that is given; else, of those that move, the
-/// one that is most like a marker in size, travel, brightness and number of sightings; else the only one of the right
-/// size that rests all the time.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -50,6 +42,7 @@ struct MarkerSample {
   MarkerGuess guess;
 };
 
+/// The path of one object through a clip: where it was seen, where it should be next, and what resembles it.
 struct MarkerPath {
   std::vector<MarkerSeen> seen;
   std::vector<MarkerSample> samples;
@@ -103,6 +96,12 @@ struct FollowedPaths {
   double radius_px = 0.0;         ///< that the marker should have in the middle of the image
 };
 
+/// Which of the paths through a clip is the marker, and in which of its frames it is seen undisturbed.
+///
+/// The marker is the path nearest to start_px in the first frames where that is given; else, of those that move, the
+/// one that is most like a marker in size, travel, brightness and number of sightings; else the only one of the right
+/// size that rests all the time.
+///
 /// NoMarker and InputError as MarkerTracker::finish(); `clip` is the file that they name.
 TrackedMarker choose_marker(const FollowedPaths& followed, const MarkerSetup& marker,
                             const std::filesystem::path& clip);

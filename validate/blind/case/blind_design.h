@@ -1,22 +1,12 @@
-/// blind_design: The experiments of blind cases: random draws, motions, launches, and what one effect alters of them.
+/// The experiments of blind cases: who launches what from where, what is stated of it, what is true, and what one
+/// effect alters.
 ///
-/// The random draws of blind cases.
-///
-/// The motion of a blind case: the truth to which a diagnosis is compared, made with none of the diagnosis's code.
+/// The motion is the truth to which a diagnosis is compared, made with none of the diagnosis's code:
 ///
 ///     inertia dv/dt = drive - drag - sign(v) friction,        at v = 0 it stays while |drive| <= friction
 ///
 /// drive = m g sin(alpha), drag = K v, friction = mu m g cos(alpha), inertia = m, each of which a change may alter as a
-/// function of (x, v, t). Boost.Odeint's Dormand-Prince pair with dense output (tolerance 1e-11 m, steps of at most
-/// 2 ms, so that no narrow force is stepped over); v = 0 is found by bisection in the dense output. SI, x downhill.
-///
-/// The experiments of blind cases: who launches what from where, what is stated of it, and what is true.
-///
-/// One effect of a blind case: what it alters, by a size that can be changed with all else held.
-///
-/// Each is written here anew, by ratios that a person would think in (a share of the drag, of the friction, of a frame)
-/// and as an alteration of forces, frame times or positions; nothing of the diagnosis' models is used. All that is
-/// random in an effect is drawn when it is made.
+/// function of (x, v, t). SI, x downhill.
 #pragma once
 
 #include <algorithm>
@@ -35,6 +25,7 @@ namespace glidelab::validate {
 
 inline constexpr double kTurn = 2.0 * std::numbers::pi;  ///< a whole one
 
+/// The engine of all random draws of blind cases.
 using BlindRandom = std::mt19937_64;
 
 /// Uniform in [low, high), evenly over the logarithm, and a standard normal deviate.
@@ -78,8 +69,9 @@ struct BlindSample {
   double v_m_s = 0.0;
 };
 
-/// From (x0, v0) at the first of the times, which rise. NaN from where it runs away (1 km), or where a million steps
-/// have not brought it.
+/// The motion from (x0, v0) at the first of the times, which rise. NaN from where it runs away (1 km), or where a
+/// million steps have not brought it. Boost.Odeint's Dormand-Prince pair with dense output (tolerance 1e-11 m, steps of
+/// at most 2 ms, so that no narrow force is stepped over). v = 0 is found by bisection in the dense output.
 std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v0_m_s, std::span<const double> times_s);
 
 struct BlindGroup {
@@ -110,6 +102,7 @@ struct BlindCalibration {
   double scale = 0.0, bend_1_m = 0.0, cubic_1_m2 = 0.0;
 };
 
+/// An experiment: what is launched from where, what is stated of it, and what is true.
 struct BlindDesign {
   std::vector<BlindGroup> groups;
   std::vector<BlindMass> masses;
@@ -139,6 +132,11 @@ BlindFilm nominal_film(const BlindDesign& design, const BlindClip& clip);
 /// Positions as the camera has them, without noise; NaN where the glider has come to rest.
 std::vector<double> seen_positions(const BlindClip& clip, const BlindFilm& film);
 
+/// One effect of a blind case: what it alters, by a size that can be changed with all else held.
+///
+/// Each is written here anew, by ratios that a person would think in (a share of the drag, of the friction, of a frame)
+/// and as an alteration of forces, frame times or positions. Nothing of the diagnosis' models is used. All that is
+/// random in an effect is drawn when it is made.
 struct BlindEffect {
   std::string id;
   double largest = 0.0;  ///< size, in a unit of its own; 0 is absence

@@ -1,7 +1,3 @@
-/// blind_effects: What a blind case has besides the nominal law: effects of forces, of camera, of clock.
-///
-/// Effects of effects.md that lie in the camera, its clock and the noise of positions, not in the forces.
-///
 /// What a blind case has besides the nominal law: the effects that a diagnosis may name, and some that are not on its
 /// list.
 #pragma once
@@ -13,6 +9,7 @@
 
 namespace glidelab::validate {
 
+/// Effects of effects.md that lie in the camera, its clock and the noise of positions, not in the forces.
 const std::vector<DrawnEffect>& seen_library();
 
 /// Ids of effects.md that tracks can show.

@@ -1,24 +1,15 @@
-/// blind_filmed_effects: What a filmed blind case has besides what its folder says: in its scene, or in its images
-/// alone.
-///
-/// Effects of effects.md that a filmed blind case has in its images alone: they move no position.
-///
-/// Strength is
-///
-///     gain = z²/2,   z = size / what a image may show where nothing is wrong,
-///
-/// for exposure_blur a smear of 0.4 of the stated exposure's or 0.2 px, for rolling_shutter a shear of 0.02 px over the
-/// marker's height at its fastest, for light_flicker 0.2 % of the light (1 % in a lossy file), for light_gradient 10 %
-/// a metre, for compression the codec's quantiser against three times the noise of a pixel, in codes.
-///
-/// Each puts the effect into the scene with about the wanted gain (down to 0.64 of it where the camera cannot do more),
-/// and nothing where that scene cannot show it.
-///
 /// What a filmed blind case has besides what its folder says: effects of effects.md made in the scenario, in what
-/// experiment.toml says of it, or in the images; and some that are not on the list.
+/// experiment.toml says of it, or in the images, and some that are not on the list.
 ///
-/// Strength of what displaces positions is the log likelihood of blind_strength.h, the noise being the bound that the
-/// camera's noise sets. What moves no position has that of blind_filmed_effects.h.
+/// The strength of what displaces positions is the log likelihood of blind_strength.h, the noise being the bound that
+/// the camera's noise sets. The strength of what is in the images alone, and moves no position, is
+///
+///     gain = z²/2,   z = size / what an image may show where nothing is wrong,
+///
+/// which is for exposure_blur a smear of 0.4 of the stated exposure's or 0.2 px, for rolling_shutter a shear of 0.02 px
+/// over the marker's height at its fastest, for light_flicker 0.2 % of the light (1 % in a lossy file), for
+/// light_gradient 10 % a metre, and for compression the codec's quantiser against three times the noise of a pixel, in
+/// codes.
 #pragma once
 
 #include <optional>
@@ -30,6 +21,8 @@
 
 namespace glidelab::validate {
 
+/// The effects of effects.md that are in the images alone. Each function puts one into the scene with about the wanted
+/// gain (down to 0.64 of it where the camera cannot do more), and nothing where that scene cannot show it.
 std::optional<BlindCause> long_exposure(double wanted, BlindScene& scene, BlindRandom& random);
 std::optional<BlindCause> hidden_rolling(double wanted, BlindScene& scene, BlindRandom& random);
 std::optional<BlindCause> flicker(double wanted, BlindScene& scene, BlindRandom& random);
@@ -45,8 +38,8 @@ const std::vector<std::string>& filmed_outside_effects();
 /// Whether it is made in images that are filed anew, which a file with loss would show twice.
 bool needs_lossless(const std::string& id);
 
-/// Puts the effect into the scene with about the wanted gain; nothing where that scene cannot show it.
-/// std::out_of_range for an id of neither list.
+/// Puts an effect of either list into the scene with about the wanted gain, and nothing where that scene cannot show
+/// it. std::out_of_range for an id of neither list.
 std::optional<BlindCause> put_filmed_effect(const std::string& id, double wanted, BlindScene& scene,
                                             BlindRandom& random);
 

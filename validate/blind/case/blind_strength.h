@@ -1,13 +1,16 @@
-/// How strongly an effect shows in the positions of a design: the log likelihood that the right model gains on the
-/// nominal one fitted to the same positions, without noise,
+/// How strongly an effect shows in the positions of a design, and how much of the gap of held-out clips something
+/// makes.
+///
+/// The strength is the log likelihood that the right model gains on the nominal one fitted to the same positions,
+/// without noise,
 ///
 ///     gain = |d - J (J'J)^-1 J'd|² / 2,       d = (seen with - seen without)/noise,
 ///
 /// J the derivatives by K, mu, inclinations, masses, starts and what a calibration leaves open, with what is stated of
 /// them as rows of its own.
 ///
-/// How much of the gap of held-out clips something makes, by the same fit: with e the residual of a clip's noiseless
-/// positions over the noise and H that clip's block of the projector on the columns of all parameters,
+/// The gap is by the same fit: with e the residual of a clip's noiseless positions over the noise and H that clip's
+/// block of the projector on the columns of all parameters,
 ///
 ///     excess = g² - 1 = sum over clips of e' (I - H)^-1 e / number of positions,
 ///

@@ -1,9 +1,5 @@
-/// baseline: The errors of replicated tracks of a scenario, stored as a JSON file.
-///
-/// The errors of replicated tracks of a scenario, to be stored and compared with later ones (baseline_comparison.h,
-/// baseline.h).
-///
-/// A baseline as a JSON file.
+/// The errors of replicated tracks of a scenario, stored as a JSON file and compared with later ones
+/// (baseline_comparison.h).
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,5 @@
-/// requirement_trial: Whether one point reaches its targets: by the Cramér-Rao bound, by runs; and what limits it.
-///
-/// What the Cramér-Rao bound says of one point of a requirement (requirement.h), and what limits it.
-///
-/// Whether one point of a requirement (requirement.h) reaches its targets, by runs; and what limits
-/// it.
+/// Whether one point of a requirement (requirement.h) reaches its targets, by the Cramér-Rao bound and by runs, and
+/// what limits it.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +25,7 @@ struct Setting {
 /// Of a position, clip by clip.
 std::vector<double> noise_of(const Setting& setting, const Truth& truth);
 
-/// The worst configuration's bound in each target's measure (infinite where the noise is).
+/// The worst configuration's Cramér-Rao bound in each target's measure (infinite where the noise is).
 std::vector<TargetResult> bounds(const MadeTracks& made, const std::vector<double>& noise_m,
                                  const std::vector<Target>& targets);
 

@@ -1,11 +1,5 @@
-/// sweep_summary: A summary of a sweep's database: errors over each varied key, and the kinds of failure.
-///
-/// Why runs failed, by kind: one cause reads alike in every run but for the numbers in it.
-///
-/// A number is digits, with a decimal point and a power of ten where these follow, and a minus before it that no word
-/// ends at. Two reasons are of one kind where they are the same text once each number is taken out.
-///
-/// A summary of a sweep's database: for every quantity and estimator, error, stated and least sd over each varied key.
+/// A summary of a sweep's database: for every quantity and estimator, error, stated and least sd over each varied key,
+/// and why runs failed.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +23,10 @@ struct FailureKind {
   bool one_text = true;  ///< all reasons are the example to the letter
 };
 
+/// Why runs failed, by kind: one cause reads alike in every run but for the numbers in it.
+///
+/// A number is digits, with a decimal point and a power of ten where these follow, and a minus before it that no word
+/// ends at. Two reasons are of one kind where they are the same text once each number is taken out.
 class FailureKinds {
  public:
   void add(const std::string& why);
@@ -82,7 +80,7 @@ struct ConfigurationSummary {
 struct SweepSummary {
   std::string name;
   std::uint64_t runs = 0, planned = 0, failed = 0;
-  /// The five commonest kinds of reasons (sweep_summary.h), with how often and one of each; how many more.
+  /// The five commonest kinds of reasons (FailureKinds), with how often and one of each; how many more.
   std::vector<std::string> failures;
   double cpu_s = 0.0;                                ///< wall time of all runs on their threads
   std::vector<Series> overall;                       ///< each of one group

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStep = 0.005;
 
-/// A clip of one direction with its smoothed points, as phase_diagram.cpp puts them together.
+/// A clip of one direction with its smoothed points, as analyze_motion.cpp puts them together.
 struct Smoothed {
   Motion motion;
   std::vector<FreeStretch> stretches;

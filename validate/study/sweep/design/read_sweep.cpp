@@ -325,7 +325,7 @@ bool check_noise(const TomlTable& root, const Sweep& sweep) {
   return of_every_run;
 }
 
-/// As of a scenario a sweep (render/scenario.cpp): read apart, because asking for a key makes it a known one.
+/// As of a scenario a sweep (render/scenario/scenario.cpp): read apart, because asking for a key makes it a known one.
 void refuse_scenario(const std::string& text, const std::filesystem::path& path) {
   const base::TomlFile file = base::TomlFile::parse(text, path.string());
   if (!file.root().has("configuration") || file.root().has("scenario") || file.root().has("vary")) return;

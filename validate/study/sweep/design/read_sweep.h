@@ -1,8 +1,4 @@
-/// read_sweep: Reads a sweep's file, axis by axis (docs/reference/sweep.md).
-///
-/// Reads one [[vary]] of a sweep's file: its keys, and where their values come from (docs/reference/sweep.md).
-///
-/// Reads a sweep's file (docs/reference/sweep.md).
+/// The reader of a sweep's file (docs/reference/sweep.md).
 #pragma once
 
 #include <filesystem>
@@ -12,7 +8,8 @@
 
 namespace glidelab::validate {
 
-/// What is wrong is recorded in the table's file. Cameras are sought from `folder`.
+/// Reads one [[vary]]: its keys, and where their values come from. What is wrong is recorded in the table's file.
+/// Cameras are sought from `folder`.
 Axis read_axis(const base::TomlTable& table, Design design, const std::filesystem::path& folder);
 
 /// InputError for what is wrong with the file, its scenario or its cameras: unknown keys of the sweep, an empty range,

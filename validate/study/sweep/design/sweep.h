@@ -1,17 +1,8 @@
-/// sweep: A sweep: one scenario, the keys of it that vary, and which values each run has.
-///
 /// A sweep: one scenario, the keys of it that vary, how their values are combined, and what analyses every run.
 ///
-/// Read from one TOML file (docs/reference/sweep.md). A point is one combination of values; every point is run
-/// `replicates` times with seeds of its own. Run r belongs to point r / replicates. What a run is depends on the
+/// It is read from one TOML file (docs/reference/sweep.md). A point is one combination of values. Every point is run
+/// `replicates` times with seeds of its own, and run r belongs to point r / replicates. What a run is depends on the
 /// sweep's seed and its number alone, so the order of the runs and the number of threads do not matter.
-///
-/// Which values a run has: full factorial, Latin hypercube or Sobol, and draws.
-///
-/// Factorial: the first axis varies slowest. Latin hypercube: each axis' n strata are visited once each, in a random
-/// order (a Feistel permutation, so that nothing of the size of the design is stored), at a random place within.
-/// Sobol: the sequence of boost::random::sobol with a random digital shift on each axis, so that its first 2^m points
-/// stay a net. A list in these two designs is cut in equal parts.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +20,12 @@ enum class Level {
   clips,   ///< rendered in memory, calibrated and tracked
 };
 
+/// Which values a run has, besides those that are drawn.
+///
+/// Factorial: the first axis varies slowest. Latin hypercube: each axis' n strata are visited once each, in a random
+/// order (a Feistel permutation, so that nothing of the size of the design is stored), at a random place within. Sobol:
+/// the sequence of boost::random::sobol with a random digital shift on each axis, so that its first 2^m points stay a
+/// net. A list in the last two designs is cut in equal parts.
 enum class Design { factorial, latin_hypercube, sobol };
 
 /// Where the values of a key come from.

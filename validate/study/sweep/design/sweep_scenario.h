@@ -1,8 +1,5 @@
-/// sweep_scenario: The scenario of one run, and the trial of all values before the first run.
-///
-/// The scenario of one run: the sweep's scenario with the run's values in it.
-///
-/// Tries a sweep's values before its first run.
+/// The scenario of one run, which is the sweep's with the run's values in it, and the trial of all values before the
+/// first run.
 #pragma once
 
 #include <string>
