@@ -57,14 +57,6 @@ bool is_worth(const ExplainedCause& cause) {
   return cause.share > kLeastShare && (!cause.share_interval95 || cause.share_interval95->low > 0.0);
 }
 
-/// Whether an effect is a law for all clips. What differs from clip to clip comes after such laws: with sizes of its
-/// own each clip imitates any law in which its speed matters.
-bool is_common(std::size_t effect) {
-  const std::vector<EffectParameter>& parameters = effect_list()[effect].parameters;
-  return std::none_of(parameters.begin(), parameters.end(),
-                      [](const EffectParameter& parameter) { return parameter.each == Each::clip; });
-}
-
 /// The fit to `set` with these effects, from where a fit with all of them and others stands.
 std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, const std::vector<std::size_t>& effects) {
   const ParameterLayout layout(set, effects);
@@ -141,9 +133,10 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   while (!left.empty()) {
     std::optional<Step> best;
     std::size_t which = 0;
-    const bool any_common = std::any_of(left.begin(), left.end(), is_common);
+    // A law for all clips comes first: what differs between clips imitates any in which their speeds matter.
+    const bool all_differ = std::all_of(left.begin(), left.end(), differs_between_clips);
     for (std::size_t k = 0; k < left.size(); ++k) {
-      if (any_common && !is_common(left[k])) continue;
+      if (!all_differ && differs_between_clips(left[k])) continue;
       std::vector<std::size_t> effects = here.fit.effects;
       effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects);

@@ -116,14 +116,18 @@ RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
   return extra;
 }
 
-/// Evidence of a fit with the likeliest function without a name beside it, over the evidence without.
+/// Evidence of a fit with the likeliest function without a name beside it: one that clips share, or a size of each.
 std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with, const MotionFit& noise_alone,
                                       const std::vector<UnnamedFamily>& families, const RemainderSizes& start) {
-  const UnnamedFamily* family = likeliest_shared(families);
-  if (family == nullptr || family->columns.size() == 0 || !(family->tau > 0.0)) return {};
-  const RemainderExtra extra = extra_of(with, *family);
-  if (!(extra.sd > 0.0) || !extra.columns.allFinite()) return {};
-  return profile_of(set, noise_alone, &start, &extra).log_evidence - kFamilies;
+  std::optional<double> log;
+  for (const UnnamedFamily* family : {likeliest_shared(families), likeliest_of_clips(families)}) {
+    if (family == nullptr || !(family->tau > 0.0)) continue;
+    const RemainderExtra extra = extra_of(with, *family);
+    if (!(extra.sd > 0.0) || !extra.columns.allFinite()) continue;
+    log = std::max(log.value_or(-std::numeric_limits<double>::infinity()),
+                   profile_of(set, noise_alone, &start, &extra).log_evidence - kFamilies);
+  }
+  return log;
 }
 
 /// The hypothesis that a fit alone makes: its effects and nothing else.

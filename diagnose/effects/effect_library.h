@@ -28,6 +28,9 @@ std::vector<std::string> effect_words();
 /// rate; of positions alone, not `filmed`, a camera and a table that shake. An effect without such a double: itself.
 std::size_t first_alike(std::size_t effect, bool filmed);
 
+/// Whether an effect has sizes of each clip's own: with these it follows whatever differs between clips.
+bool differs_between_clips(std::size_t effect);
+
 /// The sizes of all effects at once, as one motion feels them.
 class EffectValues {
  public:

@@ -234,20 +234,36 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
   std::vector<UnnamedFamily> families;
   add_place_families(space, families);
   add_member_families(space, families);
-  const UnnamedFamily* shared = likeliest_shared(families);
+  // One size for each clip; curves of each clip by itself have many.
   for (UnnamedFamily& family : families) {
-    if (&family != shared) family.columns.resize(0, 0);
+    if (family.variable == "clip" && family.columns.cols() > std::ssize(space.set().clips)) family.columns.resize(0, 0);
+  }
+  const UnnamedFamily *shared = likeliest_shared(families), *of_clips = likeliest_of_clips(families);
+  for (UnnamedFamily& family : families) {
+    if (&family != shared && &family != of_clips) family.columns.resize(0, 0);
   }
   return families;
 }
 
-const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families) {
+namespace {
+
+const UnnamedFamily* likeliest_with_columns(const std::vector<UnnamedFamily>& families, bool of_clips) {
   const UnnamedFamily* likeliest = nullptr;
   for (const UnnamedFamily& family : families) {
-    if (family.variable == "clip" || family.columns.cols() == 0) continue;
+    if ((family.variable == "clip") != of_clips || family.columns.cols() == 0) continue;
     if (likeliest == nullptr || family.log_evidence > likeliest->log_evidence) likeliest = &family;
   }
   return likeliest;
+}
+
+}  // namespace
+
+const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families) {
+  return likeliest_with_columns(families, false);
+}
+
+const UnnamedFamily* likeliest_of_clips(const std::vector<UnnamedFamily>& families) {
+  return likeliest_with_columns(families, true);
 }
 
 MotionFit with_unnamed(const TrackSet& set, const MotionFit& fit, const UnnamedFamily& family) {

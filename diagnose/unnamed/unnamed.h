@@ -22,6 +22,9 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
 /// The likeliest of those that say of one clip something about another; null: none. Their columns must be there.
 const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families);
 
+/// The likeliest of those with one size for each clip; null: none. Their columns must be there.
+const UnnamedFamily* likeliest_of_clips(const std::vector<UnnamedFamily>& families);
+
 /// The fit with the family's bumps as further parameters, each N(0, tau²): at the minimum of its linear neighbourhood,
 /// for held_out_gap(), statement_pulls() and what it leaves of the positions. The family must have its columns.
 MotionFit with_unnamed(const TrackSet& set, const MotionFit& fit, const UnnamedFamily& family);

@@ -238,6 +238,17 @@ GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& s
   return remainder;
 }
 
+/// Effects that a verdict names as they stand in `explained`, then those that no motion shows.
+void order_by_share(Diagnosis& diagnosis) {
+  const auto place = [&](const DiagnosedEffect& effect) {
+    return std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
+                        [&](const ExplainedCause& cause) { return cause.id == effect.id; });
+  };
+  std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
+                   [&](const DiagnosedEffect& a, const DiagnosedEffect& b) { return place(a) < place(b); });
+  if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
+}
+
 /// The verdict, the causes in order, what remains, and what K/m, mu and alpha are with the causes in the model.
 Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvidence pictures,
                       const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress) {
@@ -266,6 +277,7 @@ Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvide
     diagnosis = verdict_of(set, first, std::move(pictures));
   }
   diagnosis.explained = sequence.causes;
+  order_by_share(diagnosis);
   const RemainderSizes sizes = weighed ? weighed->sizes : RemainderSizes{};
   if (sequence.is_gap()) {
     diagnosis.remainder = remainder_of(sequence, sizes, weighed ? weighed->part_s : 0.0);

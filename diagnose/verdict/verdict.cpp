@@ -259,7 +259,10 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
   add_ranking(set, comparison, noise_alone, diagnosis);
-  const bool beside_named = diagnosis.verdict == Verdict::unknown && !comparison.all.front().effects.empty();
+  // Beside sizes of each clip's own little of anything is left, and not where it lies.
+  const std::vector<std::size_t>& leading = comparison.all.front().effects;
+  const bool beside_named =
+      diagnosis.verdict == Verdict::unknown && !std::all_of(leading.begin(), leading.end(), differs_between_clips);
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
   const bool wrong_way =
       driven && diagnosis.verdict == Verdict::unknown;  // no function of anything is known to be missing

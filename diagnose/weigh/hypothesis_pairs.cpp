@@ -143,11 +143,19 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
 
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
                Comparison& comparison) {
+  // What differs between clips takes up whatever a first effect leaves: it is one explanation or none, not half of two.
+  std::set<std::size_t> left_out = without;
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (differs_between_clips(e)) left_out.insert(e);
+  }
+  std::vector<Hypothesis> leaders = leaders_of(comparison, 1, kLeaders + 1);
+  std::erase_if(leaders, [](const Hypothesis& one) { return differs_between_clips(one.effects.front()); });
+  leaders.resize(std::min(leaders.size(), kLeaders));
   double best_one = 0.0;
-  for (const Hypothesis& leader : leaders_of(comparison, 1, kLeaders)) {
+  for (const Hypothesis& leader : leaders) {
     if (leader.log_evidence < 0.0) continue;
     best_one = std::max(best_one, leader.log_evidence);
-    add_seconds(set, leader, without, work, comparison);
+    add_seconds(set, leader, left_out, work, comparison);
   }
   std::size_t more = 0;
   for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
@@ -157,7 +165,7 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
     work.look();
     add_together(set, pair, comparison);
   }
-  exchange(set, best_one, without, work.at(0.6), comparison);
+  exchange(set, best_one, left_out, work.at(0.6), comparison);
 }
 
 namespace {
