@@ -29,11 +29,19 @@ std::array<double, kBumps> means_of_bumps() {
 void friction_along(const double* p, const GliderConstants& glider, const GliderState& at, DryFriction& of) {
   static const std::array<double, kBumps> means = means_of_bumps();
   const double u = static_cast<double>(kBumps - 1) * (at.x - glider.x_low_m) / (glider.x_high_m - glider.x_low_m);
-  double more = 0.0;
+  constexpr double kFar = 30.0;  // bumps: beyond nothing of them is felt
+  const bool near = std::abs(u) < kFar;
+  // exp(-(u - j)²/2) = exp(-u²/2) exp(u)^j exp(-j²/2)
+  static const std::array<double, kBumps> own = [] {
+    std::array<double, kBumps> factors;
+    for (std::size_t j = 0; j < kBumps; ++j) factors[j] = std::exp(-0.5 * static_cast<double>(j * j));
+    return factors;
+  }();
+  double more = 0.0, power = near ? std::exp(-0.5 * u * u) : 0.0;
+  const double ratio = near ? std::exp(u) : 0.0;
   for (std::size_t j = 0; j < kBumps; ++j) {
-    if (p[j] == 0.0) continue;
-    const double off = u - static_cast<double>(j);
-    more += p[j] * (std::exp(-0.5 * off * off) - means[j]);
+    more += p[j] * (power * own[j] - means[j]);
+    power *= ratio;
   }
   of.mu *= 1.0 + more;
 }

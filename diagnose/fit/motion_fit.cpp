@@ -108,7 +108,7 @@ base::FitOptions descent_options() {
   options.floor_after_refusal = 3.0;
   options.floor_decay = 0.3;
   options.cost_absolute = kConvergedChange;
-  options.cost_relative = 1e-5 * kConvergedChange;
+  options.cost_relative = 1e-3 * kConvergedChange;  // of a misfit of the order of the number of points, as much again
   options.damping_settled = 1e-2;
   return options;
 }

@@ -238,6 +238,14 @@ GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& s
   return remainder;
 }
 
+/// Nothing that matters: what had no name shows in no gap.
+void be_nothing(Diagnosis& diagnosis) {
+  diagnosis.none += std::exchange(diagnosis.unknown, 0.0);
+  diagnosis.verdict = Verdict::none;
+  diagnosis.stage.clear();
+  diagnosis.regions.clear();
+}
+
 /// Effects that a verdict names as they stand in `explained`, then those that no motion shows.
 void order_by_share(Diagnosis& diagnosis) {
   const auto place = [&](const DiagnosedEffect& effect) {
@@ -275,6 +283,11 @@ Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvide
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
   } else {
     diagnosis = verdict_of(set, first, std::move(pictures));
+  }
+  // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding.
+  if (noise_is_rounding(set)) {
+    diagnosis.traces.emplace_back(ids::position_rounding);
+    if (diagnosis.verdict == Verdict::unknown && !sequence.is_gap()) be_nothing(diagnosis);
   }
   diagnosis.explained = sequence.causes;
   order_by_share(diagnosis);
