@@ -58,7 +58,8 @@ bool is_worth(const ExplainedCause& cause) {
 }
 
 /// The fit to `set` with these effects, from where a fit with all of them and others stands.
-std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, const std::vector<std::size_t>& effects) {
+std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, const std::vector<std::size_t>& effects,
+                                  const Lateness& late) {
   const ParameterLayout layout(set, effects);
   FitPoint start;
   start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
@@ -83,7 +84,7 @@ std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, co
     }
     start.own.push_back(kept);
   }
-  MotionFit fit = fit_motions(set, effects, start, from.late);
+  MotionFit fit = fit_motions(set, effects, start, late);
   if (!std::isfinite(fit.cost)) return {};
   return fit;
 }
@@ -111,7 +112,10 @@ std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, cons
     MotionFit fit = fit_motions(set, effects, start, here.fit.late);
     if (!std::isfinite(fit.cost) || fit.cost > here.fit.cost) continue;
     Step step = step_of(set, nominal, std::move(fit));
-    if (!best || step.gap < best->second.gap) best = {scan.effect, std::move(step)};
+    // Laws for all clips first.
+    const bool follows = best && follows_each_clip(scan.effect) && !follows_each_clip(best->first);
+    const bool leads = best && !follows_each_clip(scan.effect) && follows_each_clip(best->first);
+    if (!best || leads || (!follows && step.gap < best->second.gap)) best = {scan.effect, std::move(step)};
   }
   return best;
 }
@@ -129,17 +133,19 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
 
   // What the verdict names, by falling share: of several, each alone first.
   Step here = first;
+  const std::size_t dropped = effect_index(ids::dropped_frames);  // they are in a fit's times
   std::vector<std::size_t> left = named.effects;
+  if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
   while (!left.empty()) {
     std::optional<Step> best;
     std::size_t which = 0;
-    // A law for all clips comes first: what differs between clips imitates any in which their speeds matter.
-    const bool all_differ = std::all_of(left.begin(), left.end(), differs_between_clips);
+    // A law for all clips comes first: sizes of each clip imitate any law in which the clips' speeds matter.
+    const bool all_follow = std::all_of(left.begin(), left.end(), follows_each_clip);
     for (std::size_t k = 0; k < left.size(); ++k) {
-      if (!all_differ && differs_between_clips(left[k])) continue;
+      if (!all_follow && follows_each_clip(left[k])) continue;
       std::vector<std::size_t> effects = here.fit.effects;
-      effects.push_back(left[k]);
-      std::optional<MotionFit> fit = fit_with(set, named, effects);
+      if (left[k] != dropped) effects.push_back(left[k]);
+      std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);
       if (!fit) continue;
       Step step = step_of(set, nominal, std::move(*fit));
       if (best && step.gap >= best->gap) continue;

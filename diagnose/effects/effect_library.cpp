@@ -56,6 +56,10 @@ std::size_t first_alike(std::size_t effect, bool filmed) {
   return same ? effect_index(alike.id) : effect;
 }
 
+bool follows_each_clip(std::size_t effect) {
+  return effect_list()[effect].search == Search::pushes || differs_between_clips(effect);
+}
+
 bool differs_between_clips(std::size_t effect) {
   const std::vector<EffectParameter>& parameters = effect_list()[effect].parameters;
   return std::any_of(parameters.begin(), parameters.end(),

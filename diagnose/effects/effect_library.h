@@ -31,6 +31,9 @@ std::size_t first_alike(std::size_t effect, bool filmed);
 /// Whether an effect has sizes of each clip's own: with these it follows whatever differs between clips.
 bool differs_between_clips(std::size_t effect);
 
+/// The same, or pushes, each clip its own.
+bool follows_each_clip(std::size_t effect);
+
 /// The sizes of all effects at once, as one motion feels them.
 class EffectValues {
  public:

@@ -22,13 +22,16 @@
 #include "diagnose/noise/position_noise.h"
 #include "diagnose/pictures/picture_evidence.h"
 #include "diagnose/pictures/twin_camera.h"
+#include "diagnose/tracks/coarse_force.h"
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/tracks/usable_motions.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/twin/twin.h"
+#include "diagnose/unnamed/unnamed.h"
 #include "diagnose/verdict/verdict.h"
+#include "diagnose/verdict/verdict_details.h"
 #include "diagnose/weigh/hypotheses.h"
 
 namespace glidelab::diagnose {
@@ -138,10 +141,25 @@ void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
   });
 }
 
+constexpr double kUnfelt_sd = 0.3, kUnfeltPart = 1e-4;  // of the noise, and of what the nominal model leaves
+
+/// Recorded forces without what neither the noise nor the misfit would let anyone see.
+void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    TrackedMotion& motion = set.motions[i];
+    if (motion.known.t_s.empty()) continue;
+    const Eigen::VectorXd& left = nominal.motions[i].residual;
+    const double rms = std::sqrt(left.squaredNorm() / static_cast<double>(left.size()));
+    coarsen_force(motion, set.masses[motion.mass].mass_kg, motion.sd_m * std::max(kUnfelt_sd, kUnfeltPart * rms));
+  }
+}
+
 /// The noise of every position, by what single frames tell of it. Frames that are missing are taken out first: a jump
 /// is no noise and no outlier.
 void settle_noise(TrackSet& set) {
-  MissingFrames missing = find_missing_frames(set, fit_nominal(set));
+  const MotionFit nominal = fit_nominal(set);
+  coarsen_forces(set, nominal);
+  MissingFrames missing = find_missing_frames(set, nominal);
   std::vector<EdgePosition> beyond = positions_beyond_gaps(set, missing.fit);
   if (missing.count == 0) leave_single(set, beyond);
   for (const EdgePosition& position : beyond) set.motions[position.motion].outlier[position.point] = 0;
@@ -221,11 +239,29 @@ constexpr double kLeft = 0.5;  // probability of something without a name from w
 constexpr double kHalf = 0.5;  // of the excess: what a verdict's causes take at least
 constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 
-/// Probabilities of a comparison that counts a remainder as noise, as a verdict on a gap above its floor: what the
-/// remainder makes is unknown, and so is all of it where the named causes take less than half.
+/// Odds of a name that takes three quarters of the gap and is a law for all clips, against a function without a name,
+/// beyond what the evidence says of the two: what is on no list seldom leaves so much to a name.
+constexpr double kNameOdds = 30.0, kMost = 0.75;
+
+/// Whether all of an explanation shows in the motion, and so in the gap.
+bool shows_in_gap(const Hypothesis& best) {
+  return std::all_of(best.effects.begin(), best.effects.end(),
+                     [](std::size_t e) { return shows_in_motion(effect_list()[e].search); });
+}
+
+/// Probabilities of a comparison as a verdict on a gap above its floor. What the remainder makes is unknown, and so is
+/// all of it where the named causes take less than half.
 void settle(const CauseSequence& sequence, Comparison& comparison) {
+  const bool half = sequence.named_share >= kHalf;
+  if (sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id))) {
+    const double sum = 1.0 - comparison.unknown + comparison.unknown / kNameOdds;
+    for (Hypothesis& one : comparison.all) one.probability /= one.unnamed ? kNameOdds * sum : sum;
+    for (double& probability : comparison.effect_probability) probability /= sum;
+    comparison.none /= sum;
+    comparison.unknown /= kNameOdds * sum;
+  }
   comparison.unknown += std::exchange(comparison.none, 0.0);
-  if (sequence.named_share < kHalf) comparison.unknown = 1.0;
+  if (!half) comparison.unknown = 1.0;
 }
 
 GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& sizes, double part_s) {
@@ -238,12 +274,13 @@ GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& s
   return remainder;
 }
 
-/// Nothing that matters: what had no name shows in no gap.
-void be_nothing(Diagnosis& diagnosis) {
-  diagnosis.none += std::exchange(diagnosis.unknown, 0.0);
-  diagnosis.verdict = Verdict::none;
-  diagnosis.stage.clear();
-  diagnosis.regions.clear();
+/// Where the rest lies, beside the named causes; nowhere where nothing is left.
+std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence) {
+  if (!(sequence.gap_after > 1.0 + 3.0 * sequence.standard_error)) return {};
+  Diagnosis rest;
+  rest.verdict = Verdict::unknown;
+  add_regions(set, sequence.named, unnamed_families(ScoreSpace(set, sequence.named)), rest);
+  return rest.regions;
 }
 
 /// Effects that a verdict names as they stand in `explained`, then those that no motion shows.
@@ -277,27 +314,34 @@ Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvide
       sequence_of(set, nominal, with, names ? by.fits[static_cast<std::size_t>(best->fit)] : nominal, without);
   Diagnosis diagnosis;
   // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
-  if (weighed && sequence.is_gap()) settle(sequence, weighed->comparison);
-  if (weighed && sequence.is_gap() && verdict_by(by.none, by.unknown) == Verdict::effect) {
+  const bool settled = weighed && sequence.is_gap();
+  if (settled) settle(sequence, weighed->comparison);
+  if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
   } else {
-    diagnosis = verdict_of(set, first, std::move(pictures));
+    Comparison alone = first;
+    // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding.
+    if (noise_is_rounding(set) && !sequence.is_gap()) alone.none += std::exchange(alone.unknown, 0.0);
+    // A name that takes next to nothing of a gap explains something else.
+    const bool explains = !names || !shows_in_gap(*best) || sequence.named_share >= kHalf;
+    if (!weighed && sequence.is_gap() && !explains) alone.unknown = 1.0;
+    diagnosis = verdict_of(set, alone, std::move(pictures));
   }
-  // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding.
-  if (noise_is_rounding(set)) {
-    diagnosis.traces.emplace_back(ids::position_rounding);
-    if (diagnosis.verdict == Verdict::unknown && !sequence.is_gap()) be_nothing(diagnosis);
-  }
+  if (noise_is_rounding(set)) diagnosis.traces.emplace_back(ids::position_rounding);
   diagnosis.explained = sequence.causes;
   order_by_share(diagnosis);
-  const RemainderSizes sizes = weighed ? weighed->sizes : RemainderSizes{};
+  const MotionFit& reported = diagnosis.verdict == Verdict::effect ? sequence.named : nominal;
+  RemainderSizes sizes;
   if (sequence.is_gap()) {
-    diagnosis.remainder = remainder_of(sequence, sizes, weighed ? weighed->part_s : 0.0);
-    diagnosis.remainder->regions = diagnosis.regions;
+    const RemainderSpace space(set, reported);
+    sizes = space.likeliest().sizes;
+    diagnosis.remainder = remainder_of(sequence, sizes, space.part_s());
+    diagnosis.remainder->regions =
+        diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence) : diagnosis.regions;
   }
   diagnosis.levels = levels_of(set, nominal, jobs);
-  diagnosis.recovered = recovered_of(set, diagnosis.verdict == Verdict::effect ? sequence.named : nominal, sizes);
+  diagnosis.recovered = recovered_of(set, reported, sizes);
   if (set.clips.size() < 2) {
     for (DiagnosedEffect& effect : diagnosis.effects) {
       effect.probability = std::min(effect.probability, kMostOfOneClip);

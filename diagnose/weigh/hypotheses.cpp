@@ -16,6 +16,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
+constexpr double kAnyPower = 0.2;     // odds of a power of the speed that no theory gives, against another effect
 constexpr std::size_t kFitted = 9;    // effects of the short list that are fitted in full
 constexpr double kLeads = 3.0;        // log evidence from which on something else is weighed beside an effect
 constexpr double kNoLossSeen = -3.0;  // log evidence of lost frames where none is found
@@ -111,6 +112,10 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
                    : many == 1 ? one
                                : two + static_cast<double>(many - 2) * (two - one);
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
+    const std::size_t any_power = effect_index(ids::power_law_drag);
+    if (std::find(hypothesis.effects.begin(), hypothesis.effects.end(), any_power) != hypothesis.effects.end()) {
+      prior += std::log(kAnyPower);
+    }
     logs.push_back(prior + hypothesis.log_evidence);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
