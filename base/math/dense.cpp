@@ -62,6 +62,11 @@ Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b) {
   return a.colPivHouseholderQr().solve(b);
 }
 
+Eigen::VectorXd least_squares_of(const MatrixView& a, const VectorView& b) {
+  require_fit(a.rows() == b.rows(), "least_squares_of", a, b);
+  return a.colPivHouseholderQr().solve(b);
+}
+
 Eigen::MatrixXd orthonormal_columns(const MatrixView& a, double alike) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(a);
   factor.setThreshold(alike);

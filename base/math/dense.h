@@ -10,6 +10,7 @@
 namespace glidelab::base {
 
 using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
+using VectorView = Eigen::Ref<const Eigen::VectorXd>;
 
 /// A B.
 Eigen::MatrixXd product(const MatrixView& a, const MatrixView& b);
@@ -31,6 +32,9 @@ Eigen::MatrixXd solve_lower(const MatrixView& lower, const MatrixView& b);
 
 /// X that minimises |A X - B|, by Householder's QR with column pivoting.
 Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b);
+
+/// The same of one right-hand side, which Eigen solves by other kernels: equal but for the rounding.
+Eigen::VectorXd least_squares_of(const MatrixView& a, const VectorView& b);
 
 /// An orthonormal basis of the span of A's columns, by the same QR; a column whose remainder is below `alike` times the
 /// longest adds nothing. As many rows as A, and as many columns as its rank.

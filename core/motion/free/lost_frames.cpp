@@ -1,13 +1,15 @@
 #include "core/motion/free/lost_frames.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
 
+#include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "core/motion/free/motion.h"
 
@@ -17,7 +19,6 @@ namespace {
 constexpr std::size_t kBefore = 4, kBehind = 4;  // positions that a cubic goes through on either side
 constexpr std::size_t kFewestBehind = 2;         // where another loss follows soon
 constexpr std::size_t kFewestInWindow = 6;       // of both
-constexpr int kMostPoints = kBefore + 1 + kBehind;
 constexpr double kEvidence = 50.0;      // variances by which a loss lessens the sum of squares
 constexpr double kExplained = 4.0;      // standard deviations of the noise that residuals may have
 constexpr double kOfDistance = 0.1;     // of the distance in a frame that they may be: a law that changes at a reversal
@@ -60,16 +61,12 @@ struct CubicFit {
   double way = 0.0;       ///< in one frame, behind the pair
 };
 
-using Design = Eigen::Matrix<double, Eigen::Dynamic, 5, 0, kMostPoints, 5>;
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostPoints, 1>;
-using Parameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 5, 1>;
-
-double speed_at(const Parameters& c, double u, double turn) {
+double speed_at(const Eigen::VectorXd& c, double u, double turn) {
   return c[1] + u * (2.0 * c[2] + 3.0 * c[3] * u) + (c.size() > 4 ? c[4] * std::max(0.0, u - turn) : 0.0);
 }
 
 /// Where the speed changes its sign inside the window, if it does once.
-std::optional<double> turn_of(const Parameters& c, const std::vector<double>& u, double turn) {
+std::optional<double> turn_of(const Eigen::VectorXd& c, const std::vector<double>& u, double turn) {
   constexpr int kHalvings = 30;
   double low = u[1], high = u[u.size() - 2];
   if (!(speed_at(c, low, turn) * speed_at(c, high, turn) < 0.0)) return {};
@@ -85,27 +82,26 @@ CubicFit cubic_through(const Window& window, int lost) {
   const auto n = static_cast<Eigen::Index>(window.u.size());
   std::vector<double> u = window.u;
   for (std::size_t i = window.before; i < u.size(); ++i) u[i] += lost * kUnit;
-  Points y(n);
+  Eigen::VectorXd y(n);
   for (Eigen::Index r = 0; r < n; ++r) y[r] = window.y_m[static_cast<std::size_t>(r)];
   CubicFit fit;
   std::optional<double> turn;
   for (int round = 0; round < kTurnRounds; ++round) {
     const Eigen::Index many = turn ? 5 : 4;
-    Design design(n, 5);
-    Points late(n);
+    Eigen::MatrixXd design(n, many);
+    Eigen::VectorXd late(n);
     for (Eigen::Index r = 0; r < n; ++r) {
       const double at = u[static_cast<std::size_t>(r)], beyond = turn ? std::max(0.0, at - *turn) : 0.0;
-      design.row(r) << 1.0, at, at * at, at * at * at, 0.5 * beyond * beyond;
+      const std::array<double, 5> row{1.0, at, at * at, at * at * at, 0.5 * beyond * beyond};
+      for (Eigen::Index c = 0; c < many; ++c) design(r, c) = row[static_cast<std::size_t>(c)];
     }
-    const auto used = design.leftCols(many).eval();
-    const Eigen::HouseholderQR<std::remove_cv_t<decltype(used)>> qr(used);
-    const Parameters cubic = qr.solve(y);
+    const Eigen::VectorXd cubic = base::least_squares_of(design, y);
     for (Eigen::Index r = 0; r < n; ++r) {
       const auto i = static_cast<std::size_t>(r);
       late[r] = i < window.before ? 0.0 : kUnit * speed_at(cubic, u[i], turn.value_or(0.0));
     }
-    const Points own = late - used * qr.solve(late);
-    const Points residual = y - used * cubic;
+    const Eigen::VectorXd own = late - base::product(design, base::least_squares_of(design, late));
+    const Eigen::VectorXd residual = y - base::product(design, cubic);
     const double norm = own.squaredNorm();
     fit = {residual.squaredNorm(), static_cast<double>(n - many), norm > 0.0 ? own.dot(residual) / norm : 0.0,
            norm > 0.0 ? 1.0 / norm : std::numeric_limits<double>::infinity(),
@@ -143,17 +139,17 @@ int lost_between(const Window& window, double noise_m) {
 bool is_smooth(const Motion& motion, const std::vector<double>& t_s, std::size_t i, double step_s) {
   const std::size_t before = std::min(i, kBefore), behind = std::min(kBehind, t_s.size() - i - 1), first = i - before;
   const auto n = static_cast<Eigen::Index>(before + 1 + behind);
-  Eigen::Matrix<double, Eigen::Dynamic, 4, 0, kMostPoints, 4> design(n, 4);
-  Points y(n);
+  Eigen::MatrixXd design(n, 4);
+  Eigen::VectorXd y(n);
   for (Eigen::Index r = 0; r < n; ++r) {
     const std::size_t point = first + static_cast<std::size_t>(r);
     const double u = (t_s[point] - t_s[i]) / step_s * kUnit;
-    design.row(r) << 1.0, u, u * u, u * u * u;
+    const std::array<double, 4> row{1.0, u, u * u, u * u * u};
+    for (Eigen::Index c = 0; c < 4; ++c) design(r, c) = row[static_cast<std::size_t>(c)];
     y[r] = motion.y_m[point] - motion.y_m[i];
   }
-  const Eigen::HouseholderQR<decltype(design)> qr(design);
-  y.applyOnTheLeft(qr.householderQ().adjoint());
-  return y.tail(n - 4).squaredNorm() < kEvidence * motion.noise_m * motion.noise_m;
+  const Eigen::VectorXd residual = y - base::product(design, base::least_squares_of(design, y));
+  return residual.squaredNorm() < kEvidence * motion.noise_m * motion.noise_m;
 }
 
 /// Whether a window of these points holds hardly a frame without a marker.

@@ -1,11 +1,12 @@
 #include "core/motion/free/motion.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 
@@ -71,8 +72,8 @@ struct Prediction {
 template <int Coefficients>
 Prediction predict(const Motion& motion, std::size_t j, const std::vector<std::size_t>& neighbours) {
   const auto n = static_cast<Eigen::Index>(neighbours.size());
-  Eigen::Matrix<double, Eigen::Dynamic, Coefficients, 0, kNeighbours, Coefficients> design(n, Coefficients);
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kNeighbours, 1> y(n);
+  Eigen::MatrixXd design(n, Coefficients);
+  Eigen::VectorXd y(n);
   const double span = std::max(std::abs(motion.t_s[neighbours.front()] - motion.t_s[j]),
                                std::abs(motion.t_s[neighbours.back()] - motion.t_s[j]));
   for (Eigen::Index r = 0; r < n; ++r) {
@@ -82,9 +83,11 @@ Prediction predict(const Motion& motion, std::size_t j, const std::vector<std::s
     for (int c = 0; c < Coefficients; ++c, power *= u) design(r, c) = power;
     y[r] = motion.y_m[i] - motion.y_m[j];
   }
-  const Eigen::Matrix<double, Coefficients, Coefficients> inverse = (design.transpose() * design).inverse();
-  const Eigen::Matrix<double, Coefficients, 1> fit = inverse * (design.transpose() * y);
-  const auto residual = (y - design * fit).eval();
+  const Eigen::Matrix<double, Coefficients, Coefficients> normal = base::transposed_product(design, design);
+  const Eigen::Matrix<double, Coefficients, Coefficients> inverse = normal.inverse();
+  const Eigen::Matrix<double, Coefficients, 1> right = base::transposed_product(design, y);
+  const Eigen::Matrix<double, Coefficients, 1> fit = inverse * right;
+  const Eigen::VectorXd residual = y - base::product(design, fit);
   Prediction prediction;
   prediction.off = std::abs(fit[0]);
   prediction.gain = inverse(0, 0);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/local_polynomial.h"
@@ -133,15 +134,18 @@ class RunFinder {
     const PointRange middle{range.from + cut, range.to - cut};
     const auto count = static_cast<Eigen::Index>(middle.size());
     const double half_s = 0.5 * span_s(middle), centre_s = motion_.t_s[middle.from] + half_s;
-    Eigen::MatrixX3d design(count, 3);
+    Eigen::MatrixXd design(count, 3);
     Eigen::VectorXd x(count);
     for (Eigen::Index r = 0; r < count; ++r) {
       const std::size_t i = middle.from + static_cast<std::size_t>(r);
       const double u = (motion_.t_s[i] - centre_s) / half_s;
-      design.row(r) << 1.0, u, u * u;
+      design(r, 0) = 1.0;
+      design(r, 1) = u;
+      design(r, 2) = u * u;
       x[r] = motion_.x_m[i] - motion_.x_m[middle.from];
     }
-    const Eigen::Vector3d fit = (design.transpose() * design).ldlt().solve(design.transpose() * x);
+    const Eigen::Vector3d fit = base::solve_positive(base::transposed_product(design, design),
+                                                     base::transposed_product(design, x));
     // fit[1] is the way over half the range, fit[2] how far its ends lie off: next to none is a fifth of the speed that
     // counts as still, or what a position's noise covers.
     const double little = std::max(0.2 * kStillShare * pilot_.top_speed_m_s * half_s, kRestGrowth * motion_.noise_m);
