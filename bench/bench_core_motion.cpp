@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/motion/analyze_motion.h"
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 namespace {
 

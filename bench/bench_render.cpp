@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render/film/clip_renderer.h"
-#include "render/film/marker_truth.h"
+#include "render/film/truth_files.h"
 #include "render/paint/static_painter.h"
 #include "render/video/video_writer.h"
 

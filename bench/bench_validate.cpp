@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/long_work.h"
 #include "fit/trajectory/trajectory_results.h"
-#include "render/film/clip_set.h"
+#include "render/film/clip_renderer.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/coverage/interval_coverage.h"
 #include "validate/study/sweep/sweep_run.h"

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result/line_method.h"
 #include "core/result/results.h"
 
 namespace glidelab::fit {

@@ -1,7 +1,7 @@
 /// A folder of a test's own, removed with it.
 #pragma once
 
-#include "base/files/temporary_folder.h"
+#include "base/files/file_io.h"
 
 namespace glidelab::tests {
 

@@ -1,10 +1,9 @@
 #include "app/commands/analysis_files.h"
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
-#include "report/analysis/clip_csv.h"
-#include "report/analysis/results_json.h"
-#include "report/text/result_names.h"
+#include "report/analysis/result_files.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::app {
 namespace {

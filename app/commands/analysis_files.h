@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/analysis/preview.h"
-#include "core/experiment/bare_track.h"
+#include "core/experiment/experiment.h"
 #include "core/result/results.h"
 
 namespace glidelab::app {

@@ -8,21 +8,18 @@
 #include <memory>
 
 #include "app/commands/analysis_files.h"
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/experiment_arguments.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/nearest_word.h"
 #include "core/analysis/analyze.h"
-#include "core/experiment/bare_track.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "fit/estimators.h"
 #include "report/analysis/analysis_report.h"
-#include "report/analysis/results_json.h"
+#include "report/analysis/result_files.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::app {

@@ -4,17 +4,14 @@
 
 #include <algorithm>
 
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/number_text.h"
 #include "render/scenario/scenario.h"
-#include "report/text/text_table.h"
+#include "report/text/display_text.h"
 #include "validate/study/baseline/baseline.h"
 #include "validate/study/baseline/baseline_comparison.h"
-#include "validate/study/baseline/baseline_file.h"
-#include "validate/study/baseline/baseline_power.h"
 
 namespace glidelab::app {
 namespace {

@@ -4,12 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
+#include "app/shell/run_control.h"
 #include "base/files/child_process.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/blind/blind_report.h"
 #include "report/html/gnuplot.h"
 #include "validate/blind/run_blind.h"
@@ -65,7 +64,11 @@ void blind(const BlindCommand& options) {
         return fmt::format("{} of {} cases are kept in {}; the same command continues with the rest",
                            validate::kept_cases(wanted, out), wanted.cases, out.string());
       });
-  run.score = validate::score_blind(run.outcomes);
+  if (wanted.everyday) {
+    run.everyday = validate::score_everyday(run.outcomes);
+  } else {
+    run.score = validate::score_blind(run.outcomes);
+  }
   const std::string json = report::blind_json(run);
   base::StagedOutput staged(out);
   base::write_file(staged.dir() / "blind.json", json);
@@ -91,11 +94,18 @@ void add_blind(CLI::App& app, Command& chosen) {
       ->add_option("--only", options->blind.only,
                    "Give every case this effect; default: none, one, two, or one that is not on the list")
       ->type_name("EFFECT");
-  command->add_flag(
+  CLI::Option* pictures = command->add_flag(
       "--pictures", options->blind.pictures,
       "Film the experiments as rendered clips instead of tracks; their effects are those that images show");
-  command->add_flag("--leave-out", options->blind.leave_out,
-                    "Diagnose each case of one effect again with that effect taken off the list");
+  CLI::Option* leave_out =
+      command->add_flag("--leave-out", options->blind.leave_out,
+                        "Diagnose each case of one effect again with that effect taken off the list");
+  command
+      ->add_flag("--everyday", options->blind.everyday,
+                 "Tracks as students record them: one cause, two, none or one off the list, each beside three to five "
+                 "small imperfections")
+      ->excludes(pictures)
+      ->excludes(leave_out);
   add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");
   command->callback([options, &chosen] { chosen = [options] { blind(*options); }; });
 }

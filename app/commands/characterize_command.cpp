@@ -4,15 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
-#include "base/files/staged_output.h"
+#include "app/shell/run_control.h"
+#include "base/files/file_io.h"
+#include "core/characterize/camera_measurement.h"
 #include "core/characterize/flat_field_folder.h"
-#include "core/characterize/measured_camera_file.h"
 #include "core/characterize/photon_transfer.h"
-#include "report/characterize/camera_json.h"
 #include "report/characterize/camera_report.h"
 #include "report/html/gnuplot.h"
 

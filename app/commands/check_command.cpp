@@ -4,16 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/experiment_arguments.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/analysis/preview.h"
 #include "core/check/check_recording.h"
-#include "report/check/check_json.h"
 #include "report/check/check_report.h"
 #include "report/html/gnuplot.h"
 

@@ -8,12 +8,11 @@
 #include <memory>
 #include <set>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "fit/estimators.h"
 #include "render/scenario/scenario.h"
 #include "report/coverage/coverage_report.h"

@@ -4,11 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/text/json_numbers.h"
-#include "teach/page/explorer_page.h"
+#include "teach/page/teaching_pages.h"
 
 namespace glidelab::app {
 namespace {

@@ -6,16 +6,14 @@
 #include <memory>
 #include <set>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/html/gnuplot.h"
 #include "report/text/json_numbers.h"
-#include "teach/page/laws_report.h"
-#include "teach/study/law_film.h"
+#include "teach/page/teaching_pages.h"
 #include "teach/study/law_study.h"
 
 namespace glidelab::app {

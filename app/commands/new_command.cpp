@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/toml/strict_toml.h"
 #include "core/experiment/experiment_template.h"
 #include "report/text/json_numbers.h"

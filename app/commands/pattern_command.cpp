@@ -5,10 +5,10 @@
 #include <charconv>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/print/print_sheet.h"
 #include "report/text/json_numbers.h"
 

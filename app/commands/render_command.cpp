@@ -4,12 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
-#include "base/files/made_files.h"
-#include "base/files/staged_output.h"
+#include "app/shell/run_control.h"
+#include "base/files/file_io.h"
 #include "render/film/render_experiment.h"
 #include "render/scenario/scenario.h"
 #include "report/text/json_numbers.h"

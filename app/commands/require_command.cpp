@@ -4,12 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/result/quantity.h"
 #include "report/html/gnuplot.h"
 #include "report/requirement/requirement_report.h"

@@ -5,16 +5,15 @@
 #include <cmath>
 #include <memory>
 
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
-#include "base/files/staged_output.h"
+#include "app/shell/run_control.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scenario.h"
+#include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
-#include "report/text/text_table.h"
 #include "sim/motion/simulate.h"
 
 namespace glidelab::app {

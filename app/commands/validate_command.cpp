@@ -6,14 +6,12 @@
 
 #include "app/commands/analysis_files.h"
 #include "app/commands/baseline_gate.h"
-#include "app/shell/commands.h"
+#include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/interrupt.h"
-#include "app/shell/progress_display.h"
-#include "base/files/staged_output.h"
+#include "app/shell/run_control.h"
+#include "base/files/file_io.h"
 #include "render/scenario/scenario.h"
 #include "report/html/gnuplot.h"
-#include "report/validation/comparison_json.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
 

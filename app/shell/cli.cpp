@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
-
 #include <CLI/CLI.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/core/utils/logger.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -12,18 +14,14 @@
 #include <filesystem>
 #include <memory>
 #include <new>
-#include <opencv2/core.hpp>
-#include <opencv2/core/utils/logger.hpp>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "app/shell/commands.h"
 #include "app/shell/common_options.h"
-#include "app/shell/completion.h"
-#include "app/shell/interrupt.h"
 #include "app/shell/program_texts.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/text/nearest_word.h"
 

@@ -1,4 +1,5 @@
-/// The options that every command takes, and how a command writes: files, tables and JSON.
+/// Options that every command takes, those that the commands that take recordings (analyze, check, diagnose) have in
+/// common, and how a command writes: files, tables and JSON.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,10 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/errors.h"
+#include "core/experiment/file_names.h"
 
 namespace CLI {
 class App;
@@ -57,7 +60,7 @@ std::filesystem::path output_folder(const CommonOptions& options, std::string_vi
 std::filesystem::path truth_beside(const std::filesystem::path& experiment);
 
 /// InputError if the experiment folder or its truth hold anything that `render` did not write or that was changed since
-/// (base/files/made_files.h): the two are replaced as a whole, and no file of the user's own may be lost.
+/// (base/files/file_io.h): the two are replaced as a whole, and no file of the user's own may be lost.
 void check_replaceable(const std::filesystem::path& experiment, const std::filesystem::path& truth);
 
 /// InputError if the file that `option` names exists and does not begin with `head`, as this program's file would:
@@ -88,5 +91,19 @@ void print_result(std::string_view text);
 
 /// One line on standard error, unless --quiet.
 void say(const CommonOptions& options, std::string_view line);
+
+}  // namespace glidelab::app
+
+namespace CLI {
+class App;
+}
+
+namespace glidelab::app {
+
+/// Adds --allow-outside, which sets `outside`.
+void add_allow_outside(CLI::App& command, core::OutsideFiles& outside);
+
+/// InputError if one of these is a scenario or a sweep, which hold no recording.
+void refuse_scenarios(const std::vector<std::string>& inputs);
 
 }  // namespace glidelab::app

@@ -2,18 +2,206 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
+
+#include <algorithm>
 #include <cstddef>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
-#include "app/shell/completion.h"
+#include "base/text/nearest_word.h"
 #include "version_of_build.h"
 
 namespace glidelab::app {
+namespace {
+
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> all;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::vector<std::string> names = names_of(*option);
+    all.insert(all.end(), names.begin(), names.end());
+  }
+  return all;
+}
+
+bool takes_value(const CLI::Option& option) {
+  return option.get_expected_max() > 0;
+}
+
+/// "N" of "N:INT in [1 - 1024]": CLI11 puts what it checks behind the name.
+std::string value_name(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.substr(0, type.find(':'));
+}
+
+bool takes_file(const CLI::Option& option) {
+  const std::string name = value_name(option);
+  return name == "FILE" || name == "DIR" || name == "PATH" || name == "DIR|FILE" || name.ends_with(".toml");
+}
+
+std::string command_names(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands({})) names += command->get_name() + " ";
+  return names + "help";
+}
+
+/// What follows an option: "words" are offered, or nothing if "nothing" is set, or files.
+std::string bash_values(const CLI::App& app, const std::string& indent) {
+  std::string text;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::vector<std::string> names = names_of(*option);
+    if (names.empty() || !takes_value(*option)) continue;
+    const std::vector<std::string> words = words_of(*option);
+    const std::string offer = !words.empty()        ? fmt::format("values=\"{}\"", fmt::join(words, " "))
+                              : takes_file(*option) ? "files=1"
+                                                    : "nothing=1";
+    text += fmt::format("{}{}) {} ;;\n", indent, fmt::join(names, "|"), offer);
+  }
+  return text;
+}
+
+std::string bash_script(const CLI::App& app) {
+  std::string cases;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    cases += fmt::format("    {}) words=\"{}\"\n      case \"$previous\" in\n{}      esac ;;\n", command->get_name(),
+                         fmt::join(option_names(*command), " "), bash_values(*command, "        "));
+  }
+  return fmt::format(R"(# bash completion for glidelab
+_glidelab() {{
+  local current="${{COMP_WORDS[COMP_CWORD]}}" previous="${{COMP_WORDS[COMP_CWORD-1]}}"
+  local words="" values="" files="" nothing=""
+  # --name=value comes as three words
+  if [ "$current" = "=" ]; then current=""
+  elif [ "$previous" = "=" ]; then previous="${{COMP_WORDS[COMP_CWORD-2]}}"
+  fi
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    COMPREPLY=($(compgen -W "{0} {1}" -- "$current"))
+    return
+  fi
+  case "${{COMP_WORDS[1]}}" in
+    help) values="{0}" ;;
+    -*)
+      case "$previous" in
+{2}        *) nothing=1 ;;
+      esac ;;
+{3}  esac
+  COMPREPLY=()
+  if [ -n "$values" ]; then
+    COMPREPLY=($(compgen -W "$values" -- "$current"))
+  elif [ -n "$nothing" ]; then
+    return
+  elif [ -z "$files" ] && [[ "$current" == -* ]]; then
+    COMPREPLY=($(compgen -W "$words" -- "$current"))
+  else
+    compopt -o filenames 2>/dev/null
+    local IFS=$'\n'
+    COMPREPLY=($(compgen -f -- "$current"))
+  fi
+}}
+complete -F _glidelab glidelab
+)",
+                     command_names(app), fmt::join(option_names(app), " "), bash_values(app, "        "), cases);
+}
+
+/// The first line of what is said of an option, between single quotes and brackets.
+std::string between_brackets(const std::string& text) {
+  std::string line = text.substr(0, text.find('\n'));
+  boost::replace_all(line, "\\", "\\\\");
+  boost::replace_all(line, "'", "'\\''");
+  boost::replace_all(line, "[", "(");
+  boost::replace_all(line, "]", ")");
+  return line;
+}
+
+/// One specification of _arguments for each name of each option. The action behind the second colon is zsh code: a list
+/// in parentheses, a function, or nothing to offer.
+std::string zsh_arguments(const CLI::App& app) {
+  std::string text;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::vector<std::string> words = words_of(*option);
+    const std::string action = !words.empty()        ? fmt::format("({})", fmt::join(words, " "))
+                               : takes_file(*option) ? "_files"
+                                                     : " ";
+    const std::string value = takes_value(*option) ? fmt::format(":{}:{}", value_name(*option), action) : "";
+    const char* many = option->get_items_expected_max() > 1 ? "*" : "";
+    for (const std::string& name : names_of(*option)) {
+      const char* joined = takes_value(*option) && name.starts_with("--") ? "=" : "";
+      text += fmt::format(" \\\n        '{}{}{}[{}]{}'", many, name, joined,
+                          between_brackets(option->get_description()), value);
+    }
+  }
+  return text;
+}
+
+std::string zsh_script(const CLI::App& app) {
+  std::string commands, cases;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    commands += fmt::format("    '{}:{}'\n", command->get_name(), between_brackets(command->get_description()));
+    cases += fmt::format("    {})\n      _arguments{} \\\n        '*:file:_files'\n      ;;\n", command->get_name(),
+                         zsh_arguments(*command));
+  }
+  return fmt::format(R"(#compdef glidelab
+# zsh completion for glidelab
+local -a commands
+commands=(
+{}    'help:Show the help of a command'
+)
+if [[ $words[2] == -* ]]; then
+  _arguments{}
+elif (( CURRENT == 2 )) || [[ $words[2] == help ]]; then
+  _describe 'command' commands
+else
+  local command=${{words[2]}}
+  shift words
+  (( CURRENT-- ))
+  case $command in
+{}  esac
+fi
+)",
+                     commands, zsh_arguments(app), cases);
+}
+
+}  // namespace
+
+std::vector<std::string> words_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.find('{'), close = type.find('}');
+  std::vector<std::string> words;
+  if (open == std::string::npos || close == std::string::npos) return words;
+  std::istringstream list(type.substr(open + 1, close - open - 1));
+  for (std::string word; std::getline(list, word, ',');) words.push_back(word);
+  return words;
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  return CLI::Validator(
+      [words](std::string& value) {
+        if (std::find(words.begin(), words.end(), value) != words.end()) return std::string();
+        return fmt::format("found \"{}\", expected one of {}{}", value, fmt::join(words, ", "),
+                           base::did_you_mean(value, words));
+      },
+      fmt::format("{{{}}}", fmt::join(words, ",")));
+}
+
+std::string shown_type(const CLI::Option& option) {
+  constexpr std::size_t kMostWords = 6;  // more stand in the description, or where it points to
+  const std::string type = option.get_type_name();
+  return words_of(option).size() > kMostWords ? type.substr(0, type.find(":{")) : type;
+}
+
+std::string completion_script(const CLI::App& app, const std::string& shell) {
+  return shell == "zsh" ? zsh_script(app) : bash_script(app);
+}
+
 namespace {
 
 /// Text for roff: a backslash, a hyphen that may not be broken, and a dot or quote that would begin a request.

@@ -1,13 +1,25 @@
 #include "base/files/file_io.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <stdlib.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
 #include <fstream>
+#include <functional>
+#include <iomanip>
+#include <map>
 #include <sstream>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/errors.h"
 
@@ -57,6 +69,249 @@ std::string read_file(const fs::path& path) {
   text << stream.rdbuf();
   if (stream.bad()) throw InputError(Issue{path.string(), 0, "", "a read error", "a readable file"});
   return std::move(text).str();
+}
+
+namespace fs = std::filesystem;
+
+TemporaryFolder::TemporaryFolder(const std::string& purpose) {
+  std::error_code error;
+  const fs::path parent = fs::temp_directory_path(error);
+  if (error) throw EnvironmentError(fmt::format("no folder for temporary files: {}", error.message()));
+  std::string pattern = (parent / ("glidelab-" + purpose + "-XXXXXX")).string();
+  if (::mkdtemp(pattern.data()) == nullptr) throw_system_error(pattern, "cannot be made", errno);
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;  // a destructor has nobody to tell
+  fs::remove_all(path_, ignored);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kHead = "glidelab made 1";
+
+std::uint64_t sum_of(const fs::path& file) {
+  constexpr std::uint64_t kFnvOffset = 0xcbf29ce484222325u, kFnvPrime = 0x100000001b3u;
+  std::uint64_t sum = kFnvOffset;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(Issue{file.string(), 0, "", "no readable file", "a readable file"});
+  std::array<char, 1 << 16> bytes;
+  do {
+    stream.read(bytes.data(), bytes.size());
+    for (std::streamsize i = 0; i < stream.gcount(); ++i) {
+      sum = (sum ^ static_cast<unsigned char>(bytes[static_cast<std::size_t>(i)])) * kFnvPrime;
+    }
+  } while (stream);
+  if (stream.bad()) throw InputError(Issue{file.string(), 0, "", "a read error", "a readable file"});
+  return sum;
+}
+
+std::string state_of(const fs::path& file) {
+  return fmt::format("{:016x} {}", sum_of(file), fs::file_size(file));
+}
+
+/// All that is no folder, below `dir`, by name; the list itself is not among them.
+std::vector<fs::path> files_below(const fs::path& dir) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dir)) {
+    if (entry.is_directory() && !entry.is_symlink()) continue;
+    const fs::path name = entry.path().lexically_relative(dir);
+    if (name != kMadeList) files.push_back(name);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// From a name to the file's state; empty where there is no list.
+std::map<std::string, std::string> listed(const fs::path& dir) {
+  const fs::path list = dir / kMadeList;
+  std::map<std::string, std::string> files;
+  if (!fs::is_regular_file(fs::symlink_status(list))) return files;
+  std::istringstream text(read_file(list));
+  std::string head, sum, size, name;
+  std::getline(text, head);
+  while (text >> sum >> size >> std::quoted(name)) files[name] = sum + " " + size;
+  if (head != kHead || !text.eof()) {
+    throw InputError(Issue{list.string(), 0, "", "something else", "the list of what glidelab made"});
+  }
+  return files;
+}
+
+}  // namespace
+
+void list_made_files(const fs::path& dir) {
+  std::ostringstream text;
+  text << kHead << '\n';
+  for (const fs::path& name : files_below(dir)) {
+    text << state_of(dir / name) << ' ' << std::quoted(name.generic_string()) << '\n';
+  }
+  write_file(dir / kMadeList, text.str());
+}
+
+std::vector<OwnFile> own_files(const fs::path& dir) {
+  const std::map<std::string, std::string> made = listed(dir);
+  std::vector<OwnFile> own;
+  for (const fs::path& name : files_below(dir)) {
+    const auto entry = made.find(name.generic_string());
+    const bool regular = fs::is_regular_file(fs::symlink_status(dir / name));
+    if (entry == made.end() || !regular) {
+      own.push_back({name, false});
+    } else if (entry->second != state_of(dir / name)) {
+      own.push_back({name, true});
+    }
+  }
+  return own;
+}
+
+namespace fs = std::filesystem;
+namespace {
+
+std::atomic<int> next_staging_number{0};
+
+/// Says of which machine, since which start, and of which process-number space a process is: only among those does the
+/// number of a process tell whether it still runs. Zero where the system does not say.
+std::size_t place_of_processes() {
+  std::error_code error;
+  std::ifstream boot("/proc/sys/kernel/random/boot_id");
+  std::string text;
+  const fs::path space = fs::read_symlink("/proc/self/ns/pid", error);
+  if (!std::getline(boot, text) || error) return 0;
+  return std::hash<std::string>{}(text + space.string());
+}
+
+/// "<name>.part-<place>-": with a process and a count behind it, the name of what that process writes.
+std::string staging_prefix(const fs::path& final_dir) {
+  static const std::size_t place = place_of_processes();
+  return fmt::format("{}.part-{:016x}-", final_dir.filename().string(), place);
+}
+
+fs::path staging_name(const fs::path& final_dir, std::string_view kind = "") {
+  return final_dir.parent_path() /
+         fmt::format("{}{}-{}{}", staging_prefix(final_dir), ::getpid(), next_staging_number++, kind);
+}
+
+/// What processes that were killed left beside `final_dir`. Of another machine's, or of one that runs, nothing is
+/// touched.
+void clear_leftovers(const fs::path& final_dir) {
+  const std::string prefix = staging_prefix(final_dir);
+  if (prefix.find("-0000000000000000-") != std::string::npos) return;
+  std::error_code ignored;  // what cannot be looked at or removed stays: it is no reason to fail
+  std::vector<fs::path> leftovers;
+  for (fs::directory_iterator entry(final_dir.parent_path(), ignored), end; entry != end; entry.increment(ignored)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    long process = 0;
+    int number = 0, length = 0;
+    const char* rest = name.c_str() + prefix.size();
+    if (std::sscanf(rest, "%ld-%d%n", &process, &number, &length) != 2 || rest[length] != '\0' || process <= 0)
+      continue;
+    if (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) leftovers.push_back(entry->path());
+  }
+  for (const fs::path& leftover : leftovers) fs::remove_all(leftover, ignored);
+}
+
+/// "a/b/" and "a/b" name one folder; the staging folder stands beside it, so the name must be the last component.
+fs::path without_trailing_slash(fs::path path) {
+  path = fs::absolute(path).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+void rename_or_throw(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) throw_system_error(to.string(), "cannot be put in place", error.value());
+}
+
+/// Puts `from` where `to` stands. What stood there is in the place of `from` afterwards, or removed: a kill between
+/// leaves one of the two whole. A file system that cannot exchange names has an instant between two renames.
+void swap_in(const fs::path& from, const fs::path& to) {
+  if (!fs::is_directory(fs::symlink_status(to))) return rename_or_throw(from, to);
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
+  if (errno != EINVAL && errno != ENOSYS) throw_system_error(to.string(), "cannot be put in place", errno);
+  const fs::path old = staging_name(to, ".old");
+  rename_or_throw(to, old);
+  try {
+    rename_or_throw(from, to);
+  } catch (const EnvironmentError&) {
+    rename_or_throw(old, to);
+    throw;
+  }
+  std::error_code ignored;  // the new one stands; a leftover of the old one is no reason to fail
+  fs::remove_all(old, ignored);
+}
+
+/// One name more for a file: nothing is moved, so that a kill loses nothing.
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to.parent_path());
+  if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), 0) != 0)
+    fs::copy(from, to, fs::copy_options::copy_symlinks);
+}
+
+/// What in the folder `old` is somebody's own comes into `fresh`, which takes its place.
+void keep_own_files(const fs::path& old, const fs::path& fresh) {
+  const bool known = fs::exists(old / kMadeList);
+  for (const OwnFile& own : own_files(old)) {
+    fs::path kept = fresh / own.name;
+    if (fs::exists(kept) && !known) continue;  // of a version that kept no list: the same plot, drawn anew
+    while (fs::exists(fs::symlink_status(kept))) kept += ".changed";
+    link_or_copy(old / own.name, kept);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// EnvironmentError where the folder, or one that it is to be made in, is a link to nothing.
+void refuse_dangling(const fs::path& folder) {
+  std::error_code error;  // what cannot be looked at says so when it is made
+  for (fs::path at = folder; at.has_relative_path(); at = at.parent_path()) {
+    if (!fs::is_symlink(fs::symlink_status(at, error)) || fs::exists(at, error)) continue;
+    const fs::path target = fs::read_symlink(at, error);
+    throw EnvironmentError(at.string() + ": is a dangling link (" + target.string() + " does not exist)");
+  }
+}
+
+}  // namespace
+
+StagedOutput::StagedOutput(fs::path final_dir)
+    : final_(without_trailing_slash(std::move(final_dir))), staging_(staging_name(final_)) {
+  std::error_code error;
+  if (fs::exists(final_, error) && !fs::is_directory(final_, error)) {
+    throw_system_error(final_.string(), "cannot be an output folder", ENOTDIR);
+  }
+  refuse_dangling(final_);
+  clear_leftovers(final_);
+  fs::create_directories(staging_, error);
+  if (error) throw_system_error(final_.string(), "output folder cannot be written", error.value());
+}
+
+StagedOutput::~StagedOutput() {
+  std::error_code ignored;  // a destructor has nobody to tell
+  fs::remove_all(staging_, ignored);
+}
+
+void StagedOutput::publish_files() {
+  std::error_code error;
+  fs::create_directories(final_, error);
+  if (error) throw_system_error(final_.string(), "output folder cannot be made", error.value());
+  std::vector<fs::path> staged;  // listed first: exchanging changes the folder that is listed
+  for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) staged.push_back(entry.path());
+  for (const fs::path& path : staged) {
+    const fs::path old = final_ / path.filename();
+    if (fs::is_directory(path)) {
+      list_made_files(path);
+      if (fs::is_directory(fs::symlink_status(old))) keep_own_files(old, path);
+    }
+    swap_in(path, old);
+  }
+}
+
+void StagedOutput::publish_whole() {
+  swap_in(staging_, final_);
 }
 
 }  // namespace glidelab::base

@@ -1,9 +1,11 @@
-/// Whole files, read and written in one call, with errors that name the file.
+/// Files on the disk: whole files read and written in one call, temporary folders, the list of the files that this
+/// program made, and outputs that appear whole or not at all. Errors name the file.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace glidelab::base {
 
@@ -16,5 +18,73 @@ void append_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// Reads a whole file; InputError if it does not exist or cannot be read.
 std::string read_file(const std::filesystem::path& path);
+
+/// A new temporary folder, removed with its contents at the end of the object's life.
+class TemporaryFolder {
+ public:
+  /// Makes `glidelab-<purpose>-XXXXXX`; EnvironmentError if there is no folder for temporary files or it is full.
+  explicit TemporaryFolder(const std::string& purpose);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The list of the files of a folder that this program made, so that it replaces these and no file of the user's own.
+///
+/// A folder that is replaced as a whole (an experiment that `render` made, its truth, a page's plots) holds a list of
+/// its files, each with its size and a checksum of its bytes (FNV-1a, 64 bits). What is not in the list, or differs
+/// from it, is the user's own. StagedOutput::publish_files carries such files over into the folder that replaces it: a
+/// file that was made and changed since becomes NAME.changed if there is a new NAME. The list lies in the folder, so
+/// that both are put in place at once.
+inline constexpr std::string_view kMadeList = ".glidelab-made";
+
+/// Writes `dir`/.glidelab-made: all that is in the folder and below now. EnvironmentError where that fails.
+void list_made_files(const std::filesystem::path& dir);
+
+/// A file or link that was not made, or was changed since.
+struct OwnFile {
+  std::filesystem::path name;  ///< relative to the folder
+  bool changed = false;        ///< made, and changed since
+};
+
+/// The user's own files in `dir` (which exists) and below, by name: all if there is no list; links always. InputError
+/// if a file cannot be read, or the list is not such a list.
+std::vector<OwnFile> own_files(const std::filesystem::path& dir);
+
+/// Outputs that appear whole or not at all.
+///
+/// A command writes everything into a staging folder beside the final one (on the same file system, so that rename(2)
+/// is atomic) and publishes it once everything has succeeded. An exception removes the staging folder and leaves what
+/// stood before.
+class StagedOutput {
+ public:
+  /// Makes `<parent>/<name>.part-<place>-<pid>-<n>`; EnvironmentError where that cannot be written.
+  explicit StagedOutput(std::filesystem::path final_dir);
+  ~StagedOutput();
+  StagedOutput(const StagedOutput&) = delete;
+  StagedOutput& operator=(const StagedOutput&) = delete;
+
+  /// The folder to write into until publication.
+  const std::filesystem::path& dir() const { return staging_; }
+  const std::filesystem::path& final_dir() const { return final_; }
+
+  /// Renames the staged files into the final folder one by one (made if need be); files of these names are replaced,
+  /// other files stay. A staged sub-folder replaces the one of its name; the user's own files in it are kept
+  /// (own_files()).
+  void publish_files();
+
+  /// Renames the staging folder to the final name as a whole; an existing folder is swapped out and removed.
+  void publish_whole();
+
+ private:
+  std::filesystem::path final_;
+  std::filesystem::path staging_;
+};
 
 }  // namespace glidelab::base

@@ -10,14 +10,88 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
-#include "base/toml/toml_table.h"
-
 namespace glidelab::base {
+
+/// A single value of a TOML file: a number, a switch or a text.
+using TomlScalar = std::variant<double, bool, std::string>;
+
+/// The allowed values, and their description for messages. Numbers that are not finite are never allowed.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;
+  bool high_open = false;
+  bool contains(double value) const;
+  std::string describe() const;
+};
+Range any_number();
+Range above(double low);
+Range at_least(double low);
+Range between(double low, double high);       ///< both ends allowed
+Range between_open(double low, double high);  ///< neither end allowed
+
+struct TomlNode;
+
+/// One table of the file, which checks each value as it is asked for and remembers the keys that were asked for. Cheap
+/// to copy; lives as long as its TomlFile.
+class TomlTable {
+ public:
+  bool has(std::string_view key) const;
+  int line() const;                              ///< where the table starts
+  int line(std::string_view key) const;          ///< where the key stands; the table's line where it does not
+  std::string path(std::string_view key) const;  ///< "camera.frame_rate_hz", for messages
+
+  double number(std::string_view key, Range range = {}) const;
+  double number_or(std::string_view key, double otherwise, Range range = {}) const;
+  std::optional<double> maybe_number(std::string_view key, Range range = {}) const;
+  /// A whole number in [low, high].
+  long integer(std::string_view key, long low, long high) const;
+  long integer_or(std::string_view key, long otherwise, long low, long high) const;
+  bool boolean_or(std::string_view key, bool otherwise) const;
+  std::string text(std::string_view key) const;  ///< not empty
+  std::string text_or(std::string_view key, std::string_view otherwise) const;
+  std::optional<std::string> maybe_text(std::string_view key) const;
+  /// One of the words given; `otherwise`, where it is not empty, stands for a missing key.
+  std::string word(std::string_view key, const std::vector<std::string>& allowed,
+                   std::string_view otherwise = {}) const;
+  /// One of the words given, required; nothing (and an error is recorded) if it is missing or another one. For a word
+  /// that decides what else is read.
+  std::optional<std::string> one_of(std::string_view key, const std::vector<std::string>& allowed) const;
+  /// An array of exactly `count` numbers (any length where count is 0).
+  std::vector<double> numbers(std::string_view key, std::size_t count, Range range = {}) const;
+  std::optional<std::vector<double>> maybe_numbers(std::string_view key, std::size_t count, Range range = {}) const;
+  std::vector<std::string> texts_or_none(std::string_view key) const;
+  /// All numbers, switches and texts of this table and those within it, by their path from here ("shutter.kind",
+  /// written as one quoted key or as keys with a dot between). Anything else, an array or a date, is recorded as wrong.
+  std::vector<std::pair<std::string, TomlScalar>> scalars() const;
+
+  TomlTable table(std::string_view key) const;  ///< required
+  std::optional<TomlTable> maybe_table(std::string_view key) const;
+  std::vector<TomlTable> tables(std::string_view key) const;  ///< [[key]], one or more
+  std::vector<TomlTable> tables_or_none(std::string_view key) const;
+
+  std::vector<std::string> keys() const;  ///< all that stand here, known or not
+
+  /// Everything below this key is the user's own and is not checked.
+  void ignore(std::string_view key) const;
+
+  /// Records an error that the caller found (a name used twice), unless the key's value could not be read anyway.
+  void reject(std::string_view key, std::string found, std::string expected) const;
+
+ private:
+  friend class TomlFile;
+  explicit TomlTable(std::shared_ptr<TomlNode> node) : node_(std::move(node)) {}
+  std::shared_ptr<TomlNode> node_;
+};
 
 struct TomlDocument;
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/toml/toml_scalar.h"
+#include "base/toml/strict_toml.h"
 
 namespace glidelab::base {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/parallel.h"
+#include "base/long_work.h"
 #include "core/analysis/clip_to_track.h"
 #include "core/motion/analyze_motion.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"

@@ -10,20 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
-#include "core/experiment/bare_track.h"
+#include "base/long_work.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/analyze_motion.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
 
 struct AnalysisOptions {
-  std::optional<double> bandwidth_s;  ///< given; otherwise chosen for each clip by the documented rule (bandwidth.h)
+  std::optional<double> bandwidth_s;  ///< given; otherwise chosen for each clip by choose_bandwidth() of rule_lines.h
   int jobs = 1;                       ///< clips analysed at the same time
   FrameOpener open = open_frames;     ///< where the clips' frames come from
-  std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: that of bandwidth.h
+  std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: choose_bandwidth()
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
   bool pictures = false;       ///< keep what the clips' pictures show besides the motion (ClipResult::pictures)

@@ -1,18 +1,56 @@
-/// From images to x(t): one function per folder hides everything that has to do with images.
+/// From images to x(t) of every clip: what a clip's images show in pixels, and where that lies along the line of
+/// motion. One function per folder, tracks_of(), hides everything that has to do with images.
 #pragma once
 
+#include <opencv2/core.hpp>
+
+#include <atomic>
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/camera/restitution.h"
+#include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_track.h"
+#include "core/result/picture_record.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::core {
+
+/// What one clip's images show, in pixels: the marker in every frame, the frames' times, and anything else of note.
+struct SeenClip {
+  TrackedMarker marker;
+  std::vector<double> frame_t_s;  ///< of all frames
+  cv::Size size;                  ///< of the pictures
+  std::vector<std::string> notes;
+  std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
+  bool dark_marker = false;                 ///< seen as darker than its surroundings, without a colour that says so
+};
+
+/// Counts frames over all clips for the progress; clips may be looked at at the same time.
+class FrameCounter {
+ public:
+  FrameCounter(const base::Progress& progress, std::size_t clips) : progress_(progress), clips_(clips) {}
+  /// Tells how far all clips are, this clip's share having grown by `share`.
+  void add(double share);
+
+ private:
+  const base::Progress& progress_;
+  std::size_t clips_;
+  std::atomic<double> done_ = 0.0;
+};
+
+/// Reads the clip once, or twice: a marker without a stated colour is looked for as a bright disc, and, where such a
+/// one is hardly seen and a dark one well, as a dark one. With `look_at_scene` there is a PictureRecord. InputError for
+/// pictures that cannot be used, NoMarker (marker_track.h) where there is none.
+SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter);
 
 struct SeenPattern;
 
@@ -28,7 +66,7 @@ struct PictureResults {
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of
 /// motion, x positive downhill. Clips that are tracks (CSV) are read with read_track_csv. Frames stream; `jobs` clips
 /// at a time. With `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is known of the pattern
-/// already (camera_and_planes.h); null: its pictures are read. InputError for pictures that cannot be used (no pattern,
+/// already (restitution.h); null: its pictures are read. InputError for pictures that cannot be used (no pattern,
 /// no marker, truncated, of another size, …).
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
                          const FrameOpener& open = open_frames, bool look_at_scene = false,

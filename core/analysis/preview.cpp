@@ -9,10 +9,9 @@
 #include <opencv2/videoio.hpp>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "base/files/temporary_folder.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "core/characterize/saturation.h"
+#include "core/characterize/pixel_response.h"
 
 namespace glidelab::core {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/characterize/flat_field_folder.h"
 #include "core/characterize/photon_numbers.h"
 

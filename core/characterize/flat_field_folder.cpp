@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "base/toml/strict_toml.h"
-#include "core/experiment/clip_names.h"
+#include "core/experiment/file_names.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-/// The statistics of the frames of one set: mean and temporal variance, tile by tile.
+/// The frames of one set of flat fields, read strictly, and their statistics tile by tile: mean and temporal variance.
 ///
 /// An image is cut into tiles, and the pixels of a tile into four cells by their place in the 2 x 2 mosaic of a colour
 /// sensor (on a monochrome one the four are alike). With y_pf the code of pixel p in frame f, and m_f the mean of the
@@ -14,13 +14,37 @@
 #include <opencv2/core.hpp>
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/characterize/flat_field_folder.h"
-#include "core/characterize/flat_field_frame.h"
 
 namespace glidelab::core {
+
+/// Smallest width and height, in pixels, of an image that gives enough tiles for a standard deviation.
+inline constexpr int kSmallestFlatFieldPx = 64;
+
+/// What every frame must be: set by the first one.
+struct FrameForm {
+  cv::Size size;
+  int depth = 0;      ///< CV_8U or CV_16U
+  std::string named;  ///< file that set it
+};
+
+/// InputError if the file is not a grey image of at least kSmallestFlatFieldPx pixels each way.
+FrameForm form_of(const std::filesystem::path& file);
+
+/// One frame of a flat-field folder, read strictly, for a wrong frame spoils a variance without a trace. Grey codes; a
+/// colour file counts as grey where its three channels are equal. InputError (file, found, expected) for a file that is
+/// no image, one with colours, one of another size or depth, and a code above `largest_code`.
+cv::Mat read_flat_field_frame(const std::filesystem::path& file, const FrameForm& form, int largest_code);
+
+/// InputError where `frame`, of `file`, equals `last`, the one before: copies are no measurement of noise. Frames that
+/// are constant (dark, or all saturated) may be equal.
+void reject_copy(const std::filesystem::path& file, const cv::Mat& frame, const std::filesystem::path& last_file,
+                 const cv::Mat& last);
 
 /// How an image is cut: about 50 to 150 tiles, at least 16 pixels wide and high.
 class TileGrid {

@@ -1,5 +1,5 @@
-/// The arithmetic of photon transfer, from the statistics of the frames and the decisions about them to the numbers,
-/// and the jackknife that repeats it without one tile at a time.
+/// The arithmetic of photon transfer: from the statistics of the frames and the decisions about them to the numbers and
+/// their errors. The jackknife repeats it without one tile at a time.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "core/characterize/flat_field_stack.h"
-#include "core/characterize/pixel_pattern.h"
-#include "core/characterize/saturation.h"
+#include "core/characterize/pixel_response.h"
 
 namespace glidelab::core {
 
@@ -89,5 +88,20 @@ PhotonNumbers photon_numbers(const Evidence& evidence, std::optional<std::size_t
 
 /// Standard deviations of the numbers: sqrt((T - 1) / T sum (number without tile t - mean)²).
 PhotonNumbers jackknife_sd(const Evidence& evidence, std::size_t tiles);
+
+/// Errors common to all tiles of the images, which the jackknife over tiles cannot see: the drift of the dark level
+/// from frame to frame and from set to set, and what rounding to whole codes hides.
+struct SharedErrors {
+  double offset_dn = 0.0;  ///< standard deviations
+  double dark_slope_dn_s = 0.0;
+  double gain_variance = 0.0;
+  double intercept_variance = 0.0;
+};
+SharedErrors shared_errors(const Evidence& evidence, const PhotonNumbers& numbers);
+
+/// Variance over the pixels and frames of a cell without the rounding's.
+inline double spread_dn2(const FlatFieldStack& stack) {
+  return stack.all.total_dn2 - kQuantisation;
+}
 
 }  // namespace glidelab::core

@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "core/characterize/camera_evidence.h"
-#include "core/characterize/linearity.h"
 #include "core/characterize/photon_checks.h"
-#include "core/characterize/photon_errors.h"
+#include "core/characterize/photon_numbers.h"
 
 namespace glidelab::core {
 namespace {

@@ -22,7 +22,7 @@
 /// masked hot and dead pixels, tiles, saturation capacity also from the plateau above the peak of the variance.
 #pragma once
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/characterize/camera_measurement.h"
 #include "core/characterize/flat_field_folder.h"
 

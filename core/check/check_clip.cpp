@@ -3,13 +3,56 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 
-#include "core/check/marker_smear.h"
+#include "core/check/motion_look.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
-#include "core/track/track_csv.h"
+#include "core/track/track_data.h"
 
 namespace glidelab::core {
+
+std::optional<MarkerSmear> marker_smear(const std::vector<MarkerSighting>& sightings,
+                                        const std::vector<MarkerFit>& fits, double frame_rate_hz) {
+  constexpr std::size_t kFewest = 20;
+  constexpr double kClear = 5.0;  // standard deviations
+  if (fits.size() != sightings.size()) return std::nullopt;
+  std::vector<double> speed2, excess;  // px²/s², px²
+  double way_u = 0.0, way_v = 0.0;     // of the fastest step: the glider runs along one line
+  for (std::size_t i = 1; i + 1 < sightings.size(); ++i) {
+    if (sightings[i + 1].frame - sightings[i - 1].frame != 2) continue;
+    const double u = sightings[i + 1].u_px - sightings[i - 1].u_px, v = sightings[i + 1].v_px - sightings[i - 1].v_px;
+    if (std::hypot(u, v) > std::hypot(way_u, way_v)) way_u = u, way_v = v;
+  }
+  const double length = std::hypot(way_u, way_v);
+  if (!(length > 0.0)) return std::nullopt;
+  const double c = way_u / length, s = way_v / length;
+  for (std::size_t i = 1; i + 1 < sightings.size(); ++i) {
+    if (sightings[i + 1].frame - sightings[i - 1].frame != 2) continue;
+    const double u = sightings[i + 1].u_px - sightings[i - 1].u_px, v = sightings[i + 1].v_px - sightings[i - 1].v_px;
+    const cv::Vec3d& m = fits[i].moments;
+    speed2.push_back(0.25 * (u * u + v * v) * frame_rate_hz * frame_rate_hz);
+    excess.push_back((c * c - s * s) * (m[0] - m[2]) + 4.0 * c * s * m[1]);
+  }
+  const auto n = static_cast<double>(speed2.size());
+  if (speed2.size() < kFewest) return std::nullopt;
+  const double mean_x = std::accumulate(speed2.begin(), speed2.end(), 0.0) / n;
+  const double mean_y = std::accumulate(excess.begin(), excess.end(), 0.0) / n;
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t i = 0; i < speed2.size(); ++i) {
+    xx += (speed2[i] - mean_x) * (speed2[i] - mean_x);
+    xy += (speed2[i] - mean_x) * (excess[i] - mean_y);
+    yy += (excess[i] - mean_y) * (excess[i] - mean_y);
+  }
+  if (!(xx > 0.0)) return std::nullopt;
+  const double slope = xy / xx;
+  const double sd = std::sqrt(std::max(0.0, yy - slope * xy) / (n - 2.0) / xx);
+  if (!(slope > 0.0) || slope < kClear * sd) return std::nullopt;
+  const double exposure_s = std::sqrt(12.0 * slope);
+  return MarkerSmear{exposure_s, 6.0 * sd / exposure_s};  // dT = 12 dslope / (2 T)
+}
+
 namespace {
 
 constexpr double kTopSpeedQuantile = 0.99;  // not the largest: single frames may be wrong
@@ -130,6 +173,23 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
 
 }  // namespace
 
+namespace {
+
+/// Of what is stated to be free.
+MotionLook look_between(const ClipSetup& setup, const TrackData& track) {
+  const auto& t = track.t_s;
+  const auto from = setup.start_s ? std::lower_bound(t.begin(), t.end(), *setup.start_s) - t.begin() : 0;
+  const auto to = setup.end_s ? std::upper_bound(t.begin(), t.end(), *setup.end_s) - t.begin() : std::ssize(t);
+  const auto first = static_cast<std::size_t>(from),
+             many = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, to - from));
+  std::span<const MarkerSighting> sightings;
+  if (track.sightings.size() == t.size()) sightings = std::span(track.sightings).subspan(first, many);
+  return look_at_motion(std::span(t).subspan(first, many), std::span(track.x_m).subspan(first, many), sightings,
+                        !track.force_n.empty());
+}
+
+}  // namespace
+
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const ClipAttempt& attempt,
                      const ClipWatches& watches) {
   const TrackData& track = attempt.track;
@@ -151,6 +211,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
     const auto [least, most] = std::minmax_element(track.x_m.begin(), track.x_m.end());
     clip.way_m = *most - *least;
   }
+  clip.motion = look_between(setup, track);
   const Speeds speeds = speeds_of(track);
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;

@@ -1,11 +1,16 @@
-/// The result of a check of a recording, as plain data (check_recording.h makes it).
+/// The result of a check of a recording as plain data (check_recording.h makes it), the wording that its findings
+/// share, and their collector.
 ///
-/// Lengths of the set-up in metres, of the image in pixels; brightness as a share of the largest code.
+/// Lengths of the set-up are in metres, those of the image in pixels; brightness is a share of the largest code.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result/results.h"
@@ -49,6 +54,16 @@ struct PatternCheck {
   double covered = 0.0;  ///< share of the image's 8 x 6 equal parts that hold a corner
 };
 
+/// Of the positions alone (motion_look.h).
+struct MotionLook {
+  double way_m = 0.0;
+  std::optional<double> acceleration_m_s2;  ///< typical size; none where noise hides it, or a force was recorded
+  std::size_t turns = 0;
+  bool oscillates = false;
+  double bend = 0.0;    ///< of the path in the image: sagitta over length
+  bool smooth = false;  ///< smoother than any measurement
+};
+
 struct ClipCheck {
   std::string name;
   std::string failure;      ///< why nothing more is known; else empty
@@ -80,13 +95,14 @@ struct ClipCheck {
   double top_speed_m_s = 0.0;
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, with the stated exposure
-  /// From the lengthening of the marker with its speed (marker_smear.h), with the corresponding smear at the top speed.
+  /// From the lengthening of the marker with its speed (check_clip.h), with the corresponding smear at the top speed.
   /// Only if the exposure is above twice the stated one (less may be the camera's tone curve) or none is stated, and
   /// the smear is above half the marker's diameter (less may be perspective: in one clip speed and position go
   /// together).
   std::optional<double> measured_exposure_s, measured_blur_px;
   double longest_blur_px = 0.0;  ///< with an exposure as long as the frame time
   std::optional<double> position_noise_m;
+  MotionLook motion;
   std::optional<AgainstLaunch> against_launch;  ///< of the motion, as the analysis will find it
   double inside_pattern = 1.0;                  ///< share of the sightings within the outline of all corners seen
   std::vector<PixelPlace> path;                 ///< at most 200 positions
@@ -104,6 +120,33 @@ struct RecordingCheck {
   std::string plumb_failure;      ///< why the plumb line gives no angle; empty if it does, or if there is none
   std::vector<Finding> findings;  ///< the most severe first
   bool usable = true;             ///< no finding is Severity::unusable
+};
+
+inline std::string percent(double share) {
+  return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+/// At most six names, and how many more there are.
+inline std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  const std::size_t shown = std::min(kMost, names.size());
+  std::string text =
+      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+  return text;
+}
+
+/// Collects the findings about one subject; `findings` outlive it.
+class FindingBook {
+ public:
+  FindingBook(std::vector<Finding>& findings, std::string about) : findings_(findings), about_(std::move(about)) {}
+  void add(Severity severity, std::string found, std::string advice = {}) {
+    findings_.push_back({severity, about_, std::move(found), std::move(advice)});
+  }
+
+ private:
+  std::vector<Finding>& findings_;
+  std::string about_;
 };
 
 }  // namespace glidelab::core

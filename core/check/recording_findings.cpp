@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
-#include "core/check/finding_words.h"
+#include "core/check/motion_look.h"
+#include "core/check/recording_check.h"
 #include "core/check/statement_findings.h"
 #include "core/pictures/frames/frame_source.h"
 
@@ -261,7 +263,15 @@ std::vector<Finding> merged(std::vector<Finding> findings) {
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<Finding> findings = statement_findings(experiment, check);
   if (check.pattern) judge_pattern(*check.pattern, {findings, "pattern"});
-  for (const ClipCheck& clip : check.clips) judge_clip(experiment, clip, {findings, clip.name});
+  for (const ClipCheck& clip : check.clips) {
+    judge_clip(experiment, clip, {findings, clip.name});
+    for (const ClipSetup& setup : experiment.clips) {
+      if (setup.name != clip.name) continue;
+      for (Finding& finding : motion_findings(clip.motion, setup, experiment.gravity_m_s2)) {
+        findings.push_back(std::move(finding));
+      }
+    }
+  }
   if (!check.plumb_failure.empty()) findings.push_back({Severity::unusable, "plumb line", check.plumb_failure, {}});
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return static_cast<int>(a.severity) > static_cast<int>(b.severity);

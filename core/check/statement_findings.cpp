@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "core/check/finding_words.h"
-#include "core/pictures/camera/camera_and_planes.h"
-#include "core/result/stated_values.h"
+#include "core/check/recording_check.h"
+#include "core/pictures/camera/restitution.h"
+#include "core/result/estimate.h"
 
 namespace glidelab::core {
 namespace {

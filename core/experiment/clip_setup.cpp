@@ -1,6 +1,12 @@
 #include "core/experiment/clip_setup.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
 
 namespace glidelab::core {
 namespace {
@@ -13,6 +19,69 @@ bool contradicts(const ClipSetup& one, const ClipSetup& other) {
   if (!one.incline_sd_rad || !other.incline_sd_rad) return false;
   const double apart = std::abs(one.incline_rad - other.incline_rad);
   return apart > kSameIncline_rad + kContradiction * std::hypot(*one.incline_sd_rad, *other.incline_sd_rad);
+}
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+std::string reading(const ClipSetup& clip) {
+  return fmt::format("{:.6g} \xC2\xB1 {:.3g}", clip.incline_rad * kDegrees + 0.0,  // + 0.0: no "-0"
+                     *clip.incline_sd_rad * kDegrees);
+}
+
+}  // namespace
+
+void name_groups(std::vector<ClipSetup>& clips) {
+  std::set<double> inclinations;
+  bool some_named = false;
+  for (const ClipSetup& clip : clips) {
+    if (clip.group.empty()) {
+      inclinations.insert(clip.incline_rad);
+    } else {
+      some_named = true;
+    }
+  }
+  for (ClipSetup& clip : clips) {
+    if (!clip.group.empty()) continue;
+    clip.group = inclinations.size() == 1 && !some_named
+                     ? "all"
+                     : fmt::format("{:.6g} deg", clip.incline_rad * kDegrees + 0.0);  // + 0.0: no "-0"
+  }
+}
+
+void check_names(const std::vector<ClipSetup>& clips, const std::vector<base::TomlTable>& clip_tables,
+                 const std::vector<GroupSetup>& groups, const std::vector<base::TomlTable>& group_tables) {
+  std::set<std::string> names;
+  std::set<std::string> known_groups;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    known_groups.insert(clips[i].group);
+    if (clips[i].name.empty() || names.insert(clips[i].name).second) continue;
+    clip_tables[i].reject("name", fmt::format("text \"{}\" a second time", clips[i].name), "a name of its own");
+  }
+  names.clear();
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i].name.empty()) continue;
+    if (!names.insert(groups[i].name).second) {
+      group_tables[i].reject("name", fmt::format("text \"{}\" a second time", groups[i].name), "a name of its own");
+    } else if (!known_groups.contains(groups[i].name)) {
+      group_tables[i].reject("name", fmt::format("text \"{}\", a group without a clip", groups[i].name),
+                             fmt::format("one of {}", fmt::join(known_groups, ", ")));
+    }
+  }
+}
+
+void check_readings(const std::vector<ClipSetup>& clips, const std::vector<base::TomlTable>& clip_tables) {
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const auto other = std::find_if(clips.begin(), clips.begin() + static_cast<long>(i), [&](const ClipSetup& earlier) {
+      return earlier.group == clips[i].group && contradicts(earlier, clips[i]);
+    });
+    if (other == clips.begin() + static_cast<long>(i)) continue;
+    clip_tables[i].reject("incline_deg", reading(clips[i]),
+                          fmt::format("the inclination of group \"{}\", for which clip \"{}\" states {}; or a group "
+                                      "of its own",
+                                      clips[i].group, other->name, reading(*other)));
+  }
 }
 
 }  // namespace glidelab::core

@@ -1,4 +1,5 @@
-/// The clips of an experiment and the set-ups of the track that they share, as plain data.
+/// The clips of an experiment, and the groups in which they share a set-up of the track and so one inclination, as
+/// plain data.
 ///
 /// Every length is in metres, every time in seconds, every angle in radians; pixels are counted from the centre of the
 /// image's first pixel. Nothing here needs a picture library, so that an analysis of tracks does without one.
@@ -8,6 +9,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "base/toml/strict_toml.h"
 
 namespace glidelab::core {
 
@@ -60,5 +63,16 @@ inline constexpr double kSameIncline_rad = 1e-9;  ///< stated angles that differ
 /// Whether two readings of one inclination are further apart than five standard deviations of their difference. A clip
 /// that states no uncertainty contradicts no other.
 bool contradicts(const ClipSetup& one, const ClipSetup& other);
+
+/// One group for each stated inclination among the clips that name none; "all" where that makes one group in all.
+void name_groups(std::vector<ClipSetup>& clips);
+
+/// Rejects names that two clips or two groups have, and groups without a clip. The tables belong to the clips and
+/// groups.
+void check_names(const std::vector<ClipSetup>& clips, const std::vector<base::TomlTable>& clip_tables,
+                 const std::vector<GroupSetup>& groups, const std::vector<base::TomlTable>& group_tables);
+
+/// Rejects an inclination that another clip of the group contradicts(): a group has one.
+void check_readings(const std::vector<ClipSetup>& clips, const std::vector<base::TomlTable>& clip_tables);
 
 }  // namespace glidelab::core

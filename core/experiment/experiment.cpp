@@ -8,8 +8,8 @@
 
 #include "base/errors.h"
 #include "base/toml/strict_toml.h"
-#include "core/experiment/experiment_groups.h"
-#include "core/experiment/folder_files.h"
+#include "core/experiment/clip_setup.h"
+#include "core/experiment/file_names.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
@@ -157,7 +157,7 @@ ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
   }
   clip.mass_kg = table.number("mass_kg", base::above(0.0));
   clip.mass_sd_kg = table.number_or("mass_sd_kg", 0.0, base::at_least(0.0));
-  clip.incline_rad = table.number("incline_deg", base::between_open(-90.0, 90.0)) * kRadiansPerDegree;
+  clip.incline_rad = table.number("incline_deg", base::between(-90.0, 90.0)) * kRadiansPerDegree;
   if (const auto sd_deg = table.maybe_number("incline_sd_deg", base::at_least(0.0))) {
     clip.incline_sd_rad = *sd_deg * kRadiansPerDegree;
   }
@@ -285,6 +285,29 @@ void require_clips(const Experiment& experiment) {
                                        "clips or tracks here; glidelab diagnose takes such a table"});
   }
   throw base::InputError(base::Issue{experiment.file.string(), 0, "clip", "none", "one or more clips or tracks"});
+}
+
+bool is_bare_track(const std::filesystem::path& path) {
+  std::error_code ignored;  // what cannot be looked at is none
+  return std::filesystem::is_regular_file(path, ignored) && path.filename() != "experiment.toml";
+}
+
+Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options) {
+  if (!is_bare_track(path)) return read_experiment(path, options.outside);
+  Experiment experiment;
+  experiment.folder = path.parent_path();
+  experiment.file = path;
+  experiment.name = path.stem().string();
+  ClipSetup clip;
+  clip.name = experiment.name;
+  clip.track = path;
+  clip.column = options.column;
+  clip.mass_kg = options.mass_kg.value_or(1.0);
+  clip.incline_rad = options.incline_deg.value_or(0.0) * std::numbers::pi / 180.0;
+  clip.launched = Launched::unknown;
+  clip.group = "all";
+  experiment.clips.push_back(clip);
+  return experiment;
 }
 
 }  // namespace glidelab::core

@@ -1,11 +1,5 @@
-/// Levenberg-Marquardt for small dense problems: minimise sum_i w_i r_i(p)^2 over N parameters.
-///
-/// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
-/// nothing of the size of the data is stored. Units are the caller's. The loop is base/math/levenberg_marquardt.h's;
-/// it stops when a step changes every parameter by less than its `step` (an absolute measure, one for each parameter),
-/// or changes the cost by less than 1e-7 of itself (with n data that is a step of sqrt(1e-7 n) standard deviations: a
-/// hundredth for a thousand pixels). So small a step is taken without another evaluation where it is hardly damped: the
-/// cost after it is that of the linear residuals.
+/// Least squares without and with iteration: a line by its sums, orthogonal polynomials, and Levenberg and Marquardt's
+/// method for small dense problems.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -13,13 +7,86 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/math/levenberg_marquardt.h"
 
 namespace glidelab::core {
+
+/// Weighted least squares of a straight line y = intercept + slope x, by its sums:
+///
+///     slope = (W Sxy - Sx Sy) / D,    intercept = (Sxx Sy - Sx Sxy) / D,    D = W Sxx - Sx^2
+struct LineSums {
+  double w = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+
+  void add(double weight, double at, double value) {
+    w += weight;
+    x += weight * at;
+    y += weight * value;
+    xx += weight * at * at;
+    xy += weight * at * value;
+  }
+  double determinant() const { return w * xx - x * x; }
+  /// Where all x are alike rounding alone leaves D of about 1e-16 of W Sxx; `least` of that is asked for.
+  bool is_regular(double least) const { return determinant() > least * w * xx; }
+  double slope() const { return (w * xy - x * y) / determinant(); }
+  double intercept() const { return (xx * y - x * xy) / determinant(); }
+};
+
+/// The square of the correlation of pairs, by Welford's update: no cancellation.
+class PairCorrelation {
+ public:
+  void add(double x, double y) {
+    n_ += 1.0;
+    const double dx = x - mean_x_, dy = y - mean_y_;
+    mean_x_ += dx / n_;
+    mean_y_ += dy / n_;
+    xx_ += dx * (x - mean_x_);
+    xy_ += dx * (y - mean_y_);
+    yy_ += dy * (y - mean_y_);
+  }
+  /// 0 where all x or all y are one.
+  double squared() const { return xx_ > 0.0 && yy_ > 0.0 ? xy_ * xy_ / (xx_ * yy_) : 0.0; }
+
+ private:
+  double n_ = 0.0, mean_x_ = 0.0, mean_y_ = 0.0, xx_ = 0.0, xy_ = 0.0, yy_ = 0.0;
+};
+
+/// Polynomials that are orthogonal over given points and weights (Forsythe 1957): least squares without matrices.
+///
+///     p_0 = 1,   p_(k+1)(u) = (u - alpha_k) p_k(u) - beta_k p_(k-1)(u)
+///     alpha_k = sum K u p_k^2 / N_k,   beta_k = N_k / N_(k-1),   N_k = sum K p_k^2
+///
+/// The weighted fit of values y is  sum_k c_k p_k,  c_k = sum K p_k y / N_k; the c_k of white noise of unit variance
+/// and K = 1 are independent, of variance 1 / N_k. u is best scaled to about 1.
+class OrthogonalPolynomials {
+ public:
+  /// Nothing where the points carry no polynomial of the order: a norm below 1e-11 of that of the power u^k.
+  static std::optional<OrthogonalPolynomials> make(int order, std::span<const double> u,
+                                                   std::span<const double> weights);
+
+  int order() const { return static_cast<int>(norm_.size()) - 1; }
+  double norm(int k) const { return norm_[static_cast<std::size_t>(k)]; }
+  /// p_k at the points.
+  std::span<const double> at_points(int k) const {
+    return std::span(values_).subspan(static_cast<std::size_t>(k) * points_, points_);
+  }
+  /// The derivatives 0 … highest of all p_k at u: [k * (highest + 1) + d].
+  std::vector<double> derivatives(double u, int highest) const;
+
+ private:
+  std::size_t points_ = 0;
+  std::vector<double> values_, norm_, alpha_, beta_;
+};
 
 template <int N>
 struct NormalEquations {
@@ -52,6 +119,15 @@ struct LeastSquaresFit {
   base::FitStop stop = base::FitStop::iterations;
 };
 
+/// Levenberg and Marquardt's method for small dense problems: it minimises sum_i w_i r_i(p)^2 over N parameters.
+///
+/// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
+/// nothing of the size of the data is stored. Units are the caller's. The loop is that of
+/// base/math/levenberg_marquardt.h. It stops when a step changes every parameter by less than its `step` (an absolute
+/// measure, one for each parameter), or changes the cost by less than 1e-7 of itself (with n data that is a step of
+/// sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels). So small a step is taken without another
+/// evaluation where it is hardly damped: the cost after it is that of the linear residuals.
+///
 /// `evaluate(p)` gives the NormalEquations at p, or nothing where p is outside the model's range (the step is then
 /// shortened). A residual is model minus datum. `is_hopeless(fit, equations)` is asked before each step, with the
 /// parameters and iterations so far, and ends the fit. The fit is singular where J^T W J has no inverse at its end.

@@ -1,4 +1,6 @@
-/// From x(t) to the friction law: smoothing, the free parts of the motion, lines in a(v), and equation (13).
+/// The motion of one clip, from x(t) to the friction law: smoothing, the free parts of the motion, lines in a(v), and
+/// equation (13); and the clip frame by frame as it is reported, with the fate of each frame and the stretches that are
+/// used.
 #pragma once
 
 #include <optional>
@@ -6,11 +8,38 @@
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
-#include "core/result/line_method.h"
+#include "core/motion/free/free_motion.h"
+#include "core/motion/free/motion.h"
+#include "core/motion/lines/line_fit.h"
+#include "core/motion/smoothing/noise.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::core {
+
+/// What is known of a clip once its points are smoothed.
+struct SmoothedClip {
+  const TrackData& track;
+  const Motion& motion;  ///< of the track, without its outliers
+  const FreeMotion& free;
+  const PositionNoise& noise;
+  const std::vector<StretchPoint>& points;  ///< of the free stretches
+  double bandwidth_s = 0.0;
+  double mass_kg = 0.0;
+};
+
+/// Every frame of the clip, smoothed with the points of its own stretch, or of what lies between two of them; and why
+/// it does not count, where it does not.
+std::vector<MotionPoint> frames_of(const SmoothedClip& clip);
+
+/// The track's shared errors, of every frame; 0 without a marker.
+std::vector<std::vector<double>> shared_of_frames(const TrackData& track);
+
+/// Frames in a row that are left out for one reason.
+std::vector<LeftOutInterval> intervals_of(const std::vector<MotionPoint>& frames);
+
+/// The stretches that have points which count.
+std::vector<Stretch> used_stretches(const SmoothedClip& clip);
 
 /// Whether times are put right by the frames that the motion shows to be lost (lost_frames.h).
 enum class LostFrameTimes { put_right, kept };

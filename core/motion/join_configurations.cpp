@@ -8,11 +8,10 @@
 #include <limits>
 #include <numbers>
 
-#include "core/math/line_sums.h"
-#include "core/motion/lines/law_bias.h"
+#include "core/math/least_squares.h"
 #include "core/motion/lines/line_fit.h"
+#include "core/motion/lines/line_law.h"
 #include "core/result/estimate.h"
-#include "core/result/stated_values.h"
 
 namespace glidelab::core {
 namespace {
@@ -24,7 +23,7 @@ struct MemberClip {
 };
 
 /// Whether the clips' lines keep the kernel's bias of a line that follows its own law, or have it taken off
-/// (law_bias.h).
+/// (line_law.h).
 enum class LawBiasIs { kept, taken_off };
 
 Eigen::Matrix2d random_part(const LineUncertainty& parts) {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
-#include "core/result/line_method.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {

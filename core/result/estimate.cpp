@@ -1,8 +1,12 @@
 #include "core/result/estimate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "core/math/quantile.h"
@@ -44,6 +48,94 @@ Quantity determined(const Estimate& estimate, std::optional<double> noise_sd) {
 
 Quantity undetermined(std::string why) {
   return {std::nullopt, std::move(why)};
+}
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kOffDeg = 0.5, kOffSds = 3.0;
+constexpr double kGrossDeg = 1.0, kGrossShare = 0.25, kGrossSds = 5.0;
+
+/// What the motion says of the inclination: a value, or a bound where it goes one way only.
+struct FoundIncline {
+  double deg = 0.0, sd_deg = 0.0;
+  int bound = 0;  ///< -1: at most this, +1: at least this
+};
+
+std::string with_sd(double deg, double sd_deg) {
+  return fmt::format("{:.3g} ± {:.2g}°", deg + 0.0, sd_deg);  // + 0.0: no "-0"
+}
+
+std::string text_of(const StatedIncline& stated) {
+  return fmt::format("{} says {}", stated.by,
+                     stated.sd_deg ? with_sd(stated.deg, *stated.sd_deg) : fmt::format("{:.3g}°", stated.deg + 0.0));
+}
+
+std::optional<FoundIncline> found_incline(const ConfigurationResult& found, double gravity_m_s2) {
+  if (found.alpha_deg.estimate) return FoundIncline{found.alpha_deg.estimate->value, found.alpha_deg.estimate->sd};
+  if (found.lines.size() != 1) return std::nullopt;
+  const LineFit& line = found.lines.front();
+  const double sine = line.a0_m_s2.value / gravity_m_s2;
+  if (std::abs(sine) >= 1.0) return std::nullopt;
+  const double sd_deg = kDegrees * line.a0_m_s2.sd / (gravity_m_s2 * std::sqrt(1.0 - sine * sine));
+  return FoundIncline{kDegrees * std::asin(sine), sd_deg, line.direction};
+}
+
+/// The acceleration at v = 0 without friction, where that is gravity or more: no inclination has it. A line of one
+/// direction holds friction too, which may be more.
+std::optional<double> beyond_gravity(const ConfigurationResult& found, double gravity_m_s2) {
+  if (found.alpha_deg.estimate || found.lines.size() != 2) return std::nullopt;
+  const double mean_m_s2 = 0.5 * (found.lines[0].a0_m_s2.value + found.lines[1].a0_m_s2.value);
+  const double sd_m_s2 = 0.5 * std::hypot(found.lines[0].a0_m_s2.sd, found.lines[1].a0_m_s2.sd);
+  if (std::abs(mean_m_s2) < gravity_m_s2 + kGrossSds * sd_m_s2) return std::nullopt;
+  return mean_m_s2;
+}
+
+}  // namespace
+
+std::optional<InclineContradiction> incline_contradiction(const ConfigurationResult& found, double gravity_m_s2,
+                                                          const StatedIncline& stated) {
+  if (const auto mean_m_s2 = beyond_gravity(found, gravity_m_s2)) {
+    return InclineContradiction{
+        fmt::format("the acceleration, {:.3g} m/s² without friction, is more than gravity_m_s2 = {:.6g}; {}",
+                    *mean_m_s2, gravity_m_s2, text_of(stated)),
+        std::numeric_limits<double>::infinity(), true};
+  }
+  const auto incline = found_incline(found, gravity_m_s2);
+  if (!incline) return std::nullopt;
+  const double above_deg = stated.deg - incline->deg;
+  if ((incline->bound < 0 && above_deg < 0.0) || (incline->bound > 0 && above_deg > 0.0)) return std::nullopt;
+  const double off_deg = std::abs(above_deg);
+  const double sd_deg = std::hypot(incline->sd_deg, stated.sd_deg.value_or(0.0));
+  if (off_deg < std::max(kOffDeg, kOffSds * sd_deg)) return std::nullopt;
+  const bool gross = off_deg > std::max({kGrossDeg, kGrossShare * std::abs(stated.deg), kGrossSds * sd_deg});
+  const char* bound = incline->bound == 0 ? "" : incline->bound < 0 ? "at most " : "at least ";
+  return InclineContradiction{fmt::format("the acceleration makes the inclination {}{}, {}", bound,
+                                          with_sd(incline->deg, incline->sd_deg), text_of(stated)),
+                              off_deg, gross};
+}
+
+StatedIncline stated_incline(const ConfigurationResult& configuration) {
+  return {configuration.incline_deg, configuration.incline_sd_deg, "incline_deg"};
+}
+
+void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2) {
+  double least_kg = std::numeric_limits<double>::infinity();
+  for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
+  for (ConfigurationResult& result : results) {
+    if (result.mass_kg >= kMassRatio * least_kg) {
+      result.notes.push_back(
+          fmt::format("mass_kg = {:.6g}, but {:.6g} for the lightest glider: masses are in kilograms, and one of these "
+                      "looks like grams",
+                      result.mass_kg, least_kg));
+    }
+    const auto contradiction = incline_contradiction(result, gravity_m_s2, stated_incline(result));
+    if (contradiction && contradiction->gross) {
+      result.notes.push_back(
+          contradiction->sentence +
+          ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)");
+    }
+  }
 }
 
 }  // namespace glidelab::core

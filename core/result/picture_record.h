@@ -36,14 +36,14 @@ struct SceneLook {
   std::array<double, kRowBands> gain_sd{};  ///< 0: no patch in that band
 };
 
-/// Size of the steps between neighbouring pixels of a row, by the column of the right one modulo 8 (block_steps.h): a
-/// codec of 8 x 8 blocks leaves larger ones at 0.
+/// Size of the steps between neighbouring pixels of a row, by the column of the right one modulo 8
+/// (camera_traces.h): a codec of 8 x 8 blocks leaves larger ones at 0.
 struct BlockSteps {
   std::array<double, 8> mean{};
   double count = 0.0;  ///< steps of each
 };
 
-/// How much resting pixels of about one brightness change from frame to frame (level_noise.h), codes.
+/// How much resting pixels of about one brightness change from frame to frame (camera_traces.h), codes.
 struct NoiseAtLevel {
   double level_code = 0.0;  ///< their mean
   double sd_code = 0.0;     ///< of one pixel

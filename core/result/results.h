@@ -1,4 +1,5 @@
-/// What an analysis finds, as plain data. report/ writes it as results.json, CSV and pages.
+/// What an analysis finds, as plain data, with the method of its lines. report/ writes it as results.json, CSV and
+/// pages.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "core/result/line_method.h"
-
 namespace glidelab::core {
+
+/// The two ways in which core fits the lines of a phase diagram. ordinary: least squares as the paper does it
+/// (line_fit.h); generalised: with the points' covariance (gls_line.h).
+enum class LineMethod { ordinary, generalised };
+
+/// The estimator's name in options and files; fit/estimators.h lists all estimators.
+constexpr const char* name_of(LineMethod method) {
+  return method == LineMethod::ordinary ? "phase-diagram" : "phase-diagram-gls";
+}
 
 struct PictureRecord;
 
@@ -26,7 +34,7 @@ struct Estimate {
 struct Quantity {
   std::optional<Estimate> estimate;
   std::string why;  ///< empty where there is an estimate
-  /// The correction for the kernel's bias of a line (law_bias.h) that the estimate contains; without it, the lines as
+  /// The correction for the kernel's bias of a line (line_law.h) that the estimate contains; without it, the lines as
   /// fitted give the value.
   std::optional<double> smoothing_correction = {};
   /// The part of the estimate's standard deviation that is random from clip to clip (the positions' noise and their
@@ -74,7 +82,7 @@ struct LineShift {
   double a0 = 0.0;
 };
 
-/// The kernel's bias of a line that follows its own law (law_bias.h), to be taken off, and the random covariance that
+/// The kernel's bias of a line that follows its own law (line_law.h), to be taken off, and the random covariance that
 /// is left then.
 struct LawBias {
   LineShift shift;
@@ -216,7 +224,7 @@ struct CornerCell {
   std::size_t corners = 0;
 };
 
-/// What a camera's fit leaves of the pattern's corners, over the image (corner_map.h).
+/// What a camera's fit leaves of the pattern's corners, over the image (corner_errors.h).
 struct CornerMap {
   int width_px = 0, height_px = 0;
   std::vector<CornerCell> cells;  ///< with two corners or more, row by row

@@ -4,17 +4,34 @@
 /// Understood, whatever the file's name: tab, semicolon or comma between fields; decimal point or decimal comma; quoted
 /// fields; LF or CRLF, a byte-order mark; titles and comments ('#') before the header; one to three header lines (a
 /// line of runs, names, short names, units); units as "Time (s)", "x [cm]", "x_mm" or in a line of their own; runs as
-/// "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of different lengths; NaN for no value.
-/// The delimiter and the decimal sign are those with which most lines are all numbers.
+/// "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of different lengths; NaN for no value. The
+/// delimiter and the decimal sign are those with which most lines are all numbers.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/track/column_header.h"
-
 namespace glidelab::core {
+
+struct TableColumn {
+  std::string text;                           ///< the header as it stands; "column 2" where there is none
+  std::string name;                           ///< without unit and run
+  std::string unit;                           ///< empty where none is stated
+  std::string run;                            ///< empty where none is stated
+  std::vector<std::optional<double>> values;  ///< one for each data line; nothing where the field is empty or NaN
+};
+
+/// Metres for a unit of length, seconds for one of time; nothing for any other text. "um" and "µm" are one.
+std::optional<double> metres_per(std::string_view unit);
+std::optional<double> seconds_per(std::string_view unit);
+
+/// The header lines of an exported table, taken apart into name, unit and run of each of its `width` columns, which
+/// have no values yet. The lines, first to last: of runs (where all its fields speak of a run, a set or "latest"), of
+/// names, of short names (ignored), of units; each but the names may be missing.
+std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);
 
 struct ColumnTable {
   std::string file;

@@ -30,7 +30,7 @@ EffectInfo base_vibration() {
       .both_signs = false,
       .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5},
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
-                     {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .own = true}},
+                     {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .each = Each::motion}},
       .law = {.force_n = vibration_force, .rate_1_s = vibration_rate},
       .shapes = nullptr,
       .lines = {},

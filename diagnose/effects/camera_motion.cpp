@@ -49,7 +49,7 @@ EffectInfo camera_motion() {
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
                      {.key = {}, .absent = 0.0, .low = -2.0, .high = 2.0, .step = 1e-4, .only_filmed = true},
                      {.key = {}, .absent = 0.0, .low = -2.0, .high = 2.0, .step = 1e-4, .only_filmed = true},
-                     {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .own = true}},
+                     {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .each = Each::motion}},
       .law = {.seen_m = sway_seen, .seen_by = SeenBy::mount},
       .shapes = nullptr,
       .lines = {},

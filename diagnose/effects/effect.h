@@ -1,20 +1,185 @@
-/// What the program knows about one effect: its names and words, its parameters and how large they may be, its law, its
-/// lines in a table, its twin in a scenario, and what to record next.
+/// An effect and all that the program knows about one: its stage, its parameters, its law, its lines in a table, its
+/// twin in a scenario.
 ///
-/// No member has a default: the compiler refuses an effect that leaves one out.
+/// While an effect acts, the model calls the functions of its law (EffectLaw), which change the motion and its
+/// observation:
+///
+///     (m + m_w) dv/dt = W slope - K v factor / divisor along - against + forces - sign(v) (mu W cos(alpha) + F_0)
+///
+/// with the weight W = m g. The terms slope, factor, divisor, along, against, mu and F_0 are those of the nominal model
+/// (sin alpha, 1, 1, 1, 0, mu, 0) until an effect changes them. All is in SI units, x and v are positive downhill, and
+/// t is the true time from the clip's first frame.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "diagnose/effects/effect_law.h"
 #include "diagnose/effects/effect_list.h"
-#include "diagnose/effects/effect_twin.h"
-#include "diagnose/effects/stage.h"
 
 namespace glidelab::diagnose {
 
-/// What bounds a parameter besides `low` and `high`, in given data (range_of() of effect_ranges.h).
+/// Where between the world and the result an effect acts.
+enum class Stage { dynamics, optics, timing, sensor, tracking, analysis };
+
+/// As files and pages have it: "dynamics".
+std::string_view to_text(Stage stage);
+
+/// What of a motion does not change while it lasts.
+struct GliderConstants {
+  double mass_kg = 0.0;
+  double weight_n = 0.0;
+  double cos_alpha = 1.0;
+  double mu = 0.0;
+  double x_mid_m = 0.0;                  ///< of the set-up
+  double x_mid_all_m = 0.0;              ///< of all set-ups
+  double x_low_m = 0.0, x_high_m = 0.0;  ///< of the positions of all set-ups
+  double clip = 0.0;                     ///< its number, from 0, in the order of the file
+  bool driven = false;                   ///< by a force that was recorded
+};
+
+struct GliderState {
+  double x, v, t;
+  double wave;  ///< sine of base_vibration's phase at t
+  bool pushed;  ///< before late_release's end
+};
+
+/// All but dry friction and what only adds a force.
+struct Resistance {
+  double slope;  ///< sin(alpha)
+  double drag_factor = 1.0, drag_divisor = 1.0;
+  double drag_along = 1.0;  ///< factor by the place
+  double against_n = 0.0;   ///< against x, whichever way it moves
+};
+
+struct DryFriction {
+  double mu;
+  double force_n = 0.0;  ///< whatever the load
+};
+
+/// The order in which changes of the measured position follow each other.
+enum class SeenBy { lens, plane, scale, mount };
+
+/// How an effect changes the motion and its observation. `p` are the effect's parameters in the order of its file.
+struct EffectLaw {
+  std::size_t size = 0;   ///< the first parameter that is 0 where the effect is absent,
+  std::size_t sizes = 1;  ///< and how many are: it acts where one of them is not 0
+  void (*resistance)(const double* p, const GliderConstants& glider, const GliderState& at, Resistance& of) = nullptr;
+  double (*force_n)(const double* p, const GliderConstants& glider, const GliderState& at) = nullptr;
+  void (*friction)(const double* p, const GliderConstants& glider, const GliderState& at, DryFriction& of) = nullptr;
+  double (*inertia_kg)(const double* p, const GliderConstants& glider) = nullptr;  ///< beside the mass that weighs
+  double (*known_factor)(const double* p) = nullptr;  ///< the force that acts over the recorded one
+  double (*known_late_s)(const double* p) = nullptr;  ///< how much later it acts than recorded
+  /// As fast as it makes the motion change: a step is at most 0.3 of its inverse.
+  double (*rate_1_s)(const double* p, double mass_kg) = nullptr;
+  /// The measured x of what stands at `x_m` and was seen at `seen_m` so far.
+  double (*seen_m)(const double* p, const GliderConstants& glider, double x_m, double t_s, double seen_m) = nullptr;
+  SeenBy seen_by = SeenBy::lens;
+  double (*stretch)(const double* p) = nullptr;  ///< true time over stated time
+  double (*row_s)(const double* p) =
+      nullptr;  ///< how much later a row is exposed than the one above, over what is stated
+
+  bool acts(const double* p) const {
+    return std::any_of(p + size, p + size + sizes, [](double value) { return value != 0.0; });
+  }
+  bool moves() const {
+    return resistance != nullptr || force_n != nullptr || friction != nullptr || inertia_kg != nullptr ||
+           known_factor != nullptr || known_late_s != nullptr;
+  }
+};
+
+/// What a twin lacks, and why.
+struct MissingInTwin {
+  std::string_view id;
+  std::string why;
+};
+
+/// The forces of one configuration. A scenario's m dv/dt = F is (m + m_w) dv/dt = F times `part`.
+struct TwinForces {
+  double part = 1.0;               ///< m/(m + m_w)
+  double k_n_s_m = 0.0, mu = 0.0;  ///< of the nominal model, times `part`
+  double normal_n = 0.0;           ///< m g cos(alpha)
+  double along_n = 0.0;            ///< m g sin(alpha)
+  std::string drag;                ///< in place of K v; empty: that
+  std::string_view drag_by;        ///< which effect that is
+  std::string more_drag;
+  std::string friction;  ///< in place of mu; empty: that
+  std::string others;
+  std::vector<MissingInTwin> lacks;
+
+  /// A drag in place of K v; the effect that had put one there before is lacking.
+  void replace_drag(std::string_view id, std::string text);
+};
+
+/// "[[configuration.force]]" of a law with its keys.
+std::string scenario_force(const std::string& law, const std::map<std::string, double>& keys);
+
+/// The sizes that were found, by key.
+class TwinSizes {
+ public:
+  explicit TwinSizes(std::vector<std::pair<std::string, double>> sizes) : sizes_(std::move(sizes)) {}
+  std::optional<double> of(std::string_view key) const;
+
+ private:
+  std::vector<std::pair<std::string, double>> sizes_;
+};
+
+/// How the data were filmed, and the camera and clock that the scenario gets. World: x along the track, z to the
+/// camera.
+struct TwinCamera {
+  // As filmed.
+  bool filmed = false;
+  bool exposure_known = false;
+  double stated_frame_s = 0.0;
+  int height_px = 0;
+  double downhill = 1.0;        ///< sign of the world's x along the data's
+  double x_m = 0.0, z_m = 0.0;  ///< where the camera stands
+  double distance_m = 0.0;
+  double focal_px = 0.0;
+  double reference_m = 0.0;  ///< x of the data where the world's is 0
+  // As the scenario has it.
+  double exposure_s = 0.0;
+  double frame_s = 0.0;  ///< true
+  double line_s = 0.0;
+  double focal_factor = 1.0;
+  std::string_view focal_by;  ///< the effect that changed it first
+  bool lossy = false;
+  std::string clock, light, motions;  ///< keys of [clock] and [light], sections of mount.motion
+  std::vector<std::string> notes;
+  std::vector<MissingInTwin> lacks;
+
+  void lack(std::string_view id, std::string why) { lacks.push_back({id, std::move(why)}); }
+};
+
+/// The order in which effects change the camera: each may depend on those before.
+enum class TwinPart { exposure, clock, shutter, light, mount, codec };
+
+/// An effect in a scenario, as part of a simulation that behaves like the data. One of the three is given: why no
+/// scenario can say it, its force, or its change of the camera and the clock.
+class EffectTwin {
+ public:
+  using Force = void (*)(const double* p, TwinForces& forces);
+  using Camera = void (*)(const TwinSizes& sizes, TwinCamera& camera);
+  static EffectTwin none(std::string_view why) { return {why, nullptr, TwinPart::exposure, nullptr}; }
+  static EffectTwin as_force(Force force) { return {{}, force, TwinPart::exposure, nullptr}; }
+  static EffectTwin as_camera(TwinPart part, Camera camera) { return {{}, nullptr, part, camera}; }
+
+  std::string_view why_not;
+  Force force;
+  TwinPart part;
+  Camera camera;
+
+ private:
+  EffectTwin(std::string_view why, Force f, TwinPart p, Camera c) : why_not(why), force(f), part(p), camera(c) {}
+};
+
+/// What bounds a parameter besides `low` and `high`, in given data (range_of() of fit_model.h).
 enum class Reach {
   stated,      ///< nothing
   with_mass,   ///< `high` is that of a glider of up to 1 kg, of a heavier one as many times more
@@ -29,7 +194,11 @@ enum class ShownAs {
   itself,
   one_more,      ///< n from n - 1, s from s - 1
   inverse_root,  ///< v_c from 1/v_c²
+  together,      ///< by what all of its kind make together (derived_parameters() of verdict_details.h), under one key
 };
+
+/// Who has a value of its own of a parameter. A configuration is a mass on a set-up.
+enum class Each { experiment, configuration, clip, motion };
 
 /// One free parameter of an effect.
 struct EffectParameter {
@@ -39,15 +208,19 @@ struct EffectParameter {
   double step;           ///< for the finite difference of the motion by it
   Reach reach = Reach::stated;
   ShownAs shown_as = ShownAs::itself;
-  bool own = false;          ///< each motion has its own
+  Each each = Each::experiment;
   bool only_filmed = false;  ///< fitted to filmed motions only
-  EffectSlot slot = {};      ///< where its value stands; by the list
+  /// Standard deviation that holds it back at 0 where the data leave it open, as a deviation of every clip from a mean
+  /// that is fitted too; 0: nothing does.
+  double held_sd = 0.0;
+  EffectSlot slot = {};  ///< where its value stands; by the list
 };
 
 /// How the first fit is found.
 enum class Search {
   amplitude,  ///< one parameter that acts in proportion
   shape,      ///< a second one is searched on a grid
+  spread,     ///< many sizes of one kind, each as likely positive as negative
   wave,       ///< a frequency, with a phase in every motion
   pushes,     ///< a time, with a size in every motion
   frames,     ///< frames that are missing: found one by one
@@ -56,6 +229,11 @@ enum class Search {
   pictures,   ///< the images tell, no position need move
   lines,      ///< only a table of lines tells
 };
+
+/// Whether such an effect shows in the motion as a whole, not in single frames or in the images alone.
+constexpr bool shows_in_motion(Search search) {
+  return search != Search::frames && search != Search::noise && search != Search::pictures;
+}
 
 /// What a search on a grid goes by.
 struct ShapeReach {
@@ -90,6 +268,9 @@ struct Alike {
   bool filmed = false;       ///< nor can clips
 };
 
+/// What the program knows about one effect: its names and words, its parameters and how large they may be, its law, its
+/// lines in a table, its twin in a scenario, and what to record next. No member has a default, so the compiler refuses
+/// an effect that leaves one out.
 struct EffectInfo {
   std::string_view id;
   Stage stage;

@@ -56,4 +56,23 @@ std::size_t first_alike(std::size_t effect, bool filmed) {
   return same ? effect_index(alike.id) : effect;
 }
 
+bool differs_between_clips(std::size_t effect) {
+  const std::vector<EffectParameter>& parameters = effect_list()[effect].parameters;
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const EffectParameter& parameter) { return parameter.each == Each::clip; });
+}
+
+EffectValues::EffectValues() {
+  static const auto absent = [] {
+    std::array<std::array<double, kMostParameters>, kEffects> values{};
+    for (const EffectInfo& effect : all_effects()) {
+      for (const EffectParameter& parameter : effect.parameters) {
+        values[parameter.slot.effect][parameter.slot.parameter] = parameter.absent;
+      }
+    }
+    return values;
+  }();
+  values_ = absent;
+}
+
 }  // namespace glidelab::diagnose

@@ -1,11 +1,14 @@
-/// All effects of effect_list.h, each defined in its own file.
+/// The library of effects: all that effect_list.h names, each defined in its own file.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_list.h"
 
 namespace glidelab::diagnose {
 
@@ -24,5 +27,24 @@ std::vector<std::string> effect_words();
 /// The first of the effects that no experiment of tracks tells apart from this one: a wrong scale and a wrong frame
 /// rate; of positions alone, not `filmed`, a camera and a table that shake. An effect without such a double: itself.
 std::size_t first_alike(std::size_t effect, bool filmed);
+
+/// Whether an effect has sizes of each clip's own: with these it follows whatever differs between clips.
+bool differs_between_clips(std::size_t effect);
+
+/// The sizes of all effects at once, as one motion feels them.
+class EffectValues {
+ public:
+  /// All absent.
+  EffectValues();
+
+  double& operator[](const EffectSlot& slot) { return values_[slot.effect][slot.parameter]; }
+  double operator[](const EffectSlot& slot) const { return values_[slot.effect][slot.parameter]; }
+
+  /// An effect's parameters in order.
+  const double* of(std::size_t effect) const { return values_[effect].data(); }
+
+ private:
+  std::array<std::array<double, kMostParameters>, kEffects> values_;
+};
 
 }  // namespace glidelab::diagnose

@@ -17,19 +17,29 @@ namespace glidelab::diagnose {
   EFFECT(quadratic_drag)             \
   EFFECT(eddy_rolloff)               \
   EFFECT(power_law_drag)             \
+  EFFECT(direction_dependent_drag)   \
   EFFECT(stribeck)                   \
   EFFECT(load_independent_friction)  \
   EFFECT(direction_asymmetry)        \
+  EFFECT(place_friction)             \
+  EFFECT(friction_drift)             \
+  EFFECT(configuration_friction)     \
+  EFFECT(configuration_drag)         \
+  EFFECT(clip_scatter)               \
   EFFECT(track_bow)                  \
   EFFECT(damping_gradient)           \
   EFFECT(rotational_inertia)         \
   EFFECT(tether)                     \
+  EFFECT(end_stop)                   \
   EFFECT(base_vibration)             \
   EFFECT(late_release)               \
+  EFFECT(force_gain)                 \
+  EFFECT(force_delay)                \
   EFFECT(frame_rate_error)           \
   EFFECT(dropped_frames)             \
   EFFECT(timestamp_jitter)           \
   EFFECT(scale_error)                \
+  EFFECT(mass_error)                 \
   EFFECT(perspective_error)          \
   EFFECT(lens_distortion)            \
   EFFECT(camera_motion)              \
@@ -39,6 +49,7 @@ namespace glidelab::diagnose {
   EFFECT(light_gradient)             \
   EFFECT(compression)                \
   EFFECT(heavy_tailed_noise)         \
+  EFFECT(position_rounding)          \
   EFFECT(smoothing_bias)
 // clang-format on
 
@@ -62,7 +73,7 @@ constexpr std::size_t effect_index(std::string_view id) {
   throw std::out_of_range("no such effect: " + std::string(id));
 }
 
-inline constexpr std::size_t kMostParameters = 5;  ///< that an effect has
+inline constexpr std::size_t kMostParameters = 6;  ///< that an effect has
 
 /// Where the value of one parameter stands.
 struct EffectSlot {

@@ -7,7 +7,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-void fixed_friction(const double* p, double, DryFriction& of) {
+void fixed_friction(const double* p, const GliderConstants&, const GliderState&, DryFriction& of) {
   of.force_n += p[0];
 }
 

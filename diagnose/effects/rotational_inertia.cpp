@@ -1,10 +1,11 @@
-/// Inertia m_w that is not in the weighed mass, such as that of wheels: (m + m_w) dv/dt.
+/// Inertia m_w that is not in the weighed mass, such as that of wheels, or of air and water that move along:
+/// (m + m_w) dv/dt.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
 namespace {
 
-double wheels_kg(const double* p) {
+double wheels_kg(const double* p, const GliderConstants&) {
   return p[0];
 }
 
@@ -25,8 +26,8 @@ EffectInfo rotational_inertia() {
   return {
       .id = ids::rotational_inertia,
       .stage = Stage::dynamics,
-      .words = "inertia that is not in the weighed mass, such as wheels'",
-      .name = "inertia of wheels",
+      .words = "inertia without weight, such as that of wheels, or of air or water that moves along",
+      .name = "inertia without weight",
       .meaning = "m dv/dt becomes (m + mass) dv/dt",
       .search = Search::amplitude,
       .both_signs = false,

@@ -7,8 +7,8 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-void stribeck_friction(const double* p, double v, DryFriction& of) {
-  of.mu *= 1.0 + p[0] * std::exp(-(v * v) / (p[1] * p[1]));
+void stribeck_friction(const double* p, const GliderConstants&, const GliderState& at, DryFriction& of) {
+  of.mu *= 1.0 + p[0] * std::exp(-(at.v * at.v) / (p[1] * p[1]));
 }
 
 std::vector<double> stribeck_speeds(const ShapeReach& reach) {

@@ -9,26 +9,32 @@
 #include "base/errors.h"
 #include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
-#include "diagnose/fit/common_limits.h"
+#include "diagnose/fit/fit_model.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr int kMostIterations = 40;
+constexpr int kMoreRounds = 2;             // of as many iterations, for a nominal fit that has not come to its end
 constexpr double kConvergedChange = 1e-3;  // change of chi², small beside what evidence turns on
 // What the data hardly know (a frame rate beside K, mu and the inclination) lies along a bent valley whose walls are
 // steep: a step along it ends far up a wall, from where undamped steps lead back down; it has failed where so many do
 // not.
 constexpr int kMostStepsBack = 4;
-constexpr int kMostVainReturns = 2;  // then there is no valley
+constexpr int kMostVainReturns = 2;                             // then there is no valley
+constexpr double kSteepest_rad = 1.5, kBeyondStated_rad = 0.2;  // of an inclination; and where a fall is stated
+constexpr double kSmallSteps = 1.0;  // damping at the start: half of Newton's step in directions that are known apart
 using Global = ParameterLayout::Global;
 
-bool inside(const ParameterLayout& layout, const FitPoint& at) {
+bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at) {
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
     const double value = at.global[static_cast<Eigen::Index>(g)];
     if (!std::isfinite(value)) return false;
-    if (global.kind == Global::Kind::alpha && std::abs(value) > 1.5) return false;
+    if (global.kind == Global::Kind::alpha) {
+      const double stated = std::abs(set.groups[global.index].stated_rad);
+      if (std::abs(value) > std::max(kSteepest_rad, stated + kBeyondStated_rad)) return false;
+    }
     if (global.kind != Global::Kind::effect) continue;
     if (value < global.range.low || value > global.range.high) return false;
   }
@@ -44,12 +50,20 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
         for (const InclineStatement& s : set.groups[global.index].statements) {
           statements.push_back({g, s.alpha_rad, s.sd_rad, s.against, true});
         }
-        statements.push_back({g, set.groups[global.index].stated_rad, kOpenInclination_rad, "", false});
+        statements.push_back({g, set.groups[global.index].stated_rad,
+                              is_fall(set.groups[global.index]) ? kFallInclination_rad : kOpenInclination_rad, "",
+                              false});
+        break;
+      case Global::Kind::mu:
+        if (only_falls(set)) statements.push_back({g, 0.0, kFallFriction, "", false});
         break;
       case Global::Kind::mass:
       case Global::Kind::mode:
       case Global::Kind::scale:
         statements.push_back({g, 0.0, 1.0, "", true});
+        break;
+      case Global::Kind::effect:
+        if (global.parameter->held_sd > 0.0) statements.push_back({g, 0.0, global.parameter->held_sd, "", false});
         break;
       default:
         break;
@@ -79,7 +93,7 @@ MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
   MotionFit next = fit;
   next.at = std::move(at);
   next.cost = std::numeric_limits<double>::infinity();
-  if (!inside(*fit.layout, next.at)) return next;
+  if (!inside(set, *fit.layout, next.at)) return next;
   linearise_all(set, next, Derivatives::none);
   next.cost = cost_of(next);
   return next;
@@ -94,7 +108,7 @@ base::FitOptions descent_options() {
   options.floor_after_refusal = 3.0;
   options.floor_decay = 0.3;
   options.cost_absolute = kConvergedChange;
-  options.cost_relative = 1e-5 * kConvergedChange;
+  options.cost_relative = 1e-3 * kConvergedChange;  // of a misfit of the order of the number of points, as much again
   options.damping_settled = 1e-2;
   return options;
 }
@@ -210,8 +224,10 @@ FitPoint step_from(const MotionFit& fit, double damping) {
 
 }  // namespace
 
-MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
-                      const Lateness& late) {
+namespace {
+
+MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
+                   const Lateness& late, const base::FitOptions& options) {
   MotionFit fit;
   fit.effects = effects;
   ParameterLayout layout(set, effects);
@@ -246,12 +262,70 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
   };
   Point here{std::move(fit)};
   const double start_cost = here.fit.cost;
-  const base::FitSummary summary = base::levenberg_marquardt(here, start_cost, descent_options(), try_step);
+  const base::FitSummary summary = base::levenberg_marquardt(here, start_cost, options, try_step);
   here.fit.iterations = summary.iterations;
   // Where nothing descends, rounding is all that is left, or the fit stands at the edge of what is allowed.
   here.fit.converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
   linearise_all(set, here.fit, Derivatives::central);
   return std::move(here.fit);
+}
+
+/// Where a fit stands, with one more effect that is absent; its other parameters as `like`, which has it, has them.
+FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t effect, const MotionFit& like) {
+  FitPoint point = with_effect(set, base, effect, {}, {});
+  std::vector<std::size_t> effects = base.effects;
+  effects.push_back(effect);
+  const ParameterLayout layout(set, effects);
+  const EffectInfo& info = effect_list()[effect];
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    // Each parameter of an effect of many sizes is one of them.
+    const bool is_size = global.parameter == &info.parameters[info.law.size] || info.search == Search::spread;
+    if (global.kind != Global::Kind::effect || global.effect != effect || is_size) continue;
+    for (std::size_t k = 0; k < like.layout->globals().size(); ++k) {
+      const Global& other = like.layout->globals()[k];
+      if (other.parameter != global.parameter || other.index != global.index) continue;
+      point.global[static_cast<Eigen::Index>(g)] = like.at.global[static_cast<Eigen::Index>(k)];
+    }
+  }
+  return point;
+}
+
+}  // namespace
+
+MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
+                      const Lateness& late) {
+  return fit_from(set, effects, start, late, descent_options());
+}
+
+MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit) {
+  if (fit.cost <= base.cost) return fit;
+  std::vector<std::size_t> effects = base.effects;
+  effects.push_back(effect);
+  base::FitOptions small_steps = descent_options();
+  small_steps.damping_start = kSmallSteps;
+  MotionFit again = fit_from(set, effects, with_absent(set, base, effect, fit), base.late, small_steps);
+  return again.cost <= fit.cost ? again : fit;
+}
+
+MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_t effect, const FitPoint& start) {
+  std::vector<std::size_t> effects = base.effects;
+  effects.push_back(effect);
+  MotionFit best = fit_motions(set, effects, start, base.late);
+  // A size from a linear estimate far from the minimum may be off by decades.
+  const auto size = base.at.global.size();
+  const bool has_size = effect_list()[effect].law.size == 0 &&
+                        effect_list()[effect].parameters[0].each == Each::experiment &&
+                        effect_list()[effect].search != Search::spread;
+  for (const double part : {0.1, 0.01, 10.0}) {
+    if (!has_size || best.cost <= base.cost) break;
+    FitPoint other = start;
+    other.global[size] *= part;
+    if (!inside(set, ParameterLayout(set, effects), other)) continue;
+    MotionFit fit = fit_motions(set, effects, other, base.late);
+    if (fit.cost < best.cost || !std::isfinite(best.cost)) best = std::move(fit);
+  }
+  return no_worse_than(set, base, effect, std::move(best));
 }
 
 MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at) {
@@ -265,6 +339,13 @@ MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effe
   return fit;
 }
 
+MotionFit linearise_again(const TrackSet& set, const MotionFit& fit) {
+  MotionFit again = fit;
+  linearise_all(set, again, Derivatives::central);
+  again.cost = cost_of(again);
+  return again;
+}
+
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
   const ParameterLayout layout(set, {});
   MotionFit best;
@@ -276,7 +357,7 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
     FitPoint start;
     start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
     start.global[0] = k_over_m * mass;
-    start.global[1] = 0.005;
+    start.global[1] = only_falls(set) ? 0.0 : 0.005;
     for (std::size_t g = 0; g < set.groups.size(); ++g) {
       start.global[static_cast<Eigen::Index>(2 + g)] = set.groups[g].stated_rad;
     }
@@ -286,6 +367,9 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
     std::size_t points = 0;
     for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
     if (best.converged && best.cost < 4.0 * static_cast<double>(points)) break;  // other starts find nothing better
+  }
+  for (int more = 0; more < kMoreRounds && std::isfinite(best.cost) && !best.converged; ++more) {
+    best = fit_motions(set, {}, best.at, late);
   }
   if (!std::isfinite(best.cost)) {
     throw base::NumericalError("the nominal model cannot be fitted to these positions: no start of three moves at all");
@@ -305,7 +389,7 @@ FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effe
     point.global[fit.at.global.size() + static_cast<Eigen::Index>(v)] = values[v];
   }
   for (std::size_t i = 0; i < fit.at.own.size(); ++i) {
-    Eigen::VectorXd extended(static_cast<Eigen::Index>(2 + layout.own().size()));
+    Eigen::VectorXd extended = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 + layout.own().size()));
     extended.head(fit.at.own[i].size()) = fit.at.own[i];
     for (std::size_t o = 0; !own.empty() && o < own[i].size(); ++o) {
       extended[fit.at.own[i].size() + static_cast<Eigen::Index>(o)] = own[i][o];

@@ -5,7 +5,7 @@
 /// weighted with the noise of each motion; what is stated joins as data of its own: inclinations with their standard
 /// deviation, masses with theirs, the camera's and plane's errors c_k ~ N(0, 1). Gauss and Newton's steps damped by
 /// Levenberg and Marquardt, derivatives by finite differences, each motion's own parameters eliminated. An effect's
-/// common parameter stays within its range (effect_ranges.h): it stops at the edge, the others go on.
+/// common parameter stays within its range (fit_model.h): it stops at the edge, the others go on.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/fit/linearised_motion.h"
-#include "diagnose/fit/parameter_layout.h"
+#include "diagnose/fit/fit_model.h"
 #include "diagnose/tracks/track_set.h"
 
 namespace glidelab::diagnose {
@@ -48,8 +47,19 @@ MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effec
 /// Residuals and derivatives at a point, nothing fitted.
 MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at);
 
+/// A fit as it stands, with residuals and derivatives by the noise of another set of the same motions.
+MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
+
 /// The nominal model from a first guess of its own.
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late = {});
+
+/// One more effect than `base` has, from where a search puts it. Where that leads to a worse fit than `base`, which is
+/// the same model with the effect absent, the fit starts again from there, by small steps; the better of the two. So
+/// its cost is never above that of `base`.
+MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_t effect, const FitPoint& start);
+
+/// `fit`, or, where `base` fits better, one that starts there with the effect that `fit` has more, absent.
+MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit);
 
 /// The point of a fit in the layout of more effects, which are absent but for `values` (in the order of the new
 /// effects' global parameters).

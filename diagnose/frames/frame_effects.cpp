@@ -7,9 +7,8 @@
 
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/common_limits.h"
-#include "diagnose/frames/smooth_residual.h"
-#include "diagnose/frames/timing_noise.h"
+#include "diagnose/fit/fit_model.h"
+#include "diagnose/frames/point_scatter.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -74,7 +73,12 @@ struct TailResiduals {
 TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
   std::vector<double> over_sd, v, scatter;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
-    const Leftover left = leftover_of(set, fit, i);
+    Leftover left = leftover_of(set, fit, i);
+    // What rounding makes of a single position is the same wherever it is; frames that err alike are `wider` together.
+    const TrackedMotion& motion = set.motions[i];
+    for (std::size_t p = 0; motion.step_m > 0.0 && p < left.over_sd.size(); ++p) {
+      left.over_sd[p] *= motion.sd_of(p) / motion.sd_m;
+    }
     over_sd.insert(over_sd.end(), left.over_sd.begin(), left.over_sd.end());
     v.insert(v.end(), left.v_m_s.begin(), left.v_m_s.end());
     std::vector<double> size;
@@ -87,7 +91,7 @@ TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
   for (const TrackedMotion& motion : set.motions) {
     for (std::size_t p = 0; p < motion.t_s.size(); ++p, ++at) {
       residuals.over_scatter.push_back(over_sd[at] / scatter[at]);
-      residuals.scatter_m.push_back(scatter[at] * motion.sd_of(p));
+      residuals.scatter_m.push_back(scatter[at] * (motion.step_m > 0.0 ? motion.sd_m : motion.sd_of(p)));
     }
   }
   return residuals;

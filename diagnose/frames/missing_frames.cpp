@@ -9,7 +9,7 @@
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/frames/obvious_losses.h"
+#include "diagnose/frames/plain_losses.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -3,10 +3,10 @@
 ///
 /// First the obvious ones: around such a place the positions make a parabola only if all from there on are later by
 /// whole frames (a gain of 14 in log likelihood), the clearest first; or, where that ends better, those that the
-/// analysis finds (core/lost_frames.h). Then those that raise the likelihood of the whole
-/// fit by 12, one in each motion at a time or all together, K, mu and the inclination free; then all of them placed
-/// anew along the fitted path (Viterbi). These count only where they leave chi² below 2 a point: many a curve that the
-/// model lacks looks like a row of losses.
+/// analysis finds (core/motion/free/lost_frames.h). Then those that raise the likelihood of the whole fit by 12, one in
+/// each motion at a time or all together, K, mu and the inclination free; then all of them placed anew along the fitted
+/// path (Viterbi). These count only where they leave chi² below 2 a point: many a curve that the model lacks looks like
+/// a row of losses.
 #pragma once
 
 #include "diagnose/frames/frame_effects.h"

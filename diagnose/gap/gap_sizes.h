@@ -1,7 +1,21 @@
-/// How large the gap is in each domain, before and after: positions (held_out.h), phase plane (phase_gap.h), parameters
-/// (held_out.h, parameter_gap.h), images.
+/// How large the gap is in each domain, before and after, with 95 % intervals over clips.
+///
+/// The domains are positions (held_out.h), phase plane (domain_gaps.h), parameters (held_out.h, domain_gaps.h) and
+/// images.
+///
+/// An interval says how much a gap would differ with other clips of the same kind. It is a jackknife: with T_(c) a
+/// pooled number T of n clips from which clip c is left out (not out of the fit),
+///
+///     se² = (n - 1)/n sum_c (T_(c) - mean)²,      T ± t(0.975, n - 1) se.
+///
+/// A root mean square is taken by its logarithm, so that its interval stays above zero. Clips count as independent of
+/// each other, although each one's model comes from the others. Fewer than three clips have no interval, since one
+/// difference between two tells nothing of the next.
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,9 +24,33 @@
 
 namespace glidelab::diagnose {
 
-/// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips (clip_interval.h).
-/// `best` has a named effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut
-/// into stretches that are fitted anew; a note says so. The domains are left empty.
+inline constexpr std::size_t kFewestClips = 3;
+
+/// So many clips, where they are too few for an interval.
+std::optional<std::size_t> too_few_clips(std::size_t clips);
+
+/// What a clip adds to a mean square: a sum of squares, and their number.
+struct ClipSquares {
+  double sum = 0.0;
+  double count = 0.0;
+};
+
+/// Of sqrt(sum/count) over all clips. None for fewer than three clips that count, nor where one of them is all there
+/// is.
+std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips);
+
+/// Of (before - after)/(before - 1), the clips being the same in both. None for fewer than three clips, nor where
+/// `before` without one of them is not above 1.
+std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after);
+
+/// Of (before - after)/(first - 1), in squares of the gaps, the clips being the same in all three. None for fewer than
+/// three clips, nor where `first` without one of them is not above 1.
+std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, std::span<const ClipSquares> before,
+                                          std::span<const ClipSquares> after);
+
+/// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips. `best` has a named
+/// effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut into stretches that
+/// are fitted anew, and a note says so. The domains are left empty.
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
                 std::vector<Note>& notes);
 

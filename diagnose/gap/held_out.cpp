@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/smoothing/local_cubic.h"
-#include "diagnose/fit/projected_motion.h"
-#include "diagnose/tracks/thin_tracks.h"
+#include "core/motion/smoothing/local_polynomial.h"
+#include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {

@@ -8,9 +8,8 @@
 #include <limits>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/lines/line_gap.h"
-#include "diagnose/lines/line_weighing.h"
-#include "diagnose/result/alike_effects.h"
+#include "diagnose/lines/line_findings.h"
+#include "diagnose/result/diagnosis.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/lines/line_table.h"
+#include "diagnose/lines/line_model.h"
 #include "diagnose/result/diagnosis.h"
 
 namespace glidelab::diagnose {

@@ -48,17 +48,19 @@ class ActingEffects {
 
 /// The laws of the effects that act, each of whose functions is called where it changes something.
 struct ActingLaws {
-  explicit ActingLaws(const EffectValues& values) {
+  ActingLaws(const EffectValues& values, const GliderConstants& glider) {
     const std::vector<EffectInfo>& list = effect_list();
     for (std::size_t e = 0; e < list.size(); ++e) {
       const EffectLaw& law = list[e].law;
       const double* p = values.of(e);
-      if (p[law.size] == 0.0) continue;
+      if (!law.acts(p)) continue;
       if (law.resistance != nullptr) resistance.add(law, p);
       if (law.force_n != nullptr) force.add(law, p);
       if (law.friction != nullptr) friction.add(law, p);
       if (law.seen_m != nullptr) seen.add(law, p);
-      if (law.inertia_kg != nullptr) inertia_kg += law.inertia_kg(p);
+      if (law.inertia_kg != nullptr) inertia_kg += law.inertia_kg(p, glider);
+      if (law.known_factor != nullptr) known_factor *= law.known_factor(p);
+      if (law.known_late_s != nullptr) known_late_s += law.known_late_s(p);
       if (law.stretch != nullptr) stretch *= law.stretch(p);
       if (law.row_s != nullptr) row_s += law.row_s(p);
       if (law.rate_1_s != nullptr) rates.add(law, p);
@@ -71,21 +73,30 @@ struct ActingLaws {
 
   ActingEffects resistance, force, friction, seen, rates;
   double inertia_kg = 0.0;
+  double known_factor = 1.0, known_late_s = 0.0;
   double stretch = 1.0;  // true over stated time
   double row_s = 0.0;
 };
 
 GliderConstants constants_of(const TrackModel& model) {
-  return {model.mass_kg,    model.mass_kg * model.gravity_m_s2, std::cos(model.alpha_rad), model.mu, model.x_mid_m,
-          model.x_mid_all_m};
+  return {.mass_kg = model.mass_kg,
+          .weight_n = model.mass_kg * model.gravity_m_s2,
+          .cos_alpha = std::cos(model.alpha_rad),
+          .mu = model.mu,
+          .x_mid_m = model.x_mid_m,
+          .x_mid_all_m = model.x_mid_all_m,
+          .x_low_m = model.x_low_m,
+          .x_high_m = model.x_high_m,
+          .clip = static_cast<double>(model.clip),
+          .driven = model.known != nullptr};
 }
 
 class Mover {
  public:
-  Mover(const TrackModel& model, const ActingLaws& laws)
+  Mover(const TrackModel& model, const ActingLaws& laws, const GliderConstants& glider)
       : m_(model),
         laws_(laws),
-        glider_(constants_of(model)),
+        glider_(glider),
         sin_(std::sin(model.alpha_rad)),
         by_inertia_(1.0 / (model.mass_kg + laws.inertia_kg)),
         shaken_(model.effects[kShake] != 0.0),
@@ -125,14 +136,15 @@ class Mover {
   }
 
   /// Against the motion.
-  double friction(double v) const {
+  double friction(double x, double v, double t) const {
     DryFriction of{.mu = m_.mu};
-    for (const Acting& effect : laws_.friction.all()) effect.law->friction(effect.p, v, of);
+    const GliderState at{x, v, t, 0.0, pushed_};
+    for (const Acting& effect : laws_.friction.all()) effect.law->friction(effect.p, glider_, at, of);
     return of.mu * glider_.weight_n * glider_.cos_alpha + of.force_n;
   }
 
   double slide(double x, double v, double t, double wave) const {
-    return (driving(x, v, t, wave) - direction_ * friction(v)) * by_inertia_;
+    return (driving(x, v, t, wave) - direction_ * friction(x, v, t)) * by_inertia_;
   }
 
   /// To t_end by one step, where that is short enough and nothing happens on the way: no turn, no hand that lets go.
@@ -165,12 +177,13 @@ class Mover {
   double hold_force_at(double t, double stretch) {
     const std::vector<double>& at = m_.known->t_s;
     const std::vector<double>& force = m_.known->force_n;
-    while (sample_ < at.size() && stretch * at[sample_] <= t) ++sample_;
+    const double late = laws_.known_late_s, factor = laws_.known_factor;
+    while (sample_ < at.size() && stretch * at[sample_] + late <= t) ++sample_;
     const std::size_t before = sample_ > 0 ? sample_ - 1 : 0, after = std::min(sample_, at.size() - 1);
-    known_t_ = stretch * at[before];
-    known_n_ = force[before];
-    known_n_s_ = after > before ? (force[after] - force[before]) / (stretch * (at[after] - at[before])) : 0.0;
-    return sample_ < at.size() ? stretch * at[sample_] : std::numeric_limits<double>::infinity();
+    known_t_ = stretch * at[before] + late;
+    known_n_ = factor * force[before];
+    known_n_s_ = after > before ? factor * (force[after] - force[before]) / (stretch * (at[after] - at[before])) : 0.0;
+    return sample_ < at.size() ? stretch * at[sample_] + late : std::numeric_limits<double>::infinity();
   }
 
   PlaceAndSpeed advance_forced(PlaceAndSpeed s, double t, double t_end) {
@@ -236,8 +249,8 @@ class Mover {
   /// At rest friction takes up what acts, up to its limit either way. False: it holds for all of h. Else t and h go on
   /// to where it gives way, and the direction is that in which the glider leaves.
   bool leave(const PlaceAndSpeed& s, double& t, double& h) {
-    const auto up = [&](double at) { return driving(s.x, kNoSpeed_m_s, at) - friction(0.0); };
-    const auto down = [&](double at) { return -driving(s.x, -kNoSpeed_m_s, at) - friction(0.0); };
+    const auto up = [&](double at) { return driving(s.x, kNoSpeed_m_s, at) - friction(s.x, 0.0, at); };
+    const auto down = [&](double at) { return -driving(s.x, -kNoSpeed_m_s, at) - friction(s.x, 0.0, at); };
     const auto beyond = [&](double at) { return std::max(up(at), down(at)); };
     double before = beyond(t);
     if (!(before > 0.0)) {
@@ -292,12 +305,12 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   moved.x_m.reserve(times_s.size());
   moved.v_m_s.reserve(times_s.size());
   if (times_s.empty()) return moved;
-  const ActingLaws laws(model.effects);
-  Mover mover(model, laws);
+  const GliderConstants glider = constants_of(model);
+  const ActingLaws laws(model.effects, glider);
+  Mover mover(model, laws, glider);
   PlaceAndSpeed s{model.x0_m, model.v0_m_s};
   mover.start(s.v);
   const double stretch = laws.stretch;
-  const GliderConstants glider = constants_of(model);
   double t = stretch * times_s.front();
   std::vector<double> at(times_s.size());  // true times, never before the one before
   for (std::size_t i = 0; i < at.size(); ++i) {

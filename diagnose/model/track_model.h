@@ -2,18 +2,19 @@
 ///
 ///     m dv/dt = m g sin(alpha) - K v - sign(v) mu m g cos(alpha) + a known force + an unnamed one
 ///
-/// sliding, changed by the laws of the effects that act (effects/effect_law.h); at v = 0 the glider stays while
+/// sliding, changed by the laws of the effects that act (diagnose/effects/effect.h); at v = 0 the glider stays while
 /// friction of up to its limit, whichever way, can hold it. Runge and Kutta's fourth order in equal parts of every
 /// frame interval, or over several frames, with a polynomial of fifth order between (steps of at most 12.6 ms; k h at
 /// most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and at t_r: a smooth function of all
 /// parameters, so that its derivatives follow by finite differences. SI units.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "diagnose/effects/effect_values.h"
+#include "diagnose/effects/effect_library.h"
 
 namespace glidelab::diagnose {
 
@@ -33,9 +34,11 @@ struct TrackModel {
   double k_n_s_m = 0.0;
   double mu = 0.0;
   double alpha_rad = 0.0;
-  double x_mid_m = 0.0;      ///< of the set-up
-  double x_mid_all_m = 0.0;  ///< of all set-ups
-  double x0_m = 0.0;         ///< at the first of the times
+  double x_mid_m = 0.0;                  ///< of the set-up
+  double x_mid_all_m = 0.0;              ///< of all set-ups
+  double x_low_m = 0.0, x_high_m = 0.0;  ///< of the positions of all set-ups
+  std::size_t clip = 0;                  ///< its number
+  double x0_m = 0.0;                     ///< at the first of the times
   double v0_m_s = 0.0;
   EffectValues effects;
   const KnownForce* known = nullptr;

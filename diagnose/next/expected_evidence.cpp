@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/math/dense.h"
-#include "diagnose/fit/common_limits.h"
-#include "diagnose/next/next_clip.h"
+#include "diagnose/fit/fit_model.h"
+#include "diagnose/next/next_changes.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -23,7 +23,7 @@ struct Rows {
 Rows clip_rows(const TrackSet& set, const MotionFit& a, const MotionFit& b, const Change& change) {
   const auto [one, moved] = next_motion(set, a, change);
   if (moved.x_m.empty()) return {};
-  const ParameterLayout layout(one, b.effects);
+  const ParameterLayout layout(one, b.effects, *b.layout);
   const FitMotion by = linearise(one, layout, next_point(set, b, change), 0, {}, Derivatives::central);
   if (!by.residual.allFinite() || !by.global.allFinite() || !by.own.allFinite()) return {};
   const Eigen::VectorXd scale = (by.own.colwise().squaredNorm().transpose().array() + 1e-300).sqrt().inverse();

@@ -6,6 +6,9 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -160,6 +163,173 @@ ChangesWeighed weighed(const std::vector<Change>& changes) {
   std::set<ChangeKind> kinds;
   for (const Change& change : changes) kinds.insert(change.kind);
   return {changes.size(), {kinds.begin(), kinds.end()}};
+}
+
+namespace {
+
+constexpr std::size_t kFewestPoints = 12;
+constexpr double kInside = 0.05;  // of the range of places: where a launch begins
+constexpr double kMostPoints = 2000.0;
+
+/// Noise of a position over its speed: sd² (1 + c v²).
+struct NoiseSoFar {
+  double sd_m = 0.0, by_speed_s2_m2 = 0.0;
+};
+
+NoiseSoFar noise_so_far(const TrackSet& set, const MotionFit& fit) {
+  double squares = 0.0, count = 0.0, excess = 0.0, fast = 0.0;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    const auto n = static_cast<double>(motion.t_s.size());
+    squares += n * motion.sd_m * motion.sd_m;
+    count += n;
+    for (std::size_t p = 0; p < motion.wider.size(); ++p) {
+      excess += motion.wider[p] * motion.wider[p] - 1.0;
+      fast += fit.motions[i].v_m_s[p] * fit.motions[i].v_m_s[p];
+    }
+  }
+  return {std::sqrt(squares / count), fast > 0.0 ? std::max(0.0, excess / fast) : 0.0};
+}
+
+/// The motion over the widest range of places, of this set-up, or of all for a new one: a further clip is filmed as it
+/// was.
+const TrackedMotion& like(const TrackSet& set, const Change& change) {
+  const TrackedMotion* widest = nullptr;
+  double most = -1.0;
+  for (const TrackedMotion& motion : set.motions) {
+    if (!change.set_up && motion.group != change.clip->group) continue;
+    const auto [low, high] = std::minmax_element(motion.x_m.begin(), motion.x_m.end());
+    if (*high - *low <= most) continue;
+    most = *high - *low;
+    widest = &motion;
+  }
+  return widest != nullptr ? *widest : set.motions.front();
+}
+
+/// Of a motion, what goes with the place, at other places: between the two positions on either side, and beyond them by
+/// the slope of all.
+std::vector<double> at_places(const TrackedMotion& motion, const std::vector<double>& of,
+                              const std::vector<double>& x_m) {
+  std::vector<double> result;
+  if (of.size() != motion.x_m.size()) return result;
+  std::vector<std::pair<double, double>> known;
+  for (std::size_t p = 0; p < of.size(); ++p) known.emplace_back(motion.x_m[p], of[p]);
+  std::sort(known.begin(), known.end());
+  const auto [first, first_of] = known.front();
+  const auto [last, last_of] = known.back();
+  const double slope = last > first ? (last_of - first_of) / (last - first) : 0.0;
+  for (const double x : x_m) {
+    const auto above = std::lower_bound(known.begin(), known.end(), std::pair(x, -1e300));
+    if (above == known.begin()) {
+      result.push_back(first_of + slope * (x - first));
+    } else if (above == known.end()) {
+      result.push_back(last_of + slope * (x - last));
+    } else {
+      const auto& [below_x, below_of] = *(above - 1);
+      const double part = above->first > below_x ? (x - below_x) / (above->first - below_x) : 0.0;
+      result.push_back(below_of + part * (above->second - below_of));
+    }
+  }
+  return result;
+}
+
+/// The set-ups and masses so far and the change's, with its clip as the only one.
+TrackSet with_clip(const TrackSet& set, const Change& change) {
+  const NextClip& clip = *change.clip;
+  TrackSet one;
+  one.gravity_m_s2 = set.gravity_m_s2;
+  one.groups = set.groups;
+  one.masses = set.masses;
+  one.x_mid_m = set.x_mid_m;
+  one.modes = set.modes;
+  one.pictures = set.pictures;
+  one.clips = {{"next", clip.rate_hz, 0.0, 0, 0.0}};
+  if (change.set_up) one.groups.push_back({"next", change.set_up->alpha_rad, {}, set.x_mid_m});
+  one.masses.push_back({clip.mass_kg, 0.0});
+  TrackedMotion motion;
+  motion.group = clip.group;
+  motion.mass = one.masses.size() - 1;
+  motion.m_per_px = like(set, change).m_per_px;
+  double span = 0.0;
+  for (const TrackedMotion& other : set.motions) {
+    span = std::max(span, other.t_s.back() - other.t_s.front());
+    motion.scale_sd = std::max(motion.scale_sd, other.scale_sd);
+  }
+  const auto frames = static_cast<std::size_t>(std::clamp(span * clip.rate_hz, 20.0, kMostPoints));
+  for (std::size_t k = 0; k < frames; ++k) motion.t_s.push_back(static_cast<double>(k) / clip.rate_hz);
+  one.motions.push_back(std::move(motion));
+  return one;
+}
+
+/// As it was measured, uneven times and blur in proportion to the exposure; white noise as it grows with the speed so
+/// far.
+void give_noise(const TrackSet& set, const MotionFit& fit, const Change& change, const Moved& moved,
+                TrackedMotion& motion) {
+  const NoiseSoFar noise = noise_so_far(set, fit);
+  motion.sd_m = noise.sd_m;
+  const bool filmed = motion.m_per_px > 0.0;
+  if (set.position_noise && !(filmed && motion.along_px.empty()) && !moved.x_m.empty()) {
+    NoiseShape shape = set.position_noise->shape;
+    shape.jitter_s *= change.clip->exposure;
+    whiten(motion, shape, change.clip->rate_hz);
+    return;
+  }
+  const double by_speed = noise.by_speed_s2_m2 * change.clip->exposure * change.clip->exposure;
+  if (!(by_speed > 0.0)) return;
+  for (const double v : moved.v_m_s) motion.wider.push_back(std::sqrt(1.0 + by_speed * v * v));
+}
+
+}  // namespace
+
+Eigen::Index new_alpha(const TrackSet& set) {
+  return static_cast<Eigen::Index>(2 + set.groups.size());
+}
+
+FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& change) {
+  const ParameterRange places = range_of_places(set);
+  const double inside = kInside * (places.high - places.low), v0 = change.clip->v0_m_s;
+  FitPoint at;
+  at.global = fit.at.global;
+  if (change.set_up) {
+    const Eigen::Index behind = fit.at.global.size() - new_alpha(set);
+    at.global.resize(fit.at.global.size() + 1);
+    at.global << fit.at.global.head(new_alpha(set)), change.set_up->alpha_rad, fit.at.global.tail(behind);
+  }
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(fit.at.own.front().size());
+  for (const Eigen::VectorXd& other : fit.at.own) own += other / static_cast<double>(fit.at.own.size());
+  own[0] = v0 < 0.0 ? places.high - inside : places.low + inside;
+  own[1] = v0;
+  at.own = {std::move(own)};
+  return at;
+}
+
+NextMotion next_motion(const TrackSet& set, const MotionFit& fit, const Change& change) {
+  TrackSet one = with_clip(set, change);
+  TrackedMotion& motion = one.motions.front();
+  const ParameterLayout layout(one, fit.effects, *fit.layout);
+  const FitPoint at = next_point(set, fit, change);
+  Moved moved = move(model_of(one, layout, at, 0), motion.t_s);
+  const ParameterRange places = range_of_places(set);
+  std::size_t points = 0;
+  while (points < moved.x_m.size() && moved.x_m[points] >= places.low && moved.x_m[points] <= places.high) ++points;
+  if (points < kFewestPoints) points = 0;
+  moved.x_m.resize(points);
+  moved.v_m_s.resize(points);
+  motion.t_s.resize(points);
+  motion.x_m = moved.x_m;
+  motion.outlier.assign(points, 0);
+  // The camera errs as it did, and sees a place where it saw it.
+  const TrackedMotion& so_far = like(set, change);
+  motion.row_px = at_places(so_far, so_far.row_px, moved.x_m);
+  if (!motion.row_px.empty()) motion.x_m = move(model_of(one, layout, at, 0), motion.t_s).x_m;
+  motion.along_px = at_places(so_far, so_far.along_px, moved.x_m);
+  for (std::size_t mode = 0; mode < std::min(so_far.shared_m.size(), so_far.first_pixel_mode); ++mode) {
+    motion.shared_m.push_back(at_places(so_far, so_far.shared_m[mode], moved.x_m));
+  }
+  give_noise(set, fit, change, moved, motion);
+  const std::vector<double> shared = shared_errors(one, layout, at, 0, moved.x_m);
+  for (std::size_t p = 0; p < points; ++p) motion.x_m[p] += shared[p];
+  return {std::move(one), std::move(moved)};
 }
 
 }  // namespace glidelab::diagnose

@@ -1,11 +1,13 @@
-/// What an experimenter could do next: one further clip that differs in one thing, or one further measurement of what
-/// is stated.
+/// What an experimenter could do next: one further clip that differs in one thing, as a fit expects it, or one further
+/// measurement of what is stated.
 ///
-/// A clip begins a twentieth of the range of places inside its upper or lower end. It lasts as long as the longest one
-/// so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions so far: for tracks
-/// sd² (1 + c v²), c from `wider` of the motions (0 where that is empty); for films as in whitening.h. Half the
-/// exposure leaves a quarter of what grows with the speed. SI units.
+/// A clip begins a twentieth of the range of places inside that range's upper or lower end. It lasts as long as the
+/// longest one so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions so far:
+/// for tracks sd² (1 + c v²), with c from `wider` of the motions (0 where that is empty), for films as in whitening.h.
+/// Half the exposure leaves a quarter of what grows with the speed. SI units.
 #pragma once
+
+#include <Eigen/Core>
 
 #include <vector>
 
@@ -24,5 +26,21 @@ std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nomin
 
 /// How many, and of which kinds, in the order of ChangeKind.
 ChangesWeighed weighed(const std::vector<Change>& changes);
+
+/// Where a new set-up's inclination stands among the common parameters: behind those of the others.
+Eigen::Index new_alpha(const TrackSet& set);
+
+/// A fit's parameters for the change's clip. What every clip has of its own is as in the clips so far, on average. The
+/// change must have a clip.
+FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& change);
+
+/// A further clip as a fit expects it.
+struct NextMotion {
+  TrackSet set;  ///< the set-ups and masses so far and the change's, with its clip as the only one
+  Moved moved;   ///< empty where the clip cannot be made: fewer than 12 positions within the range so far
+};
+
+/// The change's clip as the fit makes it, without noise, cut where it leaves the places so far.
+NextMotion next_motion(const TrackSet& set, const MotionFit& fit, const Change& change);
 
 }  // namespace glidelab::diagnose

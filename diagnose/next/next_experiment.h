@@ -1,17 +1,23 @@
-/// Which further recording or measurement would be most informative.
+/// Which further recording or measurement would be most informative, whether what acts has a name or not.
 #pragma once
 
+#include "diagnose/fit/motion_fit.h"
 #include "diagnose/result/diagnosis.h"
+#include "diagnose/tracks/track_set.h"
 #include "diagnose/weigh/hypothesis.h"
 
 namespace glidelab::diagnose {
 
+/// What to record next if something without a name acts: the change that best covers the variable in which it lies (the
+/// first region). `nominal` is the fit of the nominal model.
+NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const Diagnosis& diagnosis);
+
 /// Of the feasible changes (next_changes.h) the one that is expected to tell the leading explanation best from its
 /// rivals (expected_evidence.h). Up to three rivals count: those that are equivalent to it or have a twentieth of the
-/// probability or more; the best change is the one after which their odds together fall most. Without a rival, the
-/// change after which the weakest parameter (largest standard deviation over its size; of the named effects, or else of
-/// K and mu) would be known best. What only images or single frames show (their own step, effect.h) and what has no
-/// name (next_unnamed.h) have steps of their own. `diagnosis` has all but its next step.
+/// probability or more. The best change is the one after which their odds together fall most. Without a rival, it is
+/// the change after which the weakest parameter (largest standard deviation over its size; of the named effects, or
+/// else of K and mu) would be known best. What only images or single frames show (their own step, effect.h) and what
+/// has no name (next_for_unnamed()) have steps of their own. `diagnosis` has all but its next step.
 NextStep next_experiment(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

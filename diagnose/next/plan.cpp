@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors.h"
-#include "diagnose/fit/common_limits.h"
+#include "diagnose/fit/fit_model.h"
 #include "diagnose/scan/effect_scan.h"
 #include "diagnose/tracks/track_set.h"
 

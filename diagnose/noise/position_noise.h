@@ -1,18 +1,79 @@
 /// The noise of positions, measured: how much is white, how much neighbouring frames share (whitening.h), and how much
 /// grows with the speed.
 ///
-/// Restricted maximum likelihood: those amplitudes and lengths that make most likely what the positions hold besides
-/// everything slow (noise_chunks.h: bumps are projected out, and, where one shows, a wave with what the fit made of
-/// it), so that neither the nominal model nor what it lacks goes in. The white part may differ between motions by some
-/// 30
-/// %. Of what was tracked elsewhere nobody knows the pixels: its noise may last for some frames, as a tracker's does
-/// that follows its own last image, and is white unless that shows beyond doubt. What lasts for four frames or longer
-/// may be what the model lacks, and is left to it.
+/// Restricted maximum likelihood finds those amplitudes and lengths that make most likely what the positions hold
+/// besides everything slow, so that neither the nominal model nor what it lacks goes in. The residuals of a stretch are
+/// r = B b + noise with b anything. B is what is set aside as slow: bumps ten frames apart (30 where a codec makes
+/// images out of those before, whose errors last for up to a dozen frames) and, where a wave shows, its sine and cosine
+/// and what the fit made of it. Then
+///
+///     log L = sum over motions of  -f log s_i - q_i/(2 s_i²) - (log|V| + log|B' V^-1 B|)/2 - (log(s_i/s)/0.3)²/2
+///
+/// with V a stretch's covariance over s², q_i the squares that are left under V^-1, and f their number less the columns
+/// of B. Each motion's white noise s_i is taken at its likeliest, some 30 % about s, their mean. For a codec that
+/// predicts images from those before, what is known of its errors is added. Lengths are in pixels (unit_m() of
+/// whitening.h).
+///
+/// Nobody knows the pixels of imported tracks. Their noise may last for some frames, as that of a tracker does that
+/// follows its own last image, and is taken as white unless that shows beyond doubt. What lasts for four frames or
+/// longer may be what the model lacks, and is left to it.
 #pragma once
 
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
+
+/// A stretch of positions from which the noise is measured, and what of it is set aside as slow.
+struct NoiseChunk {
+  std::size_t motion = 0;
+  SeenFrames frames;
+  Eigen::MatrixXd slow;  ///< what is projected out: orthonormal columns
+  Eigen::VectorXd off_px;
+};
+
+/// Of all motions, evenly chosen where there are more than 1920 points. Outliers, and what is eight standard
+/// deviations off its neighbours, are left out, and so is a stretch of fewer than 24 points. `wave_hz`: 0 for none.
+std::vector<NoiseChunk> noise_chunks(const TrackSet& set, const MotionFit& fit, double wave_hz);
+
+struct Likelihood {
+  double value = -std::numeric_limits<double>::infinity();
+  double white_px = 0.0;
+  std::vector<double> own_px;  ///< s of each motion
+};
+
+/// How likely it is that the noise of filmed positions has a shape (whitening.h): the restricted likelihood.
+class NoiseLikelihood {
+ public:
+  /// `pilot_px`: about s, for the part of the covariance that has a size of its own. `handed_on`: the file's codec
+  /// predicts images from those before.
+  NoiseLikelihood(std::vector<NoiseChunk> chunks, std::size_t motions, double pilot_px, bool handed_on);
+
+  /// What is known beforehand of such a file's noise, as a log likelihood.
+  double known(const NoiseShape& shape) const;
+
+  /// With what is known beforehand.
+  Likelihood of(const NoiseShape& shape) const;
+
+ private:
+  /// What is left of a motion under a shape: the residuals' square over unit s, their number, log |V| and the like.
+  struct Left {
+    double square = 0.0, freedom = 0.0, logs = 0.0;
+  };
+  /// One more stretch of it.
+  Left with(const NoiseChunk& chunk, const NoiseShape& shape, Left left) const;
+
+  std::vector<NoiseChunk> chunks_;
+  std::size_t motions_;
+  double pilot_px_;
+  bool handed_on_;
+};
 
 /// Sets the noise of a set (position_noise) and of its motions (sd_m, wider, whitening). False, and nothing changed,
 /// where a filmed marker hardly moves, in tracks whose noise is white, or with fewer than 80 points.

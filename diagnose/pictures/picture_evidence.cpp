@@ -9,12 +9,10 @@
 
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/score_space.h"
-#include "diagnose/pictures/noise_law.h"
-#include "diagnose/pictures/picture_file.h"
-#include "diagnose/pictures/picture_light.h"
-#include "diagnose/pictures/picture_shape.h"
-#include "diagnose/pictures/picture_sway.h"
+#include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/pictures/picture_recording.h"
+#include "diagnose/pictures/picture_scene.h"
+#include "diagnose/pictures/twin_camera.h"
 
 namespace glidelab::diagnose {
 namespace {

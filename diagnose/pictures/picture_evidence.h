@@ -11,7 +11,7 @@
 
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
-#include "diagnose/pictures/picture_finding.h"
+#include "diagnose/pictures/picture_search.h"
 
 namespace glidelab::diagnose {
 

@@ -1,10 +1,10 @@
 /// How an experiment was filmed, as far as its folder and calibration show, written as sections of a scenario.
 ///
-/// The calibration gives the camera and where the pattern of the plane stands before it (p_C = R p_P + s); the marker's
+/// The calibration gives the camera and where the pattern of the plane stands before it (p_C = R p_P + s). The marker's
 /// pixels, restituted onto the plane Z = -height of the pattern's frame P, give the line of motion p_P = through + x
 /// along. With the fitted inclination that line is the track's direction in the world, and so the camera's place in it
-/// follows. By a scale alone the camera is taken to look straight at the line of motion from f / (px_per_m) away.
-/// SI units, radians, pixels.
+/// follows. By a scale alone the camera is taken to look straight at the line of motion from f / (px_per_m) away. SI
+/// units, radians, pixels.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,10 +16,26 @@
 
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/camera_model.h"
+#include "core/result/picture_record.h"
 #include "core/result/results.h"
-#include "diagnose/pictures/noise_law.h"
 
 namespace glidelab::diagnose {
+
+/// The noise of resting pixels against their brightness, compared with shot noise and a linear sensor:
+///
+///     variance = dark + gain level      (codes²; level in codes above the black)
+///
+/// The light's own noise grows as the root of the level. `gain` is the codes of one electron, and `dark` holds read
+/// noise and rounding (1/12). The fit is weighted least squares over the levels that were seen, neither below 0. What
+/// lies off that line is a tone curve, a codec or a camera's own smoothing.
+struct NoiseLaw {
+  double gain_code = 0.0, gain_sd = 0.0;
+  double dark_code2 = 0.0;
+  double at(double level_code) const { return dark_code2 + gain_code * level_code; }  ///< codes²
+};
+
+/// Nothing of fewer than three levels, or of levels that are all one.
+std::optional<NoiseLaw> noise_law(const std::vector<core::NoiseAtLevel>& levels);
 
 /// Of the first folder that has clips made of images, and of its first such clip.
 struct Filming {

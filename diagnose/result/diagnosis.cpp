@@ -1,5 +1,7 @@
 #include "diagnose/result/diagnosis.h"
 
+#include <algorithm>
+
 namespace glidelab::diagnose {
 
 bool only_statements_fail(const Diagnosis& diagnosis) {
@@ -7,6 +9,38 @@ bool only_statements_fail(const Diagnosis& diagnosis) {
   const bool explained = diagnosis.gap && diagnosis.gap->before < 1.0 + kAtFloor * diagnosis.gap->standard_error;
   return diagnosis.verdict == Verdict::unknown && explained &&
          !(diagnosis.limits.driving.empty() && diagnosis.limits.contradicted.empty());
+}
+
+namespace {
+
+/// That one of them acts; nothing where no explanation holds any.
+std::optional<double> any_of(const std::vector<NamedExplanation>& explanations, const std::vector<std::string>& ids) {
+  std::optional<double> sum;
+  for (const NamedExplanation& explanation : explanations) {
+    const bool holds = std::any_of(ids.begin(), ids.end(), [&](const std::string& id) {
+      return std::find(explanation.ids.begin(), explanation.ids.end(), id) != explanation.ids.end();
+    });
+    if (holds) sum = sum.value_or(0.0) + explanation.probability;
+  }
+  return sum;
+}
+
+}  // namespace
+
+void join_alike(const std::vector<NamedExplanation>& explanations,
+                const std::function<std::string(const std::string& id)>& words, Diagnosis& diagnosis) {
+  for (DiagnosedEffect& effect : diagnosis.effects) {
+    effect.joint_probability = effect.probability;
+    effect.alike.clear();
+    if (effect.equivalent_to.empty()) continue;
+    std::vector<std::string> ids = {effect.id};
+    ids.insert(ids.end(), effect.equivalent_to.begin(), effect.equivalent_to.end());
+    effect.joint_probability = any_of(explanations, ids).value_or(effect.probability);
+    for (const std::string& id : ids) effect.alike.push_back({id, words(id), any_of(explanations, {id})});
+    std::stable_sort(effect.alike.begin(), effect.alike.end(), [](const AlikeEffect& a, const AlikeEffect& b) {
+      return a.probability.value_or(0.0) > b.probability.value_or(0.0);
+    });
+  }
 }
 
 }  // namespace glidelab::diagnose

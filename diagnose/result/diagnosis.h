@@ -1,6 +1,7 @@
-/// What a diagnosis says, as plain data; report/ writes it as diagnosis.json and a page.
+/// What a diagnosis says, as plain data. report/ writes it as diagnosis.json and a page.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -48,6 +49,7 @@ struct RankedExplanation {
   std::size_t parameters = 0;                   ///< more than the nominal model has
   std::optional<double> gap_after;              ///< of held-out clips; where it was fitted in full
   std::optional<ImpossibleSize> left_out = {};  ///< why it was not weighed, where it was not
+  bool converged = true;                        ///< false: its fit has not come to a minimum; it gains at least so much
 };
 
 struct GapRegion {
@@ -80,7 +82,7 @@ struct GapOfParameter {
   std::optional<DiagnosedParameter> alone = {}, together = {};
 };
 
-/// 95 %, over clips (clip_interval.h).
+/// 95 %, over clips (gap_sizes.h).
 struct GapInterval {
   double low = 0.0, high = 0.0;
 };
@@ -95,7 +97,7 @@ struct GapValue {
   double value = 0.0, sd = 0.0;
 };
 
-/// Measured less modelled acceleration over a stretch of speeds (phase_gap.h), m/s².
+/// Measured less modelled acceleration over a stretch of speeds (domain_gaps.h), m/s².
 struct PhaseBin {
   double from_m_s = 0.0, to_m_s = 0.0;
   double v_m_s = 0.0;  ///< mean over its points
@@ -186,11 +188,49 @@ struct MeasuredMotion {
   std::vector<double> v_m_s, a_m_s2;  ///< smoothed, of the points that the lines rest on
 };
 
-/// What a reader must know before the verdict (verdict_limits.h); also in the notes.
+/// What a reader must know before the verdict (verdict_details.h); also in the notes.
 struct VerdictLimits {
   std::vector<NegativeLoss> driving;
   std::vector<ContradictedIncline> contradicted;
   std::optional<SetAside> set_aside;
+};
+
+/// One cause in the sequence that explains the gap, each added beside those before it.
+struct ExplainedCause {
+  std::string id;
+  double share = 0.0;                                ///< (g²_{i-1} - g²_i)/(g²_0 - 1), g the gap of held-out clips
+  std::optional<GapInterval> share_interval95 = {};  ///< over clips
+  double gap_after = 0.0;                            ///< g_i
+};
+
+/// What is left of the gap beside the causes that were named.
+struct GapRemainder {
+  double share = 1.0;              ///< of the excess g²_0 - 1: what the causes' shares leave to 1
+  double gap = 1.0;                ///< of held-out clips, with all causes in the model
+  double acceleration_m_s2 = 0.0;  ///< rms of the random acceleration that would make it (remainder.h); 0: none is seen
+  double clip_scatter_m_s2 = 0.0;  ///< sd, from clip to clip, of the acceleration by friction and inclination
+  double drag_scatter = 0.0;       ///< relative sd, from clip to clip, of K
+  std::vector<GapRegion> regions = {};
+};
+
+/// Gaps of held-out clips, or of fits, with parameters that are a clip's own, a configuration's (mass and set-up), or
+/// common to all; all are root mean squares of residuals over the noise, reduced by the freedom that the fits take.
+struct GapLevels {
+  double all = 1.0;
+  std::optional<double> configuration = {};  ///< none where there is one configuration alone
+  std::optional<double> clip = {};           ///< none where there is one clip alone
+  /// K/m and mu of each configuration by itself, for the table: where configuration_friction or configuration_drag is
+  /// named, or the law holds within configurations and not across them.
+  bool holds_within = false;
+};
+
+/// K/m, mu, alpha, v_lim of one configuration with the named causes in the model; the intervals count the remainder.
+struct RecoveredConfiguration {
+  std::string group;
+  double mass_kg = 0.0;
+  double incline_deg = 0.0;                               ///< as stated
+  std::vector<std::string> with = {};                     ///< ids of the causes in the model
+  core::Quantity k_over_m_1_s, mu, alpha_deg, v_lim_m_s;  ///< undetermined ones say why
 };
 
 struct Diagnosis {
@@ -203,6 +243,11 @@ struct Diagnosis {
   std::vector<GapRegion> regions;
   std::vector<GapCurve> curves;
   std::optional<GapSizes> gap;
+  std::vector<ExplainedCause> explained;  ///< in order
+  std::optional<GapRemainder> remainder;  ///< none where the gap before is not above its floor, or of lines
+  std::vector<std::string> traces;        ///< ids: seen, but of no consequence to gap or parameters
+  std::optional<GapLevels> levels;        ///< none of lines
+  std::vector<RecoveredConfiguration> recovered;
   NextStep next;
   VerdictLimits limits;
   Isolability isolability;
@@ -221,5 +266,17 @@ struct Diagnosis {
 /// Whether the nominal model follows the positions to within their noise, and the verdict is unknown for what is stated
 /// alone: an inclination that the motion contradicts, a drag or friction below zero.
 bool only_statements_fail(const Diagnosis& diagnosis);
+
+/// An explanation that names effects and nothing else.
+struct NamedExplanation {
+  std::vector<std::string> ids;
+  double probability = 0.0;
+};
+
+/// Takes effects that these data cannot tell apart as one set: which effects are in it, and how likely it is that one
+/// of them acts. Fills `alike` and `joint_probability` of each effect of a diagnosis that has its `equivalent_to`: the
+/// sum over all explanations that hold it or one of those, each counted once. `words` says what an id is for a person.
+void join_alike(const std::vector<NamedExplanation>& explanations,
+                const std::function<std::string(const std::string& id)>& words, Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

@@ -1,5 +1,5 @@
-/// What a reader of a diagnosis should know besides the verdict, as data; report/diagnosis/note_words.h puts it into
-/// words.
+/// What a reader of a diagnosis should know besides the verdict, as data; report/diagnosis/diagnosis_words.h puts it
+/// into words.
 #pragma once
 
 #include <cstddef>
@@ -66,6 +66,9 @@ struct NoInclination {
   std::vector<std::string> groups;
 };
 
+/// Nothing but falls was recorded: friction on a track is not determined.
+struct OnlyFalls {};
+
 /// Clips of one set-up state different inclinations.
 struct SplitSetUps {
   std::vector<std::string> groups;
@@ -113,6 +116,6 @@ struct TableOfLines {
 using Note =
     std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
                  QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps, LaunchedOtherWay,
-                 NegativeLoss, ContradictedIncline, BeyondGravity, MeanIncline, TableOfLines>;
+                 NegativeLoss, ContradictedIncline, BeyondGravity, MeanIncline, TableOfLines, OnlyFalls>;
 
 }  // namespace glidelab::diagnose

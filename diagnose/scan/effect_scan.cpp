@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
 
-#include "base/parallel.h"
-#include "diagnose/fit/common_limits.h"
-#include "diagnose/fit/effect_ranges.h"
-#include "diagnose/scan/push_scan.h"
-#include "diagnose/scan/wave_scan.h"
+#include "base/long_work.h"
+#include "diagnose/fit/fit_model.h"
+#include "diagnose/scan/timed_scan.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kDerivativeFloor = 1e-15;  // of the raw square: below, the derivatives' errors are all that is left
+constexpr std::size_t kFewestScattered = 3;  // clips that have a spread
+constexpr double kDerivativeFloor = 1e-15;   // of the raw square: below, the derivatives' errors are all that is left
 
 EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
@@ -50,6 +53,56 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   return scan;
 }
 
+/// Whether sizes of their own can differ in these data.
+bool can_spread(const TrackSet& set, const EffectInfo& info) {
+  std::map<Configuration, std::set<std::size_t>> clips;  // of each configuration
+  for (const TrackedMotion& motion : set.motions) clips[{motion.group, motion.mass}].insert(motion.clip);
+  switch (info.parameters.front().each) {
+    case Each::configuration:
+      return clips.size() > 1;
+    case Each::clip:  // of one configuration, and enough for a spread
+      return set.clips.size() >= kFewestScattered &&
+             std::any_of(clips.begin(), clips.end(), [](const auto& of_one) { return of_one.second.size() > 1; });
+    default:
+      return true;
+  }
+}
+
+EffectScan scan_spread(const ScoreSpace& space, std::size_t effect) {
+  EffectScan scan;
+  scan.effect = effect;
+  if (!can_spread(space.set(), effect_list()[effect])) return scan;
+  const ParameterLayout layout(space.set(), {effect});
+  std::vector<ScoreColumn> columns;
+  std::vector<const ParameterLayout::Global*> of;
+  for (const ParameterLayout::Global& global : layout.globals()) {
+    if (global.kind != ParameterLayout::Global::Kind::effect) continue;
+    columns.push_back(space.of_parameter(global));
+    of.push_back(&global);
+  }
+  SpreadSeen seen = space.seen(columns);
+  // Sizes over the spread that holds them back, so that those of different kinds are alike.
+  Eigen::VectorXd unit(std::ssize(of));
+  double most = 0.0;
+  for (Eigen::Index g = 0; g < unit.size(); ++g) {
+    const auto i = static_cast<std::size_t>(g);
+    unit[g] = of[i]->parameter->held_sd;
+    most = std::max(most, unit[g] * std::sqrt(seen_square(space, columns[i])));
+  }
+  if (!(most >= kVisible_sd) || !seen.products.allFinite() || !seen.scores.allFinite()) return scan;
+  const SpreadEvidence evidence =
+      log_spread_evidence(unit.asDiagonal() * seen.products * unit.asDiagonal(), unit.cwiseProduct(seen.scores));
+  if (evidence.mean.size() == 0) return scan;
+  scan.visible = true;
+  scan.gain = evidence.free_gain;
+  scan.log_evidence = evidence.log_evidence;
+  for (Eigen::Index g = 0; g < unit.size(); ++g) {
+    const auto& range = of[static_cast<std::size_t>(g)]->range;
+    scan.values.push_back(std::clamp(unit[g] * evidence.mean[g], 0.9 * range.low, 0.9 * range.high));
+  }
+  return scan;
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> effect_shapes(const TrackSet& set, std::size_t effect) {
@@ -74,6 +127,8 @@ EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
       return scan_waves(space, effect, find_wave(space));
     case Search::pushes:
       return scan_pushes(space, effect);
+    case Search::spread:
+      return scan_spread(space, effect);
     case Search::amplitude:
     case Search::shape:
     case Search::rows:
@@ -109,6 +164,86 @@ std::vector<EffectScan> scan_effects(const ScoreSpace& space, const std::set<std
     if (!without.contains(e) && list[e].search == Search::wave) scans[e] = scan_waves(space, e, wave);
   }
   return scans;
+}
+
+namespace {
+
+constexpr double kSameDirection = 1e-6;  // of sin²: one direction is the other, to what derivatives err
+
+/// Sizes of two directions fitted together.
+struct Together {
+  double gain = 0.0;
+  double first = 0.0, second = 0.0;        // sizes,
+  double first_sd = 0.0, second_sd = 0.0;  // and how well they are known, the other one fitted
+};
+
+std::optional<Together> fit_together(const TriedShape& a, const TriedShape& b, double ab) {
+  const double det = a.square * b.square - ab * ab;
+  if (!(det > kSameDirection * a.square * b.square)) return std::nullopt;
+  Together both;
+  both.first = (b.square * a.score - ab * b.score) / det;
+  both.second = (a.square * b.score - ab * a.score) / det;
+  both.gain = 0.5 * (both.first * a.score + both.second * b.score);
+  both.first_sd = std::sqrt(b.square / det);
+  both.second_sd = std::sqrt(a.square / det);
+  return both;
+}
+
+bool allowed(double size, const EffectInfo& info) {
+  return size > 0.0 || info.both_signs;
+}
+
+/// What a size that is averaged over its prior costs against the best one.
+double price(double size, double sd, double most, bool both_signs) {
+  const double z = std::abs(size) / sd;
+  return 0.5 * z * z - log_amplitude_evidence(z, most / sd, both_signs);
+}
+
+/// Where a fit begins: well within the range.
+double start_of(double size, const ParameterRange& range, const EffectInfo& info) {
+  return std::clamp(size, info.both_signs ? 0.9 * range.low : info.parameters[0].step, 0.9 * range.high);
+}
+
+std::optional<PairScan> scan_pair(const ScoreSpace& space, const EffectScan& a, const EffectScan& b) {
+  const EffectInfo &of_a = effect_list()[a.effect], &of_b = effect_list()[b.effect];
+  const TriedShape *shape_a = nullptr, *shape_b = nullptr;
+  Together best;
+  for (const TriedShape& one : a.shapes) {
+    for (const TriedShape& other : b.shapes) {
+      const std::optional<Together> both = fit_together(one, other, space.dot(one.column, other.column));
+      if (!both || both->gain <= best.gain || !allowed(both->first, of_a) || !allowed(both->second, of_b)) continue;
+      best = *both;
+      shape_a = &one;
+      shape_b = &other;
+    }
+  }
+  if (shape_a == nullptr) return std::nullopt;
+  const ParameterRange range_a = range_of(space.set(), of_a.parameters[0]);
+  const ParameterRange range_b = range_of(space.set(), of_b.parameters[0]);
+  PairScan scan{a.effect, b.effect, best.gain, best.gain, {}, {}};
+  scan.log_evidence -= price(best.first, best.first_sd, range_a.high, of_a.both_signs);
+  scan.log_evidence -= price(best.second, best.second_sd, range_b.high, of_b.both_signs);
+  scan.log_evidence -= std::log(static_cast<double>(a.shapes.size() * b.shapes.size()));
+  scan.first_values = {start_of(best.first, range_a, of_a)};
+  scan.first_values.insert(scan.first_values.end(), shape_a->values.begin(), shape_a->values.end());
+  scan.second_values = {start_of(best.second, range_b, of_b)};
+  scan.second_values.insert(scan.second_values.end(), shape_b->values.begin(), shape_b->values.end());
+  return scan;
+}
+
+}  // namespace
+
+std::vector<PairScan> scan_pairs(const ScoreSpace& space, const std::vector<EffectScan>& scans) {
+  std::vector<PairScan> pairs;
+  for (const EffectScan& a : scans) {
+    for (const EffectScan& b : scans) {
+      if (a.effect >= b.effect) continue;
+      if (std::optional<PairScan> pair = scan_pair(space, a, b)) pairs.push_back(std::move(*pair));
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const PairScan& x, const PairScan& y) { return x.log_evidence > y.log_evidence; });
+  return pairs;
 }
 
 }  // namespace glidelab::diagnose

@@ -1,20 +1,100 @@
 #include "diagnose/tracks/track_set.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "base/math/dense.h"
+#include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
-#include "diagnose/tracks/pixel_modes.h"
-#include "diagnose/tracks/thin_tracks.h"
+#include "diagnose/tracks/rounded_positions.h"
+#include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestPoints = 12;
-constexpr double kOutlier = 5.0;         // standard deviations off the neighbours
-constexpr double kLongestBridge = 0.08;  // s of disputed frames within a motion that are bridged
+constexpr double kPixelError_px = 0.01;
+constexpr double kLeastWay_px = 1.0;
+
+}  // namespace
+
+void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t>& frames, std::size_t first_mode,
+                     TrackedMotion& motion) {
+  std::vector<double> columns, rows;
+  auto sighting = clip.sightings.begin();
+  for (const std::size_t frame : frames) {
+    while (sighting != clip.sightings.end() && sighting->frame < frame) ++sighting;
+    if (sighting == clip.sightings.end() || sighting->frame != frame) return;  // of a track
+    columns.push_back(sighting->u_px);
+    rows.push_back(sighting->v_px);
+  }
+  if (frames.empty()) return;
+  motion.row_px = rows;
+  const auto way = [](const std::vector<double>& at) {
+    const auto [low, high] = std::minmax_element(at.begin(), at.end());
+    return *high - *low;
+  };
+  const std::vector<double>& along = way(columns) >= way(rows) ? columns : rows;
+  if (way(along) < kLeastWay_px) return;
+  motion.along_px = along;
+  motion.m_per_px = way(motion.x_m) / way(along);
+  motion.shared_m.resize(std::max(motion.shared_m.size(), first_mode + kPixelModes));
+  motion.first_pixel_mode = first_mode;
+  for (std::size_t k = 0; k < kPixelModes; ++k) {
+    const double turns = k < 2 ? 1.0 : 2.0, phase = k % 2 == 0 ? 0.0 : 0.25;
+    std::vector<double>& mode = motion.shared_m[first_mode + k];
+    mode.clear();
+    for (const double s : along) {
+      mode.push_back(kPixelError_px * motion.m_per_px * std::sin(2.0 * std::numbers::pi * (turns * s + phase)));
+    }
+  }
+}
+
+std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedMotion>& motions) {
+  constexpr double kOutlier = 5.0;  // standard deviations off the neighbours
+  constexpr auto kMany = static_cast<Eigen::Index>(kPixelModes);
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(kMany, kMany);  // each amplitude N(0, 1) beforehand
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(kMany);
+  const auto has = [](const TrackedMotion& motion) { return motion.shared_m.size() > motion.first_pixel_mode; };
+  for (const TrackedMotion& motion : motions) {
+    for (std::size_t i = 2; has(motion) && i + 2 < motion.t_s.size(); ++i) {
+      const auto near = motion.outlier.begin() + static_cast<std::ptrdiff_t>(i) - 2;
+      if (std::any_of(near, near + 5, [](char out) { return out != 0; })) continue;
+      const double off = neighbour_residual(motion.t_s, motion.x_m, i) / motion.sd_m;
+      if (std::abs(off) > kOutlier) continue;
+      Eigen::VectorXd row(kMany);
+      for (Eigen::Index k = 0; k < kMany; ++k) {
+        const auto& mode = motion.shared_m[motion.first_pixel_mode + static_cast<std::size_t>(k)];
+        row[k] = neighbour_residual(motion.t_s, mode, i) / motion.sd_m;
+      }
+      normal += row * row.transpose();
+      right += off * row;
+    }
+  }
+  const Eigen::MatrixXd amplitude = base::solve_positive(normal, right);
+  std::vector<std::vector<double>> without;
+  for (const TrackedMotion& motion : motions) {
+    without.push_back(motion.x_m);
+    for (std::size_t k = 0; has(motion) && k < kPixelModes; ++k) {
+      const auto& mode = motion.shared_m[motion.first_pixel_mode + k];
+      for (std::size_t p = 0; p < mode.size(); ++p)
+        without.back()[p] -= amplitude(static_cast<Eigen::Index>(k), 0) * mode[p];
+    }
+  }
+  return without;
+}
+
+namespace {
+
+// Of a motion: its start takes two, and the noise shows in five. A short piece of a clip that holds a longer one is
+// what a bump or a hand has left, and tells less than it may mislead.
+constexpr std::size_t kFewestPoints = 6, kFewestOfPiece = 12;
+constexpr std::size_t kFewestForNoise = 8;  // residuals off the neighbours
+constexpr double kOutlier = 5.0;            // standard deviations off the neighbours
+constexpr double kLongestBridge = 0.08;     // s of disputed frames within a motion that are bridged
 constexpr double kLeastNoise_m = 1e-9;
 
 enum class Kind { no, free, disputed };
@@ -91,9 +171,11 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   const double first = clip.motion.front().t_s;
   // Where it borders on something else, the border is known to about a bandwidth.
   double from = clip.motion[run.from].t_s, to = clip.motion[run.to].t_s;
-  if (run.from > 0 && !(all && clip.motion[run.from - 1].left_out == core::LeftOut::no_marker))
-    from += clip.bandwidth_s;
-  if (run.to + 1 < clip.motion.size()) to -= clip.bandwidth_s;
+  // where it is not stated.
+  const auto before = run.from > 0 ? clip.motion[run.from - 1].left_out : core::LeftOut::before_start;
+  const auto after = run.to + 1 < clip.motion.size() ? clip.motion[run.to + 1].left_out : core::LeftOut::after_end;
+  if (before != core::LeftOut::before_start && !(all && before == core::LeftOut::no_marker)) from += clip.bandwidth_s;
+  if (after != core::LeftOut::after_end) to -= clip.bandwidth_s;
   for (std::size_t i = run.from; i <= run.to; ++i) {
     const core::MotionPoint& point = clip.motion[i];
     if (kind_of(point, all) != Kind::free || point.t_s < from || point.t_s > to) continue;
@@ -120,6 +202,15 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   }
   add_pixel_modes(clip, frames, camera_modes, motion);
   return motion;
+}
+
+/// What the positions of a clip are rounded to; 0 where they are not.
+double step_of(const core::ClipResult& clip) {
+  std::vector<double> x_m;
+  for (const core::MotionPoint& point : clip.motion) {
+    if (point.measured_m) x_m.push_back(*point.measured_m);
+  }
+  return core::rounding_step(x_m);
 }
 
 /// The plumb lines and readings of a set-up: every one once, however many clips have it.
@@ -205,15 +296,41 @@ double neighbour_residual(const std::vector<double>& t, const std::vector<double
   return off / std::sqrt(gain);
 }
 
+namespace {
+
+/// Off the neighbours, of points that are no outliers and have none beside them.
+std::vector<double> neighbour_residuals(const std::vector<double>& t_s, const std::vector<double>& x_m,
+                                        const std::vector<char>& outlier) {
+  std::vector<double> residuals;
+  for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
+    if (outlier[i - 2] || outlier[i - 1] || outlier[i] || outlier[i + 1] || outlier[i + 2]) continue;
+    residuals.push_back(neighbour_residual(t_s, x_m, i));
+  }
+  return residuals;
+}
+
+}  // namespace
+
 void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s) {
   const auto measure = [&](const std::vector<std::vector<double>>& x_m) {
+    std::vector<std::size_t> of_short;
+    std::vector<double> together;
     for (std::size_t i = 0; i < motions.size(); ++i) {
       TrackedMotion& motion = motions[i];
       std::vector<double> t_s = motion.t_s;
       for (std::size_t p = 0; p < t_s.size() && !late_s.empty(); ++p) t_s[p] += late_s[i][p];
-      motion.sd_m = std::max(neighbour_noise(t_s, x_m.empty() ? motion.x_m : x_m[i], motion.outlier), kLeastNoise_m);
+      const std::vector<double>& x = x_m.empty() ? motion.x_m : x_m[i];
+      motion.sd_m = std::max(neighbour_noise(t_s, x, motion.outlier), kLeastNoise_m);
       motion.wider.clear();
+      const std::vector<double> own = neighbour_residuals(t_s, x, motion.outlier);
+      if (own.size() >= kFewestForNoise) continue;
+      of_short.push_back(i);
+      for (const double off : own) together.push_back(std::abs(off));
     }
+    // Of short motions all together tell it.
+    if (together.size() < kFewestForNoise) return;
+    const double sd_m = std::max(core::kSdOverMedian * core::median_of(std::move(together)), kLeastNoise_m);
+    for (const std::size_t i : of_short) motions[i].sd_m = sd_m;
   };
   measure({});
   constexpr int kRounds = 3;  // the weights are the noise without the errors between pixels
@@ -222,21 +339,20 @@ void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::v
   });
   for (int round = 0; filmed && round < kRounds; ++round) measure(without_pixel_errors(motions));
   share_noise(motions);
+  for (TrackedMotion& motion : motions) add_rounding(motion);
 }
 
 double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>& x_m,
                        const std::vector<char>& outlier) {
   const double pilot = core::pilot_noise(t_s, x_m);
   double sum = 0.0, count = 0.0;
-  for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
-    if (outlier[i - 2] || outlier[i - 1] || outlier[i] || outlier[i + 1] || outlier[i + 2]) continue;
-    const double off = neighbour_residual(t_s, x_m, i);
+  for (const double off : neighbour_residuals(t_s, x_m, outlier)) {
     if (std::abs(off) > kOutlier * pilot) continue;
     sum += off * off;
     count += 1.0;
   }
   // The pilot's figure holds what rounding makes; it stands where hardly a point is left.
-  return count < 8.0 ? pilot : std::max(std::sqrt(sum / count), 0.7 * pilot);
+  return count < static_cast<double>(kFewestForNoise) ? pilot : std::max(std::sqrt(sum / count), 0.7 * pilot);
 }
 
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all) {
@@ -259,10 +375,17 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     }
     bool any = false;
     const double excess = calibration_excess(results, clip.experiment);
+    std::vector<TrackedMotion> of_clip;
+    std::size_t longest = 0;
     for (const Run& run : runs_of(clip, all)) {
-      TrackedMotion motion = motion_of(clip, run, all, camera_modes, excess);
-      if (motion.t_s.size() < kFewestPoints) continue;
+      of_clip.push_back(motion_of(clip, run, all, camera_modes, excess));
+      longest = std::max(longest, of_clip.back().t_s.size());
+    }
+    const double step_m = step_of(clip);
+    for (TrackedMotion& motion : of_clip) {
+      if (motion.t_s.size() < std::max(kFewestPoints, std::min(longest, kFewestOfPiece))) continue;
       motion.clip = c;
+      motion.step_m = step_m;
       motion.group = group_of(results, setups, c, set);
       motion.mass = mass_of(setups[c], set);
       set.modes = std::max(set.modes, motion.shared_m.size());

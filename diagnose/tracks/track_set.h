@@ -1,4 +1,15 @@
-/// From the results of an analysis to the motions that a diagnosis fits (tracked_motions.h), and their noise.
+/// The motions that a diagnosis fits (tracked_motions.h), from the results of an analysis, with their noise and the
+/// errors of square pixels.
+///
+/// The fit of a blurred edge to pixels errs with the place of the centre between two pixels, by a few thousandths of a
+/// pixel, the same wherever that place is the same. All clips of an experiment share these errors:
+///
+///     x error = (a sin 2 pi s + b cos 2 pi s + c sin 4 pi s + d cos 4 pi s) / (pixels a metre),
+///
+/// with s the centre's coordinate (column or row) along which it moves more. a to d are not known. Each is
+/// N(0, (0.01 px)²), which is what good trackers are reported to reach, and ten times what this one was seen to do on
+/// sharp images. Over many pixels this cannot imitate a force. If it is left out, it is taken for waves as soon as the
+/// noise is small.
 #pragma once
 
 #include <vector>
@@ -9,9 +20,23 @@
 
 namespace glidelab::diagnose {
 
+inline constexpr std::size_t kPixelModes = 4;
+
+/// Rows of the marker and errors by the place between pixels, for the filmed motion of a clip;
+/// `frames` are those of its points. Shared errors begin at `first_mode` of the motion's. A tracked clip is left as it
+/// is, and so is one in which the marker does not move over a pixel.
+void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t>& frames, std::size_t first_mode,
+                     TrackedMotion& motion);
+
+/// Positions without such errors, as far as neighbouring positions show them, for the measure of their noise. They
+/// differ between neighbours as noise does: most where the marker moves by half a pixel a frame, not at all by a whole
+/// one. Least squares over those differences, sd_m being the weights, with what is known of the amplitudes beforehand.
+std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedMotion>& motions);
+
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
-/// start or for a stop stays in the motion; else it is left out. Motions with fewer than 12 points are left out. Of
-/// more than 30,000 positions in all every second, third, ... is taken (thin_tracks.h).
+/// start or for a stop stays in the motion, else it is left out. Motions with fewer than 6 points are left out, and so
+/// are pieces with fewer than 12 of a clip that holds a longer one. Of more than 30,000 positions in all every second,
+/// third, ... is taken (thin_out()).
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
 
 /// Point i off the cubic through its four nearest neighbours, over the standard deviation that unit noise gives it: its

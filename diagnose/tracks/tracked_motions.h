@@ -1,4 +1,5 @@
-/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated.
+/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated, whole,
+/// thinned, or cut where a force drives them to and fro.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,6 +31,13 @@ struct PositionNoise {
   double lasting_gain = 0.0, lasting_log_evidence = 0.0;  ///< of what a codec hands on from frame to frame
 };
 
+/// An unmodelled remainder as a covariance beside the noise (causes/remainder.h): over the noise, 1 + U L U' with U'U
+/// = 1.
+struct Remainder {
+  Eigen::MatrixXd span;    ///< U, a row a point
+  Eigen::VectorXd shrink;  ///< 1 - 1/sqrt(1 + L): what whitening takes off along each column of U
+};
+
 /// One stretch of motion without a bump or a rest in it; it may turn.
 struct TrackedMotion {
   std::size_t clip = 0;     ///< index in TrackSet::clips
@@ -42,15 +50,17 @@ struct TrackedMotion {
   double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
   std::vector<double> wider;                  ///< of each position, its noise over sd_m; empty: 1
   std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
-  /// Where among them errors by the place between pixels begin (pixel_modes.h).
+  /// Where among them errors by the place between pixels begin (track_set.h).
   std::size_t first_pixel_mode = std::numeric_limits<std::size_t>::max();
+  double step_m = 0.0;           ///< all positions of its clip are whole multiples of it (rounded); 0: of none
   double scale_sd = 0.0;         ///< relative
   double m_per_px = 0.0;         ///< along the motion; 0: not filmed
   std::vector<double> row_px;    ///< of the image, where the marker is; empty: not filmed
   std::vector<double> along_px;  ///< of the image, along the motion; empty: not filmed, or hardly moving
   /// Of consecutive points, all in all: makes white noise of theirs over sd_of() (whitening.h). Empty: it is white.
   std::vector<Eigen::MatrixXd> whitening;
-  KnownForce known;  ///< where one was recorded
+  Remainder remainder;  ///< none: its span has no columns
+  KnownForce known;     ///< where one was recorded
 
   double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
 };
@@ -73,13 +83,18 @@ struct TrackGroup {
   double x_mid_m = 0.0;                      ///< middle of the range of x
 };
 
+/// From this stated inclination on a motion is a fall: sin(alpha) is known to 0.3 % where alpha is to a degree, and the
+/// normal force is less than a sixth of the weight.
+inline constexpr double kFall_rad = 80.0 * 3.14159265358979 / 180.0;
+bool is_fall(const TrackGroup& group);
+
 struct TrackedClip {
   std::string name;
   double frame_rate_hz = 0.0;
   double duration_s = 0.0;
   std::size_t frames = 0;
   double bandwidth_s = 0.0;  ///< of the analysis' smoothing
-  /// As the analysis finds them (core/lost_frames.h), in the file's times from the clip's first frame.
+  /// As the analysis finds them (core/motion/free/lost_frames.h), in the file's times from the clip's first frame.
   std::vector<core::LostFrames> lost = {};
 };
 
@@ -91,7 +106,7 @@ struct TrackSet {
   std::vector<TrackedMotion> motions;
   double x_mid_m = 0.0;    ///< middle of the range of x of all set-ups
   std::size_t modes = 0;   ///< shared errors of camera and plane
-  bool pieces = false;     ///< clips are pieces of a single one (driven_motions.h)
+  bool pieces = false;     ///< clips are pieces of a single one (cut_driven_motions())
   bool pictures = false;   ///< at least one clip was filmed
   bool lossy = false;      ///< at least one has been through a codec with loss,
   bool handed_on = false;  ///< and one that predicts images from those before:
@@ -103,5 +118,32 @@ struct TrackSet {
   std::size_t left_out = 0;  ///< of these, all or none
   std::size_t moving = 0;    ///< frames of free motion and disputed ones
 };
+
+/// Whether nothing but falls was recorded.
+bool only_falls(const TrackSet& set);
+
+/// Points from, from + every, ... before `to` of a motion; without its whitening.
+TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every = 1);
+
+/// Of more than 30,000 positions in all (but for motions with a recorded force: cut_driven_motions()) every second,
+/// third, ... is kept, with a note: enough for any law. What single frames show needs neighbours, and is weaker then.
+/// Motions that have fewer than `fewest` left go.
+void thin_out(TrackSet& set, std::size_t fewest);
+
+/// Cuts motions that a recorded force drives to and fro into pieces.
+///
+/// What the model lacks in force adds up twice over the time, and a turn that comes a little early starts the next run
+/// elsewhere. Over tens of turns chi² then has a local minimum for every order in which the modelled motion turns and
+/// rests, and no fit converges to the right one. A piece turns twice, so that it holds both directions, and has a start
+/// of its own. It is cut half way between turns, where the glider is fast. What shows over longer than a piece only,
+/// such as a slow drift, is lost.
+///
+/// Motions with a recorded force that turn more than four times are cut. Of all pieces 40 at most are weighed, and of
+/// their positions 8000, both spread evenly over clips and time (notes say so). Pieces of fewer than `fewest` points
+/// go. The pieces of a clip that is the only one become clips of their own, so that each can be held out.
+void cut_driven_motions(TrackSet& set, std::size_t fewest);
+
+/// The points at which a motion turns: where it has come back from by more than its noise or a jitter explains.
+std::vector<std::size_t> turns_of(const TrackedMotion& motion);
 
 }  // namespace glidelab::diagnose

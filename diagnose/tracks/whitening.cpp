@@ -85,10 +85,32 @@ Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd) {
     over_sd.middleRows(from, by.rows()) = base::product(by, over_sd.middleRows(from, by.rows()));
     from += by.rows();
   }
+  if (motion.remainder.shrink.size() > 0) {
+    const Eigen::MatrixXd along = base::transposed_product(motion.remainder.span, over_sd);
+    over_sd -= base::product(motion.remainder.span, Eigen::MatrixXd(motion.remainder.shrink.asDiagonal() * along));
+  }
   return over_sd;
 }
 
+namespace {
+
+/// The inverse of what whitening does with the remainder, a symmetric matrix.
+Eigen::MatrixXd with_remainder(const Remainder& remainder, Eigen::MatrixXd white) {
+  if (remainder.shrink.size() == 0) return white;
+  const Eigen::VectorXd grow = remainder.shrink.array() / (1.0 - remainder.shrink.array());
+  const Eigen::MatrixXd along = base::transposed_product(remainder.span, white);
+  white += base::product(remainder.span, Eigen::MatrixXd(grow.asDiagonal() * along));
+  return white;
+}
+
+}  // namespace
+
+Eigen::MatrixXd without_remainder(const TrackedMotion& motion, Eigen::MatrixXd white) {
+  return with_remainder(motion.remainder, std::move(white));
+}
+
 Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white) {
+  white = with_remainder(motion.remainder, std::move(white));
   Eigen::Index from = 0;
   for (const Eigen::MatrixXd& by : motion.whitening) {
     white.segment(from, by.rows()) = base::solve_lower(by, white.segment(from, by.rows()));
@@ -106,7 +128,7 @@ Eigen::MatrixXd weights_of_white(const TrackedMotion& motion, Eigen::MatrixXd we
     weights.middleRows(from, by.rows()) = base::solve_lower(turned, reversed).colwise().reverse();
     from += by.rows();
   }
-  return weights;
+  return with_remainder(motion.remainder, std::move(weights));
 }
 
 }  // namespace glidelab::diagnose

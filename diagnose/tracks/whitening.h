@@ -40,9 +40,12 @@ SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz);
 void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz);
 
 /// Columns over each position's own noise (zero at outliers) become such of unit white noise; and back. A motion
-/// without whitening has white noise.
+/// without whitening has white noise, but for its remainder, which counts as noise.
 Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd);
 Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white);
+
+/// Whitened columns as they are by the noise alone, without the remainder.
+Eigen::MatrixXd without_remainder(const TrackedMotion& motion, Eigen::MatrixXd white);
 
 /// Weights w' of sums over coloured noise as weights of the same sums over the white noise that it is made of.
 Eigen::MatrixXd weights_of_white(const TrackedMotion& motion, Eigen::MatrixXd weights);

@@ -1,15 +1,10 @@
-/// The simulation that behaves like the data: the fitted motions as a scenario file.
-///
-/// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
-/// Each effect says what force of a scenario it is (effects/effect_twin.h), or that no scenario can say it; additional
-/// inertia is all forces, gravity with them, less by the factor m/(m + m_w): m dv/dt is then the same. Camera and clock
-/// are those of twin_effects.h. A scenario has no forces that depend on the place or the time, and none that was
-/// recorded: what needs one is listed, and the twin lacks it. The camera is that of the folder as far as it is known
-/// (twin_camera.h); what is assumed stands in the file's first lines. x counts from the middle of the data.
+/// The simulation that behaves like the data: the fitted motions, forces, camera and clock as a scenario file.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "diagnose/fit/motion_fit.h"
@@ -17,6 +12,23 @@
 #include "diagnose/result/diagnosis.h"
 
 namespace glidelab::diagnose {
+
+/// The named effects of the camera and its clock as sections of a scenario, and what no key can express.
+struct TwinEffects {
+  double exposure_s = 0.0;
+  double readout_s = 0.0;          ///< from the first row to the last
+  std::string sections;            ///< each begins with an empty line
+  std::vector<std::string> notes;  ///< what of the sizes is assumed
+  std::vector<TwinLack> lacks;
+};
+
+/// What each effect makes of the camera stands in its own file (diagnose/effects/effect.h). [clock], [camera] exposure,
+/// [shutter] and [light] say it exactly. A codec of unknown strength, a pan with one phase for all clips, and a focal
+/// length or a direction that was changed after the calibration are of the same kind only.
+///
+/// `reference_m` is x in the data of the world's origin.
+TwinEffects effects_of_camera(const std::vector<DiagnosedEffect>& effects, const std::optional<Filming>& filming,
+                              const TwinView& view, double frame_rate_hz, double reference_m);
 
 /// How the scenario begins.
 inline constexpr std::string_view kTwinHead = "# Made by glidelab diagnose --twin";
@@ -29,7 +41,15 @@ struct Twin {
   std::vector<std::pair<std::size_t, double>> clips;
 };
 
-/// Of a fit and the sizes of the effects that are named. `nameless`: something is missing that has no name.
+/// The twin of a fit and the sizes of the effects that are named. `nameless`: something is missing that has no name.
+///
+/// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
+/// Each effect says what force of a scenario it is (diagnose/effects/effect.h), or that no scenario can say it.
+/// Additional inertia is all forces, gravity with them, less by the factor m/(m + m_w), so that m dv/dt is the same.
+/// Camera and clock are those of effects_of_camera(). A scenario has no forces that depend on the place or the time,
+/// and none that was recorded. What needs one is listed, and the twin lacks it. The camera is that of the folder as far
+/// as it is known (twin_camera.h). What is assumed stands in the file's first lines. x counts from the middle of the
+/// data.
 Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
              const std::optional<Filming>& filming);
 

@@ -1,10 +1,10 @@
 /// Explanations without a name: smooth forces and displacements in each variable, and sizes that differ between clips,
 /// masses or set-ups for no stated reason. They stand for what is not in the list of effects.
 ///
-/// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), tau unknown over four decades;
-/// or one of these bumps at an unknown position; or one step there. Its evidence is exact in the linear neighbourhood
-/// of a fit. Forces are functions of v, x or t, displacements of x or t (also waves in x), lateness of t. Displacements
-/// of each clip, and a lateness, may settle from the clip's start on.
+/// Each family is a set of bumps (or of members) whose sizes are drawn from N(0, tau²), with tau unknown over four
+/// decades; or one of these bumps at an unknown position; or one step there. Its evidence is exact in the linear
+/// neighbourhood of a fit. Forces are functions of v, x or t, displacements of x or t (also waves in x), lateness of t.
+/// Displacements of each clip, and a lateness, may settle from the clip's start on.
 #pragma once
 
 #include <vector>
@@ -13,11 +13,17 @@
 
 namespace glidelab::diagnose {
 
+/// Families that differ between members: clips, masses or set-ups.
+void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families);
+
 /// All families around a fit.
 std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
 
 /// The likeliest of those that say of one clip something about another; null: none. Their columns must be there.
 const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families);
+
+/// The likeliest of those with one size for each clip; null: none. Their columns must be there.
+const UnnamedFamily* likeliest_of_clips(const std::vector<UnnamedFamily>& families);
 
 /// The fit with the family's bumps as further parameters, each N(0, tau²): at the minimum of its linear neighbourhood,
 /// for held_out_gap(), statement_pulls() and what it leaves of the positions. The family must have its columns.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/fit/score_space.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 
 namespace glidelab::diagnose {
 
@@ -27,9 +27,10 @@ struct UnnamedFamily {
   std::vector<double> at, size, sd;  ///< the unnamed function over its variable
   std::vector<std::string> names;    ///< of members (clips, groups); empty for a variable
   std::vector<UnnamedRegion> regions;
-  Eigen::MatrixXd columns;  ///< of the likeliest family that clips share only: its bumps over the noise, own parameters
-                            ///< projected out
-  double tau = 0.0;         ///< standard deviation of their sizes
+  /// Of the likeliest family that clips share, and of the likeliest one with a size for each clip, only: its bumps over
+  /// the noise, own parameters projected out.
+  Eigen::MatrixXd columns;
+  double tau = 0.0;  ///< standard deviation of their sizes
 };
 
 /// Places from low to high, as many as there are bumps.

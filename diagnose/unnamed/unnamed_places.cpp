@@ -185,6 +185,16 @@ class FineSwings {
   double squares_ = 0.0, nothing_ = 0.0;
 };
 
+/// Whether rounding makes such a swing: its error has the period of the step, and parts of it. It is in the noise.
+bool swings_by_rounding(const TrackSet& set, double f_1_m, double range_m) {
+  constexpr double kResolution = 2.0;  // of one over the range: two frequencies closer than that look alike
+  return std::any_of(set.motions.begin(), set.motions.end(), [&](const TrackedMotion& motion) {
+    if (!(motion.step_m > 0.0)) return false;
+    const double order = std::max(1.0, std::round(f_1_m * motion.step_m));
+    return std::abs(f_1_m - order / motion.step_m) < kResolution / range_m;
+  });
+}
+
 /// A displacement that swings with the place: sin and cos of 2 pi f x, one f for all motions, averaged over.
 UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
@@ -207,7 +217,9 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
     return tried.log_evidence;
   };
   double f = kFewestSwings / range;
-  for (; f < highest; f += step) logs.push_back(try_swing(f));
+  for (; f < highest; f += step) {
+    if (!swings_by_rounding(set, f, range)) logs.push_back(try_swing(f));
+  }
   // Finer ones pass from frame to frame by more than a turn, each motion in steps of its own, and show by the place all
   // the same: the pixels, when a marker crosses some of them from frame to frame. Of films these are in the fit.
   if (!set.pictures) {
@@ -216,6 +228,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
     std::size_t best = 0;
     for (; f < kFinestSwings / range; f += step) {
       const SpreadEvidence evidence = fine.next();
+      if (swings_by_rounding(set, f, range)) continue;
       logs.push_back(evidence.log_evidence);
       if (evidence.free_gain <= most) continue;
       most = evidence.free_gain;

@@ -4,20 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "base/errors.h"
 #include "core/analysis/analyze.h"
+#include "diagnose/causes/cause_sequence.h"
+#include "diagnose/causes/cause_weighing.h"
+#include "diagnose/causes/gap_levels.h"
+#include "diagnose/causes/recovered.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/frames/edge_losses.h"
 #include "diagnose/frames/frame_effects.h"
 #include "diagnose/frames/missing_frames.h"
-#include "diagnose/frames/timing_noise.h"
+#include "diagnose/frames/plain_losses.h"
+#include "diagnose/frames/point_scatter.h"
 #include "diagnose/lines/line_diagnosis.h"
 #include "diagnose/noise/position_noise.h"
 #include "diagnose/pictures/picture_evidence.h"
 #include "diagnose/pictures/twin_camera.h"
-#include "diagnose/tracks/driven_motions.h"
+#include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/tracks/track_set.h"
+#include "diagnose/tracks/tracked_motions.h"
+#include "diagnose/tracks/usable_motions.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/verdict.h"
@@ -94,6 +102,7 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
     }
   }
   if (!free.empty()) set.notes.emplace_back(NoInclination{std::move(free)});
+  if (only_falls(set)) set.notes.emplace_back(OnlyFalls{});
   if (!mixed.empty()) set.notes.emplace_back(SplitSetUps{std::move(mixed)});
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
@@ -140,6 +149,12 @@ void settle_noise(TrackSet& set) {
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
   const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
   if (missing.count > 0 && set.pictures) refit();
+  // Of rounded positions neighbours tell no noise but that of rounding, which is known.
+  if (noise_is_rounding(set)) {
+    refit();
+    set_tails_aside(set, missing.fit);
+    return;
+  }
   if (find_position_noise(set, missing.fit)) {
     refit();
     set_tails_aside(set, missing.fit);
@@ -202,6 +217,96 @@ void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion
   }
 }
 
+constexpr double kLeft = 0.5;  // probability of something without a name from which on a remainder is weighed
+constexpr double kHalf = 0.5;  // of the excess: what a verdict's causes take at least
+constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
+
+/// Probabilities of a comparison that counts a remainder as noise, as a verdict on a gap above its floor: what the
+/// remainder makes is unknown, and so is all of it where the named causes take less than half.
+void settle(const CauseSequence& sequence, Comparison& comparison) {
+  comparison.unknown += std::exchange(comparison.none, 0.0);
+  if (sequence.named_share < kHalf) comparison.unknown = 1.0;
+}
+
+GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& sizes, double part_s) {
+  GapRemainder remainder;
+  for (const ExplainedCause& cause : sequence.causes) remainder.share -= cause.share;
+  remainder.gap = sequence.gap_after;
+  if (part_s > 0.0) remainder.acceleration_m_s2 = std::sqrt(sizes.q_m2_s3 / part_s);
+  remainder.clip_scatter_m_s2 = sizes.force_m_s2;
+  remainder.drag_scatter = sizes.drag;
+  return remainder;
+}
+
+/// Nothing that matters: what had no name shows in no gap.
+void be_nothing(Diagnosis& diagnosis) {
+  diagnosis.none += std::exchange(diagnosis.unknown, 0.0);
+  diagnosis.verdict = Verdict::none;
+  diagnosis.stage.clear();
+  diagnosis.regions.clear();
+}
+
+/// Effects that a verdict names as they stand in `explained`, then those that no motion shows.
+void order_by_share(Diagnosis& diagnosis) {
+  const auto place = [&](const DiagnosedEffect& effect) {
+    return std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
+                        [&](const ExplainedCause& cause) { return cause.id == effect.id; });
+  };
+  std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
+                   [&](const DiagnosedEffect& a, const DiagnosedEffect& b) { return place(a) < place(b); });
+  if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
+}
+
+/// The verdict, the causes in order, what remains, and what K/m, mu and alpha are with the causes in the model.
+Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvidence pictures,
+                      const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress) {
+  const std::set<std::size_t> without(left_out.begin(), left_out.end());
+  const MotionFit& nominal = first.fits.front();
+  std::optional<WeighedCauses> weighed;
+  if (first.unknown > kLeft) {
+    weighed = weigh_causes(set, first, without, jobs, &pictures,
+                           [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
+  }
+  progress("measuring the gap", 0.9);
+  const Comparison& by = weighed ? weighed->comparison : first;
+  const TrackSet& with = weighed ? weighed->set : set;
+  const Hypothesis* best = best_named(with, by);
+  const bool names =
+      best != nullptr && best->fit > 0 && (weighed || verdict_by(by.none, by.unknown) == Verdict::effect);
+  const CauseSequence sequence =
+      sequence_of(set, nominal, with, names ? by.fits[static_cast<std::size_t>(best->fit)] : nominal, without);
+  Diagnosis diagnosis;
+  // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
+  if (weighed && sequence.is_gap()) settle(sequence, weighed->comparison);
+  if (weighed && sequence.is_gap() && verdict_by(by.none, by.unknown) == Verdict::effect) {
+    const NoiseAlone noise_alone{set, nominal, sequence.named};
+    diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
+  } else {
+    diagnosis = verdict_of(set, first, std::move(pictures));
+  }
+  // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding.
+  if (noise_is_rounding(set)) {
+    diagnosis.traces.emplace_back(ids::position_rounding);
+    if (diagnosis.verdict == Verdict::unknown && !sequence.is_gap()) be_nothing(diagnosis);
+  }
+  diagnosis.explained = sequence.causes;
+  order_by_share(diagnosis);
+  const RemainderSizes sizes = weighed ? weighed->sizes : RemainderSizes{};
+  if (sequence.is_gap()) {
+    diagnosis.remainder = remainder_of(sequence, sizes, weighed ? weighed->part_s : 0.0);
+    diagnosis.remainder->regions = diagnosis.regions;
+  }
+  diagnosis.levels = levels_of(set, nominal, jobs);
+  diagnosis.recovered = recovered_of(set, diagnosis.verdict == Verdict::effect ? sequence.named : nominal, sizes);
+  if (set.clips.size() < 2) {
+    for (DiagnosedEffect& effect : diagnosis.effects) {
+      effect.probability = std::min(effect.probability, kMostOfOneClip);
+      effect.joint_probability = std::min(effect.joint_probability, kMostOfOneClip);
+    }
+  }
+  return diagnosis;
+}
+
 }  // namespace
 
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
@@ -209,6 +314,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
                            const std::vector<std::optional<core::CameraSettings>>& cameras,
                            const std::vector<core::Experiment>& folders) {
   const std::vector<std::size_t> without = indices(options.without);
+  require_usable_motions(results, setups);
   TrackSet set = track_set(results, setups, true);
   check(setups, set);
   note_limits(setups, set);
@@ -239,8 +345,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
       comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.5, 0.9));
     }
   }
-  progress("measuring the gap", 0.9);
-  Diagnosis diagnosis = verdict_of(set, comparison, std::move(pictures));
+  Diagnosis diagnosis = with_causes(set, comparison, std::move(pictures), without, options.jobs, progress);
   add_speeds(results, diagnosis.measured);
   for (const core::CalibrationResult& of : results.calibrations) {
     diagnosis.calibrations.push_back({of.experiment, of.rests});

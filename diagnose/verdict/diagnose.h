@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
 #include "diagnose/result/diagnosis.h"

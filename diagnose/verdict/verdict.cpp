@@ -12,12 +12,10 @@
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/next_experiment.h"
-#include "diagnose/result/alike_effects.h"
+#include "diagnose/result/diagnosis.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
-#include "diagnose/verdict/derived_parameters.h"
-#include "diagnose/verdict/verdict_limits.h"
-#include "diagnose/verdict/verdict_regions.h"
+#include "diagnose/verdict/verdict_details.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -83,6 +81,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     if (globals[g].parameter == nullptr || globals[g].effect != effect || globals[g].parameter->key.empty()) continue;
+    if (globals[g].parameter->shown_as == ShownAs::together) continue;
     const auto known = std::find_if(parameters.begin(), parameters.end(),
                                     [&](const auto& p) { return p.key == globals[g].parameter->key; });
     const auto at = static_cast<Eigen::Index>(g);
@@ -119,7 +118,8 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
   return count;
 }
 
-void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& diagnosis) {
+void add_ranking(const TrackSet& set, const Comparison& comparison, const NoiseAlone* noise_alone,
+                 Diagnosis& diagnosis) {
   std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
   for (const Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
@@ -131,9 +131,15 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, Diagnosis& d
                              {}};
     if (hypothesis.fit >= 0 && set.clips.size() > 1) {
       const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
-      if (is_new) gap->second = held_out_gap(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]).value;
+      if (is_new) {
+        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+        gap->second = noise_alone != nullptr
+                          ? held_out_gap(noise_alone->set, linearise_again(noise_alone->set, fit)).value
+                          : held_out_gap(set, fit).value;
+      }
       ranked.gap_after = gap->second;
     }
+    ranked.converged = hypothesis.converged;
     diagnosis.ranking.push_back(std::move(ranked));
   }
   // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
@@ -205,9 +211,21 @@ std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
   return measured;
 }
 
+/// The causes that moved the gap by the share that they take, then what of the explanation no motion shows.
+std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone* noise_alone) {
+  if (noise_alone == nullptr) return best.effects;
+  std::vector<std::size_t> effects = noise_alone->best.effects;
+  for (const std::size_t e : best.effects) {
+    if (!shows_in_motion(effect_list()[e].search) && std::find(effects.begin(), effects.end(), e) == effects.end())
+      effects.push_back(e);
+  }
+  return effects;
+}
+
 }  // namespace
 
-Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures) {
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures,
+                     const NoiseAlone* noise_alone) {
   Diagnosis diagnosis;
   diagnosis.notes = set.notes;
   diagnosis.none = comparison.none;
@@ -224,22 +242,27 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == Verdict::effect && best != nullptr) {
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
-    for (const std::size_t e : best->effects) {
+    for (const std::size_t e : named_effects(*best, noise_alone)) {
       const EffectInfo& info = effect_list()[e];
       diagnosis.effects.push_back({std::string(info.id), std::string(to_text(info.stage)), std::string(info.words),
                                    comparison.effect_probability[e], equivalents(comparison, *best, e),
                                    parameters_of(set, comparison, pictures, *best, e)});
     }
-    std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
-                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    if (noise_alone == nullptr) {  // else they stand by the share that they take
+      std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
+                       [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    }
     join_alike(
         named_explanations(comparison),
         [](const std::string& id) { return std::string(effect_list()[effect_index(id)].words); }, diagnosis);
     diagnosis.stage = diagnosis.effects.front().stage;
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
-  add_ranking(set, comparison, diagnosis);
-  const bool beside_named = diagnosis.verdict == Verdict::unknown && !comparison.all.front().effects.empty();
+  add_ranking(set, comparison, noise_alone, diagnosis);
+  // Beside sizes of each clip's own little of anything is left, and not where it lies.
+  const std::vector<std::size_t>& leading = comparison.all.front().effects;
+  const bool beside_named =
+      diagnosis.verdict == Verdict::unknown && !std::all_of(leading.begin(), leading.end(), differs_between_clips);
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
   const bool wrong_way =
       driven && diagnosis.verdict == Verdict::unknown;  // no function of anything is known to be missing
@@ -254,7 +277,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
-  if (diagnosis.verdict == Verdict::unknown && !wrong_way && set.clips.size() > 1) {
+  if (diagnosis.verdict == Verdict::unknown && !wrong_way && set.clips.size() > 1 && noise_alone == nullptr) {
     // The likeliest function without a name stands in for what is missing.
     const UnnamedFamily* family = likeliest_shared(families);
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;
@@ -263,12 +286,15 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
       gap_fit = &with;
     }
   }
-  diagnosis.gap = gap_of(set, nominal, *gap_fit, diagnosis.verdict == Verdict::unknown, diagnosis.notes);
+  const TrackSet& gap_set = noise_alone != nullptr ? noise_alone->set : set;
+  const MotionFit& gap_nominal = noise_alone != nullptr ? noise_alone->nominal : nominal;
+  if (noise_alone != nullptr) gap_fit = diagnosis.verdict == Verdict::effect ? &noise_alone->best : &gap_nominal;
+  diagnosis.gap = gap_of(gap_set, gap_nominal, *gap_fit, diagnosis.verdict == Verdict::unknown, diagnosis.notes);
   if (fit != &nominal) diagnosis.limits = limits_of(set, *fit);
   for (const NegativeLoss& one : diagnosis.limits.driving) diagnosis.notes.emplace_back(one);
   for (const ContradictedIncline& one : diagnosis.limits.contradicted) diagnosis.notes.emplace_back(one);
   if (diagnosis.limits.set_aside) diagnosis.notes.emplace_back(*diagnosis.limits.set_aside);
-  diagnosis.residuals = residuals_of(set, nominal, *gap_fit);
+  diagnosis.residuals = residuals_of(gap_set, gap_nominal, *gap_fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
   Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == Verdict::unknown, pictures.filming);
   diagnosis.measured = measured_of(set, twin);

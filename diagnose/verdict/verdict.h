@@ -8,6 +8,14 @@
 
 namespace glidelab::diagnose {
 
-Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {});
+/// Where the comparison counts a remainder as noise: the same motions by the noise alone, which the gap is measured in.
+struct NoiseAlone {
+  const TrackSet& set;
+  const MotionFit& nominal;
+  const MotionFit& best;  ///< with what the verdict names
+};
+
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {},
+                     const NoiseAlone* noise_alone = nullptr);
 
 }  // namespace glidelab::diagnose

@@ -11,7 +11,6 @@
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
-#include "diagnose/weigh/losses_beside.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -22,11 +21,6 @@ constexpr double kLeads = 3.0;        // log evidence from which on something el
 constexpr double kNoLossSeen = -3.0;  // log evidence of lost frames where none is found
 constexpr double kTrifle = 6.0;       // log evidence below which something unnamed shows weakly
 constexpr double kTriflePart = 0.01;  // of that of the effects, below which it leaves them their name
-
-bool moves(std::size_t effect) {
-  const Search search = effect_list()[effect].search;
-  return search != Search::frames && search != Search::noise && search != Search::pictures;
-}
 
 void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) {
   std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
@@ -96,11 +90,14 @@ void give_trifles_to_their_effects(Comparison& comparison) {
   }
 }
 
+}  // namespace
+
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    const bool tracked = list[e].search != Search::pictures && (!moves(e) || comparison.scans[e].visible);
+    const bool tracked =
+        list[e].search != Search::pictures && (!shows_in_motion(list[e].search) || comparison.scans[e].visible);
     const bool shown = tracked || comparison.in_pictures.contains(e);
     const bool candidate = !without.contains(e) && shown;
     seen += candidate ? 1.0 : 0.0;
@@ -120,6 +117,7 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   double sum = 0.0;
   for (double& l : logs) sum += l = std::exp(l - most);
   comparison.effect_probability.assign(list.size(), 0.0);
+  comparison.none = comparison.unknown = 0.0;
   for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
   if (set.pictures) give_trifles_to_their_effects(comparison);
   for (const Hypothesis& hypothesis : comparison.all) {
@@ -134,8 +132,6 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   std::stable_sort(comparison.all.begin(), comparison.all.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
-
-}  // namespace
 
 Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs,
                               const PictureEvidence* pictures, const std::function<void(double)>& done) {

@@ -1,7 +1,7 @@
 /// Which explanation the data support: nothing, one effect of the list, two, or something without a name.
 ///
 /// Score tests make a short list. Each effect on it is fitted in full, alone and with a second one; so are pairs that
-/// show only together (pair_scan.h). The log evidence is that of the linear neighbourhood (sizes and shapes averaged
+/// show only together (effect_scan.h). The log evidence is that of the linear neighbourhood (sizes and shapes averaged
 /// over their prior), with the gain of the full fit in place of the linear one. Something unnamed competes (unnamed.h)
 /// beside nothing and beside each leading explanation: what an effect leaves unexplained counts against its name,
 /// unless it shows weakly in a filmed experiment and is worth less than a hundredth of the effect.
@@ -10,6 +10,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "diagnose/weigh/hypothesis.h"
@@ -24,5 +25,8 @@ struct PictureEvidence;
 Comparison compare_hypotheses(
     const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1,
     const PictureEvidence* pictures = nullptr, const std::function<void(double)>& done = [](double) {});
+
+/// Probabilities of all hypotheses by their evidence and the prior odds; they then stand by falling probability.
+void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

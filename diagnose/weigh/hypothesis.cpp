@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "base/parallel.h"
+#include "base/long_work.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -15,11 +15,8 @@ constexpr double kWorthFitting = 1.0;  // log likelihood that a scan must gain t
 }  // namespace
 
 Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside) {
-  const FitPoint start = with_effect(set, base, scan.effect, scan.values, scan.own);
-  std::vector<std::size_t> effects = base.effects;
-  effects.push_back(scan.effect);
   Found found;
-  found.fit = fit_motions(set, effects, start, base.late);
+  found.fit = fit_with_effect(set, base, scan.effect, with_effect(set, base, scan.effect, scan.values, scan.own));
   const double gain = 0.5 * (base.cost - found.fit.cost);
   found.hypothesis.effects = beside.effects;  // missing frames are in the fit's times, not among its effects
   found.hypothesis.effects.push_back(scan.effect);
@@ -30,6 +27,7 @@ Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& sca
 }
 
 void add(Comparison& comparison, Found found) {
+  found.hypothesis.converged = found.fit.converged;
   std::set<std::size_t> members(found.hypothesis.effects.begin(), found.hypothesis.effects.end());
   for (Hypothesis& other : comparison.all) {
     if (other.unnamed || std::set<std::size_t>(other.effects.begin(), other.effects.end()) != members) continue;

@@ -21,6 +21,7 @@ struct Hypothesis {
   double log_evidence = 0.0;         ///< against nothing, sizes averaged over their priors
   double probability = 0.0;
   int fit = -1;                       ///< index in Comparison::fits
+  bool converged = true;              ///< false: its fit has not come to a minimum; its gain is then a lower bound
   double unnamed_log_evidence = 0.0;  ///< the part of it that something unnamed has, beside effects or alone
 };
 

@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
-#include "diagnose/scan/pair_scan.h"
+#include "base/long_work.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/frames/plain_losses.h"
+#include "diagnose/scan/effect_scan.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -45,7 +47,8 @@ Found alone(const TrackSet& set, std::size_t effect, Comparison& comparison) {
 Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan& scan, const Found& leader) {
   const FitPoint start = with_effect(set, around, scan.effect, scan.values, scan.own);
   Found found;
-  found.fit = fit_motions(set, {around.effects.front(), scan.effect}, start, leader.fit.late);
+  found.fit = no_worse_than(set, leader.fit, scan.effect,
+                            fit_motions(set, {around.effects.front(), scan.effect}, start, leader.fit.late));
   const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = found.fit.effects;
   found.hypothesis.gain = leader.hypothesis.gain + gain;
@@ -97,8 +100,8 @@ Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison)
   const MotionFit around = without_one(set, both, both.effects.back());
   const EffectScan scan = scan_effect(ScoreSpace(set, around), both.effects.front());
   Found found;
-  found.fit = both;
-  const double gain = 0.5 * (leader.fit.cost - both.cost);
+  found.fit = no_worse_than(set, leader.fit, both.effects.front(), both);
+  const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = {both.effects.back(), both.effects.front()};
   found.hypothesis.gain = leader.hypothesis.gain + gain;
   found.hypothesis.log_evidence = leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + gain;
@@ -140,11 +143,19 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
 
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
                Comparison& comparison) {
+  // What differs between clips takes up whatever a first effect leaves: it is one explanation or none, not half of two.
+  std::set<std::size_t> left_out = without;
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (differs_between_clips(e)) left_out.insert(e);
+  }
+  std::vector<Hypothesis> leaders = leaders_of(comparison, 1, kLeaders + 1);
+  std::erase_if(leaders, [](const Hypothesis& one) { return differs_between_clips(one.effects.front()); });
+  leaders.resize(std::min(leaders.size(), kLeaders));
   double best_one = 0.0;
-  for (const Hypothesis& leader : leaders_of(comparison, 1, kLeaders)) {
+  for (const Hypothesis& leader : leaders) {
     if (leader.log_evidence < 0.0) continue;
     best_one = std::max(best_one, leader.log_evidence);
-    add_seconds(set, leader, without, work, comparison);
+    add_seconds(set, leader, left_out, work, comparison);
   }
   std::size_t more = 0;
   for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
@@ -154,7 +165,85 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
     work.look();
     add_together(set, pair, comparison);
   }
-  exchange(set, best_one, without, work.at(0.6), comparison);
+  exchange(set, best_one, left_out, work.at(0.6), comparison);
+}
+
+namespace {
+
+constexpr std::size_t kLikeliest = 4;  // effects, of those alone and of those beside known losses
+
+/// An explanation, and where frames are missing beside it.
+struct Beside {
+  Hypothesis of;
+  MissingFrames missing;
+};
+
+/// The likeliest explanations of losses and one effect that were fitted.
+std::vector<Hypothesis> pairs_with(std::size_t dropped, const Comparison& comparison) {
+  std::vector<Hypothesis> pairs = leaders_of(comparison, 2, comparison.all.size());
+  std::erase_if(pairs, [&](const Hypothesis& pair) {
+    return std::find(pair.effects.begin(), pair.effects.end(), dropped) == pair.effects.end();
+  });
+  pairs.resize(std::min(pairs.size(), kLikeliest));
+  return pairs;
+}
+
+/// The likeliest effects other than losses, alone and beside these.
+std::vector<std::size_t> likeliest_beside(std::size_t dropped, const std::vector<Hypothesis>& pairs,
+                                          const Comparison& comparison) {
+  std::vector<std::size_t> effects;
+  const auto add = [&](std::size_t effect) {
+    if (effect != dropped && std::find(effects.begin(), effects.end(), effect) == effects.end())
+      effects.push_back(effect);
+  };
+  for (const Hypothesis& one : leaders_of(comparison, 1, kLikeliest + 1)) add(one.effects.front());
+  for (const Hypothesis& pair : pairs) {
+    for (const std::size_t effect : pair.effects) add(effect);
+  }
+  return effects;
+}
+
+/// Along the fit of an effect without any losses.
+Beside beside_effect(const TrackSet& set, const MotionFit& nominal, std::size_t effect, const Comparison& comparison) {
+  if (const Hypothesis* fitted = find(comparison, {effect})) {
+    return {*fitted, find_missing_frames(set, comparison.fits[static_cast<std::size_t>(fitted->fit)])};
+  }
+  const auto scan = std::find_if(comparison.scans.begin(), comparison.scans.end(),
+                                 [&](const EffectScan& of) { return of.effect == effect; });
+  if (scan == comparison.scans.end() || scan->values.empty()) return {};
+  const Found found = fit_more(set, nominal, *scan, Hypothesis{});
+  return {found.hypothesis, find_missing_frames(set, found.fit)};
+}
+
+}  // namespace
+
+void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std::set<std::size_t>& without,
+                       const Work& work, Comparison& comparison) {
+  const std::size_t dropped = effect_index(ids::dropped_frames);
+  if (without.contains(dropped)) return;
+  if (comparison.missing.count + plain_losses(set).count + analysed_losses(set).count == 0) return;
+  const std::vector<Hypothesis> pairs = pairs_with(dropped, comparison);
+  const std::vector<std::size_t> effects = likeliest_beside(dropped, pairs, comparison);
+  std::vector<Beside> beside(pairs.size() + effects.size());
+  base::for_each_parallel(beside.size(), work.jobs, [&](std::size_t i) {
+    work.look();
+    if (i >= pairs.size()) {
+      beside[i] = beside_effect(set, nominal, effects[i - pairs.size()], comparison);
+      return;
+    }
+    // A wave's phase jumps with each loss: it is found where these are known, and others along it.
+    beside[i] = {pairs[i], find_more_missing_frames(set, comparison.fits[static_cast<std::size_t>(pairs[i].fit)])};
+  });
+  for (const Beside& one : beside) {
+    if (one.missing.count == 0) continue;
+    Found both;
+    both.fit = one.missing.fit;
+    both.hypothesis = one.of;
+    if (one.of.effects.size() == 1) both.hypothesis.effects.push_back(dropped);
+    both.hypothesis.gain += one.missing.effect.gain;
+    both.hypothesis.log_evidence += one.missing.effect.log_evidence;
+    add(comparison, std::move(both));
+  }
 }
 
 }  // namespace glidelab::diagnose

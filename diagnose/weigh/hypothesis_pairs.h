@@ -1,16 +1,24 @@
-/// Explanations by two effects at once.
+/// Explanations by two things at once: two effects, or missing frames beside an effect.
 #pragma once
 
 #include <set>
 
-#include "diagnose/fit/score_space.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/weigh/hypothesis.h"
 
 namespace glidelab::diagnose {
 
-/// Leading effects each with a second one; pairs that show only together (pair_scan.h); and in place of one of the best
-/// pair's two, whatever shows better beside the other. `nominal` is the neighbourhood of the first fit.
+/// Leading effects each with a second one; pairs that show only together (effect_scan.h); and in place of one of the
+/// best pair's two, whatever shows better beside the other. `nominal` is the neighbourhood of the first fit.
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
                Comparison& comparison);
+
+/// Looks for missing frames along the fits of the likeliest effects, alone or beside the losses that are known. What is
+/// found joins the comparison. Nothing is done where no frame is missing for all to see. `nominal` is the nominal fit.
+///
+/// Next to a force or a displacement that the nominal model lacks, losses that no jump shows by itself do not count
+/// (missing_frames.h): any curve looks like a row of them. With that effect in the fit they do.
+void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std::set<std::size_t>& without,
+                       const Work& work, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

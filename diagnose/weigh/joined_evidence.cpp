@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/score_space.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/gap/held_out.h"
-#include "diagnose/pictures/picture_sway.h"
+#include "diagnose/pictures/picture_scene.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -1,34 +1,101 @@
-/// The fit of the whole motion: equation (8) with its reversals to the measured positions themselves, no smoothing.
+/// The fit of the whole motion to the measured positions themselves: equation (8) with its reversals, no smoothing.
 ///
 /// For all clips of one configuration at once, by least squares weighted with each clip's noise:
 ///
-///     x_i = x(t_i; k, d, f, x0_b, v0_b) + noise,     dv/dt = d - k v - sign(v) f,     d = g sin(alpha),  f = mu g
-///     cos(alpha)
+///     x_i = x(t_i; k, d, f, x0_b, v0_b) + noise,
+///     dv/dt = d - k v - sign(v) f,     d = g sin(alpha),  f = mu g cos(alpha)
 ///
 /// with a start (x0, v0) for every block b of free motion. Levenberg and Marquardt's method with sensitivities that
-/// carry the jump at v = 0 (sim/track_sensitivity.h), from several starts; the starts x0, v0 are eliminated block by
-/// block. Where the noise is white and Gaussian this is the maximum of the likelihood, and its covariance the
+/// carry the jump at v = 0 (sim/sensitivity/sensitivity.h), from several starts; the starts x0, v0 are eliminated block
+/// by block. Where the noise is white and Gaussian this is the maximum of the likelihood, and its covariance the
 /// Cramer-Rao bound.
 ///
 /// Uncertainty: correlated noise by the sandwich H^-1 J'W Gamma W J H^-1; where the residuals are larger than the noise
-/// explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is
-/// added, with its degrees of freedom; the errors of the camera and the plane, and of the scale, are propagated as
-/// signed shifts (trajectory_uncertainty.h).
-///
-/// Robust: from the least squares on, Huber's weights (1 up to 1.5 deviations, 1.5 over the deviations beyond; the
-/// scale is 1.4826 times each block's median residual) until they settle, then least squares without the positions
-/// that are off by more than 4 of these. Positions without outliers lose next to nothing by it (6 in 1e5 normal ones).
+/// explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is added, with
+/// its degrees of freedom; the errors of the camera and the plane, and of the scale, are propagated as signed shifts.
 #pragma once
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
-#include "fit/trajectory/trajectory_model.h"
+#include "core/result/results.h"
 
 namespace glidelab::fit {
 
+/// A block with the noise of its clip.
+struct FitBlock {
+  const core::FreeBlock* block = nullptr;
+  std::vector<double> autocovariance_m2;
+  double scale_sd_relative = 0.0;
+};
+
+/// k, d, f; or k and the intercept d - direction f with f = 0 where there is one direction only.
+struct TrajectoryFit {
+  Eigen::VectorXd parameters;           ///< 3, or 2
+  int direction = 0;                    ///< the only one, or 0 for both
+  Eigen::MatrixXd covariance;           ///< random part
+  std::vector<Eigen::VectorXd> shared;  ///< signed changes by one standard deviation of each shared error
+  double degrees = 0.0;                 ///< of freedom of the covariance; infinite where it is as good as known
+  double scatter = 0.0;                 ///< root mean square residual over the noise
+  std::size_t points = 0;
+  std::size_t left_out = 0;             ///< positions left out as outliers
+  std::vector<Eigen::Vector2d> starts;  ///< x0, v0 of each block
+  int iterations = 0;
+};
+
+inline constexpr double kLeastVariance = 1e-24;  // m²: positions without noise
+
+/// One block's residuals (measured - model) and their derivatives by the common parameters and by (x0, v0).
+struct Linearised {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd common;  ///< n x 3
+  Eigen::MatrixXd start;   ///< n x 2
+
+  void scale_rows(const Eigen::VectorXd& by) {
+    residual.array() *= by.array();
+    common.array().colwise() *= by.array();
+    start.array().colwise() *= by.array();
+  }
+};
+
+/// Variance of the noise of one position of the block.
+double variance_of(const FitBlock& fit);
+
+/// The uncertainty of a fit of the whole motion: the noise's covariance, what residuals scatter beyond it, and what
+/// errors of the camera and the scale do.
+///
+/// With P the derivatives by the common parameters without the part that a block's own start can take up, and H = sum
+/// of P'P / s^2: covariance H^-1 [sum of P' Gamma P / s^4] H^-1, widened by the scores of pieces as the head of this
+/// file says. Where there are four blocks or more they are left out one at a time (the jackknife, to first order: -(H -
+/// H_b)^-1 P_b' r_b / s^2), and that covariance, which knows of no noise model (rounded positions that move slowly err
+/// together), counts where one of its variances is above the other's by more than chance makes it (chi2_ratio_limit,
+/// with n - 1 degrees of freedom).
+class TrajectoryUncertainty {
+ public:
+  /// At the minimum; all of it must outlive this.
+  TrajectoryUncertainty(const std::vector<FitBlock>& blocks, const std::vector<Linearised>& at, int free);
+
+  bool determined() const { return inverse_.size() > 0; }
+  /// Sets the covariance with its degrees of freedom, the scatter, the number of points and the shared changes.
+  void fill(TrajectoryFit& fit) const;
+
+ private:
+  void add_misfit(double count, double ratio, TrajectoryFit& fit) const;
+  void compare_with_jackknife(TrajectoryFit& fit) const;
+  void add_shared(TrajectoryFit& fit) const;
+
+  const std::vector<FitBlock>& blocks_;
+  const std::vector<Linearised>& at_;
+  std::vector<Eigen::MatrixXd> projected_;
+  Eigen::MatrixXd normal_, inverse_;
+};
+
+/// Robust: from the least squares on, Huber's weights (1 up to 1.5 deviations, 1.5 over the deviations beyond; the
+/// scale is 1.4826 times each block's median residual) until they settle, then least squares without the positions that
+/// are off by more than 4 of these. Positions without outliers lose next to nothing by it (6 in 1e5 normal ones).
 struct TrajectoryOptions {
   bool robust = false;
 };

@@ -9,7 +9,6 @@
 #include "base/text/number_text.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
-#include "core/result/stated_values.h"
 
 namespace glidelab::fit {
 namespace {

@@ -1,17 +1,68 @@
-/// The true camera: a pinhole with a pose, seen through a lens.
+/// The true camera: a pinhole with a pose, seen through a lens, on a mount that does not keep still.
 ///
 /// Frames (CONVENTIONS.md): W world, C camera (x right, y down, z forward); p_W = X_WC * p_C. A point at (X, Y, Z)_C
-/// has the undistorted coordinates (x, y) = (X/Z, Y/Z), the lens moves it to (x_d, y_d) (render/camera/lens.h), and it
-/// appears at the pixel (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0).
+/// has the undistorted coordinates (x, y) = (X/Z, Y/Z), the lens moves it to (x_d, y_d), and it appears at the pixel
+/// (u, v) = (fx x_d + cx, fy y_d + cy); the centre of the first pixel is (0, 0). Everything here is in double.
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+
 #include <optional>
 #include <string>
-
-#include "render/camera/lens.h"
+#include <vector>
 
 namespace glidelab::render {
+
+enum class LensModel { brown_conrady, rational, fisheye };
+
+/// What a lens does to directions: undistorted coordinates (x, y) = (X/Z, Y/Z) become distorted ones, as calibration
+/// programs write them. With r² = x² + y²:
+///
+/// Brown-Conrady (5 coefficients) and its rational form (8):
+///
+///     R   = (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶)
+///     x_d = x R + 2 p1 x y + p2 (r² + 2 x²)
+///     y_d = y R + p1 (r² + 2 y²) + 2 p2 x y
+///
+/// Fisheye, equidistant: theta = atan(r), theta_d = theta (1 + k1 theta² + k2 theta⁴ + k3 theta⁶ + k4 theta⁸), (x_d,
+/// y_d) = (x, y) theta_d / r; directions less than 90 degrees off the axis.
+///
+/// Validity ends where the mapping folds over. Sources: D. C. Brown, "Close-range camera calibration", Photogrammetric
+/// Engineering 37 (1971), in the order of terms that calibration programs print; J. Kannala and S. S. Brandt, "A
+/// generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses", IEEE TPAMI 28
+/// (2006).
+struct Lens {
+  double k1 = 0.0;
+  double k2 = 0.0;
+  double k3 = 0.0;
+  double p1 = 0.0;
+  double p2 = 0.0;
+  double k4 = 0.0;  ///< rational and fisheye
+  double k5 = 0.0;  ///< rational
+  double k6 = 0.0;  ///< rational
+  LensModel model = LensModel::brown_conrady;
+};
+
+/// "brown-conrady", "rational", "fisheye".
+const char* name_of(LensModel model);
+
+/// Where the lens moves the undistorted point (x, y).
+Eigen::Vector2d distort(const Lens& lens, const Eigen::Vector2d& undistorted);
+
+/// d(x_d, y_d) / d(x, y).
+Eigen::Matrix2d distortion_jacobian(const Lens& lens, const Eigen::Vector2d& undistorted);
+
+/// The radius sqrt(x² + y²) at which the radial part stops growing (or has a pole); infinity where it never does.
+/// Beyond it the formula maps points back into the image that no lens would show there.
+double fold_radius(const Lens& lens);
+
+/// The undistorted point that the lens moves to `distorted`, to 1e-14 of the focal length. Nothing where there is none
+/// inside the fold radius.
+std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted);
+
+/// The same with `largest_radius` in place of the fold radius, for a caller who asks many times.
+std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted, double largest_radius);
 
 struct Camera {
   int width_px = 0;
@@ -47,5 +98,39 @@ Eigen::Isometry3d look_at(const Eigen::Vector3d& position_W, const Eigen::Vector
 /// does: every point of the image must have an inverse that Newton's method reaches, with a positive Jacobian, inside
 /// the fold radius; checked along the border and on a grid of at most 16 px.
 std::optional<std::string> why_not_one_to_one(const Camera& camera);
+
+enum class MountAxis { x, y, z, pan, tilt, roll };
+
+/// In metres for x, y and z, in radians for the others.
+struct MountMotion {
+  MountAxis axis = MountAxis::pan;
+  double offset = 0.0;
+  double drift_per_s = 0.0;
+  double amplitude = 0.0;
+  double frequency_hz = 0.0;
+  double phase_rad = 0.0;
+};
+
+/// A camera that does not keep still, and one whose focus was changed after the calibration.
+///
+/// Each motion is along or about one of the camera's own axes: X_WC(t) = X_WC T(x, y, z) R_y(pan) R_x(tilt) R_z(roll),
+/// where each of the six is the sum over the motions of that axis of
+///
+///     offset + drift t + amplitude sin(2 pi f t + phase),
+///
+/// t counted from the clip's first exposure. The calibration's images are taken with all six at 0, and with the focal
+/// length that the camera's section says; the clips with (1 + focal_change) of it.
+struct Mount {
+  double focal_change = 0.0;
+  std::vector<MountMotion> motions;
+
+  bool moves() const { return !motions.empty(); }
+};
+
+/// What the mount does to the camera at an instant: X_WC(t) = X_WC * this.
+Eigen::Isometry3d mount_at(const Mount& mount, double t_s);
+
+/// How far the image's middle and corners move, at most, when a camera is moved so; for what is 1 m away or farther.
+double picture_shift_px(const Camera& camera, const Eigen::Isometry3d& moved);
 
 }  // namespace glidelab::render

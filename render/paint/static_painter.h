@@ -1,4 +1,5 @@
-/// Renders what stands still, once for each set-up, by ray casting in a fragment shader.
+/// The painter of what stands still, once for each set-up, by ray casting in a fragment shader: where its parts are in
+/// the image, how many rays are cast at each pixel, and where they go.
 ///
 /// A pixel is the mean of the radiance over its square, by rays through the exact inverse of the lens: 4 where all is
 /// even (found by a first pass), and where it changes within the pixel or its neighbours 16, or 64 at edges. They are
@@ -7,15 +8,38 @@
 /// contrast.
 #pragma once
 
+#include <Eigen/Core>
+
 #include <functional>
 #include <optional>
+#include <vector>
 
-#include "render/camera/focus.h"
-#include "render/camera/ray_table.h"
+#include "render/camera/camera.h"
+#include "render/camera/optics.h"
+#include "render/image/float_picture.h"
 #include "render/paint/float_canvas.h"
-#include "render/scenario/static_scene.h"
+#include "render/scenario/scene.h"
 
 namespace glidelab::render {
+
+/// The rectangle of pixels that holds the box. The whole image where a part of the box's edges is not before the
+/// camera.
+PixelRect pixels_of(const Camera& camera, const StaticBox& box);
+
+/// The pixels that the board and the plumb line may change, with `reach_px` around; empty without either.
+PixelRect pixels_before(const Camera& camera, const StaticScene& scene, int reach_px);
+
+/// How many rays each pixel needs (0, 16 or 64): by how much it changes within itself (`spread`) or against a
+/// neighbour, in itself or in one of its neighbours.
+FloatPicture wanted_rays(const FloatPicture& picture, const FloatPicture& spread);
+
+/// The first 64 points of the Sobol sequence in two dimensions, within [0, 1)²: any first 16 of them, or all, have one
+/// point in every column and row of as many.
+std::vector<Eigen::Vector2f> pixel_places();
+
+/// Of each of kFocusRays rays, four numbers: its point of the aperture in metres and its part of the core in
+/// undistorted coordinates; then, in a second row, its place in the pixel.
+std::vector<float> lens_rays(const Focus& focus, const Camera& camera);
 
 class StaticPainter {
  public:

@@ -21,7 +21,7 @@ struct RowLines {
   bool cut_twice;    ///< any pixel by two lines and more, and outside of none
 };
 
-/// The part of the pixel on the inner side of one line (coverage.h), without branches.
+/// The part of the pixel on the inner side of one line (pixel_coverage.h), without branches.
 [[gnu::always_inline]] inline double inside_part(double s, double gx, double gy) {
   const double ax = std::abs(gx), ay = std::abs(gy), t = std::abs(s);
   const double a = ax > ay ? ax : ay, b = ax > ay ? ay : ax;

@@ -8,8 +8,8 @@
 #include <array>
 #include <span>
 
-#include "render/camera/ray_table.h"
-#include "render/random/noise_words.h"
+#include "render/camera/optics.h"
+#include "render/random/random_numbers.h"
 
 namespace glidelab::render {
 

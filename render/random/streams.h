@@ -1,14 +1,14 @@
 /// Which random numbers are drawn for what, so that no two uses draw the same.
 ///
-/// A random word is a function of the seed and of a counter {first, second, third, purpose} (philox.h). Every purpose
-/// has a number of its own in the last place; the stream in the third place tells clips and stills apart.
+/// A random word is a function of the seed and of a counter {first, second, third, purpose} (random_numbers.h). Every
+/// purpose has a number of its own in the last place; the stream in the third place tells clips and stills apart.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include "render/random/philox.h"
+#include "render/random/random_numbers.h"
 
 namespace glidelab::render {
 

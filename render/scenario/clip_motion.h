@@ -1,8 +1,8 @@
 /// Where the glider is during each frame's exposure.
 ///
 /// The first row's exposure of frame k is [start, start + exposure] on the clock of sim, start = k / rate where the
-/// camera's clock is right (frame_clock.h); the motion starts at t = 0, with the first exposure. Other rows follow as
-/// the shutter says. The middle of the middle row's exposure has the time `start` on the clock of the truth.
+/// camera's clock is right (exposure_times.h); the motion starts at t = 0, with the first exposure. Other rows follow
+/// as the shutter says. The middle of the middle row's exposure has the time `start` on the clock of the truth.
 #pragma once
 
 #include <array>

@@ -36,7 +36,7 @@ namespace glidelab::render {
 struct ScenarioSection {
   std::string_view name;
   std::string_view help;
-  /// Whether a camera's file may have the section (camera_catalogue.h).
+  /// Whether a camera's file may have the section (scenario.h).
   bool in_camera_file;
   /// Fills its part of the scenario; nothing where the file has no such section. The sections before it are read. What
   /// is wrong is recorded in the table's file.
@@ -45,7 +45,7 @@ struct ScenarioSection {
   void (*settle)(const base::TomlTable& root, Scenario& scenario);
   /// Adds what truth.json says of it to the JSON of the camera; null where it says nothing.
   void (*truth)(const Scenario& scenario, nlohmann::ordered_json& camera);
-  /// Makes of it what `render --ideal` shows: a perfect camera before the same scene (ideal_frames.h).
+  /// Makes of it what `render --ideal` shows: a perfect camera before the same scene (truth_files.h).
   void (*ideal)(Scenario& scenario);
 };
 

@@ -6,15 +6,98 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
-#include "render/random/noise_words.h"
-#include "render/random/normal_pair.h"
-#include "render/random/poisson.h"
+#include "render/random/random_numbers.h"
 #include "render/random/streams.h"
 
 namespace glidelab::render {
+namespace {
+
+// ITU-R BT.709-6, item 1.2.
+constexpr double kToe = 0.018;
+constexpr double kToeSlope = 4.5;
+constexpr double kScale = 1.099;
+constexpr double kPower = 0.45;
+
+/// Straight lines through points whose x rise.
+double between_points(std::span<const double> from, std::span<const double> to, double x) {
+  const auto after = std::upper_bound(from.begin() + 1, from.end() - 1, x) - from.begin();
+  const auto i = static_cast<std::size_t>(after);
+  return to[i - 1] + (x - from[i - 1]) / (from[i] - from[i - 1]) * (to[i] - to[i - 1]);
+}
+
+}  // namespace
+
+double ToneCurve::operator()(double x) const {
+  x = std::clamp(x, 0.0, 1.0);
+  switch (kind) {
+    case Kind::linear:
+      return x;
+    case Kind::gamma:
+      return std::pow(x, 1.0 / gamma);
+    case Kind::bt709:
+      return x < kToe ? kToeSlope * x : kScale * std::pow(x, kPower) - (kScale - 1.0);
+    case Kind::table:
+      return between_points(from, to, x);
+  }
+  throw std::logic_error("unknown tone curve");
+}
+
+double ToneCurve::inverse(double y) const {
+  y = std::clamp(y, 0.0, 1.0);
+  switch (kind) {
+    case Kind::linear:
+      return y;
+    case Kind::gamma:
+      return std::pow(y, gamma);
+    case Kind::bt709:
+      return y < kToeSlope * kToe ? y / kToeSlope : std::pow((y + (kScale - 1.0)) / kScale, 1.0 / kPower);
+    case Kind::table:
+      return between_points(to, from, y);
+  }
+  throw std::logic_error("unknown tone curve");
+}
+
+const char* name_of(ToneCurve::Kind kind) {
+  switch (kind) {
+    case ToneCurve::Kind::linear:
+      return "linear";
+    case ToneCurve::Kind::gamma:
+      return "gamma";
+    case ToneCurve::Kind::bt709:
+      return "bt709";
+    case ToneCurve::Kind::table:
+      return "table";
+  }
+  throw std::logic_error("unknown tone curve");
+}
+
+FixedPattern make_fixed_pattern(const PixelSpread& spread, double exposure_s, std::uint64_t seed, int width,
+                                int height) {
+  const PhiloxKey key = philox_key(seed);
+  const std::size_t pixels = static_cast<std::size_t>(width) * height;
+  const auto dark_e = static_cast<float>(spread.dark_signal_e_s * exposure_s);
+  FixedPattern pattern{width, height, std::vector<float>(pixels), std::vector<float>(pixels, dark_e),
+                       std::vector<float>(pixels)};
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const PhiloxCounter words = random_words(RandomPurpose::fixed_pattern, {static_cast<std::uint32_t>(i), 0, 0}, key);
+    const auto [z1, z2] = normal_pair(words[0], words[1]);
+    pattern.response[i] = std::max(0.0f, 1.0f + static_cast<float>(spread.prnu) * z1);
+    pattern.offset_e[i] = static_cast<float>(spread.dsnu_e) * z2;
+    const double hot = uniform_of(words[2]);
+    if (hot < spread.hot_fraction) {
+      // Below the fraction the word is uniform again, so minus its logarithm is exponential of mean 1.
+      const double signal_e_s = -std::log(hot / spread.hot_fraction) * spread.hot_signal_e_s;
+      pattern.dark_e[i] += static_cast<float>(signal_e_s * exposure_s);
+    }
+    if (uniform_of(words[3]) < spread.dead_fraction) pattern.response[i] = 0.0f;
+  }
+  return pattern;
+}
+
 namespace {
 
 /// What a row's pixels are computed with, in single precision.

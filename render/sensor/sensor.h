@@ -1,6 +1,7 @@
-/// From light to codes in a sensor: fixed patterns, shot noise, read noise, saturation, gain, offset, quantisation.
+/// From light to codes in a sensor: fixed patterns, shot noise, read noise, saturation, gain, offset, quantisation; and
+/// the tone curve behind it.
 ///
-///     expected  = light response_p + dark_p                     (of pixel p; fixed_pattern.h)
+///     expected  = light response_p + dark_p                     (of pixel p; FixedPattern)
 ///     electrons = min(Poisson(expected), full well) + Normal(0, read noise) + offset_p
 ///     code      = round(gain electrons + offset), limited to 0 … 2^bits - 1 as a converter does
 ///
@@ -22,13 +23,68 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "render/image/float_picture.h"
-#include "render/random/noise_words.h"
-#include "render/sensor/fixed_pattern.h"
-#include "render/sensor/tone_curve.h"
+#include "render/random/random_numbers.h"
 
 namespace glidelab::render {
+
+/// From linear light to the codes of a video: what a camera does to the converter's codes before it writes them.
+///
+///     linear   y = x
+///     gamma    y = x^(1 / gamma)
+///     bt709    y = 4.5 x below 0.018, else 1.099 x^0.45 - 0.099       (ITU-R BT.709, the transfer of HD video)
+///     table    straight lines between points that rise from (0, 0) to (1, 1)
+///
+/// x is the code above black over that of white, y likewise, both from 0 to 1.
+struct ToneCurve {
+  enum class Kind { linear, gamma, bt709, table };
+  Kind kind = Kind::linear;
+  double gamma = 2.2;             ///< of Kind::gamma
+  std::vector<double> from = {};  ///< of Kind::table: x, rising from 0 to 1,
+  std::vector<double> to = {};    ///< and y
+
+  /// y of x; x is limited to 0 … 1.
+  double operator()(double x) const;
+  /// x of y; y is limited to 0 … 1.
+  double inverse(double y) const;
+};
+
+const char* name_of(ToneCurve::Kind kind);
+
+/// What the pixels of a make of sensors scatter by; all zero, they are alike.
+struct PixelSpread {
+  double dark_signal_e_s = 0.0;  ///< mean
+  double prnu = 0.0;             ///< standard deviation of the response, relative
+  double dsnu_e = 0.0;           ///< standard deviation of the offset
+  double hot_fraction = 0.0;
+  double hot_signal_e_s = 0.0;  ///< mean of what a hot pixel has beyond the dark signal
+  double dead_fraction = 0.0;   ///< no response to light
+
+  bool operator==(const PixelSpread&) const = default;
+};
+
+/// How the pixels of one sensor differ from one another, row by row, for each pixel: the same in all frames and views
+/// of a camera.
+///
+///     response_p = max(0, 1 + PRNU z1)            0 for a dead pixel
+///     dark_p     = dark signal * exposure         more by an exponentially distributed signal for a hot pixel
+///     offset_p   = DSNU z2
+///
+/// with z1, z2 standard normal, white over the sensor (EMVA standard 1288: photo response and dark signal
+/// non-uniformity; DSNU at the exposure of the clip). A function of the seed and the pixel's place alone
+/// (RandomPurpose::fixed_pattern).
+struct FixedPattern {
+  int width = 0;
+  int height = 0;
+  std::vector<float> response;
+  std::vector<float> dark_e;
+  std::vector<float> offset_e;
+};
+
+FixedPattern make_fixed_pattern(const PixelSpread& spread, double exposure_s, std::uint64_t seed, int width,
+                                int height);
 
 enum class Colour { mono, bayer };
 

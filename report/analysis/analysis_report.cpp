@@ -1,19 +1,182 @@
 #include "report/analysis/analysis_report.h"
 
 #include <fmt/format.h>
+#include <boost/math/distributions/chi_squared.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/text/number_text.h"
-#include "report/analysis/fitted_lines.h"
-#include "report/analysis/meaning.h"
+#include "report/analysis/motion_plots.h"
 #include "report/analysis/sections.h"
 #include "report/html/html.h"
-#include "report/text/quantity_names.h"
-#include "report/text/result_names.h"
-#include "report/text/text_table.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
+namespace {
+
+constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
+constexpr double kBelowZero = 2.0;  // standard deviations: what chance does in one of forty
+constexpr double kOffLine = 2.0;    // times the noise: more than a wrong idea of the noise makes
+
+std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
+  std::string text;
+  if (c.k_over_m_1_s.estimate) {
+    const double rate = c.k_over_m_1_s.estimate->value;
+    const double sd = c.k_over_m_1_s.estimate->sd;
+    if (rate > kBelowZero * sd) {
+      text += fmt::format(
+          "the drag that grows with speed slows it at {} 1/s times v, so that it comes 63 % closer to its final speed "
+          "in {} s",
+          base::value_and_sd_text(rate, sd), base::number_text(1.0 / rate, 3));
+    } else if (rate < -kBelowZero * sd) {
+      text += fmt::format("K/m comes out as {} 1/s, below zero", base::value_and_sd_text(rate, sd));
+    } else {
+      text += fmt::format("drag that grows with speed cannot be distinguished from zero ({} 1/s)",
+                          base::value_and_sd_text(rate, sd));
+    }
+  }
+  if (c.mu.estimate) {
+    const double mu = c.mu.estimate->value, sd = c.mu.estimate->sd;
+    const std::string size = base::value_and_sd_text(mu, sd);
+    text += text.empty() ? "" : "; ";
+    if (mu > kBelowZero * sd) {
+      text += "Coulomb friction is µ = " + size;
+    } else if (mu < -kBelowZero * sd) {
+      text += fmt::format("µ comes out as {}, below zero", size);
+    } else {
+      text += fmt::format("Coulomb friction cannot be distinguished from zero (µ = {})", size);
+    }
+  }
+  if (c.v_lim_m_s.estimate) {
+    text += fmt::format("{}its limit velocity is {} m/s", text.empty() ? "" : "; ",
+                        base::value_and_sd_text(c.v_lim_m_s.estimate->value, c.v_lim_m_s.estimate->sd));
+  }
+  if (text.empty()) text = "the data determine neither drag nor friction; the table says why";
+  return fmt::format("<li><b>{}:</b> {}.</li>\n", escape(configuration_name(results, c)), text);
+}
+
+/// The numbers alone, of a law that does not fit.
+std::string numbers_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
+  std::string text;
+  for (const auto& [name, quantity] : quantities_of(c)) {
+    if (!quantity->estimate || quantity == &c.alpha_deg) continue;  // α says nothing of drag or friction
+    text +=
+        fmt::format("{}{} = {}{}", text.empty() ? "" : ", ", name.symbol,
+                    base::value_and_sd_text(quantity->estimate->value, quantity->estimate->sd), unit_suffix(name.unit));
+  }
+  if (text.empty()) return {};
+  return fmt::format("<li>{}: {}</li>\n", escape(configuration_name(results, c)), text);
+}
+
+/// The K of each mass, where it is the same for all within its errors, says that the drag does not depend on the load.
+std::string damping_sentence(const core::AnalysisResults& results) {
+  constexpr double kChance = 0.01;  // that the chi² of equal K is beyond the limit
+  struct Damping {
+    double mass_kg, k_n_s_m, sd_n_s_m;
+  };
+  std::vector<Damping> all;
+  double weight = 0.0, weighted = 0.0;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    if (!c.k_over_m_1_s.estimate || !(c.k_over_m_1_s.estimate->sd > 0.0) || !(c.mass_kg > 0.0)) continue;
+    all.push_back({c.mass_kg, c.k_over_m_1_s.estimate->value * c.mass_kg, c.k_over_m_1_s.estimate->sd * c.mass_kg});
+    weight += std::pow(all.back().sd_n_s_m, -2);
+    weighted += all.back().k_n_s_m * std::pow(all.back().sd_n_s_m, -2);
+  }
+  const bool masses_differ =
+      std::ranges::any_of(all, [&](const Damping& one) { return one.mass_kg != all.front().mass_kg; });
+  if (!masses_differ) return {};
+  const double mean = weighted / weight;
+  double chi2 = 0.0, widest = 0.0;
+  for (const Damping& one : all) {
+    chi2 += std::pow((one.k_n_s_m - mean) / one.sd_n_s_m, 2);
+    widest = std::max(widest, std::abs(one.k_n_s_m / mean - 1.0));
+  }
+  const boost::math::chi_squared of_chance(static_cast<double>(all.size() - 1));
+  if (chi2 <= quantile(complement(of_chance, kChance))) {
+    return fmt::format("<p>The damping constant is the same for all masses within its errors: K = {} N s/m.</p>\n",
+                       base::value_and_sd_text(mean, 1.0 / std::sqrt(weight)));
+  }
+  return fmt::format(
+      "<p>The damping constant K = m (K/m) is {} N s/m on average and differs between configurations by up to {} %, "
+      "more than its errors alone allow.</p>\n",
+      base::number_text(mean, 4), base::number_text(100.0 * widest, 2));
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
+  std::vector<std::string> doubts;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    const auto below_zero = [](const core::Quantity& quantity) {
+      return quantity.estimate && quantity.estimate->value < -kBelowZero * quantity.estimate->sd;
+    };
+    const auto doubt = [&](const core::Quantity& quantity, const char* name, const char* reason) {
+      if (!below_zero(quantity)) return;
+      doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c), name,
+                                   base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), reason));
+    };
+    doubt(c.k_over_m_1_s, "K/m", "no drag can cause");
+    doubt(c.mu, "µ", "no friction can cause");
+  }
+  const core::ClipResult* farthest = nullptr;
+  const core::LineFit* line = nullptr;
+  for (const core::ClipResult& clip : results.clips) {
+    for (const core::LineFit& of : clip.segments) {
+      if (std::isinf(of.parts.degrees) || of.parts.scatter < kOffLine) continue;
+      if (line != nullptr && of.parts.scatter <= line->parts.scatter) continue;
+      farthest = &clip;
+      line = &of;
+    }
+  }
+  if (line != nullptr) {
+    doubts.push_back(fmt::format("{}, v {} 0: the points lie {} times as far off their line as the noise explains.",
+                                 farthest->name, line->direction > 0 ? ">" : "<",
+                                 base::number_text(line->parts.scatter, 2)));
+  }
+  if (!doubts.empty()) {
+    doubts.push_back(
+        "The law (drag in proportion to the speed, dry friction, gravity) does not fit these clips as they "
+        "are. Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
+        "from the law?).");
+  }
+  return doubts;
+}
+
+std::string meaning_of(const core::AnalysisResults& results) {
+  std::string text;
+  const std::vector<std::string> doubts = doubts_about(results);
+  if (doubts.empty()) {
+    text += "<ul>\n";
+    for (const core::ConfigurationResult& c : results.configurations) text += sentence_of(results, c);
+    text += "</ul>\n" + damping_sentence(results);
+  } else {
+    text += fmt::format("<p class=\"note\"><b>{}</b></p>\n<ul>\n", escape(doubts.back()));
+    for (std::size_t i = 0; i + 1 < doubts.size(); ++i) text += fmt::format("<li>{}</li>\n", escape(doubts[i]));
+    std::string numbers;
+    for (const core::ConfigurationResult& c : results.configurations) numbers += numbers_of(results, c);
+    text += "</ul>\n";
+    if (!numbers.empty()) {
+      text +=
+          "<p>A fit of that law still gives these numbers, which need not be properties of the track or the glider:</p>"
+          "\n<ul class=\"soft\">\n" +
+          numbers + "</ul>\n";
+    }
+  }
+  double worst = 1.0;
+  for (const core::ConfigurationResult& configuration : results.configurations) {
+    for (const core::LineFit& line : configuration.lines) worst = std::min(worst, line.r2);
+  }
+  if (worst < kStraight) {
+    text += fmt::format(
+        "<p>Not every a(v) is a straight line or stands clear of its noise: the lowest R² is {}. Where the residuals "
+        "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
+        base::r2_text(worst));
+  }
+  return meaning_section(text);
+}
+
 namespace {
 
 std::string quantity_text(const core::Quantity& quantity) {

@@ -1,15 +1,23 @@
-/// report.html of `analyze`: one self-contained page.
+/// report.html of `analyze`: one self-contained page, with what its numbers say in words at its head.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/analysis/preview.h"
 #include "core/result/results.h"
 #include "report/html/html.h"
 
 namespace glidelab::report {
+
+/// The friction that was found: how large it is, how well a straight line describes it, what is not determined. If the
+/// law is in doubt, that comes first and the numbers are presented only as the result of a fit. HTML.
+std::string meaning_of(const core::AnalysisResults& results);
+
+/// Results that the assumed law cannot explain (drag or friction below zero, points far off their line), and what to do
+/// next. One sentence each, plain text; none if the law fits.
+std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 
 /// `title` names what was analysed; `previews` is empty or has one for each clip of the results. EnvironmentError
 /// where gnuplot fails.

@@ -1,13 +1,15 @@
-/// What a camera's images leave that its model does not have: the calibration's residuals over the image, and pixels'
-/// noise over their brightness.
+/// Plots of what a camera's images leave that its model does not have: the calibration's residuals over the image,
+/// pixels' noise over their brightness, and pixel locking.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result/results.h"
 #include "diagnose/result/diagnosis.h"
 #include "report/html/plot.h"
+#include "validate/truth/comparison.h"
 
 namespace glidelab::report {
 
@@ -20,5 +22,32 @@ Plot noise_plot(const diagnose::PictureCurve& curve);
 
 /// Root mean square of a curve's distances from what was fitted, over their standard deviations.
 double curve_excess(const diagnose::PictureCurve& curve);
+
+/// One marker's centre, along the image's axis in which the marker moves most: its phase (distance from the pixel's
+/// middle) and its error in pixels, that is the measured position minus the smoothed one (or, in a rehearsal, minus the
+/// true one) times the pixels a metre of its clip.
+struct PixelPhase {
+  double phase_px = 0.0;  ///< from the middle of its pixel, -0.5 to 0.5
+  double error_px = 0.0;
+};
+
+/// Of the points that the fits use; empty for tracks.
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results);
+/// Of every centre, from the truth.
+std::vector<PixelPhase> phase_points(const core::AnalysisResults& results,
+                                     const validate::RestitutionComparison& restitution);
+
+/// Does the error of a centre follow where in its pixel the centre lies? A finder that is drawn towards whole pixels
+/// shows a wave; its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
+struct PixelLocking {
+  double amplitude_px = 0.0;  ///< of the first harmonic
+  double sd_px = 0.0;         ///< of A and of B, the errors taken as independent
+};
+
+/// Nothing for fewer than 20 points, and where they leave a quarter of the pixel empty.
+std::optional<PixelLocking> pixel_locking(const std::vector<PixelPhase>& points);
+
+/// The points, their means over twentieths of a pixel, and the harmonic. Nothing if pixel_locking() gives nothing.
+std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool from_truth);
 
 }  // namespace glidelab::report

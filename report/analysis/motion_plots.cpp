@@ -8,9 +8,10 @@
 #include <limits>
 #include <optional>
 
-#include "report/html/decimate.h"
-#include "report/html/plot_style.h"
-#include "report/text/handy_units.h"
+#include "base/math/normal95.h"
+#include "report/html/gnuplot.h"
+#include "report/html/plot.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
 namespace {
@@ -169,6 +170,249 @@ std::vector<Plot> motion_plots(const core::ClipResult& clip) {
     plots.push_back(motion_plot(clip, Variable::v));
     plots.push_back(motion_plot(clip, Variable::a));
   }
+  return plots;
+}
+
+namespace {
+
+constexpr std::size_t kPointsOfAll = 1500;  // in one diagram; more only makes the page heavy
+constexpr double kDetail = 0.15;            // of the largest speed: the part that figures 7 and 9 show
+constexpr std::size_t kBars = 12;           // of one configuration; on every point they would hide each other
+constexpr int kSteps = 24;                  // along a line, whose band is a hyperbola
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct PhasePoint {
+  double v_m_s;
+  double a_m_s2;
+  double residual_m_s2;  ///< NaN where there is no line of this direction
+  double half95_m_s2;    ///< of a, by the noise of the positions
+};
+
+/// The points of one configuration, thinned out by whoever draws them.
+struct Cloud {
+  std::size_t configuration;
+  std::vector<PhasePoint> points;
+  bool forced;  ///< a known force acts on some of them
+};
+
+std::vector<Cloud> clouds(const core::AnalysisResults& results, const PhaseGroup& group) {
+  std::vector<Cloud> all;
+  for (const std::size_t c : group.configurations) {
+    const core::ConfigurationResult& configuration = results.configurations[c];
+    Cloud cloud{c, {}, false};
+    for (const core::ClipResult& clip : results.clips) {
+      const auto& names = configuration.clips;
+      if (std::find(names.begin(), names.end(), clip.name) == names.end()) continue;
+      for (const core::MotionPoint& point : clip.motion) {
+        if (!point.smoothed || point.left_out != core::LeftOut::used) continue;
+        cloud.forced = cloud.forced || point.force_n != 0.0;
+        const double a = point.a_m_s2 - point.force_n / configuration.mass_kg;
+        const core::LineFit* line = line_of(configuration.lines, point.v_m_s);
+        const double residual = line == nullptr ? kNan : a - line_at(*line, point.v_m_s);
+        cloud.points.push_back({point.v_m_s, a, residual, base::kNormal95 * point.sd_a_m_s2});
+      }
+    }
+    all.push_back(std::move(cloud));
+  }
+  return all;
+}
+
+std::string data_name(const char* kind, std::size_t configuration) {
+  return fmt::format("{}{}", kind, configuration);
+}
+
+PlotData thinned(const Cloud& cloud, const char* kind, std::size_t most, double from_v, double to_v) {
+  PlotData data{data_name(kind, cloud.configuration),
+                {},
+                {"v (m/s)", "a (m/s²)", "residual of the line (m/s²)", "half of the 95 % interval of a (m/s²)"}};
+  std::vector<PhasePoint> inside;
+  for (const PhasePoint& point : cloud.points) {
+    if (point.v_m_s >= from_v && point.v_m_s <= to_v) inside.push_back(point);
+  }
+  for (const std::size_t i : every_nth(inside.size(), most)) {
+    data.rows.push_back({inside[i].v_m_s, inside[i].a_m_s2, inside[i].residual_m_s2, inside[i].half95_m_s2});
+  }
+  return never_empty(std::move(data));
+}
+
+/// Each line with its band from v = 0 to where its points end.
+PlotData fitted_lines(const core::ConfigurationResult& configuration, std::size_t index) {
+  PlotData data{data_name("lines", index), {}, {"v (m/s)", "a (m/s²)", "half of the line's 95 % interval (m/s²)"}};
+  for (const core::LineFit& line : configuration.lines) {
+    const double far = std::abs(line.from_v_m_s) > std::abs(line.to_v_m_s) ? line.from_v_m_s : line.to_v_m_s;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double v = far * static_cast<double>(i) / kSteps;
+      data.rows.push_back({v, line_at(line, v), line_half95_m_s2(line, v)});
+    }
+    data.rows.emplace_back();
+  }
+  return never_empty(std::move(data));
+}
+
+struct Window {
+  double from_v;
+  double to_v;
+  std::string script;
+  bool has_limit;  ///< a line crosses a = 0 within it, on its own side of v = 0
+};
+
+/// Labels with a minus sign run into each other where there are more.
+constexpr int kMostSteps = 6;
+
+Window detail_window(const core::AnalysisResults& results, const PhaseGroup& group, double v_max) {
+  const double half = kDetail * v_max;
+  double low = 0.0;
+  double high = 0.0;  // a = 0, the equilibrium, is always in view
+  bool has_limit = false;
+  for (const std::size_t c : group.configurations) {
+    for (const core::LineFit& line : results.configurations[c].lines) {
+      has_limit = has_limit || line_at(line, 0.0) * line_at(line, line.direction * half) < 0.0;
+      for (const double v : {0.0, line.direction * half}) {
+        low = std::min(low, line_at(line, v));
+        high = std::max(high, line_at(line, v));
+      }
+    }
+  }
+  std::string script =
+      fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", -half, half, tick_step(2.0 * half, kMostSteps));
+  if (high > low) {
+    const double margin = 0.08 * (high - low);
+    script += fmt::format("set yrange [{:.6g}:{:.6g}]\n", low - margin, high + margin);
+  }
+  return {-half, half, script, has_limit};
+}
+
+/// What gnuplot draws, and the command that draws it.
+struct Diagram {
+  std::string plot;
+  std::vector<PlotData> data;
+};
+
+/// Points with some bars, lines and their bands: of a, or of what the lines leave of it.
+Diagram diagram(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all,
+                double from_v, double to_v, bool residuals) {
+  std::vector<PlotData> data;
+  std::string bands, points, lines;
+  std::size_t n = 0;
+  for (const Cloud& cloud : all) {
+    const std::string own = color(n++);
+    data.push_back(thinned(cloud, "points", kPointsOfAll / all.size(), from_v, to_v));
+    data.push_back(thinned(cloud, "bars", kBars, from_v, to_v));
+    data.push_back(fitted_lines(results.configurations[cloud.configuration], cloud.configuration));
+    const std::string line = data_name("lines", cloud.configuration);
+    bands += fmt::format(
+        "${0} using 1:({1}-$3):({1}+$3) with filledcurves fillcolor rgb '{2}' fillstyle transparent solid 0.2 "
+        "notitle, ",
+        line, residuals ? "0" : "$2", own);
+    // Strokes and not error bars, around whose points gnuplot leaves white.
+    points += fmt::format(
+        "${0} using 1:{2} with points pt 7 ps 0.3 lc rgb '{3}' notitle, ${1} using 1:(${2}-$4):(0):(2*$4) with vectors "
+        "nohead lw 1.2 lc rgb '{3}' notitle, ",
+        data_name("points", cloud.configuration), data_name("bars", cloud.configuration), residuals ? 3 : 2, own);
+    const std::string label = gnuplot_quoted(shortened(configuration_label(results, group, cloud.configuration)));
+    lines += (n > 1 ? ", " : "") +
+             (residuals ? fmt::format("keyentry with points pt 7 ps 0.8 lc rgb '{}' title {}", own, label)
+                        : fmt::format("${} using 1:2 with lines lw 1.6 lc rgb '{}' title {}", line, own, label));
+  }
+  return {"plot " + bands + points + lines + "\n", std::move(data)};
+}
+
+std::string axes(const char* y) {
+  return fmt::format(
+      "set xlabel 'v  (m/s)'\nset ylabel '{}'\n"
+      "set arrow from graph 0, first 0 to graph 1, first 0 nohead back lw 1 lc rgb '#888888'\n"
+      "set arrow from first 0, graph 0 to first 0, graph 1 nohead back lw 1 lc rgb '#888888'\n",
+      y);
+}
+
+/// The range of the points and the lines, for the band of a line that is hardly known runs out of it, and the labels of
+/// v.
+std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
+  double low = HUGE_VAL, high = -HUGE_VAL, slowest = 0.0, fastest = 0.0;
+  for (const PlotData& block : data) {
+    const bool lines = block.name.starts_with("lines");
+    if (lines && residuals) continue;
+    for (const std::vector<double>& row : block.rows) {
+      const std::size_t column = residuals ? 2 : 1;
+      if (row.size() <= column || !std::isfinite(row[column])) continue;
+      low = std::min(low, row[column]);
+      high = std::max(high, row[column]);
+      slowest = std::min(slowest, row.front());
+      fastest = std::max(fastest, row.front());
+    }
+  }
+  if (!(high > low) || !(fastest > slowest)) return {};
+  const double margin = 0.08 * (high - low);
+  return fmt::format("set yrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low - margin, high + margin,
+                     tick_step(fastest - slowest, kMostSteps));
+}
+
+Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all) {
+  const Diagram of = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, true);
+  const std::string script = std::string(kFrame) + axes("residual  (m/s²)") + ranges_of(of.data, true) + of.plot;
+  return {Drawing{script, of.data},
+          "Residuals: what the lines leave unexplained in a(v). Bands: 95 % of each line; bars: 95 % intervals of some "
+          "points",
+          "Residuals of the fitted lines over v"};
+}
+
+}  // namespace
+
+double line_half95_m_s2(const core::LineFit& line, double v_m_s) {
+  const double var_k = line.k_over_m_1_s.sd * line.k_over_m_1_s.sd, var_a0 = line.a0_m_s2.sd * line.a0_m_s2.sd;
+  if (!(var_a0 > 0.0)) return 0.0;
+  const double quantile = (line.a0_m_s2.high95 - line.a0_m_s2.value) / line.a0_m_s2.sd;  // that of both coefficients
+  const double variance = var_a0 - 2.0 * v_m_s * line.covariance + v_m_s * v_m_s * var_k;
+  return quantile * std::sqrt(std::max(0.0, variance));  // below 0 by rounding only
+}
+
+std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results) {
+  std::vector<PhaseGroup> groups;
+  for (std::size_t c = 0; c < results.configurations.size(); ++c) {
+    const double incline_deg = results.configurations[c].incline_deg;
+    auto found = std::find_if(groups.begin(), groups.end(),
+                              [&](const PhaseGroup& group) { return group.incline_deg == incline_deg; });
+    if (found == groups.end()) found = groups.insert(groups.end(), PhaseGroup{incline_deg, {}});
+    found->configurations.push_back(c);
+  }
+  return groups;
+}
+
+std::string configuration_label(const core::AnalysisResults& results, const PhaseGroup& group,
+                                std::size_t configuration) {
+  const core::ConfigurationResult& own = results.configurations[configuration];
+  std::string label = own.mass_kg < 1.0 ? fmt::format("{:.6g} g", own.mass_kg * 1e3)  // as a person reads it
+                                        : fmt::format("{:.6g} kg", own.mass_kg);
+  const auto same_mass =
+      std::count_if(group.configurations.begin(), group.configurations.end(),
+                    [&](std::size_t other) { return results.configurations[other].mass_kg == own.mass_kg; });
+  if (same_mass > 1) label += ", " + own.group;
+  return label;
+}
+
+std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group) {
+  const std::vector<Cloud> all = clouds(results, group);
+  double v_max = 0.0;
+  for (const Cloud& cloud : all) {
+    for (const PhasePoint& point : cloud.points) v_max = std::max(v_max, std::abs(point.v_m_s));
+  }
+  if (v_max == 0.0) return {};
+  const bool forced = std::any_of(all.begin(), all.end(), [](const Cloud& cloud) { return cloud.forced; });
+  const char* const y = forced ? "a − F/m  (m/s²)" : "a  (m/s²)";
+  const Diagram whole = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, false);
+  std::string script = std::string(kFrame) + axes(y) + ranges_of(whole.data, false) + whole.plot;
+  std::vector<Plot> plots = {{Drawing{script, whole.data},
+                              "Phase diagram: measured and smoothed points, and the lines fitted for v < 0 and v > 0 "
+                              "with their 95 % bands; bars: 95 % intervals of some points",
+                              "Acceleration over velocity with fitted lines"}};
+  const Window window = detail_window(results, group, v_max);
+  const Diagram detail = diagram(results, group, all, window.from_v, window.to_v, false);
+  script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + detail.plot;
+  plots.push_back({Drawing{script, detail.data},
+                   std::string("Near v = 0: the gap between the lines is twice the Coulomb friction") +
+                       (window.has_limit ? ", their crossing of a = 0 the limit velocity" : ""),
+                   "Detail of the phase diagram near v = 0"});
+  plots.push_back(residual_plot(results, group, all));
   return plots;
 }
 

@@ -9,15 +9,10 @@
 
 #include "base/text/number_text.h"
 #include "report/analysis/camera_plots.h"
-#include "report/analysis/clip_csv.h"
-#include "report/analysis/fitted_lines.h"
 #include "report/analysis/motion_plots.h"
-#include "report/analysis/phase_plots.h"
-#include "report/analysis/pixel_phase.h"
-#include "report/analysis/results_json.h"
+#include "report/analysis/result_files.h"
 #include "report/html/html.h"
-#include "report/text/quantity_names.h"
-#include "report/text/result_names.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/analysis/preview.h"
 #include "core/result/results.h"
 #include "report/html/html.h"

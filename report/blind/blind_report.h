@@ -1,20 +1,52 @@
-/// The results of blind cases: a file, a text, a page.
+/// The results of blind cases: a file, a text, a page; with the targets, and what a score means in words.
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "report/html/html.h"
 #include "validate/blind/blind_score.h"
+#include "validate/blind/everyday_score.h"
 
 namespace glidelab::report {
+
+/// Calibration error that is wanted at most.
+inline constexpr double kWantedCalibration = 0.05;
+
+struct BlindTarget {
+  std::string what;
+  validate::BlindShare share;
+  double wanted = 0.0;  ///< of the share
+  bool at_most = false;
+};
+/// All of them, whether or not there are cases that say anything about one.
+std::vector<BlindTarget> blind_targets(const validate::BlindScore& score);
+
+/// That of a key, of no cases where there is none.
+validate::BlindShare share_of(const std::map<std::string, validate::BlindShare>& shares, const std::string& key);
+
+/// Whether the share reaches what is wanted; of a share of no cases that says nothing.
+bool is_met(const BlindTarget& target);
+
+/// "at least 95 %"
+std::string wanted_text(const BlindTarget& target);
+
+/// "96 % (122 of 127)", a dash of none.
+std::string blind_percent(const validate::BlindShare& share);
+
+/// What a verdict on an experiment like these is worth: how often it is right, with the 95 % interval of Clopper and
+/// Pearson, whether its probabilities can be taken at their word, and which targets are missed. HTML.
+std::string blind_meaning(const validate::BlindScore& score);
 
 struct BlindRun {
   std::uint64_t seed = 0;
   std::vector<validate::BlindOutcome> outcomes;
   validate::BlindScore score;
-  bool pictures = false;  ///< filmed experiments, not tracks
+  bool pictures = false;                                 ///< filmed experiments, not tracks
+  std::optional<validate::EverydayScore> everyday = {};  ///< of everyday cases; `score` is then empty
 };
 
 /// The score and every case's outcome, with a newline at its end. No number in it is NaN.

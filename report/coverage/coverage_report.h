@@ -1,12 +1,20 @@
-/// coverage.json, its table for a terminal, and its page.
+/// How often intervals hold the truth (validate/study/coverage/interval_coverage.h): coverage.json, its table for a
+/// terminal, its page, its plots.
 #pragma once
 
 #include <string>
 
 #include "report/html/html.h"
+#include "report/html/plot.h"
 #include "validate/study/coverage/interval_coverage.h"
 
 namespace glidelab::report {
+
+/// Coverage of every row's 95 % intervals with its binomial interval, a line at 95 %.
+Plot coverage_plot(const validate::Coverage& coverage);
+
+/// Actual over nominal coverage, every row a point at every level, with the binomial band of the replicates.
+Plot reliability_plot(const validate::Coverage& coverage);
 
 /// One JSON object, with a newline at its end. No number in it is NaN.
 std::string coverage_json(const validate::Coverage& coverage);

@@ -5,12 +5,10 @@
 #include <utility>
 
 #include "base/math/normal95.h"
+#include "core/result/quantity.h"
 #include "report/analysis/camera_plots.h"
-#include "report/diagnosis/explanation_text.h"
+#include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/line_report.h"
-#include "report/diagnosis/line_words.h"
-#include "report/diagnosis/next_step_words.h"
-#include "report/diagnosis/note_words.h"
 #include "report/diagnosis/verdict_words.h"
 #include "report/text/json_numbers.h"
 
@@ -46,11 +44,9 @@ Json effect_json(const diagnose::DiagnosedEffect& effect) {
   return object;
 }
 
-Json where_json(const diagnose::Diagnosis& diagnosis) {
-  Json where;
-  where["stage"] = diagnosis.stage.empty() ? Json(nullptr) : Json(diagnosis.stage);
-  where["regions"] = Json::array();
-  for (const diagnose::GapRegion& region : diagnosis.regions) {
+Json regions_json(const std::vector<diagnose::GapRegion>& regions) {
+  Json list = Json::array();
+  for (const diagnose::GapRegion& region : regions) {
     Json object;
     object["variable"] = region.variable;
     put(object, "from", region.from);
@@ -64,8 +60,15 @@ Json where_json(const diagnose::Diagnosis& diagnosis) {
     if (region.at) put(object, "at", *region.at);
     if (region.direction != 0) object["direction"] = region.direction;
     if (region.lacking) put(object, "lacking", *region.lacking);
-    where["regions"].push_back(std::move(object));
+    list.push_back(std::move(object));
   }
+  return list;
+}
+
+Json where_json(const diagnose::Diagnosis& diagnosis) {
+  Json where;
+  where["stage"] = diagnosis.stage.empty() ? Json(nullptr) : Json(diagnosis.stage);
+  where["regions"] = regions_json(diagnosis.regions);
   return where;
 }
 
@@ -194,6 +197,58 @@ Json rests_json(const diagnose::CalibrationRests& of) {
   return one;
 }
 
+Json explained_json(const diagnose::Diagnosis& diagnosis) {
+  const bool few = diagnosis.gap && diagnosis.gap->interval95.too_few;
+  const std::string why =
+      few ? too_few_words(diagnosis.gap->interval95) : "the gap without one of the clips is not above the floor";
+  Json list = Json::array();
+  for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
+    Json one;
+    one["id"] = cause.id;
+    put(one, "share", cause.share);
+    put_interval(one, "share_interval95", cause.share_interval95, why);
+    put(one, "gap_after", cause.gap_after);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+Json remainder_json(const diagnose::GapRemainder& remainder) {
+  Json object;
+  put(object, "share", remainder.share);
+  put(object, "gap", remainder.gap);
+  put(object, "acceleration_m_s2", remainder.acceleration_m_s2);
+  put(object, "clip_scatter_m_s2", remainder.clip_scatter_m_s2);
+  put(object, "drag_scatter", remainder.drag_scatter);
+  object["where"]["regions"] = regions_json(remainder.regions);
+  return object;
+}
+
+Json levels_json(const diagnose::GapLevels& levels) {
+  Json object;
+  put(object, "clip", levels.clip, "there is one clip alone");
+  put(object, "configuration", levels.configuration, "there is one configuration alone");
+  put(object, "all", levels.all);
+  object["holds_within"] = levels.holds_within;
+  return object;
+}
+
+Json recovered_json(const std::vector<diagnose::RecoveredConfiguration>& recovered) {
+  Json list = Json::array();
+  for (const diagnose::RecoveredConfiguration& of : recovered) {
+    Json one;
+    one["group"] = of.group;
+    put(one, "mass_kg", of.mass_kg);
+    put(one, "incline_deg", of.incline_deg);
+    one["with"] = of.with;
+    for (const core::QuantityName& name : core::kQuantities) {
+      put(one, std::string(name.key), core::value_of(of, name.which));
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
@@ -220,12 +275,18 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
       put(one, "log_likelihood_gain", std::optional<double>(), why);
     }
     one["parameters"] = ranked.parameters;
+    one["converged"] = ranked.converged;
     if (ranked.gap_after) put(one, "gap_after", *ranked.gap_after);
     document["ranking"].push_back(std::move(one));
   }
   if (diagnosis.lines) document["lines"] = lines_json(*diagnosis.lines);
   document["where"] = where_json(diagnosis);
   document["gap"] = diagnosis.gap ? gap_json(*diagnosis.gap) : Json(nullptr);
+  document["explained"] = explained_json(diagnosis);
+  document["remainder"] = diagnosis.remainder ? remainder_json(*diagnosis.remainder) : Json(nullptr);
+  document["traces"] = diagnosis.traces;
+  document["levels"] = diagnosis.levels ? levels_json(*diagnosis.levels) : Json(nullptr);
+  document["recovered"] = recovered_json(diagnosis.recovered);
   document["next_experiment"] = next_step_words(diagnosis.next);
   document["isolability"] = {{"effects", diagnosis.isolability.ids}, {"cosine", diagnosis.isolability.cosine}};
   document["pictures"] = Json::array();
@@ -247,7 +308,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::CalibrationRests& of : diagnosis.calibrations) {
     document["calibration_rests"].push_back(rests_json(of));
   }
-  document["notes"] = notes_words(diagnosis.notes);
+  document["notes"] = notes_words(diagnosis);
   return json_text(document);
 }
 

@@ -8,12 +8,11 @@
 #include <stdexcept>
 
 #include "report/analysis/camera_plots.h"
-#include "report/diagnosis/diagnosis_lead.h"
-#include "report/diagnosis/explanation_text.h"
+#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/verdict_words.h"
 #include "report/html/gnuplot.h"
-#include "report/html/plot_axis.h"
-#include "report/html/plot_style.h"
-#include "report/text/effect_names.h"
+#include "report/html/plot.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
 namespace {

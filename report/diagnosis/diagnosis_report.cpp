@@ -7,18 +7,15 @@
 
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_list.h"
-#include "report/diagnosis/diagnosis_lead.h"
+#include "report/diagnosis/cause_words.h"
+#include "report/diagnosis/diagnosis_answer.h"
 #include "report/diagnosis/diagnosis_plots.h"
-#include "report/diagnosis/explanation_text.h"
+#include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/gap_plots.h"
 #include "report/diagnosis/line_report.h"
-#include "report/diagnosis/twin_plots.h"
 #include "report/diagnosis/verdict_words.h"
 #include "report/html/html.h"
-#include "report/text/effect_names.h"
-#include "report/text/gap_text.h"
-#include "report/text/handy_units.h"
-#include "report/text/quantity_names.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
 namespace {
@@ -93,22 +90,43 @@ std::string z_text(const std::optional<double>& z) {
   return base::error_text(*z, 1.0);
 }
 
-std::string quantity_text(const std::optional<diagnose::DiagnosedParameter>& of) {
-  return of ? size_and_sd_text(of->value, of->sd, name_and_unit(of->key).unit) : std::string("–");
-}
-
-std::string parameter_table(const diagnose::GapSizes& gap) {
-  HtmlTable table({"parameter", "of", "compared with", "alone", "together", "standard deviations off, before", "after"},
-                  3);
-  for (const auto& p : gap.parameters) {
+/// Of the nominal model, by parts of the data. Where something is missing its fits are no property of the glider,
+/// however small their standard deviation: then they stand without it, and not at all beside what was recovered.
+std::string parameter_table(const diagnose::Diagnosis& diagnosis) {
+  const std::vector<diagnose::GapOfParameter>& parameters = diagnosis.gap->parameters;
+  if (parameters.empty()) return {};
+  const bool missing = diagnosis.verdict != diagnose::Verdict::none;
+  const bool fits = !missing || diagnosis.recovered.empty();
+  std::vector<std::string> header = {"parameter", "of", "compared with"};
+  if (fits) header.insert(header.end(), {"nominal model, alone", "together"});
+  header.insert(header.end(), {"standard deviations off, before", "after"});
+  const auto fit = [&](const std::optional<diagnose::DiagnosedParameter>& of) {
+    if (!of) return std::string("–");
+    constexpr int kDigits = 3;
+    const std::string unit = name_and_unit(of->key).unit;
+    return missing ? size_text(of->value, kDigits, unit) : size_and_sd_text(of->value, of->sd, unit);
+  };
+  HtmlTable table(header, 3);
+  for (const diagnose::GapOfParameter& p : parameters) {
     const std::string symbol = p.quantity == "k_n_s_m" ? "K" : symbol_of(p.quantity);
-    table.row({escape(symbol), escape(p.group), escape(p.against), quantity_text(p.alone), quantity_text(p.together),
-               z_text(p.z_before), z_text(p.z_after)});
+    std::vector<std::string> row = {escape(symbol), escape(p.group), escape(p.against)};
+    if (fits) row.insert(row.end(), {fit(p.alone), fit(p.together)});
+    row.insert(row.end(), {z_text(p.z_before), z_text(p.z_after)});
+    table.row(row);
   }
-  return table.empty() ? "" : table.str();
+  std::string text = table.str();
+  if (missing && fits) {
+    text +=
+        "<p class=\"soft\">Alone: fitted to that part of the data; together: to all. The nominal model leaves out what "
+        "is missing, so these numbers are not those of the glider or the track, and have no standard deviation "
+        "here.</p>\n";
+  }
+  return text;
 }
 
-std::string gap_tables(const diagnose::GapSizes& gap, bool one) {
+std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
+  const diagnose::GapSizes& gap = *diagnosis.gap;
+  const bool one = one_model(diagnosis);
   HtmlTable clips(one ? std::vector<std::string>{"held out", "gap"}
                       : std::vector<std::string>{"held out", "before", "after"});
   const auto row = [&](const std::string& name, const std::string& before, const std::string& after) {
@@ -141,7 +159,7 @@ std::string gap_tables(const diagnose::GapSizes& gap, bool one) {
       gap.acceleration_before ? " Accelerations are measured minus modelled, both smoothed as in the analysis, noise "
                                 "included."
                               : "");
-  return text + parameter_table(gap);
+  return text + parameter_table(diagnosis);
 }
 
 /// What was looked for in the images, what is there first.
@@ -155,28 +173,9 @@ std::string picture_table(const diagnose::Diagnosis& diagnosis) {
   return table.str();
 }
 
-/// Of what images show, the unit is a parameter's key.
-std::string region_size(const diagnose::GapRegion& region) {
-  const NamedUnit of = name_and_unit(region.unit);
-  const std::string& unit = of.unit.empty() ? region.unit : of.unit;
-  return region.size_sd ? size_and_sd_text(region.size, *region.size_sd, unit) : size_text(region.size, 2, unit);
-}
-
-std::string region_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where surest"}, 2);
-  for (const diagnose::GapRegion& region : diagnosis.regions) {
-    table.row({escape(axis_of(region.variable) + (region.clip.empty() ? "" : " of " + region.clip)),
-               escape(region.what), base::number_text(region.from, 3), base::number_text(region.to, 3),
-               region.lacking ? "not known" : escape(region_size(region)),
-               region.at && !region.lacking ? base::number_text(*region.at, 3) : "–",
-               base::number_text(region.excess, 2)});
-  }
-  return table.empty() ? "" : table.str();
-}
-
 Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<validate::TwinMotion>& twin) {
   Html text = std::string(
-      "<h2>The twin compared with the data</h2>\n<p>The twin is a simulation of the fitted motions. Its positions are "
+      "<p>The twin is a simulation of the fitted motions. Its positions are "
       "exact apart from noise like that of the data; of the effects of a camera, it includes only a wrong scale or "
       "perspective.</p>\n");
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
@@ -191,43 +190,169 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
   return text + figures(twin_plots(twin));
 }
 
+constexpr const char* kMethod =
+    "<p>The nominal model, m dv/dt = m g sin α − K v − sign(v) µ m g cos α, is fitted to all positions of all clips at "
+    "once: one K and one µ, one inclination for each set-up, a start for each clip. The noise is estimated from "
+    "neighbouring positions alone. Every effect of the list is added to the model, alone and in pairs. The evidence "
+    "for "
+    "each is its likelihood averaged over the sizes that it may have (equal odds for each factor of ten above what can "
+    "be seen). Smooth forces and displacements without a name (over position, speed and time) and differences between "
+    "clips, masses and set-ups compete with the effects, and act alongside them: where one of those explains more, the "
+    "verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all clips, to first order: sizes "
+    "are learnt from the other clips. What was found by searching (which of several waves or positions, which frames "
+    "are lost, the shape of a curve without a name) comes from all clips.</p>\n";
+
+/// A part of the page that opens where its heading is clicked; nothing of an empty one.
+Html folded(const std::string& heading, const Html& part) {
+  if (part.plots().empty() && part.texts().front().empty()) return {};
+  return Html("<details class=\"part\"><summary>" + heading + "</summary>\n") + part + "</details>\n";
+}
+
+Html gap_parts(const diagnose::Diagnosis& diagnosis) {
+  const std::vector<Plot> domains = domain_plots(diagnosis);
+  Html html;
+  if (!domains.empty()) {
+    html += folded("How large the gap is: positions, accelerations, parameters",
+                   figures(domains) + figures(phase_gap_plots(diagnosis)));
+  }
+  html += folded("Where the gap lies: residuals over position, speed and time",
+                 figures(where_plots(diagnosis)) + figures(residual_maps(diagnosis)) + region_table(diagnosis.regions));
+  return html;
+}
+
+Html picture_part(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.pictures.empty()) return {};
+  return "<p>Some faults of a camera hardly shift the positions and show in the images themselves. Each is looked for, "
+         "whether or not the positions call for it.</p>\n" +
+         picture_table(diagnosis) + figures(picture_plots(diagnosis));
+}
+
 }  // namespace
 
 Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
                       const std::vector<validate::TwinMotion>& twin) {
   if (diagnosis.lines) return line_report(title, diagnosis);
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
-  body += tiles(diagnosis);
+  // The sentence of the causes holds what the tiles would say.
+  const bool told = !sequence_words(diagnosis).empty();
+  if (!told) body += tiles(diagnosis);
   body += diagnosis_meaning(diagnosis);
-  body += "<h2>The verdict</h2>\n" + effect_table(diagnosis) + figures(verdict_plots(diagnosis));
-  const std::vector<Plot> domains = domain_plots(diagnosis);
-  if (!domains.empty()) {
-    body += "<h2>How large the gap is</h2>\n" + figures(domains) + figures(phase_gap_plots(diagnosis));
-  }
-  body += "<h2>Where the gap lies</h2>\n" + figures(where_plots(diagnosis)) + figures(residual_maps(diagnosis)) +
-          region_table(diagnosis);
-  if (!twin.empty()) body += twin_section(diagnosis, twin);
-  if (!diagnosis.pictures.empty()) {
-    body +=
-        "<h2>What the images show</h2>\n<p>Some faults of a camera hardly shift the positions and show in the images "
-        "themselves. Each is looked for, whether or not the positions call for it.</p>\n" +
-        picture_table(diagnosis) + figures(picture_plots(diagnosis));
-  }
-  const std::vector<Plot> alike = isolability_plots(diagnosis.isolability);
-  if (!alike.empty()) body += "<h2>What these data can tell apart</h2>\n" + figures(alike);
-  body += "<h2>Numbers</h2>\n" + ranking_table(diagnosis);
-  if (diagnosis.gap) body += "<h3>The gap, clip by clip</h3>\n" + gap_tables(*diagnosis.gap, one_model(diagnosis));
-  body +=
-      "<h2>Method</h2>\n<p>The nominal model, m dv/dt = m g sin α − K v − sign(v) µ m g cos α, is fitted to all "
-      "positions of all clips at once: one K and one µ, one inclination for each set-up, a start for each clip. The "
-      "noise is estimated from neighbouring positions alone. Every effect of the list is added to the model, alone and "
-      "in pairs. The evidence for each is its likelihood averaged over the sizes that it may have (equal odds for each "
-      "factor of ten above what can be seen). Smooth forces and displacements without a name (over position, speed and "
-      "time) and differences between clips, masses and set-ups compete with the effects, and act alongside them: where "
-      "one of those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to "
-      "all clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
-      "waves or positions, which frames are lost, the shape of a curve without a name) comes from all clips.</p>\n";
+  body += answer_sections(diagnosis);
+  body += "<h2>Details</h2>\n";
+  body += folded(
+      "Probability of each explanation, and the gap of each clip",
+      Html(told ? tiles(diagnosis) : std::string()) + effect_table(diagnosis) + figures(verdict_plots(diagnosis)));
+  body += gap_parts(diagnosis);
+  if (!twin.empty()) body += folded("The twin compared with the data", twin_section(diagnosis, twin));
+  body += folded("What the images show", picture_part(diagnosis));
+  body += folded("What these data can tell apart", figures(isolability_plots(diagnosis.isolability)));
+  std::string numbers = ranking_table(diagnosis);
+  if (diagnosis.gap) numbers += "<h3>The gap, clip by clip</h3>\n" + gap_tables(diagnosis);
+  body += folded("Numbers: evidence, and the gap clip by clip", numbers);
+  body += folded(fmt::format("Notes ({})", diagnosis.notes.size()), note_paragraphs(diagnosis));
+  body += folded("Method", kMethod);
   return page(title, body);
+}
+
+namespace {
+
+constexpr std::size_t kRanked = 6;
+constexpr std::size_t kLineWidth = 110;
+
+std::string wrapped(const std::string& text) {
+  std::string lines, line;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t space = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, space - at);
+    if (!line.empty() && line.size() + 1 + word.size() > kLineWidth) {
+      lines += line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+    at = space + 1;
+  }
+  return lines + line + "\n";
+}
+
+std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
+  const diagnose::GapIntervals& over_clips = gap.interval95;
+  std::string text;
+  if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of what is above the floor\n";
+  if (!over_clips.too_few) {
+    text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
+                        interval_text(over_clips.after));
+  } else {
+    text += "  " + too_few_words(over_clips) + "\n";
+  }
+  if (!gap.acceleration_before || !gap.acceleration_after) return text;
+  const auto acceleration = [&](double size, const std::optional<diagnose::GapInterval>& interval) {
+    return base::number_text(size, 3) + " m/s²" + (interval ? " (" + interval_text(interval) + ")" : "");
+  };
+  return text + fmt::format("  in acceleration {} before, {} after, noise included\n",
+                            acceleration(*gap.acceleration_before, over_clips.acceleration_before),
+                            acceleration(*gap.acceleration_after, over_clips.acceleration_after));
+}
+
+/// Below the summary: each cause's share, what the rest is like, and the quantities with the causes in the model.
+std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty()) text += (text.empty() ? "" : "\n") + part;
+  };
+  if (const auto rows = explained_rows(diagnosis, true); !rows.empty()) add(text_table(rows, 1));
+  if (diagnosis.remainder) {
+    std::string rest = remainder_words(*diagnosis.remainder);
+    // Of `unknown` the summary says where it lies.
+    if (diagnosis.verdict == diagnose::Verdict::effect) {
+      const std::string clearest = clearest_words(*diagnosis.remainder, rest.empty() ? "What is left" : "It");
+      rest += (rest.empty() || clearest.empty() ? "" : " ") + clearest;
+    }
+    if (!rest.empty()) add(wrapped(rest));
+  }
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    if (const auto rows = member_rows(effect); rows.size() > 2) add(effect.id + ":\n" + text_table(rows, 1));
+  }
+  for (const RecoveredTable& table : recovered_tables(diagnosis)) {
+    add(with_words(table.with) + ":\n" + text_table(table.rows, 1));
+    for (const std::string& why : table.why) text += wrapped(printable(why));
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+}  // namespace
+
+std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
+  std::string text =
+      fmt::format("verdict: {}\n\n{}\n", verdict_id(diagnosis.verdict), wrapped(verdict_words(diagnosis)));
+  const std::string sequence = diagnosis.lines ? std::string() : sequence_lines(diagnosis);
+  if (!sequence.empty()) text += sequence + "next: " + wrapped(next_step_words(diagnosis.next)) + "\n";
+  std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "ln evidence"}};
+  rows.push_back({"none", fmt::format("{:.3f}", diagnosis.none), "0"});
+  rows.push_back({"unknown", fmt::format("{:.3f}", diagnosis.unknown), ""});
+  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
+    const auto& ranked = diagnosis.ranking[i];
+    rows.push_back({explanation_id(ranked.explanation), fmt::format("{:.3f}", ranked.probability),
+                    ranked.left_out ? "not weighed" : base::gain_text(ranked.log_evidence_gain)});
+  }
+  text += text_table(diagnosis.lines ? line_rows(*diagnosis.lines) : rows, diagnosis.lines ? 2 : 1) + "\n";
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
+      if (!sequence.empty() && parameter.key.find('.') != std::string::npos) continue;  // in the table above
+      text += fmt::format("{}: {}\n", effect.id, parameter_text(parameter));
+    }
+  }
+  for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
+    if (finding.seen) text += "pictures: " + wrapped(finding.words);
+  }
+  if (diagnosis.gap) {
+    text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor 1)\n",
+                        diagnosis.lines ? "lines" : "clips", diagnosis.gap->before, diagnosis.gap->after);
+    text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips");
+  }
+  if (sequence.empty()) text += "\nnext: " + wrapped(next_step_words(diagnosis.next));
+  for (const std::string& note : notes_words(diagnosis)) text += "note: " + wrapped(note);
+  return text;
 }
 
 }  // namespace glidelab::report

@@ -1,4 +1,4 @@
-/// report.html of `diagnose`: one self-contained page.
+/// A diagnosis for people: report.html of `diagnose`, one self-contained page, and text for a terminal.
 #pragma once
 
 #include <string>
@@ -14,5 +14,8 @@ namespace glidelab::report {
 /// gnuplot fails.
 Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
                       const std::vector<validate::TwinMotion>& twin = {});
+
+/// Summary, ranking, gap, what to record next, notes.
+std::string diagnosis_text(const diagnose::Diagnosis& diagnosis);
 
 }  // namespace glidelab::report

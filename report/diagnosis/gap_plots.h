@@ -1,4 +1,5 @@
-/// The gap of a diagnosis as plots: how large in each domain, where in which clip, and in the phase plane.
+/// The gap of a diagnosis as plots: how large in each domain, where in which clip, and in the phase plane; and a twin
+/// compared with the data that it was made from.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +8,7 @@
 
 #include "diagnose/result/diagnosis.h"
 #include "report/html/plot.h"
+#include "validate/film/twin_motions.h"
 
 namespace glidelab::report {
 
@@ -31,5 +33,8 @@ struct ResidualMap {
 /// width. Each curve has as many noise_m as residuals.
 ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, const std::string& variable,
                          std::size_t cells);
+
+/// What the measured positions lie off the twin's, over the time, beside noise alone; and a(v) of both.
+std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions);
 
 }  // namespace glidelab::report

@@ -1,4 +1,5 @@
-/// The page of a diagnosis of published lines: the page of motions speaks of clips, positions and their noise.
+/// The page of a diagnosis of published lines, with its plots. The page of motions does not serve: it speaks of clips,
+/// positions and their noise.
 #pragma once
 
 #include <string>
@@ -6,9 +7,14 @@
 
 #include "diagnose/result/diagnosis.h"
 #include "report/html/html.h"
+#include "report/html/plot.h"
 #include "report/text/json_numbers.h"
 
 namespace glidelab::report {
+
+/// The friction that the nominal model leaves in each line's intercept, over 1/m and over (K/m)², with what each effect
+/// that acts on intercepts makes of it.
+std::vector<Plot> line_plots(const diagnose::LineComparison& lines);
 
 /// A whole page; `diagnosis.lines` is there. EnvironmentError where gnuplot fails.
 Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis);

@@ -6,12 +6,10 @@
 
 #include "base/text/number_text.h"
 #include "report/diagnosis/diagnosis_plots.h"
-#include "report/diagnosis/note_words.h"
+#include "report/diagnosis/diagnosis_words.h"
 #include "report/html/html.h"
-#include "report/text/effect_names.h"
-#include "report/text/handy_units.h"
+#include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
-#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

@@ -5,24 +5,202 @@
 #include <algorithm>
 #include <array>
 
-#include "base/text/size_text.h"
-#include "report/diagnosis/explanation_text.h"
-#include "report/diagnosis/line_words.h"
-#include "report/diagnosis/note_words.h"
+#include "base/text/number_text.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/effects/effect_list.h"
+#include "report/diagnosis/cause_words.h"
+#include "report/diagnosis/diagnosis_words.h"
+#include "report/html/html.h"
 
 namespace glidelab::report {
 namespace {
 
-std::string times(double gap) {
-  return gap < 10.0 ? fmt::format("{:.2f}", gap) : fmt::format("{:.0f}", gap);
+constexpr double kWorthSaying = 0.01;  // probability of what has a name beside something that has none
+
+std::string line_times(double gap) {
+  return gap < 10.0 ? fmt::format("{:.1f}", gap) : fmt::format("{:.0f}", gap);
 }
 
-std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ") {
+std::string line_size_text(const diagnose::LineSize& size) {
+  if (size.key == "force_n") return base::size_and_sd_text(size.value, size.sd, "N");
+  if (size.key == "mass_kg") return base::size_and_sd_text(size.value, size.sd, "kg");
+  return base::size_and_sd_text(size.value, size.sd, "m/s²") + " for each 1/s² of (K/m)²";
+}
+
+const diagnose::LineCandidate& candidate(const diagnose::LineComparison& lines,
+                                         const diagnose::Explanation& explanation) {
+  return *std::find_if(lines.candidates.begin(), lines.candidates.end(),
+                       [&](const diagnose::LineCandidate& c) { return c.explanation == explanation; });
+}
+
+/// Of one effect alone.
+diagnose::Explanation only(const std::string& id) {
+  return {{id}, false};
+}
+
+std::string sizes_of(const diagnose::LineCandidate& candidate) {
   std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
+  for (const diagnose::LineSize& size : candidate.sizes) {
+    text += (text.empty() ? "" : " and ") + line_size_text(size);
   }
   return text;
+}
+
+std::string words_of(const diagnose::Diagnosis& diagnosis, const std::string& id) {
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    if (effect.id == id) return effect.words;
+  }
+  return std::string(diagnose::effect_of(id).words);
+}
+
+/// "either of two things, and these lines cannot tell which: A (…), or B (…)".
+std::string either(const diagnose::Diagnosis& diagnosis) {
+  const diagnose::LineComparison& lines = *diagnosis.lines;
+  std::string text = lines.either_of.size() == 2 ? "either of two things" : "one of several things";
+  text += fmt::format(" ({} together), and these lines cannot tell which: ", percent(lines.either_probability));
+  for (std::size_t i = 0; i < lines.either_of.size(); ++i) {
+    const diagnose::LineCandidate& one = candidate(lines, only(lines.either_of[i]));
+    text += fmt::format("{}{} ({}, {}; {})", i == 0 ? "" : ", or ", words_of(diagnosis, lines.either_of[i]),
+                        lines.either_of[i], percent(one.probability), sizes_of(one));
+  }
+  return text;
+}
+
+std::string alike_words(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    for (const std::string& id : effect.equivalent_to) {
+      if (id == diagnose::ids::eddy_rolloff || id == diagnose::ids::power_law_drag)
+        text += (text.empty() ? "" : " or ") + id;
+    }
+  }
+  if (text.empty()) return text;
+  return fmt::format(
+      " A drag that grows less than proportionally to the speed ({}) has the same lines as such a friction.", text);
+}
+
+std::string chi2_words(const diagnose::Diagnosis& diagnosis, const diagnose::Explanation& named) {
+  const diagnose::LineComparison& lines = *diagnosis.lines;
+  const diagnose::LineCandidate &before = candidate(lines, {}), &after = candidate(lines, named);
+  if (!before.chi2 || !after.chi2) return "";
+  std::string rivals;
+  for (const std::string& other : lines.either_of) {
+    if (only(other) == named) continue;
+    if (const diagnose::LineCandidate& rival = candidate(lines, only(other)); rival.chi2) {
+      const std::string other_chi2 = base::number_text(*rival.chi2, 3);
+      rivals += other_chi2 == base::number_text(*after.chi2, 3) ? " either way" : " or " + other_chi2;
+    }
+  }
+  return fmt::format(
+      " Chi² over the lines' own scatter ({} mm/s² of an intercept, {} % of a slope) falls from {} to {}{}.",
+      base::number_text(1e3 * lines.intercept_sd_m_s2, 2), base::number_text(1e2 * lines.slope_sd, 2),
+      base::number_text(*before.chi2, 3), base::number_text(*after.chi2, 3), rivals);
+}
+
+std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
+  if (!diagnosis.gap) return " This table does not tell how much one line scatters by itself: no set-up is repeated.";
+  const diagnose::GapSizes& gap = *diagnosis.gap;
+  std::string text = fmt::format(
+      " Predicted by the others with the nominal model, each line is {} times as far off as that scatter explains",
+      line_times(gap.before));
+  if (diagnosis.verdict == diagnose::Verdict::none) return text + " (1 is the floor).";
+  const bool named = diagnosis.verdict == diagnose::Verdict::effect;
+  text += fmt::format(", and {} times with {} (1 is the floor).", line_times(gap.after),
+                      !named                                ? "the likeliest difference that has no name"
+                      : !diagnosis.lines->either_of.empty() ? "the better of them"
+                      : diagnosis.effects.size() > 1        ? "both"
+                                                            : "this effect");
+  if (named && gap.after > 1.0 + 3.0 * gap.standard_error) {
+    text += fmt::format(
+        " So even the best explanation with a name leaves {} times the lines' own scatter: something else is missing "
+        "as well, or lines of one set-up err together. The probability that something without a name acts is {}.",
+        line_times(gap.after), percent(diagnosis.unknown));
+  }
+  return text;
+}
+
+std::string unknown_words(const diagnose::Diagnosis& diagnosis) {
+  const diagnose::LineComparison& lines = *diagnosis.lines;
+  const auto unnamed = std::find_if(lines.candidates.begin(), lines.candidates.end(),
+                                    [](const diagnose::LineCandidate& c) { return c.unnamed.has_value(); });
+  std::string text = fmt::format("Something is missing that no effect with a name explains ({}). The likeliest is {}",
+                                 percent(diagnosis.unknown), unnamed_words(*unnamed->unnamed));
+  if (!unnamed->explanation.effects.empty()) {
+    text += " beside " + explanation_id({unnamed->explanation.effects, false});
+  }
+  text += ".";
+  if (!diagnosis.regions.empty()) {
+    const diagnose::GapRegion& most = diagnosis.regions.front();
+    text += fmt::format(" Farthest off the nominal model, by {} {}, is the {} of {}{}.",
+                        base::value_and_sd_text(most.size, most.size_sd.value_or(0.0)), most.unit, most.what,
+                        most.variable == "group" ? fmt::format("the set-up at {:.3g} degrees", most.from)
+                                                 : fmt::format("{:.0f} g", 1e3 * most.from),
+                        most.direction == 0  ? ""
+                        : most.direction > 0 ? " where v > 0"
+                                             : " where v < 0");
+  }
+  if (lines.either_of.size() > 1 && lines.either_probability >= kWorthSaying)
+    return text + " The best explanation with a name is " + either(diagnosis) + ".";
+  return text;
+}
+
+}  // namespace
+
+std::string line_words(const diagnose::Diagnosis& diagnosis) {
+  const diagnose::LineComparison& lines = *diagnosis.lines;
+  if (diagnosis.verdict == diagnose::Verdict::none) {
+    const bool doubtful = !lines.candidates.front().explanation.is_nothing();
+    return (doubtful
+                ? fmt::format("These {} lines leave it open whether anything is missing: nothing missing ({}) is not "
+                              "ruled out at three to one, so no effect is claimed.",
+                              lines.lines, percent(diagnosis.none))
+                : fmt::format("Nothing is missing that these {} lines could show ({}).", lines.lines,
+                              percent(diagnosis.none))) +
+           line_gap_words(diagnosis);
+  }
+  if (diagnosis.verdict == diagnose::Verdict::unknown) return unknown_words(diagnosis) + line_gap_words(diagnosis);
+  const diagnose::Explanation& named_first = diagnosis.ranking.front().explanation;
+  if (!lines.either_of.empty()) {
+    return fmt::format("These {} lines show {}.{}", lines.lines, either(diagnosis), alike_words(diagnosis)) +
+           chi2_words(diagnosis, named_first) + line_gap_words(diagnosis);
+  }
+  std::string named;
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    named += fmt::format("{}{} ({}, {})", named.empty() ? "" : " and ", effect.words, effect.id,
+                         percent(effect.probability));
+  }
+  return fmt::format("These {} lines show {}: {}.{}", lines.lines, named, sizes_of(candidate(lines, named_first)),
+                     alike_words(diagnosis)) +
+         chi2_words(diagnosis, named_first) + line_gap_words(diagnosis);
+}
+
+std::string unnamed_words(const diagnose::UnnamedInLines& of) {
+  using Over = diagnose::UnnamedInLines::Over;
+  const char* what = of.what == diagnose::UnnamedInLines::What::friction ? "friction" : "drag";
+  switch (of.over) {
+    case Over::mass:
+      return fmt::format("a separate {} for each mass", what);
+    case Over::set_up:
+      return fmt::format("a separate {} for each set-up", what);
+    case Over::mass_and_set_up:
+      return fmt::format("a separate {} for each mass in each set-up", what);
+    case Over::direction:
+      return fmt::format("a separate {} for each direction", what);
+  }
+  return {};
+}
+
+std::string impossible_words(const diagnose::ImpossibleSize& size) {
+  const auto [name, unit] = base::name_and_unit(size.key);
+  const std::string needed = fmt::format("{} would have to be {}", name, base::size_text(size.value, 2, unit));
+  if (!size.largest) return needed + ", and it cannot be below zero";
+  return fmt::format("{}, and more than {} is implausible", needed, base::size_text(*size.largest, 2, unit));
+}
+
+namespace {
+
+std::string times(double gap) {
+  return gap < 10.0 ? fmt::format("{:.2f}", gap) : fmt::format("{:.0f}", gap);
 }
 
 std::string count_in_words(std::size_t count) {
@@ -54,13 +232,15 @@ std::string in_words(const std::string& variable) {
   return variable;
 }
 
-std::string clip_gap_words(const diagnose::Diagnosis& diagnosis) {
+/// `sequence`: what is left with the causes in the model is told already.
+std::string clip_gap_words(const diagnose::Diagnosis& diagnosis, bool sequence = false) {
   if (!diagnosis.gap) return "";
   const diagnose::GapSizes& gap = *diagnosis.gap;
   std::string text = fmt::format(
       " Held-out clips lie {} times as far from the nominal model (drag proportional to the speed, dry friction, "
       "gravity) as their noise explains",
       times(gap.before));
+  if (sequence) return text + ".";
   if (diagnosis.verdict == diagnose::Verdict::effect && gap.shrink) {
     const bool one = diagnosis.effects.size() == 1;
     text += fmt::format("; with {} in the model, {} times (1 is the floor)",
@@ -98,17 +278,52 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
       sentences(diagnosis.limits.contradicted), sure);
 }
 
-/// "3.6 ± 0.2 mm at 0.34 m", or the size alone where a curve is not what tells it.
-std::string largest_words(const diagnose::GapRegion& region) {
-  if (!region.at || !region.size_sd) return base::size_text(region.size, 2, region.unit);
-  const std::string unit = base::name_and_unit(region.variable).unit;
-  return fmt::format("{} {} {}", base::size_and_sd_text(region.size, *region.size_sd, region.unit),
-                     region.variable == "t_s" ? "after" : "at", base::size_text(*region.at, 3, unit));
+/// Behind a verdict: the first set-up, and how many more; each has its note.
+std::string contradicted_words(const diagnose::Diagnosis& diagnosis) {
+  const std::vector<diagnose::ContradictedIncline>& all = diagnosis.limits.contradicted;
+  std::string text = note_words(as_told(all.front(), diagnosis));
+  if (all.size() > 1) {
+    text += fmt::format(" The motion contradicts {} more set-up{}.", all.size() - 1, all.size() > 2 ? "s" : "");
+  }
+  return text;
+}
+
+/// What the gap depends on most, and how large it is there.
+std::string first_region_words(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.regions.empty()) return "";
+  const diagnose::GapRegion& region = diagnosis.regions.front();
+  std::string text = fmt::format(" What is left depends most on {}", in_words(region.variable));
+  if (!region.clip.empty()) text += " and is largest in clip " + region.clip;
+  if (region.lacking) {
+    return text + fmt::format(
+                      ": {}. These data do not tell how large it is: the estimate, {}, is far more than the nominal "
+                      "model lacks anywhere ({}).",
+                      region.what, base::size_text(region.size, 2, region.unit),
+                      base::size_text(*region.lacking, 2, region.unit));
+  }
+  return text + fmt::format(": {} of up to {}.", region.what, largest_words(region));
+}
+
+/// Behind the sentence of the causes: how sure they are, and of `unknown` where the rest lies.
+std::string beside_sequence(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  if (diagnosis.verdict == diagnose::Verdict::effect) {
+    const std::string sure = sureness_words(diagnosis);
+    if (!sure.empty()) text = " " + sure;
+  }
+  if (diagnosis.verdict == diagnose::Verdict::unknown) {
+    const std::string clearest = diagnosis.remainder ? clearest_words(*diagnosis.remainder) : "";
+    text = clearest.empty() ? first_region_words(diagnosis) : " " + clearest;
+  }
+  return text + clip_gap_words(diagnosis, true);
 }
 
 std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   if (only_statements_fail(diagnosis)) {
     return wrongly_stated_words(diagnosis) + clip_gap_words(diagnosis);
+  }
+  if (const std::string sequence = sequence_words(diagnosis); !sequence.empty()) {
+    return sequence + beside_sequence(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::none && !diagnosis.ranking.empty() &&
       diagnosis.ranking.front().probability > diagnosis.none) {
@@ -127,23 +342,9 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
            clip_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {
-    std::string text = fmt::format("Something is missing, and it is none of the effects that this program knows ({}).",
-                                   percent(diagnosis.unknown));
-    if (!diagnosis.regions.empty()) {
-      const diagnose::GapRegion& region = diagnosis.regions.front();
-      text += fmt::format(" What is left depends most on {}", in_words(region.variable));
-      if (!region.clip.empty()) text = text + " and is largest in clip " + region.clip;
-      if (region.lacking) {
-        text += fmt::format(
-            ": {}. These data do not tell how large it is: the estimate, {}, is far more than the nominal model lacks "
-            "anywhere ({}).",
-            region.what, base::size_text(region.size, 2, region.unit),
-            base::size_text(*region.lacking, 2, region.unit));
-      } else {
-        text += fmt::format(": {} of up to {}.", region.what, largest_words(region));
-      }
-    }
-    return text + clip_gap_words(diagnosis);
+    return fmt::format("Something is missing, and it is none of the effects that this program knows ({}).",
+                       percent(diagnosis.unknown)) +
+           first_region_words(diagnosis) + clip_gap_words(diagnosis);
   }
   std::vector<std::string> words;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) words.push_back(claim(effect));
@@ -161,7 +362,7 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
     if (!limits.contradicted.empty()) text = sentences(limits.contradicted) + " " + text;
   } else if (!only_statements_fail(diagnosis)) {
     if (!limits.driving.empty()) text += " " + sentences(limits.driving);
-    if (!limits.contradicted.empty()) text += " " + sentences(limits.contradicted);
+    if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);
   }
   return limits.set_aside ? note_words(*limits.set_aside) + " " + text : text;
 }
@@ -170,6 +371,73 @@ std::string too_few_words(const diagnose::GapIntervals& intervals) {
   if (!intervals.too_few) return {};
   return fmt::format("{} clip{} cannot tell how much clips differ: an interval needs three or more", *intervals.too_few,
                      *intervals.too_few == 1 ? "" : "s");
+}
+
+namespace {
+
+/// What the verdict says of K/m, µ and the inclination that an analysis of the same data gives; empty where they may be
+/// taken as they are, or where it is open.
+std::string consequence(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.verdict == diagnose::Verdict::effect) {
+    const bool lost_only = diagnosis.effects.size() == 1 &&
+                           diagnosis.effects.front().id == diagnose::ids::dropped_frames &&
+                           diagnosis.effects.front().equivalent_to.empty();
+    if (lost_only)
+      return " An analysis of these data reports the losses that it finds, and corrects the times after them.";
+    const char* const below = diagnosis.recovered.empty() ? "" : " The table below gives them with it in the model.";
+    return std::string(
+               " An analysis of these data leaves this out: its K/m, µ and inclination are those of a law without it, "
+               "and may be off by more than their stated errors.") +
+           below;
+  }
+  if (diagnosis.verdict == diagnose::Verdict::unknown) {
+    return " Until the cause is found, K/m, µ and the inclination from an analysis of these data are numbers of a fit; "
+           "they "
+           "need not be properties of the track or the glider.";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string probability_text(double probability) {
+  return probability > 0.9995 ? "> 0.999" : probability < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", probability);
+}
+
+bool one_model(const diagnose::Diagnosis& diagnosis) {
+  return diagnosis.verdict == diagnose::Verdict::none &&
+         (!diagnosis.gap || diagnosis.gap->before == diagnosis.gap->after);
+}
+
+std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words) {
+  std::string text = tile(probability_text(diagnosis.none), "nothing is missing") +
+                     tile(probability_text(diagnosis.unknown), "something without a name");
+  if (!diagnosis.gap) return text;
+  const std::string before = base::number_text(diagnosis.gap->before, 3);
+  return text +
+         tile(one_model(diagnosis) ? before : before + " → " + base::number_text(diagnosis.gap->after, 3), gap_words);
+}
+
+std::string diagnosis_meaning(const diagnose::Diagnosis& diagnosis) {
+  // The answer stands out where there is a sentence of its own for it.
+  std::string verdict = escape(verdict_words(diagnosis));
+  const std::string lead = diagnosis.lines ? std::string() : escape(sequence_words(diagnosis));
+  if (const std::size_t at = verdict.find(lead); !lead.empty() && at != std::string::npos) {
+    verdict = fmt::format("{}<b>{}</b>{}", verdict.substr(0, at), lead, verdict.substr(at + lead.size()));
+  }
+  return meaning_section(fmt::format("<p>{}{}</p>\n", verdict, consequence(diagnosis)));
+}
+
+std::string next_step_note(const diagnose::Diagnosis& diagnosis) {
+  return fmt::format("<p class=\"note\"><b>What to record next.</b> {}</p>\n", escape(next_step_words(diagnosis.next)));
+}
+
+std::string note_paragraphs(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  for (const std::string& note : notes_words(diagnosis)) {
+    text += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  }
+  return text;
 }
 
 }  // namespace glidelab::report

@@ -12,8 +12,7 @@
 
 #include "base/errors.h"
 #include "base/files/child_process.h"
-#include "base/files/staged_output.h"
-#include "base/files/temporary_folder.h"
+#include "base/files/file_io.h"
 
 namespace glidelab::report {
 namespace {

@@ -1,4 +1,4 @@
-/// The pieces of a self-contained page: style, tables, images as data URIs.
+/// The pieces of a self-contained page: style, tables, images as data URIs, typeset numbers.
 ///
 /// Plots are drawn when the page is made, all in one run of gnuplot; beside the page their files are laid in a folder
 /// "plots". Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.
@@ -13,6 +13,12 @@
 #include "report/html/plot.h"
 
 namespace glidelab::report {
+
+/// HTML in which a hyphen before a number is a minus sign (U+2212), and a number keeps to its unit and to its ± by
+/// no-break spaces (U+00A0), so that no line begins with a unit. Not touched: tags, what stands in code, script and
+/// style elements, and a hyphen right behind a letter of any alphabet, a digit, another hyphen, "_", "." or "]"
+/// ("m1-2", "maß-2", "1e-07", "2026-11-23"). A unit is one that pages use.
+std::string typeset_numbers(std::string_view html);
 
 /// The text with &, <, >, quotes and apostrophes as entities; fit for content and for attributes in quotes.
 std::string escape(std::string_view text);

@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "report/html/gnuplot.h"
-#include "report/html/plot_axis.h"
-#include "report/html/plot_style.h"
-#include "report/text/quantity_names.h"
+#include "report/html/plot.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
 

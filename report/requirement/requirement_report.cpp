@@ -10,9 +10,8 @@
 #include "base/text/number_text.h"
 #include "report/html/html.h"
 #include "report/requirement/requirement_plot.h"
+#include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
-#include "report/text/quantity_names.h"
-#include "report/text/text_table.h"
 
 namespace glidelab::report {
 namespace {

@@ -10,9 +10,8 @@
 #include "base/math/normal95.h"
 #include "fit/estimators.h"
 #include "report/html/gnuplot.h"
-#include "report/html/plot_axis.h"
-#include "report/html/plot_style.h"
-#include "report/text/quantity_names.h"
+#include "report/html/plot.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
 namespace {

@@ -1,13 +1,19 @@
-/// report.html of `sweep`: error, stated standard deviation and coverage of every quantity over each varied key.
+/// report.html of `sweep`: error, stated standard deviation and coverage of every quantity over each varied key, and mu
+/// over mass.
 #pragma once
 
 #include <string>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "report/html/html.h"
 #include "validate/study/sweep/sweep_summary.h"
 
 namespace glidelab::report {
+
+/// The section of a sweep's page on whether mu falls with mass (validate/study/sweep/mass_study.h, as part of the
+/// summary). HTML: the answer in words where the sweep names what was published, and the table. Empty of any other
+/// sweep.
+std::string mass_study_section(const validate::MassStudy& study);
 
 /// EnvironmentError if gnuplot fails.
 Page sweep_report(const validate::SweepSummary& summary, const base::Progress& progress = base::no_progress);

@@ -1,16 +1,27 @@
-/// report.html of `validate`: truth, recovered value and error first, then all that an analysis shows.
+/// report.html of `validate`: truth, recovered value and error first, then all that an analysis shows; its plots of
+/// truth against estimate, and comparison.json.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/analysis/preview.h"
 #include "core/result/results.h"
 #include "report/html/html.h"
+#include "report/html/plot.h"
 #include "validate/truth/comparison.h"
 
 namespace glidelab::report {
+
+/// comparison.json: each recovered value beside its truth, with a newline at its end. No number in it is NaN; what is
+/// missing is null with its reason in "why".
+std::string comparison_json(const validate::Comparison& comparison);
+
+/// Truth against estimate: errors of the recovered values in units of their standard deviation, restitution errors of
+/// the positions over the field, and errors of the centres within their pixels; each only where there is something to
+/// compare.
+std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison);
 
 /// `previews` is empty or has one for each clip of the results. EnvironmentError if gnuplot fails.
 Page validation_report(const std::string& title, const core::AnalysisResults& results,

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 
 namespace glidelab::tests {

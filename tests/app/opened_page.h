@@ -9,7 +9,7 @@
 #include <regex>
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/app/run_process.h"
 
 namespace glidelab::tests {

@@ -8,7 +8,7 @@
 
 #include <stdexcept>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 
 namespace glidelab::tests {

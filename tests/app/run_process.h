@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/temporary_folder.h"
+#include "base/files/file_io.h"
 
 namespace glidelab::tests {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <regex>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 
 namespace glidelab::tests {

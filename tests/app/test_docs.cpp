@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/app/command_names.h"
 #include "tests/catch.h"

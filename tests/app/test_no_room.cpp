@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/app/left_behind.h"
 #include "tests/app/made_track.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/one_glider.h"
 
 namespace glidelab::tests {

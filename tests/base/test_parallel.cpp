@@ -1,4 +1,4 @@
-#include "base/parallel.h"
+#include "base/long_work.h"
 
 #include <chrono>
 #include <stdexcept>

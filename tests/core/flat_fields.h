@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 
 namespace glidelab::tests {
 

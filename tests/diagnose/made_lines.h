@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "diagnose/lines/line_table.h"
+#include "diagnose/lines/line_model.h"
 
 namespace glidelab::tests {
 

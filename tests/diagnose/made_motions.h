@@ -27,6 +27,8 @@ struct MadeLaunch {
   double incline_deg = 4.0;
   double x0_m = 0.3;
   double v0_m_s = -1.1;
+  double mu_more = 0.0, k_more_n_s_m = 0.0;  ///< than the glider's
+  double inertia = 1.0;                      ///< over the mass that weighs
 };
 
 /// What is added: a force in N (mass, x, v, t), what the camera makes of (x, t), which frames it loses, and a force
@@ -53,13 +55,16 @@ inline std::vector<MadeLaunch> made_launches(const std::vector<double>& masses_k
 inline std::vector<double> made_motion(const MadeGlider& glider, const MadeLaunch& launch, const MadeEffect& effect,
                                        std::size_t frames, double rate_hz) {
   const double alpha = launch.incline_deg * std::acos(-1.0) / 180.0, m = launch.mass_kg, g = glider.gravity_m_s2;
-  const double friction = glider.mu * m * g * std::cos(alpha);
+  const double friction = (glider.mu + launch.mu_more) * m * g * std::cos(alpha);
+  const double drag = glider.k_n_s_m + launch.k_more_n_s_m;
   const auto other = [&](double x, double v, double t) {
-    return m * g * std::sin(alpha) - glider.k_n_s_m * v + (effect.force ? effect.force(m, x, v, t) : 0.0) +
+    return m * g * std::sin(alpha) - drag * v + (effect.force ? effect.force(m, x, v, t) : 0.0) +
            (effect.recorded ? effect.recorded(t) : 0.0);
   };
   double x = launch.x0_m, v = launch.v0_m_s, sign = v > 0.0 ? 1.0 : -1.0;
-  const auto a = [&](double xx, double vv, double t) { return (other(xx, vv, t) - sign * friction) / m; };
+  const auto a = [&](double xx, double vv, double t) {
+    return (other(xx, vv, t) - sign * friction) / (launch.inertia * m);
+  };
   const double step = 2e-4;
   std::vector<double> seen;
   double t = 0.0;
@@ -104,11 +109,12 @@ struct MadeExperiment {
 /// the next but one by its square.
 inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, const MadeEffect& effect, unsigned seed,
                                       double noise_m = 3e-5, std::size_t frames = 150, double rate_hz = 100.0,
-                                      double incline_sd_deg = 0.05, double follows = 0.0) {
+                                      double incline_sd_deg = 0.05, double follows = 0.0,
+                                      const MadeGlider& glider = {}) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   MadeExperiment made;
-  made.results.gravity_m_s2 = MadeGlider{}.gravity_m_s2;
+  made.results.gravity_m_s2 = glider.gravity_m_s2;
   for (std::size_t c = 0; c < launches.size(); ++c) {
     core::ClipSetup setup;
     setup.name = "clip" + std::to_string(c);
@@ -122,7 +128,7 @@ inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, c
     track.frame_rate_hz = rate_hz;
     std::size_t frame = 0;
     double error = 0.0, kept = 0.0;  // of the error before
-    for (const double x : made_motion({}, launches[c], effect, frames, rate_hz)) {
+    for (const double x : made_motion(glider, launches[c], effect, frames, rate_hz)) {
       if (effect.lost && effect.lost(c, frame++)) continue;
       track.frame.push_back(track.t_s.size());
       track.t_s.push_back(static_cast<double>(track.t_s.size()) / rate_hz);

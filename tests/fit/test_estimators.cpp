@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 
@@ -69,7 +69,7 @@ TEST_CASE("the guide explains every estimator") {
 
 TEST_CASE("the name of an estimator stands in one source") {
   CHECK(sources_with("\"" + std::string(core::name_of(core::LineMethod::ordinary)) + "\"") ==
-        std::vector<std::string>{"line_method.h"});
+        std::vector<std::string>{"results.h"});
   CHECK(sources_with("\"" + std::string(core::name_of(core::LineMethod::generalised)) + "\"") ==
-        std::vector<std::string>{"line_method.h"});
+        std::vector<std::string>{"results.h"});
 }

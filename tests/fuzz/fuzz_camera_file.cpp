@@ -1,7 +1,6 @@
 /// A camera of the catalogue, taken over by a scenario that states nothing of its own camera.
-#include "render/scenario/camera_catalogue.h"
-
 #include "render/scenario/scenario.h"
+
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/one_glider.h"
 

@@ -1,5 +1,5 @@
-/// A table of fitted lines, read only: what is made of the numbers is diagnosed_lines.cpp.
-#include "diagnose/lines/line_table.h"
+/// A table of fitted lines, read only: what is made of the numbers is fuzz_diagnosed_lines.cpp.
+#include "diagnose/lines/line_model.h"
 #include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;

@@ -17,8 +17,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "base/files/temporary_folder.h"
+#include "base/files/file_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 

@@ -1,6 +1,6 @@
 /// A track: our own `t_s,x_m`, and what Tracker, Logger Pro, Vernier, PASCO Capstone, phyphox and spreadsheets export.
 /// The first byte chooses how the column is asked for.
-#include "core/track/track_csv.h"
+#include "core/track/track_data.h"
 #include "tests/fuzz/fuzz_target.h"
 
 using namespace glidelab;

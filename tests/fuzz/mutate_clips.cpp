@@ -21,8 +21,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "base/files/temporary_folder.h"
+#include "base/files/file_io.h"
 #include "core/analysis/analyze.h"
 #include "tests/fuzz/damage.h"
 #include "tests/one_glider.h"

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "render/film/clip_renderer.h"
-#include "render/film/marker_truth.h"
+#include "render/film/truth_files.h"
 #include "render/paint/static_painter.h"
 #include "tests/temp_dir.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/html/html.h"
 #include "tests/catch.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/one_glider.h"
 #include "tests/temp_dir.h"
 #include "validate/study/sweep/design/read_sweep.h"

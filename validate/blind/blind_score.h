@@ -1,11 +1,8 @@
-/// Diagnoses of blind cases compared with the truth.
-///
-/// Two pairs of effects are the same thing on tracks and count as one (effects.md: "cannot be told apart, always"):
-/// scale_error and frame_rate_error; camera_motion and base_vibration. Images tell the second pair apart. Weak cases
-/// gain less than 15 in log likelihood, moderate ones 15 to 50, strong ones more.
+/// Diagnoses of blind cases, read from their diagnosis.json and compared with the truth.
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,11 +10,46 @@
 #include <string_view>
 #include <vector>
 
-#include "validate/blind/blind_verdict.h"
+#include "validate/blind/blind_sequence.h"
 #include "validate/blind/case/blind_case.h"
+#include "validate/blind/case/everyday_case.h"
 #include "validate/truth/binomial.h"
 
 namespace glidelab::validate {
+
+struct BlindNamed {
+  std::string id;
+  double probability = 0.0;
+  std::vector<std::string> equivalent_to;
+  double joint = 0.0;  ///< probability that it or one of those acts
+};
+
+struct BlindRanked {
+  std::vector<std::string> ids;  ///< one or two
+  double probability = 0.0;
+  double log_likelihood_gain = 0.0;
+  double parameters = 0.0;
+  std::optional<double> gap_after;
+};
+
+/// What a diagnosis.json says; "failed" with `why` where there is none.
+struct BlindVerdict {
+  std::string verdict;  ///< none, effect, unknown, failed
+  std::string why;
+  std::vector<BlindNamed> effects;
+  std::vector<BlindRanked> ranking;
+  std::vector<std::string> where;  ///< variables of the regions, the largest excess first
+  double none = 0.0, unknown = 0.0, points = 0.0;
+  double gap_before = 0.0, gap_after = 0.0, gap_error = 0.0;
+  BlindSequence sequence;
+};
+
+/// InputError where the file is not a diagnosis.
+BlindVerdict read_blind_verdict(const std::filesystem::path& diagnosis_json);
+
+/// Takes effects that the folder itself tells of out of what a verdict names: what held them besides others counts for
+/// the others, what held them alone for none.
+void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict);
 
 inline constexpr double kSureName = 0.8;  ///< probability; a name with more is a sure one
 
@@ -29,16 +61,21 @@ struct BlindOutcome {
   BlindVerdict verdict;
   std::optional<BlindVerdict> left_out;  ///< with the true effect taken from the list
   bool filmed = false;
+  std::optional<EverydayTruth> everyday;  ///< of an everyday case
+  std::optional<double> seconds;          ///< that its diagnosis took, where it was measured
 };
 
-/// scale_error and frame_rate_error give one word; so do camera_motion and base_vibration on tracks.
+/// The word by which effects are counted. Two pairs of effects are the same thing on tracks and count as one
+/// (effects.md, "Which cannot be told apart"): scale_error and frame_rate_error, camera_motion and base_vibration.
+/// Images tell the second pair apart.
 std::string blind_class(const std::string& id, bool filmed);
 /// That of the one cause.
 std::string true_class(const BlindOutcome& outcome);
 /// All that a verdict names, as classes: its effects and their equals.
 std::set<std::string> named_by(const BlindOutcome& outcome);
 
-/// "weak", "moderate", "strong"; of a pair by its weaker cause.
+/// "weak" (a gain of less than 15 in log likelihood), "moderate" (15 to 50) or "strong" (more); of a pair by its weaker
+/// cause.
 std::string_view strength_word(const BlindOutcome& outcome);
 
 struct BlindShare {

@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "base/parallel.h"
+#include "base/files/file_io.h"
+#include "base/long_work.h"
 #include "validate/blind/case/blind_effects.h"
-#include "validate/blind/case/blind_scene_effects.h"
+#include "validate/blind/case/blind_filmed_effects.h"
+#include "validate/blind/case/everyday_causes.h"
 
 namespace glidelab::validate {
 namespace {
@@ -24,10 +27,16 @@ void check(const BlindOptions& options) {
     throw base::InputError(
         base::Issue{"", 0, "--cases", fmt::format("{}", options.cases), fmt::format("1 to {}", kMostBlindCases)});
   }
+  if (options.everyday && (options.pictures || options.leave_out)) {
+    throw base::InputError(base::Issue{"", 0, "--everyday", options.pictures ? "with --pictures" : "with --leave-out",
+                                       "everyday cases are tracks, diagnosed once"});
+  }
   if (options.only.empty()) return;
   std::string known;
-  const auto& library = options.pictures ? filmed_effects() : library_effects();
-  const auto& outside = options.pictures ? filmed_outside_effects() : outside_effects();
+  const auto& library = options.pictures ? filmed_effects() : options.everyday ? everyday_effects() : library_effects();
+  const auto& outside = options.pictures   ? filmed_outside_effects()
+                        : options.everyday ? everyday_outside()
+                                           : outside_effects();
   for (const auto* list : {&library, &outside}) {
     for (const std::string& id : *list) {
       if (id == options.only) return;
@@ -41,6 +50,7 @@ void check(const BlindOptions& options) {
 void check_same_run(const BlindOptions& options, const fs::path& out) {
   Ordered wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
   if (options.pictures) wanted["pictures"] = true;
+  if (options.everyday) wanted["everyday"] = true;
   const fs::path file = out / "run.json";
   if (!fs::exists(file)) {
     for (const char* name : {"cases", "diagnoses", "truth"}) {  // whose parts are made anew where they are not whole
@@ -61,6 +71,7 @@ void check_same_run(const BlindOptions& options, const fs::path& out) {
 
 constexpr const char* kDiagnosis = "diagnosis.json";  // in the folder of a diagnosis,
 constexpr const char* kFailure = "failure.txt";       // and what is there where it failed
+constexpr const char* kSeconds = "seconds.txt";
 
 bool is_diagnosed(const fs::path& folder) {
   return fs::exists(folder / kDiagnosis) || fs::exists(folder / kFailure);
@@ -71,6 +82,23 @@ void diagnose_into(const fs::path& folder, const Diagnoser& diagnose, const fs::
   fs::create_directories(folder);
   const std::string failure = diagnose(experiment, folder, without);
   if (!failure.empty()) base::write_file(folder / kFailure, failure);
+}
+
+/// The same, and how long it took: that is measured once, when the case is diagnosed.
+void diagnose_timed(const fs::path& folder, const Diagnoser& diagnose, const fs::path& experiment) {
+  const auto start = std::chrono::steady_clock::now();
+  diagnose_into(folder, diagnose, experiment, {});
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  base::write_file(folder / kSeconds, fmt::format("{:.3f}\n", took.count()));
+}
+
+std::optional<double> seconds_in(const fs::path& folder) {
+  const fs::path file = folder / kSeconds;
+  if (!fs::exists(file)) return std::nullopt;
+  const std::string text = base::read_file(file);
+  double seconds = 0.0;
+  if (std::from_chars(text.data(), text.data() + text.size(), seconds).ec == std::errc()) return seconds;
+  throw base::InputError(base::Issue{file.string(), 0, "", "\"" + text + "\"", "a number of seconds"});
 }
 
 /// Less what the folder itself tells of.
@@ -94,15 +122,29 @@ struct Made {
   std::vector<std::string> told;
   std::string truth_json;
   std::function<void(const fs::path& folder)> write;
+  std::optional<EverydayTruth> everyday = {};
 };
 
 Made make_case(const BlindOptions& options, const fs::path& out, std::size_t index, const FilmRenderer& render) {
+  if (options.everyday) {
+    const auto one = std::make_shared<EverydayCase>(make_everyday_case(options.seed, index, {options.only}));
+    return {one->kind,
+            one->causes,
+            one->design.clips.size(),
+            {},
+            everyday_truth_json(*one),
+            [one](const fs::path& folder) { write_blind_folder(*one, folder); },
+            one->truth};
+  }
   if (!options.pictures) {
     const auto one = std::make_shared<BlindCase>(make_blind_case(options.seed, index, {options.only}));
-    return {
-        one->kind, one->causes, one->design.clips.size(), {}, blind_truth_json(*one), [one](const fs::path& folder) {
-          write_blind_folder(*one, folder);
-        }};
+    return {one->kind,
+            one->causes,
+            one->design.clips.size(),
+            {},
+            blind_truth_json(*one),
+            [one](const fs::path& folder) { write_blind_folder(*one, folder); },
+            {}};
   }
   const auto one = std::make_shared<FilmedCase>(make_filmed_case(options.seed, index, {options.only}));
   const fs::path scratch = out / fmt::format("making-{:04d}", index);
@@ -111,7 +153,8 @@ Made make_case(const BlindOptions& options, const fs::path& out, std::size_t ind
           one->scene.motion.clips.size(),
           one->told,
           filmed_truth_json(*one),
-          [=](const fs::path& folder) { film_blind_folder(*one, folder, scratch, render); }};
+          [=](const fs::path& folder) { film_blind_folder(*one, folder, scratch, render); },
+          {}};
 }
 
 /// One whole case; what it leaves on disk is complete once the truth is there.
@@ -132,7 +175,11 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
     fs::remove_all(folder);
     fs::remove_all(diagnosis);
     one.write(folder);
-    diagnose_into(diagnosis, diagnose, folder, {});
+    if (one.everyday) {
+      diagnose_timed(diagnosis, diagnose, folder);
+    } else {
+      diagnose_into(diagnosis, diagnose, folder, {});
+    }
   }
   if (leaves_out && !is_diagnosed(without)) diagnose_into(without, diagnose, folder, {one.causes.front().id});
   if (!done) {
@@ -140,7 +187,8 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
     base::write_file(staged.dir() / truth.filename(), one.truth_json);
     staged.publish_files();
   }
-  BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.pictures};
+  BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.pictures, one.everyday, {}};
+  if (one.everyday) outcome.seconds = seconds_in(diagnosis);
   outcome.verdict = verdict_in(diagnosis, one.told);
   if (leaves_out) outcome.left_out = verdict_in(without, one.told);
   return outcome;

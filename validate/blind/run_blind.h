@@ -5,6 +5,7 @@
 ///     OUT/cases/0012/                  the experiment folder: all that the diagnosing process is told of
 ///     OUT/diagnoses/0012/              diagnosis.json, or failure.txt where it could not be diagnosed
 ///     OUT/diagnoses/0012/left-out/     the same of the diagnosis without the case's effect
+///     OUT/diagnoses/0012/seconds.txt   of everyday cases: how long it took
 ///     OUT/truth/0012.json              written after the diagnosis
 ///
 /// With images a case is rendered in OUT/making-0012/, which is gone before the diagnosis begins.
@@ -18,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "validate/blind/blind_score.h"
 #include "validate/blind/case/blind_filmed_case.h"
 
@@ -32,6 +33,7 @@ struct BlindOptions {
   bool leave_out = false;  ///< diagnose each case of one effect once more, its effect taken from the list
   std::string only;        ///< an effect that every case has
   bool pictures = false;   ///< filmed experiments in place of tracks
+  bool everyday = false;   ///< tracks with several small imperfections (everyday_case.h)
   int jobs = 1;
 };
 
@@ -42,7 +44,8 @@ using Diagnoser = std::function<std::string(const std::filesystem::path& folder,
 /// How many of the cases are whole in `out`: a run goes on behind them.
 std::size_t kept_cases(const BlindOptions& options, const std::filesystem::path& out);
 
-/// InputError for no cases, for an unknown effect, and where OUT holds another run. `render` is for images only.
+/// InputError for no cases, for an unknown effect, for choices that exclude each other, and where OUT holds another
+/// run. `render` is for images only.
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
                                     const Diagnoser& diagnose, const base::Progress& progress = base::no_progress,
                                     const FilmRenderer& render = {});

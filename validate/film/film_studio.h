@@ -1,20 +1,64 @@
 /// Clips drawn in memory and tracked, before a camera that is calibrated from drawn stills.
 #pragma once
 
+#include <opencv2/core.hpp>
+
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <vector>
 
-#include "base/files/temporary_folder.h"
-#include "base/progress.h"
-#include "core/pictures/camera/camera_and_planes.h"
+#include "base/files/file_io.h"
+#include "base/long_work.h"
 #include "core/pictures/camera/camera_model.h"
-#include "render/film/clip_set.h"
+#include "core/pictures/camera/restitution.h"
+#include "core/pictures/frames/frame_source.h"
+#include "render/film/clip_renderer.h"
 #include "render/scenario/scenario.h"
-#include "validate/film/canvas_pool.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
+
+/// A frame's pixels and what of them is drawn; the rest is 0.
+struct Canvas {
+  cv::Mat picture;
+  std::vector<cv::Rect> drawn;
+
+  /// All 0 again.
+  void clear();
+};
+
+/// Whether the caller, who holds this pointer, is the only one that refers to the canvas or its pixels.
+bool is_free(const std::shared_ptr<Canvas>& canvas);
+
+/// Images in memory that frames are drawn on, reused by later frames and clips: allocating a new one costs as much as
+/// the drawing. Shared between clips, also on different threads. All canvases have one size and depth; no others are
+/// kept.
+class CanvasPool {
+ public:
+  /// A clear canvas.
+  std::shared_ptr<Canvas> take(cv::Size size, int type);
+
+  /// Takes back a canvas that only the caller refers to.
+  void give(std::shared_ptr<Canvas> canvas);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::shared_ptr<Canvas>> all_;
+};
+
+/// The frames of one clip of the set, from the renderer in memory, where the analysis expects a file's: the same codes.
+/// With colour wanted they are grey in all three channels, as a grey file gives them. Frames are drawn on canvases of
+/// the pool. InputError for a lossy codec, whose file holds other codes.
+std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render::ClipSet> set, std::size_t clip,
+                                                   std::uint64_t seed, bool with_color = false,
+                                                   std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());
+
+/// The same for an analysis (core/analysis/analyze.h): a clip's frames by the name of its file in the experiment
+/// folder.
+core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, std::uint64_t seed,
+                                  std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());
 
 /// A camera with its calibration, for any number of recordings: of scenarios whose stills are those of the first
 /// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills and

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/analysis/analyze.h"
 #include "core/result/results.h"
 #include "render/film/render_experiment.h"

@@ -1,9 +1,10 @@
 /// The motions of a scenario as tracks: x at the times of the frames, with white noise, and no images.
 ///
-/// For studies that run estimators thousands of times. The frames come when the scenario's clock says
+/// They are for studies that run estimators thousands of times. The frames come when the scenario's clock says
 /// (dropped, duplicated, late ones too), and their times are what the file would say: frame j at j / rate, or its stamp
-/// where the rate is variable. Of the camera nothing else is in it: no exposure, lens, shutter, calibration or plumb;
-/// `noise_sd_m` stands for all of that. x counts from the track's reference point, as in the scenario.
+/// where the rate is variable. Of the camera nothing else is in it: no exposure, lens, shutter, calibration or plumb.
+/// `noise_sd_m` stands for all of that, and predicted_noise_m() says how large it is before anything is rendered. x
+/// counts from the track's reference point, as in the scenario.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,27 @@
 #include "validate/truth/truth_folder.h"
 
 namespace glidelab::validate {
+
+/// What of a camera can be thought away, one at a time.
+struct WithoutLimit {
+  bool shot_noise = false;
+  bool camera_noise = false;  ///< read noise, dark signal, quantisation, fixed patterns
+  bool motion_blur = false;
+  double finer = 1.0;  ///< pixels a metre, times this; each with the light of the old ones
+};
+
+/// How well a camera can locate the marker: the bound of the marker's centre (core/pictures/marker/marker.h) for the
+/// scenario's light, sensor, distance and speed, as metres in the plane of motion. It is the standard deviation of a
+/// position for each clip of the truth, infinite where the marker is no brighter than the wall or smaller than two
+/// pixels.
+///
+///     variance of a pixel = shot + dark + read^2 + quantisation^2 + (PRNU signal)^2 + DSNU^2,
+///
+/// taken as the mean of that on the marker and on the wall. The marker moves by L = v exposure in a frame, which blurs
+/// its edge like a normal one of variance L^2 / 12. Lens blur, tone curves, a mosaic, codecs and the calibration are
+/// not in it; rendered runs have them.
+std::vector<double> predicted_noise_m(const render::Scenario& scenario, const Truth& truth,
+                                      const WithoutLimit& without = {});
 
 struct MadeTracks {
   std::vector<core::ClipSetup> setups;

@@ -8,7 +8,7 @@
 #include "core/math/quantile.h"
 #include "core/motion/analyze_motion.h"
 #include "core/motion/join_configurations.h"
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::validate {
 

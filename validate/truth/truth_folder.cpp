@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "core/result/quantity.h"
 

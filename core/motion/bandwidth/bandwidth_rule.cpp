@@ -1,6 +1,7 @@
 #include "core/motion/bandwidth/bandwidth_rule.h"
 
 #include <algorithm>
+#include <cmath>
 
 // Each rule, by the constant that its rule_*.cpp defines.
 #define GLIDELAB_BANDWIDTH_RULES(RULE) \
@@ -35,6 +36,65 @@ std::vector<std::string> bandwidth_choices() {
   std::vector<std::string> names = {std::string(kLinesRule)};
   for (const BandwidthRule& rule : bandwidth_rules()) names.emplace_back(rule.name);
   return names;
+}
+
+namespace {
+
+constexpr double kMostPart = 0.2;  // of the longest part, that a bandwidth may be
+constexpr double kTrim = 0.1;      // of each part at each end
+constexpr std::size_t kEnough = 400;
+
+}  // namespace
+
+BandwidthScan::BandwidthScan(const BandwidthProblem& problem) : problem_(problem) {
+  double longest = 0.0;
+  std::size_t points = 0;
+  for (const MotionPart& part : problem.parts) {
+    if (part.t_s.empty()) continue;
+    longest = std::max(longest, part.t_s.back() - part.t_s.front());
+    points += part.t_s.size();
+  }
+  for (double h = kLeastBandwidthSteps * problem.step_s; h > 0.0 && h <= kMostPart * longest; h *= kBandwidthRatio)
+    grid_.push_back(h);
+  const std::size_t stride = points / kEnough + 1;
+  for (std::size_t p = 0; p < problem.parts.size(); ++p) {
+    const std::size_t n = problem.parts[p].t_s.size();
+    const auto trim = static_cast<std::size_t>(std::ceil(kTrim * static_cast<double>(n)));
+    for (std::size_t j = trim; j + trim < n; j += stride) probes_.push_back({p, j});
+  }
+}
+
+std::vector<LocalPolynomial> BandwidthScan::smoothers(double bandwidth_s, Kernel kernel) const {
+  std::vector<LocalPolynomial> made;
+  PolynomialOptions options;
+  options.kernel = kernel;
+  options.bandwidth_s = bandwidth_s;
+  for (const MotionPart& part : problem_.parts) made.emplace_back(part.t_s, options);
+  return made;
+}
+
+std::optional<std::size_t> least(const std::vector<double>& criterion) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < criterion.size(); ++i) {
+    if (!std::isnan(criterion[i]) && (!best || criterion[i] < criterion[*best])) best = i;
+  }
+  return best;
+}
+
+std::optional<std::size_t> widest_local_least(const std::vector<double>& criterion) {
+  std::optional<std::size_t> last;  // with a value, going down
+  for (std::size_t i = criterion.size(); i-- > 0;) {
+    if (std::isnan(criterion[i])) continue;
+    if (last && criterion[i] > criterion[*last]) return last;
+    last = i;
+  }
+  return last;
+}
+
+std::string at_edge(const std::vector<double>& grid, std::size_t chosen) {
+  if (chosen == 0) return " (the narrowest tried)";
+  if (chosen + 1 == grid.size()) return " (the widest tried)";
+  return "";
 }
 
 }  // namespace glidelab::core

@@ -1,20 +1,23 @@
-/// Rules that choose the bandwidth of the local cubic from data, and the table that names each once.
+/// Rules that choose the bandwidth of the local cubic from data: the table that names each once, and the scan of
+/// bandwidths that they share.
 ///
 /// Every rule stands in a rule_*.cpp of its own, which begins with what it minimises and its source. `cv`, `gcv`,
-/// `cv-correlated` and `rsc` judge x; their h is converted to that for a by the constants of kernel_constants.h, which
-/// holds where x'''' varies little over the kernel. All rules here judge single points and know of no line; the
-/// default of `analyze` (rule_lines.h) serves the lines. The paper took its rule from its reference [15], which is not
-/// in its text; none of these is claimed to be it.
+/// `cv-correlated` and `rsc` judge x; their h is converted to that for a by the constants of local_polynomial.h, which
+/// holds where x'''' varies little over the kernel. All rules here judge single points and know of no line; the default
+/// of `analyze` (rule_lines.h) serves the lines. The paper took its rule from its reference [15], which is not in its
+/// text; none of these is claimed to be it.
 ///
 /// To add a rule: rule_<name>.cpp, which defines its BandwidthRule, and one line in bandwidth_rule.cpp.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
 
 namespace glidelab::core {
@@ -61,5 +64,48 @@ inline constexpr std::string_view kLinesRule = "lines";
 
 /// What a person may ask for: kLinesRule, then the table's names.
 std::vector<std::string> bandwidth_choices();
+
+inline constexpr double kLeastBandwidthSteps = 1.2;  ///< time steps; a narrower kernel holds fewer than five points
+inline constexpr double kBandwidthRatio = 1.1;       ///< from one bandwidth that is tried to the next
+
+/// A point of a part, by its index there.
+struct Probe {
+  std::size_t part = 0;
+  std::size_t point = 0;
+};
+
+/// What bandwidth rules share: the bandwidths that are tried, and the points that are looked at.
+class BandwidthScan {
+ public:
+  explicit BandwidthScan(const BandwidthProblem& problem);
+
+  /// From kLeastBandwidthSteps time steps to a fifth of the longest part.
+  const std::vector<double>& grid() const { return grid_; }
+  /// At most some 400 in all parts, evenly; a tenth of each part at both ends is left out, where kernels are not
+  /// complete and their variance would rule the criterion.
+  const std::vector<Probe>& probes() const { return probes_; }
+  const BandwidthProblem& problem() const { return problem_; }
+
+  /// One smoother for each part.
+  std::vector<LocalPolynomial> smoothers(double bandwidth_s, Kernel kernel = Kernel::gaussian) const;
+
+  double time(const Probe& probe) const { return problem_.parts[probe.part].t_s[probe.point]; }
+  double position(const Probe& probe) const { return problem_.parts[probe.part].x_m[probe.point]; }
+
+ private:
+  const BandwidthProblem& problem_;
+  std::vector<double> grid_;
+  std::vector<Probe> probes_;
+};
+
+/// Where the grid's least value lies; what has no value (NaN) does not count. Nothing where none has.
+std::optional<std::size_t> least(const std::vector<double>& criterion);
+
+/// The widest of the grid's local least values. Cross-validation often has spurious ones at narrow bandwidths, more so
+/// with correlated noise; the widest is the better one (Hall and Marron 1991, J. R. Stat. Soc. B 53, 245).
+std::optional<std::size_t> widest_local_least(const std::vector<double>& criterion);
+
+/// " (the widest tried)" and the like, where a choice lies at an end of the grid.
+std::string at_edge(const std::vector<double>& grid, std::size_t chosen);
 
 }  // namespace glidelab::core

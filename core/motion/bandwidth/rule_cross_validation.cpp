@@ -16,8 +16,7 @@
 #include <limits>
 
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/bandwidth/bandwidth_scan.h"
-#include "core/motion/smoothing/kernel_constants.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::core {
 namespace {

@@ -17,7 +17,6 @@
 
 #include "core/math/quantile.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/bandwidth/bandwidth_scan.h"
 
 namespace glidelab::core {
 namespace {

@@ -8,9 +8,8 @@
 #include <optional>
 
 #include "base/text/number_text.h"
-#include "core/motion/bandwidth/bandwidth_scan.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/lines/line_fit.h"
-#include "core/motion/lines/stretch_points.h"
 
 namespace glidelab::core {
 namespace {

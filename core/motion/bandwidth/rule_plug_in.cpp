@@ -1,4 +1,4 @@
-// plug-in: h^9 = 5 R_2 s^2 dt / mean(x''''^2), R_2 = 3/(8 sqrt(pi)) (kernel_constants.h): the least mean square error
+// plug-in: h^9 = 5 R_2 s^2 dt / mean(x''''^2), R_2 = 3/(8 sqrt(pi)) (local_polynomial.h): the least mean square error
 // of a with one h for all points. x'''' comes from one polynomial of order 6 through each part (order p + 3: Fan and
 // Gijbels 1996, section 4.2; Ruppert, Sheather and Wand 1995 fit it in blocks); the noise's share of its square is
 // subtracted. Where x'''' does not stand out of the noise by two standard deviations of its mean square, the widest
@@ -8,10 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/orthogonal_polynomials.h"
+#include "core/math/least_squares.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/bandwidth/bandwidth_scan.h"
-#include "core/motion/smoothing/kernel_constants.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::core {
 namespace {

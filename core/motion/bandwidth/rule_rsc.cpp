@@ -8,10 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/orthogonal_polynomials.h"
+#include "core/math/least_squares.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/bandwidth/bandwidth_scan.h"
-#include "core/motion/smoothing/kernel_constants.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::core {
 namespace {

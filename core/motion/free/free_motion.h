@@ -1,9 +1,9 @@
-/// Which parts of a measured motion are free: not in the hand, not at rest, not against a stop or a bumper, and each in
-/// one direction.
+/// The free parts of a measured motion: not in the hand, not at rest, not against a stop or a bumper, and each in one
+/// direction.
 ///
 /// A first smoothing (the pilot) takes the least bandwidth at which the noise of a is 10 % of the median |a| of the
 /// moving glider. On it:
-///  - Directions, reversals and rests are told apart (motion_runs.h).
+///  - Directions, reversals and rests are told apart (motion_events.h).
 ///  - Hand, stop: the points (v, a) of one direction of free motion lie about one line. For each direction the line is
 ///    taken on which most points agree (candidates: lines through parts of the motion that are contiguous in time). A
 ///    point is not free where its a is off that line by more than a quarter of the line's own size AND by more than the
@@ -14,9 +14,10 @@
 ///    points one weight, so its points would add noise and no information.
 ///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. A
 ///    launch that nobody stated has no wrong direction.
-/// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter.
-/// Each stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an
-/// impact or a release; times of those need to be known only well enough to keep their far side out.
+///
+/// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter. Each
+/// stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an impact or
+/// a release; times of those need to be known only well enough to keep their far side out.
 #pragma once
 
 #include <cstddef>
@@ -28,6 +29,28 @@
 #include "core/result/results.h"
 
 namespace glidelab::core {
+
+/// Points of one direction in the order of time; `sd` is the standard deviation of a by the noise of the positions.
+struct LawPoints {
+  std::vector<double> v_m_s;
+  std::vector<double> a_m_s2;
+  std::vector<double> sd_m_s2;
+};
+
+/// The line a = a0 - k v that most points of one direction agree with, regardless of the outliers.
+struct ConsensusLine {
+  double a0_m_s2 = 0.0;
+  double k_1_s = 0.0;
+  double size_m_s2 = 0.0;  ///< the 90 % quantile of |a0 - k v| over its points
+  double scatter = 1.0;    ///< robust standard deviation of its points about it, in units of their sd; at least 1
+  double at(double v_m_s) const { return a0_m_s2 - k_1_s * v_m_s; }
+  /// What a point may lie off without being counted out.
+  double tolerance(double sd_m_s2) const;
+};
+
+/// Candidates are the least-squares lines through parts of the points that follow each other; the one with the most
+/// points within its tolerance wins and is refitted to them. Nothing for fewer than six points.
+std::optional<ConsensusLine> find_consensus(const LawPoints& points);
 
 /// Points first … first + count - 1 of the motion, all moving freely in one direction.
 struct FreeStretch {
@@ -47,7 +70,7 @@ struct FreeMotion {
 };
 
 /// The setup's start_s and end_s, where given, are taken at their word: nothing after the one counts as hand, nothing
-/// before the other as stop, and with both everything between is free where it moves.
+/// before the other as stop or rest, and with both everything between is free, at rest or not.
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
 
 /// Free stretches joined where the motion turns.

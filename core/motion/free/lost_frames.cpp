@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/math/quantile.h"
-#include "core/motion/free/outliers.h"
+#include "core/motion/free/motion.h"
 
 namespace glidelab::core {
 namespace {

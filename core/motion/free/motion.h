@@ -1,4 +1,4 @@
-/// The measured motion of one clip, from which its analysis starts.
+/// The measured motion of one clip, from which its analysis starts, and the outliers among its points.
 #pragma once
 
 #include <cstddef>
@@ -28,5 +28,14 @@ Motion motion_of(const TrackData& track, double mass_kg);
 
 /// The same without the points of the given indices (rising).
 Motion without(const Motion& motion, const std::vector<std::size_t>& points);
+
+/// Single positions that lie off the motion (a marker that was mistaken for something else in one frame): the indices
+/// of points that are off the cubic through their ten nearest neighbours by more than six standard deviations of that
+/// prediction: of the noise, or of what the neighbours themselves scatter about the cubic, whichever is more. At a
+/// release or a jump the neighbours scatter as much as the point, and into an impact's own point the motion before or
+/// after it runs smoothly (the parabola of five neighbours on one side, within three standard deviations): nothing
+/// there is an outlier. Up to two of the neighbours may be outliers themselves. For normal noise one point in 1e9 is
+/// taken by mistake.
+std::vector<std::size_t> find_outliers(const Motion& motion);
 
 }  // namespace glidelab::core

@@ -1,4 +1,4 @@
-/// The noise of a motion's positions, from its free stretches smoothed with one bandwidth.
+/// The noise of a motion's positions from its free stretches, and its growth with the speed.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,25 @@
 
 namespace glidelab::core {
 
+/// Noise of the positions that grows with the speed: a marker that is smeared over pixels, times that jitter.
+///
+///     s^2(v) = a + b v^2,
+///
+/// from the squared residuals of the smoothing (points whose kernel is complete) by least squares, each weighted with
+/// the inverse of its variance 2 s^4, in a few passes; b is then shrunk by sd_b^2 / b (the positive part of James and
+/// Stein's rule), with the mean variance kept. A threshold in its place, the growth taken as it is where it is
+/// significant and not at all elsewhere, leaves intervals too narrow wherever a growth that matters is not significant.
+/// It matters for lines: their ends at high speed weigh most.
+///
+/// s(v) at every point of every piece over the root mean square of the residuals. Empty where b is not above its own
+/// standard deviation, or there are fewer than 40 residuals: the noise is then taken as one.
+std::vector<std::vector<double>> speed_factors(const std::vector<NoisePiece>& pieces);
+
+/// The noise of a motion's positions, from its free stretches smoothed with one bandwidth.
 PositionNoise noise_at(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
-/// The noise's factor at every point of the motion (speed_dependent_noise.h; 1 outside of the stretches), or nothing
-/// where it is one everywhere.
+/// The noise's factor at every point of the motion (speed_factors(); 1 outside of the stretches), or nothing where it
+/// is one everywhere.
 std::vector<double> noise_factors(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
 /// The step of a recording's rounding where that is most of its noise and the motion is so slow that one position in

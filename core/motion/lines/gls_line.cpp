@@ -8,8 +8,8 @@
 #include <memory>
 #include <utility>
 
-#include "core/math/line_sums.h"
-#include "core/motion/lines/gls_nodes.h"
+#include "core/math/least_squares.h"
+#include "core/motion/lines/gls_pieces.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
 

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "core/motion/free/motion.h"
-#include "core/motion/lines/free_pieces.h"
+#include "core/motion/lines/gls_pieces.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {

@@ -1,5 +1,5 @@
-/// The line a = a0 - (K/m) v by ordinary least squares through smoothed points, as the paper fits it, with the effect
-/// of the position noise on its coefficients.
+/// The line a = a0 - (K/m) v by ordinary least squares through the smoothed points of free stretches, as the paper fits
+/// it, with the effect of the position noise on its coefficients.
 ///
 /// Smoothed points are correlated over the kernel, so the textbook formula for independent points is wrong here. But v
 /// and a are linear in the measured positions, and so, to first order in the noise n, are the coefficients:
@@ -17,6 +17,7 @@
 ///
 /// with X the mean square residual over that expected of the noise, where X is above 1 by more than chance makes it
 /// (chi2_ratio_limit of estimate.h).
+///
 /// An error of the camera or the plane displaces all positions by x_k(t), and so v by dv and a by da (the same sums
 /// over the kernel); to first order the line changes by
 ///
@@ -27,12 +28,15 @@
 #pragma once
 
 #include <Eigen/Core>
+
 #include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/free/free_motion.h"
+#include "core/motion/free/motion.h"
+#include "core/motion/smoothing/local_polynomial.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -47,7 +51,7 @@ struct LineInput {
   std::size_t track_points = 0;
   std::vector<double> t_s;                ///< of the measured positions
   bool forced = false;                    ///< a known force acts
-  std::vector<double> noise_factor = {};  ///< of each measured position's noise (speed_dependent_noise.h); empty: 1
+  std::vector<double> noise_factor = {};  ///< of each measured position's noise (stretch_noise.h); empty: 1
   std::vector<double> v_m_s;
   std::vector<double> a_m_s2;          ///< with the known force's part F/m taken off
   std::vector<KernelRow> rows;         ///< over the measured positions
@@ -99,5 +103,51 @@ Quantity limit_velocity(const std::vector<LineFit>& lines);
 /// Takes the jackknife's covariance into `parts` where a variance of it is larger than chance makes it
 /// (chi2_ratio_limit); variances only grow, and n - 2 degrees of freedom are left. Whether it did. Asserts n >= 3.
 bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertainty& parts);
+
+/// Every stretch is smoothed with its own points alone. Within this many bandwidths of its first or last point the
+/// kernel is not complete there; what that costs, and why these points are left out: with c the distance in bandwidths,
+/// the variance of a is 1.64 (c = 2.5), 1.17 (c = 3), 1.04 (c = 3.5) of what it is inside, and grows 500 times towards
+/// c = 0; its bias is 0.78, 0.90 and 0.97 of the inner h^2 x''''/2.
+inline constexpr double kKernelMargin = 2.5;
+
+/// Inside a stretch a kernel with a gap is left out where the variance of a exceeds that of a complete kernel by this.
+inline constexpr double kGapVariance = 2.0;
+
+/// A smoothed point of a free stretch, and whether it counts for a line.
+struct StretchPoint {
+  std::size_t point = 0;  ///< of the motion
+  std::size_t stretch = 0;
+  int direction = 0;
+  LeftOut left_out = LeftOut::used;
+  bool smoothed = false;
+  SmoothedPoint x;               ///< x, v, a
+  SmoothedPoint y;               ///< y, y', y'': without the known force
+  std::optional<KernelRow> row;  ///< over the points of the motion
+};
+
+/// Which points a caller has a use for: where only those that may count are wanted, those at a stretch's ends are not
+/// smoothed at all (each has a kernel of its own, which is most of the work).
+enum class WantedPoints { all, inner };
+
+/// Every `stride`-th point of every stretch; with `inner` without those in the margins and without whole stretches that
+/// are left out.
+std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vector<FreeStretch>& stretches,
+                                           double bandwidth_s, std::size_t stride = 1,
+                                           WantedPoints wanted = WantedPoints::all);
+
+/// What an error of a by the law's own curvature over time would be: g(t) = f(v(t)) is what a without the force should
+/// be at each point (0 where unknown), and the result is the smoothed minus the true g, by smoothing its double
+/// integral as positions are smoothed. For v' = -k v + const it is (k h)^2 / 2 of a.
+std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
+                                   const std::vector<double>& law_m_s2, const std::vector<StretchPoint>& points);
+
+/// The used points of one direction; `bias` is that of smoothing_bias() for the same points. With a known force a is
+/// y'', and one standard deviation of the mass changes it by F sd / m^2.
+LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& points, const std::vector<double>& bias,
+                     int direction, double mass_kg, double mass_sd_kg);
+
+/// What displacements of the track's positions (TrackData::shared_m) do to v and a of the input's points.
+std::vector<std::vector<MotionShift>> calibration_shifts(const Motion& motion, const LineInput& input,
+                                                         const std::vector<std::vector<double>>& shared_m);
 
 }  // namespace glidelab::core

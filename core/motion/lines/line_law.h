@@ -1,11 +1,19 @@
-/// The motion x = x_0 + v_0 phi(t) + a0 psi(t) under the law of one line, dv/dt = a0 - k v:
+/// The law of one line: the motion that it makes, and the bias that smoothing and least squares have under it.
 ///
+/// A line a = a0 - k v is the law dv/dt = a0 - k v, whose motion in each stretch of one direction is known in closed
+/// form but for x_0, v_0:
+///
+///     x = x_0 + v_0 phi(t) + a0 psi(t),
 ///     phi = (1 - exp(-k t)) / k,     psi = (t - phi) / k,     phi' = 1 - k phi,     psi' = phi,
 ///
-/// for any k and t, of either sign; they go over into t and t^2/2 at k = 0.
+/// for any k and t, of either sign; phi and psi go over into t and t^2/2 at k = 0.
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/motion/lines/line_fit.h"
 
 namespace glidelab::core {
 
@@ -23,5 +31,25 @@ inline LawFunctions law_functions(double k_1_s, double t_s) {
   const double phi = -std::expm1(-s) / k_1_s;
   return {phi, (t_s - phi) / k_1_s};
 }
+
+/// The bias that smoothing and ordinary least squares give a line under its own law, so that it can be subtracted, for
+/// the line that fit_line() gave for this input.
+///
+/// v_0 of the law's motion is taken from the stretch's smoothed v by least squares. That motion without noise, at the
+/// same times, through the same kernels and the same least squares, gives a line (k', a0'); and so
+///
+///     bias(k, a0) = (k' - k, a0' - a0) + bias of noise in v,      (k, a0) = line - bias(k, a0)  by fixed point.
+///
+/// (In v a kernel leaves noise of its own, which draws the slope to zero: -(A'A)^-1 (sum of k var v_j + cov(v_j, a_j),
+/// 0).) The random covariance of what is left is G C G', G = (1 + d bias / d(k, a0))^-1.
+///
+/// It holds where the law does: the smoothed points must lie about the law's own smoothed points no further than the
+/// noise explains (chi2_ratio_limit), and the bias of k must be less than half of k, or of two of its standard
+/// deviations. Otherwise, and with a known force (v then obeys no such law), there is nothing to take off, and nothing
+/// is returned.
+std::optional<LawBias> law_bias(const LineInput& input, const LineFit& line, const std::vector<double>& autocovariance);
+
+/// The line with its bias taken off (itself where there is none to take off), its uncertainty with what is left.
+LineFit without_law_bias(LineFit line);
 
 }  // namespace glidelab::core

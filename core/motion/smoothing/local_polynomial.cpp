@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/orthogonal_polynomials.h"
+#include "core/math/least_squares.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kFewestResiduals = 20;
 constexpr std::size_t kFewestForCorrelation = 60;
+constexpr std::size_t kFewestForParts = 6;  // positions
 
 double autocorrelation(const std::vector<double>& filter, std::size_t lag) {
   double sum = 0.0;
@@ -107,17 +108,25 @@ Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, d
 }  // namespace
 
 double rounding_step(std::span<const double> x_m) {
-  double step = std::numeric_limits<double>::infinity();
+  constexpr int kMostParts = 8;  // the smallest change may be several steps: of a motion that is never slow
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < x_m.size(); ++i) {
     const double change = std::abs(x_m[i] - x_m[i - 1]);
-    if (change > 1e-12 * std::abs(x_m[i])) step = std::min(step, change);
+    if (change > 1e-12 * std::abs(x_m[i])) least = std::min(least, change);
   }
-  if (!std::isfinite(step)) return 0.0;
-  for (std::size_t i = 1; i < x_m.size(); ++i) {
-    const double multiple = (x_m[i] - x_m[0]) / step;
-    if (std::abs(multiple - std::round(multiple)) > 1e-3) return 0.0;
+  if (!std::isfinite(least)) return 0.0;
+  const auto fits = [&](double step) {
+    return std::all_of(x_m.begin(), x_m.end(), [&](double x) {
+      const double multiple = (x - x_m[0]) / step;
+      return std::abs(multiple - std::round(multiple)) <= 1e-3;
+    });
+  };
+  // Few positions are multiples of a small part by chance: one in 500 each.
+  const int most = x_m.size() < kFewestForParts ? 1 : kMostParts;
+  for (int parts = 1; parts <= most; ++parts) {
+    if (fits(least / parts)) return least / parts;
   }
-  return step;
+  return 0.0;
 }
 
 double pilot_noise(std::span<const double> t_s, std::span<const double> x_m) {

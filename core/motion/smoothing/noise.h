@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::core {
 

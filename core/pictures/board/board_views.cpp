@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/errors.h"
-#include "base/parallel.h"
+#include "base/long_work.h"
 #include "core/math/quantile.h"
 #include "core/pictures/frames/read_image.h"
 

@@ -1,36 +1,38 @@
-/// The camera from views of the calibration pattern, by least squares over all corners (Zhang 2000;
-/// cv::calibrateCamera).
-///
-/// Parameters: fx, fy, cx, cy always; of the distortion only the terms that the views support. Starting from all five
-/// (k1, k2, p1, p2, k3), k3, then the pair p1, p2, then k2, then k1 are tested: v' C^-1 v of the term with its
-/// covariance C (of correlated corner errors, as below) against 9 for one term and 11.8 for the pair (three standard
-/// deviations, 0.27 %; with white errors that is the F-test of the nested models). A term below it is fixed to zero and
-/// the rest fitted again; k2 is tested only without k3, k1 only without k2. So a lens without distortion gets none, and
-/// no undetermined term is amplified outside the region in which the pattern was seen.
-///
-/// Lenses move the image's corner by a part of N(0, 0.3²) with k1, N(0, 0.2²) with k2, N(0, 0.1²) with k3. That is an
-/// assumption, two to four times the largest of the three measured calibrations in scenarios/cameras (a C920: 0.07,
-/// -0.10, 0.02), for wider lenses are in use. A radial term counts as far as that leaves it: with the sd s of its part
-/// at the corner, v' C^-1 v and the term's value times usual² / (usual² + s²). What the views know ten times better
-/// loses 1 %; noise that would bend the image's sides by half is no term.
-///
-/// A term that was left out may still be real, and the fit without it then errs by more than its own covariance. So the
-/// effect of its uncertainty on all terms, C_a C^-1 C_a' (C_a the covariance of all terms with it, to the extent that
-/// the term is believed), and the part of its value beyond noise, (1 - q / (v' C^-1 v)) for q terms, are added to the
-/// covariance. Leaving terms out thus makes no result look more certain.
+/// The camera from views of the calibration pattern, by least squares over all corners, with either of two lenses and
+/// with the uncertainty of its terms.
 #pragma once
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/pictures/board/board_views.h"
-#include "core/pictures/board/corner_map.h"
-#include "core/pictures/board/corner_noise.h"
+#include "core/pictures/board/corner_errors.h"
 #include "core/pictures/camera/camera_model.h"
 
 namespace glidelab::core {
+
+/// Of one view: its residuals and their derivatives by its pose, and those by the camera's free terms.
+struct ViewDerivatives {
+  ViewResiduals view;
+  Eigen::MatrixXd by_terms;
+};
+
+struct TermUncertainty {
+  Eigen::MatrixXd covariance;  ///< of the free terms
+  CornerNoise noise;
+};
+
+/// The uncertainty of a camera's terms that were fitted together with the poses of its views.
+///
+/// With the poses eliminated, M = J - P (P'P)^-1 P'J of every view, an error e of the corners changes the camera's
+/// terms by S^-1 sum of M'e, S = sum of M'M; so their covariance is S^-1 [sum of M'V M] S^-1, V that of
+/// corner_errors.h.
+///
+/// At least one view; all with derivatives by the same terms.
+TermUncertainty uncertainty_of_terms(const std::vector<ViewDerivatives>& views);
 
 struct Calibration {
   CameraModel camera;
@@ -52,8 +54,45 @@ bool follows_badly(const CornerNoise& noise);
 std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
                                         const Calibration& calibration);
 
+/// The camera with a pinhole lens and its distortion (camera_model.h), by least squares over all corners (Zhang 2000;
+/// cv::calibrateCamera).
+///
+/// Parameters: fx, fy, cx, cy always; of the distortion only the terms that the views support. Starting from all five
+/// (k1, k2, p1, p2, k3), k3, then the pair p1, p2, then k2, then k1 are tested: v' C^-1 v of the term with its
+/// covariance C (of correlated corner errors, uncertainty_of_terms()) against 9 for one term and 11.8 for the pair
+/// (three standard deviations, 0.27 %; with white errors that is the F-test of the nested models). A term below it is
+/// fixed to zero and the rest fitted again; k2 is tested only without k3, k1 only without k2. So a lens without
+/// distortion gets none, and no undetermined term is amplified outside the region in which the pattern was seen.
+///
+/// Lenses move the image's corner by a part of N(0, 0.3²) with k1, N(0, 0.2²) with k2, N(0, 0.1²) with k3. That is an
+/// assumption, two to four times the largest of the three measured calibrations in scenarios/cameras (a C920: 0.07,
+/// -0.10, 0.02), for wider lenses are in use. A radial term counts as far as that leaves it: with the sd s of its part
+/// at the corner, v' C^-1 v and the term's value times usual² / (usual² + s²). What the views know ten times better
+/// loses 1 %; noise that would bend the image's sides by half is no term.
+///
+/// A term that was left out may still be real, and the fit without it then errs by more than its own covariance. So the
+/// effect of its uncertainty on all terms, C_a C^-1 C_a' (C_a the covariance of all terms with it, to the extent that
+/// the term is believed), and the part of its value beyond noise, (1 - q / (v' C^-1 v)) for q terms, are added to the
+/// covariance. Leaving terms out thus makes no result look more certain.
+///
 /// Needs at least three views with a visible board; otherwise InputError, naming the images without one. A view whose
 /// error is above 0.2 px and five times the median is left out (with a note).
 Calibration calibrate_camera(const BoardViews& boards, double square_m);
+
+/// The camera with a fisheye lens (camera_model.h): cv::fisheye::calibrate, with uncertainties as in
+/// calibrate_camera(). Parameters: fx, fy, cx, cy always; k1 to k4 only if they are determined: from k4 down, a term
+/// below three of its standard deviations is fixed to zero and the rest fitted again, until the first that is
+/// significant. The rows of the covariance are fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing if OpenCV
+/// finds no such camera.
+std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
+
+/// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.
+inline constexpr double kDecisive = 100.0;
+
+/// Brown-Conrady, or a fisheye where that explains the corners decisively better: n log(rms² / rms²) > kDecisive over n
+/// coordinates (twice the logarithm of the likelihood ratio; both models have as many terms, and some ten neighbouring
+/// corners share their errors). A fisheye is tried where the image's corner is more than 0.8 focal lengths off the
+/// axis, or neighbouring corners show that Brown-Conrady does not describe the lens.
+Calibration calibrate_any_lens(const BoardViews& boards, double square_m);
 
 }  // namespace glidelab::core

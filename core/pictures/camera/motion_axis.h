@@ -1,9 +1,12 @@
-/// The line of a motion (or of a thread) by total least squares, and x as the distance along it.
+/// The line of a motion (or of a thread) by total least squares, x as the distance along it, and what an error of the
+/// camera or the plane does to both.
 #pragma once
 
 #include <opencv2/core.hpp>
 
 #include <vector>
+
+#include "core/pictures/camera/restitution.h"
 
 namespace glidelab::core {
 
@@ -48,5 +51,21 @@ class MotionAxis {
 
   PlaneLine line_;
 };
+
+/// The effect of an error of the camera or the plane on the motion of one group: the line of motion is refitted through
+/// the displaced positions, and x is measured along it.
+struct ModeAxis {
+  RestitutionMode mode;
+  MotionAxis axis;
+
+  /// Change of x of these places by one standard deviation; 0 where the mode has no ray for a place.
+  std::vector<double> displacement(const Restitution& restitution, const MotionAxis& without,
+                                   const std::vector<cv::Point2d>& places) const;
+};
+
+/// One for each of the restitution's modes, in its order; `places` are those of all clips of the group. If there are
+/// many, an even selection of them determines how a mode turns the line.
+std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
+                                const std::vector<cv::Point2d>& places, int downhill);
 
 }  // namespace glidelab::core

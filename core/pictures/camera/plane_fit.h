@@ -4,7 +4,7 @@
 /// The views share one plane: the first one's pattern has a pose X_CP of six parameters, every further one lies in the
 /// same plane, turned and shifted (three more). Start: solvePnP of each view, its corners' distortion undone; then
 /// Gauss and Newton's method with central differences. Covariance of the pose: (J'J)^-1 J'V J (J'J)^-1, V that of
-/// corner_noise.h with the white part as the residuals have it.
+/// corner_errors.h with the white part as the residuals have it.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/pictures/board/chessboard.h"
-#include "core/pictures/board/corner_noise.h"
+#include "core/pictures/board/corner_errors.h"
 #include "core/pictures/camera/camera_model.h"
 
 namespace glidelab::core {

@@ -8,7 +8,7 @@
 #include "base/math/dense.h"
 #include "core/math/least_squares.h"
 #include "core/math/quantile.h"
-#include "core/pictures/image/pixel_edge.h"
+#include "core/pictures/image/pixel_signal.h"
 
 namespace glidelab::core {
 namespace {

@@ -2,7 +2,7 @@
 /// rotation.
 ///
 /// With c_k + p + q (r_k - r) the thread's middle in row r_k, d the distance along the row from it, and E the response
-/// of a square pixel to a blurred edge (image/pixel_edge.h),
+/// of a square pixel to a blurred edge (core/pictures/image/pixel_signal.h),
 ///
 ///     I_k(u) = b_k + g_k d + a_k [E(s + w/2) - E(s - w/2)] / w,     s = d n_u
 ///

@@ -69,4 +69,57 @@ class FrameSource {
   virtual FileFacts facts() const { return {}; }
 };
 
+/// Throws the InputError of one file.
+[[noreturn]] void fail_frames(const std::filesystem::path& file, std::string key, std::string found,
+                              std::string expected);
+
+/// All frames measure the same, and what was asked for; InputError where one does not.
+class SizeCheck {
+ public:
+  explicit SizeCheck(std::optional<cv::Size> size) : size_(size), given_(size) {}
+  void operator()(const cv::Mat& frame, std::size_t index, const std::filesystem::path& file);
+
+ private:
+  std::optional<cv::Size> size_;
+  bool given_;
+};
+
+/// Counts frames that equal the frame before bit by bit: noise does not repeat itself.
+class RepeatCounter {
+ public:
+  void operator()(const cv::Mat& grey);
+  std::size_t repeated() const { return repeated_; }
+  void tell(std::vector<std::string>& notes) const;
+
+ private:
+  bool same_bits(const cv::Mat& grey) const;
+
+  cv::Mat before_;
+  std::size_t repeated_ = 0;
+  std::size_t count_ = 0;
+};
+
+/// A decoded image, grey as stored, and its colours where they are asked for.
+Frame make_frame(const cv::Mat& image, bool with_color, std::size_t index);
+
+/// Frames that are images in a folder, in the order of their numbers ("2.png" before "10.png"). `size`, where given, is
+/// what every frame must measure. InputError for a folder without images, and where time stamps are asked for, which a
+/// folder does not have.
+std::unique_ptr<FrameSource> open_frame_folder(const std::filesystem::path& folder, const CameraSettings& camera,
+                                               bool with_color, std::optional<cv::Size> size);
+
+/// Frames of a video file, with what its container says about their times. `size`, where given, is what every frame
+/// must measure. InputError for a file that is no video.
+std::unique_ptr<FrameSource> open_video(const std::filesystem::path& file, const CameraSettings& camera,
+                                        bool with_color, std::optional<cv::Size> size);
+
+/// Opens a video or a folder of frames. `size`, where given, is what the frames must measure (the calibration's
+/// images). InputError where it is neither a video nor a folder with images.
+std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& file, const CameraSettings& camera,
+                                         bool with_color, std::optional<cv::Size> size);
+
+/// How an analysis comes by a clip's frames: open_frames, or what gives the same from elsewhere.
+using FrameOpener = std::function<std::unique_ptr<FrameSource>(
+    const std::filesystem::path& file, const CameraSettings& camera, bool with_color, std::optional<cv::Size> size)>;
+
 }  // namespace glidelab::core

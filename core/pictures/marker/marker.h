@@ -1,4 +1,5 @@
-/// The centre of one marker's image, to a hundredth of a pixel, from a least-squares fit to the pixels around it.
+/// The centre of one marker's image, to a hundredth of a pixel, by a least-squares fit to the pixels around it, and the
+/// least uncertainty that it can have.
 ///
 /// The model is an opaque shape with a blurred edge before a sloping background:
 ///
@@ -74,5 +75,22 @@ inline bool has_expected_size(const MarkerFit& marker, const MarkerGuess& guess)
 /// converge, moves by more than a radius, or ends with a shape that is not the marker's (size off by more than a factor
 /// of 2, darker than its surroundings, residuals above a third of the amplitude).
 std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& guess, Surface surface);
+
+struct DiscImage {
+  double u = 0.0, v = 0.0;  ///< centre; only the part below a pixel matters
+  double radius_px = 0.0;
+  double blur_px = 0.0;
+  double amplitude = 0.0;  ///< brightness above the background, in the unit of the noise
+  double noise_sd = 0.0;
+};
+
+/// The least uncertainty with which a disc's centre can be measured, the Cramér-Rao bound: the standard deviation of
+/// one coordinate (root mean square of u and v), in pixels, from the pixels within `reach_px` of the centre.
+///
+/// For independent Gaussian noise of standard deviation s in every pixel the covariance of any unbiased estimate is at
+/// least the inverse of Fisher's information F_ab = (1/s^2) sum over pixels of (dI/da)(dI/db). The disc is that of the
+/// fit: radius, blurred edge (a square pixel's exact response), brightness, and a background with a slope; all eight
+/// parameters are unknown. By the symmetry of the disc only the background's slope costs the centre anything.
+double least_centre_sd_px(const DiscImage& disc, double reach_px);
 
 }  // namespace glidelab::core

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/pictures/image/pixel_edge.h"
+#include "core/pictures/image/pixel_signal.h"
 
 namespace glidelab::core {
 namespace {

@@ -1,7 +1,11 @@
 #include "core/pictures/marker/marker_path.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/math/quantile.h"
 
@@ -104,6 +108,221 @@ std::optional<double> jitter_of(const Places& places) {
   if (squares.size() < 4) return std::nullopt;
   // The median of the sum of two squared Gaussian coordinates is 2 ln 2 variances; outliers do not matter.
   return std::sqrt(median_of(squares) / (2.0 * std::log(2.0)));
+}
+
+namespace {
+
+constexpr std::size_t kFewestMoving = 8;    // sightings of a path that counts as a marker (fewer in a shorter clip)
+constexpr std::size_t kFewestResting = 10;  // sightings of something that counts as part of the scene
+constexpr std::size_t kStartFrames = 5;     // in which start_px is looked at
+
+/// They are seen in the same frames, half of the shorter path's or more, and look and move alike.
+bool are_twins(const MarkerPath& one, const MarkerPath& other) {
+  std::size_t common = 0;
+  for (auto a = one.seen.begin(), b = other.seen.begin(); a != one.seen.end() && b != other.seen.end();) {
+    if (a->frame == b->frame) ++common;
+    if (a->frame <= b->frame) {
+      ++a;
+    } else {
+      ++b;
+    }
+  }
+  const auto alike = [](double x, double y, double factor) { return x < factor * y && y < factor * x; };
+  return 2 * common >= std::min(one.seen.size(), other.seen.size()) && alike(one.radius_px, other.radius_px, 1.2) &&
+         alike(one.amplitude, other.amplitude, 1.4) && alike(one.travel_px, other.travel_px, 1.6);
+}
+
+/// The paths of one clip, of which one is chosen.
+class Choice {
+ public:
+  Choice(const FollowedPaths& followed, const MarkerSetup& marker, const std::filesystem::path& clip)
+      : paths_(followed.paths), frames_(followed.frames), radius_px_(followed.radius_px), marker_(marker), clip_(clip) {
+    std::erase_if(paths_, [](const MarkerPath& path) { return path.seen.size() < 2; });
+  }
+  TrackedMarker marker() const;
+
+ private:
+  TrackedMarker undisturbed(const MarkerPath& path) const;
+  bool is_place_of_another(const MarkerPath& path, const MarkerSeen& sighting) const;
+  std::size_t choose_path(std::vector<std::string>& notes) const;
+  std::size_t path_at_start() const;
+  std::size_t resting_path(std::vector<std::string>& notes) const;
+  base::Issue issue(std::string found, std::string expected) const {
+    return {clip_.string(), 0, "marker", std::move(found), std::move(expected)};
+  }
+
+  std::vector<MarkerPath> paths_;
+  std::size_t frames_;
+  double radius_px_;
+  const MarkerSetup& marker_;
+  const std::filesystem::path& clip_;
+};
+
+/// The path that is nearest to start_px in the first frames.
+std::size_t Choice::path_at_start() const {
+  std::size_t best = paths_.size();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    if (paths_[i].seen.front().frame >= kStartFrames || paths_[i].seen.size() < kFewestMoving) continue;
+    const double distance =
+        cv::norm(paths_[i].seen.front().fit.centre - cv::Point2d(marker_.start_px->x, marker_.start_px->y));
+    if (distance >= nearest) continue;
+    nearest = distance;
+    best = i;
+  }
+  const double allowed = 3.0 * radius_px_ + 10.0;
+  if (best == paths_.size() || nearest > allowed) {
+    throw NoMarker(
+        issue(fmt::format("no marker near start_px = [{:.1f}, {:.1f}] in the first frames{}", marker_.start_px->x,
+                          marker_.start_px->y,
+                          best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
+              fmt::format("one of about {:.1f} px radius within {:.0f} px", radius_px_, allowed)));
+  }
+  return best;
+}
+
+/// Where nothing moves: the one thing of the right size that is there all the time.
+std::size_t Choice::resting_path(std::vector<std::string>& notes) const {
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const double ratio = paths_[i].size_ratio();
+    if (2 * paths_[i].seen.size() >= frames_ && ratio > 0.75 && ratio < 1.33) candidates.push_back(i);
+  }
+  if (candidates.size() != 1) {
+    throw NoMarker(
+        issue(fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
+                          candidates.empty() ? "" : fmt::format(", and {} such things rest", candidates.size())),
+              "a marker of the stated diameter, brighter or darker than its surroundings (or of the stated colour), or "
+              "start_px"));
+  }
+  notes.emplace_back("the marker does not move in this clip");
+  return candidates.front();
+}
+
+std::size_t Choice::choose_path(std::vector<std::string>& notes) const {
+  if (marker_.start_px) return path_at_start();
+  const std::size_t fewest = std::min(kFewestMoving, std::max<std::size_t>(frames_ / 2, 2));
+  std::vector<std::size_t> movers;
+  double farthest = 0.0, brightest = 0.0, longest = 0.0;
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const MarkerPath& path = paths_[i];
+    if (path.seen.size() < fewest || path.travel_px < least_travel(path.radius_px)) continue;
+    movers.push_back(i);
+    farthest = std::max(farthest, path.travel_px);
+    brightest = std::max(brightest, path.amplitude);
+    longest = std::max(longest, static_cast<double>(path.seen.size()));
+  }
+  if (movers.empty()) return resting_path(notes);
+  // Squared deviations from what a marker is like, each over how much it may vary.
+  const auto cost = [&](std::size_t i) {
+    const MarkerPath& path = paths_[i];
+    const double size = std::log(path.size_ratio()) / 0.2;
+    const double travel = std::log(path.travel_px / farthest) / 0.5;
+    const double bright = std::log(path.amplitude / brightest) / 0.7;
+    const double length = std::log(static_cast<double>(path.seen.size()) / longest) / 0.7;
+    return size * size + travel * travel + bright * bright + length * length;
+  };
+  const std::size_t best =
+      *std::min_element(movers.begin(), movers.end(), [&](std::size_t a, std::size_t b) { return cost(a) < cost(b); });
+  const MarkerPath& marker = paths_[best];
+  for (const std::size_t i : movers) {
+    if (i == best) continue;
+    const MarkerPath& other = paths_[i];
+    if (are_twins(marker, other)) {
+      const cv::Point2d a = marker.seen.front().fit.centre, b = other.seen.front().fit.centre;
+      throw base::InputError(
+          issue(fmt::format(
+                    "two markers that look and move alike, at ({:.0f}, {:.0f}) px in frame {} and ({:.0f}, {:.0f}) px "
+                    "in frame {}",
+                    a.x, a.y, marker.seen.front().frame, b.x, b.y, other.seen.front().frame),
+                "one marker, or start_px in [marker] to say which"));
+    }
+  }
+  return best;
+}
+
+/// The place of something that rested there long before the path came by.
+bool Choice::is_place_of_another(const MarkerPath& path, const MarkerSeen& sighting) const {
+  return std::any_of(paths_.begin(), paths_.end(), [&](const MarkerPath& other) {
+    if (&other == &path || other.seen.size() < kFewestResting || other.travel_px > 0.75 * path.radius_px) return false;
+    return other.seen[kFewestResting - 1].frame < sighting.frame &&
+           cv::norm(other.seen.back().fit.centre - sighting.fit.centre) < 0.5 * path.radius_px;
+  });
+}
+
+/// Without the frames in which something like it rests at its place, or in which it is half hidden: measured wrong,
+/// smaller or with larger residuals than in the frames around.
+TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
+  TrackedMarker tracked;
+  std::vector<double> sizes, residuals;
+  for (const MarkerSeen& sighting : path.seen) {
+    sizes.push_back(sighting.size());
+    residuals.push_back(sighting.fit.rms / sighting.fit.amplitude);
+  }
+  const double usual_size = median_of(sizes);
+  std::vector<double> deviations;
+  for (const double size : sizes) deviations.push_back(std::abs(size / usual_size - 1.0));
+  const double size_limit = 0.1 + 6.0 * median_of(deviations);
+  const double residual_limit = 0.03 + 4.0 * median_of(residuals);
+  std::size_t dropped = 0;
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < path.seen.size(); ++i) {
+    const MarkerFit& fit = path.seen[i].fit;
+    if (is_place_of_another(path, path.seen[i])) {
+      ++hidden;
+      continue;
+    }
+    if (std::abs(sizes[i] / usual_size - 1.0) > size_limit || residuals[i] > residual_limit) {
+      ++dropped;
+      continue;
+    }
+    tracked.sightings.push_back({path.seen[i].frame, fit.centre.x, fit.centre.y, fit.sd_px, fit.radius_px});
+    tracked.fits.push_back(fit);
+  }
+  if (hidden > 0) {
+    tracked.notes.push_back(fmt::format(
+        "in {} frames the marker cannot be distinguished from a similar object at rest and counts as not seen",
+        hidden));
+  }
+  if (dropped > 0) {
+    tracked.notes.push_back(
+        fmt::format("in {} frames the marker is partly hidden or disturbed (its size or the residuals differ) and "
+                    "counts as not seen",
+                    dropped));
+  }
+  return tracked;
+}
+
+TrackedMarker Choice::marker() const {
+  std::vector<std::string> notes;
+  const MarkerPath& path = paths_[choose_path(notes)];
+  TrackedMarker tracked = undisturbed(path);
+  tracked.notes.insert(tracked.notes.begin(), notes.begin(), notes.end());
+  if (path.method == MarkerMethod::centroid) {
+    Places places;
+    for (const MarkerSighting& sighting : tracked.sightings) {
+      places[sighting.frame] = {sighting.u_px, sighting.v_px};
+    }
+    // A centroid has no covariance: its noise from the second differences (variance 1 + 4 + 1).
+    const double sd = jitter_of(places).value_or(0.0) / std::sqrt(6.0);
+    for (MarkerSighting& sighting : tracked.sightings) sighting.sd_px = sd;
+    tracked.notes.emplace_back("the marker is not a disc; the centroid of its colour is used");
+  }
+  if (path.method == MarkerMethod::shaded)
+    tracked.notes.emplace_back("the marker is lit from one side; its shading is fitted");
+  const double ratio = path.size_ratio();
+  if (std::abs(std::log(ratio)) > 0.2) {
+    tracked.notes.push_back(fmt::format("the marker looks {:.0f} % {} than its diameter predicts",
+                                        100.0 * std::abs(ratio - 1.0), ratio > 1.0 ? "larger" : "smaller"));
+  }
+  return tracked;
+}
+
+}  // namespace
+
+TrackedMarker choose_marker(const FollowedPaths& followed, const MarkerSetup& marker,
+                            const std::filesystem::path& clip) {
+  return Choice(followed, marker, clip).marker();
 }
 
 }  // namespace glidelab::core

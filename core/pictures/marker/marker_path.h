@@ -1,17 +1,22 @@
-/// The path of one object through a clip: where it was seen, where it should be next, and what resembles it.
+/// The paths of objects through a clip, and which of them is the marker's.
 #pragma once
 
 #include <opencv2/core.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "base/errors.h"
+#include "core/experiment/experiment.h"
 #include "core/pictures/marker/marker.h"
 #include "core/pictures/marker/marker_search.h"
+#include "core/result/results.h"
 
 namespace glidelab::core {
 
@@ -37,6 +42,7 @@ struct MarkerSample {
   MarkerGuess guess;
 };
 
+/// The path of one object through a clip: where it was seen, where it should be next, and what resembles it.
 struct MarkerPath {
   std::vector<MarkerSeen> seen;
   std::vector<MarkerSample> samples;
@@ -71,5 +77,33 @@ using Places = std::map<std::size_t, cv::Point2d>;
 /// Standard deviation of a coordinate of the second differences of consecutive frames' places, in pixels; nothing with
 /// fewer than four of them.
 std::optional<double> jitter_of(const Places& places);
+
+/// Nothing in the clip is like the marker.
+class NoMarker : public base::InputError {
+  using base::InputError::InputError;
+};
+
+struct TrackedMarker {
+  std::vector<MarkerSighting> sightings;  ///< frames rise
+  std::vector<MarkerFit> fits;            ///< of each sighting
+  std::vector<std::string> notes;
+};
+
+/// What was followed through a clip.
+struct FollowedPaths {
+  std::vector<MarkerPath> paths;  ///< joined, each with a method
+  std::size_t frames = 0;         ///< of the clip
+  double radius_px = 0.0;         ///< that the marker should have in the middle of the image
+};
+
+/// Which of the paths through a clip is the marker, and in which of its frames it is seen undisturbed.
+///
+/// The marker is the path nearest to start_px in the first frames where that is given; else, of those that move, the
+/// one that is most like a marker in size, travel, brightness and number of sightings; else the only one of the right
+/// size that rests all the time.
+///
+/// NoMarker and InputError as MarkerTracker::finish(); `clip` is the file that they name.
+TrackedMarker choose_marker(const FollowedPaths& followed, const MarkerSetup& marker,
+                            const std::filesystem::path& clip);
 
 }  // namespace glidelab::core

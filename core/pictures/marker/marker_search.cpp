@@ -4,10 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "core/pictures/image/area_means.h"
-#include "core/pictures/image/contrast_parts.h"
-#include "core/pictures/image/disc_response.h"
-#include "core/pictures/image/pixel_noise.h"
+#include "core/pictures/image/disc_search.h"
+#include "core/pictures/image/pixel_signal.h"
 
 namespace glidelab::core {
 namespace {

@@ -21,7 +21,6 @@
 #include "core/pictures/marker/marker.h"
 #include "core/pictures/marker/marker_path.h"
 #include "core/pictures/marker/marker_search.h"
-#include "core/pictures/marker/marker_track_choice.h"
 
 namespace glidelab::core {
 

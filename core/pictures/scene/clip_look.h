@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker.h"
 #include "core/result/results.h"
 

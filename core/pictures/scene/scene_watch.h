@@ -19,8 +19,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/pictures/scene/codec_blocks.h"
-#include "core/pictures/scene/level_noise.h"
+#include "core/pictures/scene/camera_traces.h"
 #include "core/result/picture_record.h"
 
 namespace glidelab::core {
@@ -35,7 +34,7 @@ class SceneWatch {
   /// `lossy`: the file says that its compression is lossy. The noise is then no longer new in every pixel and frame: a
   /// codec freezes it, so that even a plain wall has structure that rests and later jumps. Errors then count as at
   /// least one code, shared by a block of 8 x 8 pixels. finish() does the same if the file says nothing but the images
-  /// show blocks (codec_blocks.h).
+  /// show blocks (camera_traces.h).
   explicit SceneWatch(bool lossy = false) : lossy_(lossy) {}
   void add(const cv::Mat& grey, double t_s);
   /// Fills what it has seen into the record: scene, steps, noise.

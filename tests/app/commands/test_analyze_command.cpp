@@ -6,7 +6,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "test_paths.h"
 #include "tests/app/made_track.h"

@@ -1,7 +1,7 @@
 /// `glidelab characterize`: files, JSON, exit statuses, nothing half-written.
 #include <nlohmann/json.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/toml/strict_toml.h"
 #include "tests/app/run_process.h"
 #include "tests/catch.h"
@@ -33,7 +33,7 @@ TEST_CASE("characterize writes camera.toml, characterize.json and a page, and --
   REQUIRE(result.status == 0);
   CHECK(result.out == base::read_file(temp / "out/characterize.json"));
   const json gain = json::parse(result.out).at("sensor").at("gain_dn_per_e");
-  // 4 sd: see tests/core/test_photon_transfer.cpp.
+  // 4 sd: see tests/core/characterize/test_photon_transfer.cpp.
   CHECK(std::abs(gain.at("value").get<double>() - camera.gain_dn_per_e) < 4.0 * gain.at("sd").get<double>());
   const base::TomlFile file = base::TomlFile::load(temp / "out/camera.toml");
   CHECK(std::abs(file.root().table("sensor").number("gain_dn_per_e") - gain.at("value").get<double>()) <

@@ -3,11 +3,11 @@
 #include <numbers>
 #include <random>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 #include "sim/oracle/closed_forms.h"
-#include "teach/page/explorer_page.h"
+#include "teach/page/teaching_pages.h"
 #include "tests/app/opened_page.h"
 #include "tests/app/run_process.h"
 #include "tests/catch.h"

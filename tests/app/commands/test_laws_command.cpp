@@ -1,5 +1,5 @@
 /// glidelab laws.
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/app/opened_page.h"
 #include "tests/app/run_process.h"

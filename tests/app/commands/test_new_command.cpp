@@ -1,7 +1,7 @@
 /// glidelab new.
 #include <nlohmann/json.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/app/run_process.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

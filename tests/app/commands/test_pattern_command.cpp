@@ -1,7 +1,7 @@
 /// glidelab pattern.
 #include <nlohmann/json.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/pictures/board/chessboard.h"
 #include "core/pictures/frames/read_image.h"
 #include "tests/app/run_process.h"

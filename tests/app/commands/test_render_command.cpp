@@ -3,8 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/files/made_files.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
 #include "test_paths.h"
 #include "tests/app/run_process.h"

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/app/run_process.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/app/run_process.h"
 #include "tests/app/tiny_scenario.h"
 #include "tests/catch.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/app/run_process.h"
 #include "tests/catch.h"

@@ -3,7 +3,7 @@
 #include <set>
 #include <sstream>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/app/command_names.h"
 #include "tests/app/made_track.h"

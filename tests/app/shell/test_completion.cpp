@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/app/command_names.h"
 #include "tests/app/run_process.h"

@@ -1,4 +1,4 @@
-#include "app/shell/interrupt.h"
+#include "app/shell/run_control.h"
 
 #include <signal.h>
 #include <sys/wait.h>

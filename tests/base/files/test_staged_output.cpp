@@ -1,4 +1,4 @@
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -7,7 +7,6 @@
 #include <csignal>
 
 #include "base/errors.h"
-#include "base/files/made_files.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 

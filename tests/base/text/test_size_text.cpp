@@ -1,4 +1,4 @@
-#include "base/text/size_text.h"
+#include "base/text/number_text.h"
 
 #include <limits>
 

@@ -6,7 +6,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
 #include "tests/catch.h"

@@ -1,4 +1,4 @@
-#include "core/characterize/measured_camera_file.h"
+#include "core/characterize/camera_measurement.h"
 
 #include <cmath>
 

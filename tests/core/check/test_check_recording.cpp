@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/files/file_io.h"
-#include "core/check/marker_smear.h"
+#include "core/check/check_clip.h"
 #include "core/check/recording_findings.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"

@@ -5,7 +5,7 @@
 
 #include "base/files/file_io.h"
 #include "core/check/check_recording.h"
-#include "core/result/stated_values.h"
+#include "core/result/estimate.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 #include "tests/temp_dir.h"

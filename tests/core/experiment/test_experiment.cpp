@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "core/experiment/folder_files.h"
+#include "base/files/file_io.h"
+#include "core/experiment/file_names.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 
@@ -233,7 +233,7 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"file = \"clips/a.mkv\"", "", "16: clip[1].file: found nothing"},
       {"mass_kg = 0.335", "mass_kg = 0", "19: clip[1].mass_kg: found 0"},
       {"mass_kg = 0.335", "mass_kg = inf", "19: clip[1].mass_kg: found inf"},
-      {"incline_deg = 4.0", "incline_deg = 90", "20: clip[1].incline_deg: found 90"},
+      {"incline_deg = 4.0", "incline_deg = 90.5", "20: clip[1].incline_deg: found 90.5"},
       {"incline_deg = 4.0", "incline_deg = 4.0\nincline_sd_deg = -1", "21: clip[1].incline_sd_deg: found -1"},
       {kUp, "launched = \"left\"", "21: clip[1].launched"},
       {kUp, "launched = \"up\"\nstart_s = 2\nend_s = 2",

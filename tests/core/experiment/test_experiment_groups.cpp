@@ -1,4 +1,4 @@
-#include "core/experiment/experiment_groups.h"
+#include "core/experiment/clip_setup.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

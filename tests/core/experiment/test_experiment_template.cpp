@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

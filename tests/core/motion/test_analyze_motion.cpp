@@ -3,7 +3,7 @@
 #include <map>
 
 #include "core/motion/join_configurations.h"
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/smoothing/local_polynomial.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 

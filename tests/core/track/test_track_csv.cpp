@@ -1,4 +1,4 @@
-#include "core/track/track_csv.h"
+#include "core/track/track_data.h"
 
 #include <fmt/format.h>
 

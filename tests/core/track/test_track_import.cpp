@@ -1,4 +1,4 @@
-#include "core/track/track_import.h"
+#include "core/track/track_data.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "base/errors.h"
-#include "core/track/track_csv.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 

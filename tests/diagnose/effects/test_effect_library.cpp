@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/text/size_text.h"
+#include "base/text/number_text.h"
 #include "diagnose/model/track_model.h"
 #include "test_paths.h"
 #include "tests/catch.h"
@@ -34,6 +34,11 @@ diagnose::TrackModel glider() {
   model.v0_m_s = -0.6;
   model.x_mid_m = 0.1;
   model.x_mid_all_m = 0.3;
+  model.x_low_m = -0.4;
+  model.x_high_m = 0.6;
+  model.clip = 3;
+  static const diagnose::KnownForce known = {{0.0, 0.4, 0.9, 1.5}, {0.05, -0.05, 0.1, 0.0}};
+  model.known = &known;
   return model;
 }
 
@@ -49,7 +54,7 @@ double typical(const diagnose::EffectParameter& parameter) {
   if (parameter.reach == Reach::places) return 0.45;
   if (parameter.reach == Reach::waves) return 3.0;
   if (parameter.reach == Reach::release) return 0.31;
-  if (parameter.own) return 0.4;
+  if (parameter.each == diagnose::Each::motion) return 0.4;
   return parameter.low + 0.05 * (parameter.high - parameter.low);
 }
 
@@ -98,7 +103,7 @@ TEST_CASE("every parameter of an effect has a key with its unit, a range and a s
       CHECK(parameter.step > 0.0);
       CHECK(parameter.step < 0.01 * (parameter.high - parameter.low));
       CHECK(diagnose::effect_list()[parameter.slot.effect].id == effect.id);
-      if (parameter.key.empty() || parameter.own) continue;
+      if (parameter.key.empty() || parameter.each == diagnose::Each::motion) continue;
       const base::NamedUnit named = base::name_and_unit(parameter.key);
       CHECK_FALSE(named.name.empty());
       CHECK(named.name.find("_m_s") == std::string::npos);  // the unit came off
@@ -116,7 +121,9 @@ TEST_CASE("the page of effects has a row for every effect, with its name and its
     REQUIRE(at != std::string::npos);
     const std::string line = page.substr(at, page.find('\n', at) - at);
     for (const diagnose::EffectParameter& parameter : effect.parameters) {
-      if (parameter.key.empty() || parameter.own || effect.id == std::string_view("camera_motion")) continue;
+      if (parameter.key.empty() || parameter.each == diagnose::Each::motion ||
+          effect.id == std::string_view("camera_motion"))
+        continue;
       CHECK(line.find("`" + std::string(parameter.key) + "`") != std::string::npos);
     }
   }

@@ -1,4 +1,4 @@
-#include "diagnose/fit/effect_ranges.h"
+#include "diagnose/fit/fit_model.h"
 
 #include <array>
 #include <cmath>

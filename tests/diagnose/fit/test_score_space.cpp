@@ -1,4 +1,4 @@
-#include "diagnose/fit/score_space.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "diagnose/frames/timing_noise.h"
+#include "diagnose/frames/point_scatter.h"
 
 #include <cmath>
 #include <random>

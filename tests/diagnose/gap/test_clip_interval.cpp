@@ -1,4 +1,4 @@
-#include "diagnose/gap/clip_interval.h"
+#include "diagnose/gap/gap_sizes.h"
 
 #include <cmath>
 #include <random>
@@ -71,4 +71,30 @@ TEST_CASE("interval over clips: of eight clips that differ it holds the true gap
     held += interval->low < std::exp(0.04) && std::exp(0.04) < interval->high ? 1 : 0;
   }
   CHECK(std::abs(static_cast<double>(held) / kSets - 0.95) < 0.03);
+}
+
+TEST_CASE("the interval of a share is the jackknife of its own definition") {
+  const std::vector<diagnose::ClipSquares> first = {{400, 100}, {500, 100}, {450, 100}, {380, 100}};
+  const std::vector<diagnose::ClipSquares> before = {{300, 100}, {350, 100}, {320, 100}, {310, 100}};
+  const std::vector<diagnose::ClipSquares> after = {{120, 100}, {140, 100}, {125, 100}, {150, 100}};
+  const auto of = [&](std::size_t left_out) {
+    double f = 0.0, b = 0.0, a = 0.0, n = 0.0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (c == left_out) continue;
+      f += first[c].sum;
+      b += before[c].sum;
+      a += after[c].sum;
+      n += 100.0;
+    }
+    return (b - a) / n / (f / n - 1.0);
+  };
+  double mean = 0.0, square = 0.0;
+  for (std::size_t c = 0; c < 4; ++c) mean += of(c) / 4.0;
+  for (std::size_t c = 0; c < 4; ++c) square += std::pow(of(c) - mean, 2);
+  const double half = 3.182446 * std::sqrt(square * 3.0 / 4.0);  // t of three degrees of freedom
+  const auto interval = diagnose::share_interval(first, before, after);
+  REQUIRE(interval);
+  CHECK(0.5 * (interval->low + interval->high) == Approx(of(4)).margin(1e-12));
+  CHECK(0.5 * (interval->high - interval->low) == Approx(half).epsilon(0.02));  // student_t975 is good to a percent
+  CHECK(!diagnose::share_interval(std::span(first).first(2), std::span(before).first(2), std::span(after).first(2)));
 }

@@ -1,4 +1,4 @@
-#include "diagnose/gap/parameter_gap.h"
+#include "diagnose/gap/domain_gaps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "diagnose/gap/phase_gap.h"
+#include "diagnose/gap/domain_gaps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "diagnose/lines/line_table.h"
+#include "diagnose/lines/line_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 
 #include "base/errors.h"
 #include "diagnose/lines/line_diagnosis.h"
-#include "diagnose/lines/line_solution.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_lines.h"

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "diagnose/model/track_model.h"
-#include "diagnose/tracks/thin_tracks.h"
+#include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

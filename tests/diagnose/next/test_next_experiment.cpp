@@ -8,8 +8,6 @@
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/expected_evidence.h"
 #include "diagnose/next/next_changes.h"
-#include "diagnose/next/next_clip.h"
-#include "diagnose/next/next_unnamed.h"
 
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"

@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "base/math/dense.h"
-#include "diagnose/noise/noise_chunks.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"

@@ -1,4 +1,4 @@
-#include "diagnose/pictures/noise_law.h"
+#include "diagnose/pictures/twin_camera.h"
 
 #include <cmath>
 

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "diagnose/pictures/picture_shape.h"
-#include "diagnose/pictures/picture_sway.h"
-#include "diagnose/pictures/series_wave.h"
+#include "diagnose/pictures/picture_recording.h"
+#include "diagnose/pictures/picture_scene.h"
+#include "diagnose/pictures/picture_search.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

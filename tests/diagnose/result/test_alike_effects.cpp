@@ -1,4 +1,4 @@
-#include "diagnose/result/alike_effects.h"
+#include "diagnose/result/diagnosis.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "diagnose/scan/pair_scan.h"
+#include "diagnose/scan/effect_scan.h"
 
 #include <set>
 

@@ -1,4 +1,4 @@
-#include "diagnose/tracks/driven_motions.h"
+#include "diagnose/tracks/tracked_motions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/model/track_model.h"
 #include "diagnose/verdict/diagnose.h"
-#include "diagnose/verdict/verdict_regions.h"
+#include "diagnose/verdict/verdict_details.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 

@@ -1,4 +1,4 @@
-#include "diagnose/tracks/pixel_modes.h"
+#include "diagnose/tracks/track_set.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // What is known of measured recordings that no one here made, beside their diagnosis.
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
@@ -21,19 +21,34 @@ std::optional<diagnose::Diagnosis> diagnose_real(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("carts whose positions are rounded to 1 cm lack a displacement that swings with the place", "[slow]") {
+TEST_CASE("carts whose positions are rounded to 1 cm lack nothing that rounding does not make", "[slow]") {
   const auto diagnosis = diagnose_real("incline-cart");
   if (!diagnosis) return;
-  CHECK(diagnosis->verdict == diagnose::Verdict::unknown);
-  REQUIRE_FALSE(diagnosis->regions.empty());
-  const diagnose::GapRegion& first = diagnosis->regions.front();
-  CHECK(first.variable == "x_m");
-  CHECK(first.what == "displacement");
-  // What rounding to steps of d does has the first harmonic d/pi. A scatter of sigma before the rounding weakens it by
-  // exp(-2 (pi sigma/d)²): 0.82 for 1 mm, 0.49 for 1.9 mm.
-  const double harmonic_m = 0.01 / std::numbers::pi;
-  CHECK(std::abs(first.size) > 0.5 * harmonic_m);
-  CHECK(std::abs(first.size) < 1.1 * harmonic_m);
+  CHECK(diagnosis->verdict == diagnose::Verdict::none);
+  CHECK(diagnosis->effects.empty());
+  CHECK(diagnosis->traces == std::vector<std::string>{"position_rounding"});
+  REQUIRE(diagnosis->gap);
+  CHECK(diagnosis->gap->before < 1.1);
+  // An independent fit of each run leaves 3 to 5 mm.
+  double square = 0.0, points = 0.0;
+  for (const diagnose::ResidualCurve& curve : diagnosis->residuals) {
+    for (const double off_m : curve.before_m) square += off_m * off_m;
+    points += static_cast<double>(curve.before_m.size());
+  }
+  CHECK(std::sqrt(square / points) < 5e-3);
+}
+
+TEST_CASE("paper cups that fall side by side have a drag with the square of the speed", "[slow]") {
+  const auto diagnosis = diagnose_real("falling-cups");
+  if (!diagnosis) return;
+  REQUIRE(diagnosis->verdict == diagnose::Verdict::effect);
+  REQUIRE_FALSE(diagnosis->explained.empty());
+  CHECK(diagnosis->explained.front().share > 0.5);
+  const diagnose::DiagnosedEffect& first = diagnosis->effects.front();
+  CHECK((first.id == "quadratic_drag" || first.id == "power_law_drag"));
+  for (const diagnose::DiagnosedParameter& told : first.parameters) {
+    if (told.key == "n") CHECK(std::abs(told.value - 2.0) < 3.0 * told.sd);
+  }
 }
 
 TEST_CASE("three half seconds of a block that slides on wood carry no name", "[slow]") {

@@ -1,11 +1,10 @@
-#include "diagnose/verdict/verdict_limits.h"
+#include "diagnose/verdict/verdict_details.h"
 
 #include <algorithm>
 #include <numbers>
 
 #include "base/errors.h"
 #include "diagnose/gap/held_out.h"
-#include "diagnose/verdict/derived_parameters.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

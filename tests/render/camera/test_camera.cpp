@@ -5,7 +5,7 @@
 #include <numbers>
 #include <opencv2/calib3d.hpp>
 
-#include "render/camera/ray_table.h"
+#include "render/camera/optics.h"
 #include "tests/catch.h"
 
 using namespace glidelab::render;

@@ -1,4 +1,4 @@
-#include "render/camera/focus.h"
+#include "render/camera/optics.h"
 
 #include <fmt/format.h>
 

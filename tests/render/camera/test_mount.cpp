@@ -1,4 +1,4 @@
-#include "render/camera/mount.h"
+#include "render/camera/camera.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
-#include "render/camera/shutter.h"
+#include "render/camera/exposure_times.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "render/film/clip_renderer.h"
-#include "render/film/marker_truth.h"
+#include "render/film/truth_files.h"
 #include "render/paint/sphere_image.h"
 #include "render/scenario/scene.h"
 #include "tests/catch.h"

@@ -1,4 +1,4 @@
-#include "render/camera/vignetting.h"
+#include "render/camera/optics.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "render/film/calibration_boards.h"
+#include "render/film/render_experiment.h"
 
 #include <cmath>
 #include <tuple>

@@ -1,12 +1,12 @@
 /// What a perfect camera would have taken, written beside the truth.
-#include "render/film/ideal_frames.h"
+#include "render/film/truth_files.h"
 
 #include <cmath>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 #include "render/film/render_experiment.h"
 #include "tests/catch.h"
 #include "tests/one_glider.h"

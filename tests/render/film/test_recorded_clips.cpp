@@ -11,10 +11,10 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 #include "render/film/render_experiment.h"
 #include "tests/catch.h"
 #include "tests/one_glider.h"

@@ -12,11 +12,11 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "base/toml/strict_toml.h"
 #include "core/experiment/experiment.h"
-#include "render/film/experiment_and_truth_files.h"
+#include "render/film/truth_files.h"
 #include "render/paint/sphere_image.h"
 #include "render/scenario/scene.h"
 #include "tests/catch.h"

@@ -1,9 +1,8 @@
-#include "render/random/poisson.h"
+#include "render/random/random_numbers.h"
 
 #include <cmath>
 #include <map>
 
-#include "render/random/philox.h"
 #include "tests/catch.h"
 
 using namespace glidelab::render;

@@ -1,14 +1,13 @@
-#include "render/scenario/camera_catalogue.h"
+#include "render/scenario/scenario.h"
 
 #include <fmt/format.h>
 
 #include <set>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "render/film/clip_renderer.h"
 #include "render/paint/static_painter.h"
-#include "render/scenario/scenario.h"
 #include "render/scenario/scene.h"
 #include "render/video/video_writer.h"
 #include "test_paths.h"

@@ -1,4 +1,4 @@
-#include "render/scenario/light.h"
+#include "render/scenario/scenario_data.h"
 
 #include <fmt/format.h>
 

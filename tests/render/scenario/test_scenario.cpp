@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "render/scenario/scene.h"
 #include "test_paths.h"
 #include "tests/catch.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 

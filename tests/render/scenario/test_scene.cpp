@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "render/film/experiment_and_truth_files.h"
+#include "render/film/truth_files.h"
 #include "tests/catch.h"
 
 using namespace glidelab::render;

@@ -1,4 +1,4 @@
-#include "render/sensor/fixed_pattern.h"
+#include "render/sensor/sensor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/sensor/mosaic.h"
+#include "render/sensor/readout.h"
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>

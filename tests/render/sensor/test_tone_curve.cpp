@@ -1,4 +1,4 @@
-#include "render/sensor/tone_curve.h"
+#include "render/sensor/sensor.h"
 
 #include <cmath>
 #include <vector>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "render/random/philox.h"
+#include "render/random/random_numbers.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 

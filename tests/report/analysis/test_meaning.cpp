@@ -1,14 +1,13 @@
-#include "report/analysis/meaning.h"
+#include "report/analysis/analysis_report.h"
 
 #include <limits>
 
-#include "report/analysis/analysis_report.h"
-#include "report/blind/blind_targets.h"
+#include "report/blind/blind_report.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"
-#include "report/diagnosis/diagnosis_lead.h"
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
+#include "report/diagnosis/verdict_words.h"
 #include "report/validation/validation_report.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"

@@ -1,9 +1,9 @@
-#include "report/analysis/clip_csv.h"
+#include "report/analysis/result_files.h"
 
 #include <limits>
 
 #include "base/errors.h"
-#include "report/text/result_names.h"
+#include "report/text/display_text.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
 

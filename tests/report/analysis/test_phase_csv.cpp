@@ -1,9 +1,9 @@
-#include "report/analysis/clip_csv.h"
+#include "report/analysis/result_files.h"
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
-#include "report/text/result_names.h"
+#include "report/text/display_text.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
 #include "tests/temp_dir.h"

@@ -1,10 +1,10 @@
 /// The phase diagram's bands and bars, and the files of its numbers.
-#include "report/analysis/phase_plots.h"
+#include "report/analysis/motion_plots.h"
 
 #include <cmath>
 #include <random>
 
-#include "report/validation/validation_plots.h"
+#include "report/validation/validation_report.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
 

@@ -1,4 +1,4 @@
-#include "report/analysis/pixel_phase.h"
+#include "report/analysis/camera_plots.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "report/analysis/results_json.h"
+#include "report/analysis/result_files.h"
 
 #include <limits>
 #include <nlohmann/json.hpp>

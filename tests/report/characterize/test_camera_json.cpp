@@ -1,8 +1,7 @@
-#include "report/characterize/camera_json.h"
+#include "report/characterize/camera_report.h"
 
 #include <nlohmann/json.hpp>
 
-#include "report/characterize/camera_report.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

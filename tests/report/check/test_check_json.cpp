@@ -1,4 +1,4 @@
-#include "report/check/check_json.h"
+#include "report/check/check_report.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "report/diagnosis/explanation_text.h"
+#include "report/diagnosis/diagnosis_words.h"
 
 #include "tests/catch.h"
 

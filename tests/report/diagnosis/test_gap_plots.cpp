@@ -9,7 +9,7 @@
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/html/html.h"
-#include "report/text/handy_units.h"
+#include "report/text/display_text.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

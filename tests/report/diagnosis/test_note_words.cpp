@@ -1,9 +1,8 @@
 /// Notes and next steps of a diagnosis as sentences.
-#include "report/diagnosis/note_words.h"
+#include "report/diagnosis/diagnosis_words.h"
 
 #include <vector>
 
-#include "report/diagnosis/next_step_words.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -50,7 +49,8 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::ContradictedIncline{"flat", "plumb", 0.1, 0.001, 0.2, 0.001, true, 70.0}, "by the plumb line"},
       {diagnose::BeyondGravity{4.0, 12.7, 9.81}, "12.7 m/s², more than gravity"},
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "3.900 degrees"},
-      {diagnose::TableOfLines{12}, "A table of 12 lines"}};
+      {diagnose::TableOfLines{12}, "A table of 12 lines"},
+      {diagnose::OnlyFalls{}, "not determined"}};
   std::vector<bool> seen(std::variant_size_v<diagnose::Note>, false);
   for (const auto& [note, part] : notes) {
     const std::string words = report::note_words(note);

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "report/diagnosis/diagnosis_words.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -65,7 +66,22 @@ TEST_CASE("a stated inclination that the motion contradicts is said first, with 
   // Where the motion itself is not explained, that comes first and the statement last.
   const std::string off = report::verdict_words(with_incline(5.0));
   CHECK(off.starts_with("Something is missing"));
-  CHECK(contains(off, "as stated, and the motion says"));
+  CHECK(contains(off, "as stated, and the motion says 4.00° by the nominal model, which leaves out what is missing."));
+}
+
+TEST_CASE("an angle of the nominal model has no standard deviation where something is missing, in notes neither") {
+  diagnose::Diagnosis of = with_incline(5.0);
+  of.limits.contradicted.push_back(of.limits.contradicted.front());
+  of.limits.contradicted.back().group = "second";
+  of.notes = {of.limits.contradicted.front(), of.limits.contradicted.back()};
+  CHECK(contains(report::verdict_words(of), "The motion contradicts 1 more set-up."));
+  CHECK_FALSE(contains(report::verdict_words(of), "second"));
+  for (const std::string& note : report::notes_words(of)) CHECK_FALSE(contains(note, "4.001"));
+  of.verdict = diagnose::Verdict::none;
+  for (const std::string& note : report::notes_words(of)) CHECK(contains(note, "4.001 ± 0.004°"));
+  of.verdict = diagnose::Verdict::effect;
+  of.limits.contradicted.front().named = true;  // with the effects in the model it is an answer
+  CHECK(contains(report::note_words(report::as_told(of.limits.contradicted.front(), of)), "4.001 ± 0.004°"));
 }
 
 TEST_CASE("a drag or friction below zero is told before the verdict that rests on it alone") {

@@ -1,4 +1,4 @@
-#include "report/html/decimate.h"
+#include "report/html/plot.h"
 
 #include <algorithm>
 #include <cmath>

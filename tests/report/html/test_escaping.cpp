@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/analysis/analysis_report.h"
 #include "report/blind/blind_report.h"
+#include "report/blind/everyday_report.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"
 #include "report/coverage/coverage_report.h"
@@ -74,6 +75,13 @@ diagnose::Diagnosis evil_diagnosis() {
   of.stage = kEvil;
   of.next = diagnose::RecordForEffect{kEvil, diagnose::Alternative{{{kEvil}}, {{kEvil}}}};
   of.regions = {{"t_s", 0.0, 1.0, 5.0, 1e-3, kEvil, kEvil, kEvil, {}, 1e-4, 0, 0.5}};
+  of.effects.front().parameters.push_back({"mu." + kEvil, 1.0, 0.1, "", ""});
+  of.effects.front().parameters.push_back({"mu.2" + kEvil, 1.0, 0.1, "", ""});
+  of.explained = {{kEvil, 0.9, diagnose::GapInterval{0.8, 0.95}, 1.2}};
+  of.remainder = diagnose::GapRemainder{0.1, 1.2, 1e-3, 1e-3, 0.01, of.regions};
+  of.traces = {kEvil};
+  of.recovered = {{kEvil, 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}},
+                  {"other", 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}}};
   of.limits.contradicted = {{kEvil, kEvil, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
   of.notes = {diagnose::NoFreeMotion{kEvil, 12},       diagnose::StatementsDisagree{kEvil, kEvil, kEvil, 7.0},
               diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
@@ -271,6 +279,29 @@ TEST_CASE("the page of blind cases has every name from a file as text") {
   run.score.left_out = {{kEvil, {1, 1}}};
   run.score.confusion = {{kEvil, {{kEvil, 1}}}};
   check_is_text(report::blind_page(run));
+}
+
+TEST_CASE("the page of everyday cases has every name from a file as text") {
+  validate::BlindOutcome outcome;
+  outcome.causes = {{kEvil, 1.0, {}, kEvil, 20.0}};
+  outcome.verdict.verdict = outcome.verdict.why = kEvil;
+  outcome.verdict.effects = {{kEvil, 0.9, {kEvil}}};
+  outcome.verdict.sequence.explained = {{kEvil, 0.7}};
+  outcome.everyday.emplace();
+  outcome.everyday->shares = {0.8};
+  outcome.everyday->equals = {{kEvil}};
+  outcome.everyday->dirt = {{kEvil, 0.1, kEvil, 0.6, {kEvil}}};
+  report::BlindRun run;
+  run.outcomes = {outcome};
+  run.everyday.emplace();
+  validate::EverydayMethod method;
+  method.name = kEvil;
+  method.main_first[kEvil][kEvil] = {1, 1};
+  run.everyday->methods = {method};
+  run.everyday->covered[kEvil][kEvil] = {1, 1};
+  run.everyday->calibration[kEvil] = {1, 0.9, 1.0, 0.1};
+  run.everyday->cases[kEvil] = 1;
+  check_is_text(report::everyday_page(run));
 }
 
 TEST_CASE("every page that report can make is among those whose texts are tested here") {

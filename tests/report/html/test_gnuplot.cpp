@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
-#include "report/html/plot_style.h"
+#include "base/files/file_io.h"
+#include "report/html/plot.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 

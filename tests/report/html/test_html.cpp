@@ -1,7 +1,6 @@
 #include "report/html/html.h"
 
 #include "report/analysis/analysis_report.h"
-#include "report/html/typeset_numbers.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
 

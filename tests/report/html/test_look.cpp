@@ -6,7 +6,7 @@
 
 #include "base/errors.h"
 #include "base/files/child_process.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "report/html/html.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

@@ -1,4 +1,4 @@
-#include "report/html/plot_axis.h"
+#include "report/html/plot.h"
 
 #include <cmath>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "report/sweep/sweep_advice.h"
+#include "report/sweep/sweep_meaning.h"
 
 #include "tests/catch.h"
 

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "report/html/gnuplot.h"
-#include "report/sweep/mass_study_report.h"
 #include "report/sweep/sweep_meaning.h"
 #include "report/sweep/sweep_plots.h"
 #include "report/sweep/sweep_report.h"

@@ -1,4 +1,4 @@
-#include "report/text/effect_names.h"
+#include "report/text/display_text.h"
 
 #include <set>
 

@@ -1,9 +1,9 @@
-#include "report/text/gap_text.h"
+#include "report/text/display_text.h"
 
 #include <nlohmann/json.hpp>
 
 #include "report/diagnosis/diagnosis_json.h"
-#include "report/diagnosis/diagnosis_text.h"
+#include "report/diagnosis/diagnosis_report.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

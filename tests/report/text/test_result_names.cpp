@@ -1,4 +1,4 @@
-#include "report/text/result_names.h"
+#include "report/text/display_text.h"
 
 #include "tests/catch.h"
 #include "tests/report/made_results.h"

@@ -1,4 +1,4 @@
-#include "report/validation/comparison_json.h"
+#include "report/validation/validation_report.h"
 
 #include <nlohmann/json.hpp>
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "sim/force/read_force.h"
 #include "sim/sensitivity/sensitivity.h"
 #include "test_paths.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "sim/motion/simulate.h"
 #include "tests/catch.h"
 #include "tests/sim/bodies.h"

@@ -6,7 +6,6 @@
 
 #include "base/errors.h"
 #include "sim/force/law_list.h"
-#include "sim/motion/true_parameters.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

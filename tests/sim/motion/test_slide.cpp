@@ -1,4 +1,4 @@
-#include "sim/motion/slide.h"
+#include "sim/motion/simulate.h"
 
 #include <cmath>
 

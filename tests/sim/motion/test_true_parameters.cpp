@@ -1,4 +1,4 @@
-#include "sim/motion/true_parameters.h"
+#include "sim/motion/motion_scenario.h"
 
 #include <cmath>
 

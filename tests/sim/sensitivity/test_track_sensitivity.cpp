@@ -1,10 +1,9 @@
-#include "sim/sensitivity/track_sensitivity.h"
+#include "sim/sensitivity/sensitivity.h"
 
 #include <cmath>
 #include <limits>
 
 #include "base/errors.h"
-#include "sim/sensitivity/motion_law.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

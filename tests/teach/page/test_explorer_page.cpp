@@ -1,4 +1,4 @@
-#include "teach/page/explorer_page.h"
+#include "teach/page/teaching_pages.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
-#include "teach/page/laws_report.h"
+#include "teach/page/teaching_pages.h"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/report/text_of_pages.h"

@@ -1,9 +1,9 @@
-#include "teach/page/page_texts.h"
+#include "teach/page/teaching_pages.h"
 
 #include <filesystem>
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 

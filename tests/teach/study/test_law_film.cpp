@@ -1,11 +1,11 @@
-#include "teach/study/law_film.h"
+#include "teach/study/law_study.h"
 
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "sim/oracle/closed_forms.h"
 #include "test_paths.h"
 #include "tests/catch.h"

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker.h"
 #include "diagnose/effects/effect_library.h"
 #include "render/film/render_experiment.h"
@@ -16,7 +16,7 @@
 #include "sim/motion/simulate.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
-#include "validate/blind/case/blind_scene_effects.h"
+#include "validate/blind/case/blind_filmed_effects.h"
 #include "validate/blind/case/blind_strength.h"
 #include "validate/blind/run_blind.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "validate/blind/case/blind_effects.h"

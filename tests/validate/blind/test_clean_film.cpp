@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "diagnose/verdict/diagnose.h"
 #include "render/film/render_experiment.h"
 #include "test_paths.h"

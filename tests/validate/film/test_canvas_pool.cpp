@@ -1,4 +1,4 @@
-#include "validate/film/canvas_pool.h"
+#include "validate/film/film_studio.h"
 
 #include "tests/catch.h"
 

@@ -1,7 +1,7 @@
 /// The closed loop: a scenario is filmed, the pictures alone are analysed, and the truth comes back.
 #include <cmath>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "render/scenario/scenario.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

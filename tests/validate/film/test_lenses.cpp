@@ -1,6 +1,6 @@
 #include <string>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "render/scenario/scenario.h"
 #include "tests/catch.h"
 #include "tests/small_scenario.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/characterize/flat_field_folder.h"
 #include "core/characterize/photon_transfer.h"
 #include "render/sensor/readout.h"

@@ -1,7 +1,7 @@
-#include "validate/film/rendered_frames.h"
+#include "validate/film/film_studio.h"
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "core/analysis/analyze.h"
 #include "render/film/render_experiment.h"

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "core/analysis/analyze.h"
 #include "render/scenario/scenario.h"
-#include "report/analysis/results_json.h"
+#include "report/analysis/result_files.h"
 #include "tests/catch.h"
 #include "tests/small_scenario.h"
 #include "tests/temp_dir.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "diagnose/model/track_model.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/diagnose.h"

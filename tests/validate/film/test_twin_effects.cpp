@@ -1,9 +1,9 @@
-#include "diagnose/twin/twin_effects.h"
+#include "diagnose/twin/twin.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "render/camera/mount.h"
+#include "render/camera/camera.h"
 #include "render/scenario/scenario.h"
 #include "tests/catch.h"
 

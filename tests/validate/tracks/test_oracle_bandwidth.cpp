@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/motion/analyze_motion.h"
-#include "core/motion/smoothing/kernel_constants.h"
+#include "core/motion/smoothing/local_polynomial.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
@@ -26,7 +26,7 @@ TEST_CASE("the best bandwidth for a motion with one x'''' everywhere is the asym
   REQUIRE(best);
   CHECK(best->bandwidth_s == Approx(expected).epsilon(2e-3));  // the search's last ratio is 1.001
   const double square = 0.25 * std::pow(expected, 4) + 0.2115711 * variance * 0.005 / std::pow(expected, 5);
-  CHECK(best->mean_square_m2_s4 == Approx(square).epsilon(1e-4));  // the kernel's cut at 6 h, see local_cubic.h
+  CHECK(best->mean_square_m2_s4 == Approx(square).epsilon(1e-4));  // the kernel's cut at 6 h, see local_polynomial.h
   CHECK(*validate::true_error({{t, x, a}}, {variance}, 1.2 * expected) > best->mean_square_m2_s4);
 }
 

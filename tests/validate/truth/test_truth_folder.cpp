@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 

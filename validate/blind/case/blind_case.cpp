@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_strength.h"
 

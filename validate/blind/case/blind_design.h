@@ -1,16 +1,78 @@
-/// The experiments of blind cases: who launches what from where, what is stated of it, and what is true.
+/// The experiments of blind cases: who launches what from where, what is stated of it, what is true, and what one
+/// effect alters.
+///
+/// The motion is the truth to which a diagnosis is compared, made with none of the diagnosis's code:
+///
+///     inertia dv/dt = drive - drag - sign(v) friction,        at v = 0 it stays while |drive| <= friction
+///
+/// drive = m g sin(alpha), drag = K v, friction = mu m g cos(alpha), inertia = m, each of which a change may alter as a
+/// function of (x, v, t). SI, x downhill.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <map>
+#include <numbers>
 #include <optional>
+#include <random>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "validate/blind/case/blind_motion.h"
-#include "validate/blind/case/blind_random.h"
-
 namespace glidelab::validate {
+
+inline constexpr double kTurn = 2.0 * std::numbers::pi;  ///< a whole one
+
+/// The engine of all random draws of blind cases.
+using BlindRandom = std::mt19937_64;
+
+/// Uniform in [low, high), evenly over the logarithm, and a standard normal deviate.
+double uniform(BlindRandom& random, double low, double high);
+double log_uniform(BlindRandom& random, double low, double high);
+double normal(BlindRandom& random);
+
+/// One of these words, each as likely as another; there is at least one.
+inline const std::string& one_of(const std::vector<std::string>& words, BlindRandom& random) {
+  const auto drawn = static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(words.size())));
+  return words[std::min(words.size() - 1, drawn)];
+}
+
+/// The same of values.
+template <typename T, std::size_t N>
+T one_of(BlindRandom& random, const T (&values)[N]) {
+  return values[std::min(N - 1, static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(N))))];
+}
+
+struct BlindTerms {
+  double drive_n = 0.0;
+  double drag_n = 0.0;      ///< against the motion where it has v's sign
+  double friction_n = 0.0;  ///< never negative
+  double inertia_kg = 0.0;
+  double mass_kg = 0.0;  ///< true; no change alters it
+};
+
+using BlindChange = std::function<void(double x_m, double v_m_s, double t_s, BlindTerms&)>;
+
+struct BlindLaw {
+  double mass_kg = 0.0;
+  double k_n_s_m = 0.0;
+  double mu = 0.0;
+  double alpha_rad = 0.0;
+  double gravity_m_s2 = 9.80665;
+  std::vector<BlindChange> changes;  ///< in this order
+};
+
+struct BlindSample {
+  double x_m = 0.0;
+  double v_m_s = 0.0;
+};
+
+/// The motion from (x0, v0) at the first of the times, which rise. NaN from where it runs away (1 km), or where a
+/// million steps have not brought it. Boost.Odeint's Dormand-Prince pair with dense output (tolerance 1e-11 m, steps of
+/// at most 2 ms, so that no narrow force is stepped over). v = 0 is found by bisection in the dense output.
+std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v0_m_s, std::span<const double> times_s);
 
 struct BlindGroup {
   std::string name;
@@ -40,6 +102,7 @@ struct BlindCalibration {
   double scale = 0.0, bend_1_m = 0.0, cubic_1_m2 = 0.0;
 };
 
+/// An experiment: what is launched from where, what is stated of it, and what is true.
 struct BlindDesign {
   std::vector<BlindGroup> groups;
   std::vector<BlindMass> masses;
@@ -68,5 +131,33 @@ BlindFilm nominal_film(const BlindDesign& design, const BlindClip& clip);
 
 /// Positions as the camera has them, without noise; NaN where the glider has come to rest.
 std::vector<double> seen_positions(const BlindClip& clip, const BlindFilm& film);
+
+/// One effect of a blind case: what it alters, by a size that can be changed with all else held.
+///
+/// Each is written here anew, by ratios that a person would think in (a share of the drag, of the friction, of a frame)
+/// and as an alteration of forces, frame times or positions. Nothing of the diagnosis' models is used. All that is
+/// random in an effect is drawn when it is made.
+struct BlindEffect {
+  std::string id;
+  double largest = 0.0;  ///< size, in a unit of its own; 0 is absence
+  /// Alters the film of clip number `clip`.
+  std::function<void(double size, std::size_t clip, BlindFilm& film)> put;
+  /// The parameters of effects.md at a size; empty for what is outside the library.
+  std::function<std::map<std::string, double>(double size)> truth;
+  /// How a case of it differs at random from point to point (jitter, outliers): the expected gain in log likelihood at
+  /// a size, by the noise of a position and the speed of each frame. Not set for what displaces positions smoothly.
+  std::function<double(double size, double noise_sd_m, const std::vector<std::vector<double>>& speed_m_s)> gain;
+  std::string variable;  ///< in which it lies: x_m, v_m_s, t_s, clip, mass_kg; for what is outside
+};
+
+/// An id, and what draws an effect of it.
+using DrawnEffect = std::pair<std::string, std::function<BlindEffect(const BlindDesign&, BlindRandom&)>>;
+
+/// +1 or -1, each as likely.
+double either_sign(BlindRandom& random);
+/// An angle for each clip, in [0, 2 pi).
+std::vector<double> phases(const BlindDesign& design, BlindRandom& random);
+/// A frequency of three periods a clip or more, at most 0.35 of the frame rate and 40 Hz.
+double wave_hz(const BlindDesign& design, BlindRandom& random);
 
 }  // namespace glidelab::validate

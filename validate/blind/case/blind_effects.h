@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "validate/blind/case/blind_effect.h"
+#include "validate/blind/case/blind_design.h"
 
 namespace glidelab::validate {
+
+/// Effects of effects.md that lie in the camera, its clock and the noise of positions, not in the forces.
+const std::vector<DrawnEffect>& seen_library();
 
 /// Ids of effects.md that tracks can show.
 const std::vector<std::string>& library_effects();

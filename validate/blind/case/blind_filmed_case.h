@@ -1,9 +1,9 @@
 /// One filmed blind case: a small experiment rendered by the program's own renderer in a process of its own, with
-/// nothing (25 of 100), one effect (57) or one not on the list (18); its folder does not say which.
+/// nothing (25 of 100), one effect (57) or one not on the list (18). Its folder does not say which.
 ///
-/// Drawn from (seed, index) alone: scene, cause and strength (blind_scene_effects.h; 8 to 1500). The folder shown to
-/// the diagnosis is what the renderer wrote, less what is withheld; the scenario, the renderer's own truth and all that
-/// was done to the images are kept from it.
+/// It is drawn from (seed, index) alone: scene, cause and strength (blind_filmed_effects.h; 8 to 1500). The folder
+/// shown to the diagnosis is what the renderer wrote, less what is withheld. The scenario, the renderer's own truth and
+/// all that was done to the images are kept from it.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,21 @@
 #include <string>
 #include <vector>
 
+#include "render/scenario/scenario.h"
 #include "validate/blind/case/blind_case.h"
 #include "validate/blind/case/blind_scene.h"
 
 namespace glidelab::validate {
+
+/// Changes a folder that was rendered from this scenario, in place, before it is a filmed blind case: lines of
+/// experiment.toml say something else, frames are lost, clips are drawn anew with the glider where it is not, or are
+/// filed anew without loss. A line of experiment.toml that is to be changed and is not there: std::logic_error.
+///
+/// A glider that is shown elsewhere is drawn there, by the same camera with the same noise, with a marker of the same
+/// shape (a lens that shifts it by x² or x³ would stretch it by some percent). Its images are not pulled instead: one
+/// whose edges are sharper than its pixels cannot be pulled by parts of a pixel, and centres would be off by up to 0.03
+/// px, in beats of some centimetres that no lens makes.
+void retouch_folder(const BlindScene& scene, const render::Scenario& scenario, const std::filesystem::path& folder);
 
 struct FilmedCase : DrawnCase {
   BlindScene scene;

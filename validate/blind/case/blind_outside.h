@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "validate/blind/case/blind_effect.h"
+#include "validate/blind/case/blind_design.h"
 
 namespace glidelab::validate {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/pictures/marker/marker_bound.h"
+#include "core/pictures/marker/marker.h"
 
 namespace glidelab::validate {
 namespace {

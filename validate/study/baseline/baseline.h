@@ -1,14 +1,15 @@
-/// The errors of replicated tracks of a scenario, to be stored and compared with later ones (baseline_comparison.h,
-/// baseline_file.h).
+/// The errors of replicated tracks of a scenario, stored as a JSON file and compared with later ones
+/// (baseline_comparison.h).
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "core/result/results.h"
 #include "render/scenario/scenario.h"
 #include "validate/tracks/made_tracks.h"
@@ -64,5 +65,9 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
 
 /// A seed whose noise differs from the baseline's; for a baseline without a seed, from that of the default, 1.
 std::uint64_t other_seed(const Baseline& then);
+
+std::string baseline_json(const Baseline& baseline);
+/// InputError for a file that --write-baseline did not write, with the first key that is wrong.
+Baseline read_baseline(const std::filesystem::path& file);
 
 }  // namespace glidelab::validate

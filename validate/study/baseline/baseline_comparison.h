@@ -1,22 +1,10 @@
-/// Is the analysis worse than it was? Present errors compared with those of a baseline.
-///
-/// For each quantity of each configuration and estimator:
-///
-///     spread      Levene's test: Welch's t of |error - mean|, which stands heavy tails better than an F test does
-///     bias        Welch's t of the mean errors                    |mean now| above |mean then|
-///     coverage    test of two proportions (normal)                fewer values within 1.96 stated sd of the truth
-///     answers     the same, of the runs that gave a value
-///
-/// and for the phase diagram of each clip, whose lines a correction makes insensitive to how they were smoothed:
-///
-///     a(t)        Welch's t of ln(root mean square error of the smoothed acceleration)
-///     bandwidth   Welch's t of ln(bandwidth), in either direction: it has no better and worse
-///
-/// each one-sided (but for the bandwidth) at significance / number of tests (Bonferroni), so that an unchanged analysis
-/// fails with at most the significance. With the same noise it would prove nothing: other_seed() of baseline.h.
+/// Present errors compared with those of a baseline: is the analysis worse than it was, and how small a worsening would
+/// be detected?
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +30,48 @@ struct BaselineComparison {
   std::vector<Worse> worse;
 };
 
-/// InputError if the two are not of one scenario, noise and set of quantities.
+/// Is the analysis worse than it was? InputError if the two are not of one scenario, noise and set of quantities.
+///
+/// For each quantity of each configuration and estimator:
+///
+///     spread      Levene's test: Welch's t of |error - mean|, which stands heavy tails better than an F test does
+///     bias        Welch's t of the mean errors                    |mean now| above |mean then|
+///     coverage    test of two proportions (normal)                fewer values within 1.96 stated sd of the truth
+///     answers     the same, of the runs that gave a value
+///
+/// and for the phase diagram of each clip, whose lines a correction makes insensitive to how they were smoothed:
+///
+///     a(t)        Welch's t of ln(root mean square error of the smoothed acceleration)
+///     bandwidth   Welch's t of ln(bandwidth), in either direction: it has no better and worse
+///
+/// each one-sided (but for the bandwidth) at significance / number of tests (Bonferroni), so that an unchanged analysis
+/// fails with at most the significance. With the same noise it would prove nothing: other_seed() of baseline.h.
 BaselineComparison compare_baselines(const Baseline& then, const Baseline& now);
+
+inline constexpr double kDetectionProbability = 0.9;
+/// A gate that detects only errors larger than this many times misses too much.
+inline constexpr double kWeakFactor = 1.5;
+
+/// How small a worsening a comparison with a baseline still detects, of one quantity.
+struct Detectable {
+  std::string configuration, estimator,
+      quantity;                     ///< of smoothing: the clip, the default estimator, "a" or "bandwidth"
+  std::optional<double> factor;     ///< errors as many times as large; nothing if these runs find no factor at all
+  std::optional<double> bias;       ///< in the quantity's unit; of smoothing none
+  std::uint64_t runs_for_weak = 0;  ///< then and now, with which a factor of kWeakFactor would be found
+  bool weak() const { return !factor || *factor > kWeakFactor; }
+};
+
+/// One for each quantity and clip with two values or more on both sides. `comparison` is that of the same two.
+///
+/// Of each test at the level that it is made at, the change that it finds with probability kDetectionProbability, from
+/// the spread that the baseline itself has and normal quantiles z:
+///
+///     errors f times as large   (f - 1) d = (z_level + z_found) s sqrt(f²/n + 1/m)
+///     a mean error farther off  b = (z_level + z_found) sd sqrt(1/n + 1/m)
+///     a(t), bandwidth           ln f = (z_level + z_found) sd_of_ln sqrt(1/n + 1/m)
+///
+/// with d and s the mean and the standard deviation of |error - mean|, n values now and m then.
+std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, const BaselineComparison& comparison);
 
 }  // namespace glidelab::validate

@@ -11,13 +11,12 @@
 #include <random>
 
 #include "base/errors.h"
-#include "base/parallel.h"
+#include "base/long_work.h"
 #include "core/math/quantile.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
 #include "fit/estimators.h"
-#include "validate/tracks/camera_noise.h"
 #include "validate/tracks/made_tracks.h"
 #include "validate/truth/binomial.h"
 #include "validate/truth/cramer_rao.h"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "render/scenario/scenario.h"
 #include "validate/study/coverage/naive_lines.h"
 
@@ -22,7 +22,7 @@ namespace glidelab::validate {
 struct CoverageOptions {
   std::size_t replicates = 1000;
   /// Of each position, white and normal, above 0; left out, each clip's is the least that the scenario's camera allows
-  /// (camera_noise.h).
+  /// (made_tracks.h).
   std::optional<double> noise_sd_m = {};
   std::optional<double> bandwidth_s = {};
   std::vector<double> levels = {0.50, 0.68, 0.90, 0.95, 0.99};  ///< of the intervals that are counted

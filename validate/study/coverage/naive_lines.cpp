@@ -11,7 +11,7 @@
 
 #include "base/errors.h"
 #include "core/math/quantile.h"
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::validate {
 namespace {

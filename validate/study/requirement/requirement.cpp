@@ -11,13 +11,12 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "base/parallel.h"
-#include "render/film/clip_set.h"
-#include "render/scenario/camera_catalogue.h"
+#include "base/long_work.h"
+#include "render/film/clip_renderer.h"
+#include "render/scenario/scenario.h"
 #include "validate/film/film_studio.h"
-#include "validate/study/requirement/requirement_bound.h"
-#include "validate/study/requirement/requirement_runs.h"
-#include "validate/study/sweep/design/sweep_design.h"
+#include "validate/study/requirement/requirement_trial.h"
+#include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
 #include "validate/tracks/made_tracks.h"
 

@@ -3,19 +3,19 @@
 /// A target is on the worst configuration of the scenario: its root mean square error, a bias included ("sd": of an
 /// unbiased estimator the standard deviation), what 95 % of the errors stay within ("error95"), or the mean error
 /// ("bias"); target.h. The bound takes the noise of the sweep's tracks, or predicts it from the camera
-/// (tracks/camera_noise.h), and is that of the standard deviation, times 1.96 for "error95". A point whose bound is
-/// above the target cannot reach it. Any other is run as tracks with that noise and judged by its errors (of the better
-/// estimator), for a bound knows nothing of dropped frames. Where rendered clips are to confirm, those that miss the
-/// target by less than kClearMargin or reach it by less than kClearMarginOfClips are rendered as well, with lens,
-/// shutter, codec and calibration, and these judge. Where the errors' uncertainty spans the target, nothing is decided.
-/// Where nothing is run, a bound below the target by kClearMargin is said to have room.
+/// (validate/tracks/made_tracks.h), and is that of the standard deviation, times 1.96 for "error95". A point whose
+/// bound is above the target cannot reach it. Any other is run as tracks with that noise and judged by its errors (of
+/// the better estimator), for a bound knows nothing of dropped frames. Where rendered clips are to confirm, those that
+/// miss the target by less than kClearMargin or reach it by less than kClearMarginOfClips are rendered as well, with
+/// lens, shutter, codec and calibration, and these judge. Where the errors' uncertainty spans the target, nothing is
+/// decided. Where nothing is run, a bound below the target by kClearMargin is said to have room.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "validate/study/requirement/candidate.h"
 #include "validate/study/requirement/target.h"
 #include "validate/study/sweep/design/sweep.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/parallel.h"
-#include "validate/study/sweep/design/sweep_design.h"
+#include "base/long_work.h"
+#include "validate/study/sweep/design/sweep.h"
 
 namespace glidelab::validate {
 namespace {

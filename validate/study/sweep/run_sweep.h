@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/sweep_database.h"
 

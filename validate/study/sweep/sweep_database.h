@@ -1,4 +1,4 @@
-/// The file that a sweep fills: sweep.sqlite.
+/// The file that a sweep fills, sweep.sqlite: its tables, its rows, and several files put together.
 ///
 ///     sweep   key, value                what was swept: the sweep's and the scenario's text, the program's version
 ///     schema  table, column, unit, meaning
@@ -10,20 +10,52 @@
 ///
 /// All rows of a run are written in one transaction (WAL), so a run is there whole or not at all. But for `timing` the
 /// contents are a function of the sweep and the program alone.
+///
+/// A file is one of a sweep where each entry of its table `sweep` is the sweep's: texts, seed, number of runs and the
+/// program's version. A row is one where its run has that number and that seed in the sweep's design.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/sqlite.h"
 #include "validate/study/sweep/sweep_run.h"
-#include "validate/study/sweep/sweep_tables.h"
 
 namespace glidelab::validate {
+
+/// Name and value of each entry of the table `sweep`.
+using SweepEntries = std::vector<std::pair<std::string, std::string>>;
+
+/// What a sweep's file says of it, whichever of its runs the file is for.
+SweepEntries entries_of(const Sweep& sweep, const std::string& version);
+
+/// The sweep that a database is of, for who has only the database.
+SweepEntries sweep_entries(Database& database);
+
+/// All tables, their schema and the sweep's entries, in an empty database.
+void make_tables(Database& database, const Sweep& sweep, const SweepEntries& entries);
+
+/// InputError if the database is not one of these entries; it says which one differs.
+void check_entries(Database& database, const SweepEntries& expected);
+
+/// InputError if a row is of no run of the sweep, or of one that has another seed there.
+void check_runs(Database& database, const Sweep& sweep);
+
+/// Takes over all runs of the other files, which several processes may have made, into a database of the sweep.
+/// `expected`: the entries that each of them must have. InputError for a file that is not there, is damaged, is another
+/// sweep's, has rows of a run that the sweep has not or that is not in it with its seed, or has other rows of a run
+/// than another file, which is named.
+///
+/// All runs of all files are taken, or none: one transaction. A run that several files have counts once where all its
+/// rows but its time are the same to the last bit. What differs is refused, so that the result does not depend on the
+/// files' order.
+void take_over(Database& into, const Sweep& sweep, const SweepEntries& expected,
+               const std::vector<std::filesystem::path>& others);
 
 /// Part `index` (from 1) of `count`: the runs r with r mod count = index - 1.
 struct Shard {
@@ -57,7 +89,7 @@ class SweepDatabase {
   /// All rows of a run that is not there yet, in one transaction.
   void add(const RunRecord& record, double wall_s);
 
-  /// take_over() of sweep_merge.h, of other databases of the same sweep and version (any shard).
+  /// take_over() of other databases of the same sweep and version (any shard).
   void take(const std::vector<std::filesystem::path>& others);
 
   Database& database() { return database_; }

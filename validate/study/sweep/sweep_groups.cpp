@@ -9,7 +9,7 @@
 #include <set>
 #include <variant>
 
-#include "validate/study/sweep/design/sweep_design.h"
+#include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
 
 namespace glidelab::validate {

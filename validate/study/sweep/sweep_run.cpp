@@ -7,7 +7,7 @@
 #include "fit/estimators.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/coverage/naive_lines.h"
-#include "validate/study/sweep/design/sweep_design.h"
+#include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
 #include "validate/tracks/oracle_bandwidth.h"
 #include "validate/truth/cramer_rao.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/progress.h"
+#include "base/long_work.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/tracks/made_tracks.h"

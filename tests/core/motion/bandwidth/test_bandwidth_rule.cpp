@@ -8,9 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "base/files/staged_output.h"
-#include "core/motion/smoothing/kernel_constants.h"
-#include "core/motion/smoothing/local_cubic.h"
+#include "base/files/file_io.h"
+#include "core/motion/smoothing/local_polynomial.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 

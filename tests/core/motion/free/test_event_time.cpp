@@ -1,4 +1,4 @@
-#include "core/motion/free/event_time.h"
+#include "core/motion/free/motion_events.h"
 
 #include <cmath>
 

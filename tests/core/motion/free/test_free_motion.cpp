@@ -250,3 +250,19 @@ TEST_CASE("frames without a marker are told from the others, and a wide gap from
   CHECK(clip.motion[230].left_out == LeftOut::kernel_gap);
   check_lines(clip, kInclined);
 }
+
+TEST_CASE("what is stated to be free motion is neither at rest nor in a hand") {
+  SimulatedMotion motion;
+  motion.rest(0.3).kick(0.02).slide(kInclined, 1.7);
+  core::ClipSetup setup = tests::clip_setup(core::Launched::down, 4.0);
+  CHECK(count(analyze(setup, motion, {}), LeftOut::rest) > 40);  // 0.3 s at 200 Hz, less what a kernel blurs
+  const auto of = [&](std::optional<double> start_s, std::optional<double> end_s) {
+    setup.start_s = start_s;
+    setup.end_s = end_s;
+    const core::ClipResult clip = analyze(setup, motion, {});
+    return count(clip, LeftOut::rest) + count(clip, LeftOut::hand) + count(clip, LeftOut::stop);
+  };
+  CHECK(of(0.0, 1.6) == 0);
+  CHECK(of(0.0, {}) == 0);
+  CHECK(of({}, 1.6) > 40);  // of the start nothing is stated
+}

@@ -1,4 +1,4 @@
-#include "core/motion/free/speed_dependent_noise.h"
+#include "core/motion/free/stretch_noise.h"
 
 #include <random>
 

@@ -6,7 +6,7 @@
 
 #include "core/motion/analyze_motion.h"
 #include "core/motion/join_configurations.h"
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/smoothing/local_polynomial.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 

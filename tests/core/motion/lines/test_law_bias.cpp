@@ -1,8 +1,8 @@
-#include "core/motion/lines/law_bias.h"
+#include "core/motion/lines/line_law.h"
 
 #include <random>
 
-#include "core/motion/lines/stretch_points.h"
+#include "core/motion/lines/line_fit.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "core/motion/bandwidth/rule_lines.h"
-#include "core/motion/lines/stretch_points.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 
@@ -16,7 +15,7 @@ namespace {
 
 constexpr double kStep = 0.005;
 
-/// A clip of one direction with its smoothed points, as phase_diagram.cpp puts them together.
+/// A clip of one direction with its smoothed points, as analyze_motion.cpp puts them together.
 struct Smoothed {
   Motion motion;
   std::vector<FreeStretch> stretches;

@@ -1,4 +1,4 @@
-#include "core/motion/smoothing/local_cubic.h"
+#include "core/motion/smoothing/local_polynomial.h"
 
 #include <Eigen/Dense>
 
@@ -6,7 +6,6 @@
 #include <numbers>
 #include <random>
 
-#include "core/motion/smoothing/kernel_constants.h"
 #include "tests/catch.h"
 
 using namespace glidelab::core;

@@ -1,4 +1,4 @@
-#include "core/pictures/board/corner_map.h"
+#include "core/pictures/board/corner_errors.h"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "core/pictures/board/corner_noise.h"
+#include "core/pictures/board/corner_errors.h"
 
 #include <Eigen/Dense>
 

@@ -5,7 +5,7 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
-#include "core/experiment/folder_files.h"
+#include "core/experiment/file_names.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/core/known_camera.h"

@@ -1,4 +1,4 @@
-#include "core/pictures/camera/calibrate_fisheye.h"
+#include "core/pictures/camera/calibrate.h"
 
 #include <cmath>
 #include <opencv2/calib3d.hpp>

@@ -1,6 +1,6 @@
 // How the errors of the calibrated camera and plane reach the results: many draws of corner noise, each calibrated,
 // restituted and fitted anew, against a motion known in closed form. The noise of the positions is nothing here.
-#include "core/pictures/camera/mode_axis.h"
+#include "core/pictures/camera/motion_axis.h"
 
 #include <cmath>
 #include <map>

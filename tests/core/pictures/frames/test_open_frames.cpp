@@ -1,4 +1,4 @@
-#include "core/pictures/frames/open_frames.h"
+#include "core/pictures/frames/frame_source.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
-#include "core/experiment/clip_names.h"
+#include "core/experiment/file_names.h"
 #include "core/pictures/frames/read_image.h"
 #include "tests/catch.h"
 #include "tests/core/small_clip.h"

@@ -1,4 +1,4 @@
-#include "core/pictures/image/area_means.h"
+#include "core/pictures/image/disc_search.h"
 
 #include <opencv2/imgproc.hpp>
 #include <random>

@@ -1,4 +1,4 @@
-#include "core/pictures/image/contrast_parts.h"
+#include "core/pictures/image/disc_search.h"
 
 #include <algorithm>
 #include <random>

@@ -1,4 +1,4 @@
-#include "core/pictures/image/disc_response.h"
+#include "core/pictures/image/disc_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/pictures/image/pixel_edge.h"
+#include "core/pictures/image/pixel_signal.h"
 
 #include <cmath>
 

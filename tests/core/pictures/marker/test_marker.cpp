@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/pictures/marker/marker_centroid.h"
+#include "core/pictures/marker/marker_method.h"
 #include "tests/catch.h"
 #include "tests/core/small_clip.h"
 

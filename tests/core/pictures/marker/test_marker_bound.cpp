@@ -1,9 +1,8 @@
-#include "core/pictures/marker/marker_bound.h"
+#include "core/pictures/marker/marker.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "core/pictures/marker/marker.h"
 #include "tests/catch.h"
 #include "tests/core/painter.h"
 

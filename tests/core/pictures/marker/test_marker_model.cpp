@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/pictures/image/pixel_edge.h"
+#include "core/pictures/image/pixel_signal.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

@@ -1,4 +1,4 @@
-#include "core/pictures/scene/codec_blocks.h"
+#include "core/pictures/scene/camera_traces.h"
 
 #include <random>
 

@@ -1,12 +1,11 @@
 #include "validate/study/baseline/baseline.h"
 #include "validate/study/baseline/baseline_comparison.h"
-#include "validate/study/baseline/baseline_file.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/errors.h"
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "fit/trajectory/trajectory_results.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

@@ -1,4 +1,4 @@
-#include "validate/study/baseline/baseline_power.h"
+#include "validate/study/baseline/baseline_comparison.h"
 
 #include <cmath>
 #include <random>

@@ -10,7 +10,6 @@
 #include "tests/validate/small_sweep.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/sweep/sweep_run.h"
-#include "validate/tracks/camera_noise.h"
 #include "validate/tracks/made_tracks.h"
 
 using namespace glidelab;

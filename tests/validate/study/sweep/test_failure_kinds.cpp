@@ -1,4 +1,4 @@
-#include "validate/study/sweep/failure_kinds.h"
+#include "validate/study/sweep/sweep_summary.h"
 
 #include <fmt/format.h>
 

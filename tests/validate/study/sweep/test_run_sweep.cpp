@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/files/staged_output.h"
-#include "render/scenario/camera_catalogue.h"
+#include "base/files/file_io.h"
+#include "render/scenario/scenario.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
@@ -199,8 +199,8 @@ TEST_CASE("The best possible bandwidth loses nothing to itself, and a bandwidth 
       CHECK(*of.regret == 1.0);
       CHECK(*of.regret90 == 1.0);
     }
-    // At h = 0.02 s the noise makes an error of sqrt(0.2116 s² dt / h^5) (core/motion/smoothing/local_cubic.h), and the
-    // best h is two to three times as long: the sd goes with h^-2.5.
+    // At h = 0.02 s the noise makes an error of sqrt(0.2116 s² dt / h^5) (core/motion/smoothing/local_polynomial.h),
+    // and the best h is two to three times as long: the sd goes with h^-2.5.
     if (of.estimator == "phase-diagram h=0.02 s") {
       const double noise_m_s2 = std::sqrt(0.2116 * 1e-8 / 120.0 / std::pow(0.02, 5));
       CHECK(of.median_m_s2 == Approx(noise_m_s2).epsilon(0.3));  // some thirty independent points a clip

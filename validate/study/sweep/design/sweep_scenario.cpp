@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "validate/study/sweep/design/sweep.h"
 
 namespace glidelab::validate {
 namespace {
@@ -96,6 +97,125 @@ RunScenario scenario_with(const Sweep& sweep, const std::vector<base::TomlScalar
     run.scenario = read(sweep, run.text, shown_as, checks);
   }
   return run;
+}
+
+namespace {
+
+using Kind = AxisSource::Kind;
+using Values = std::vector<base::TomlScalar>;
+
+/// "configuration.force.mu": whichever of the tables it is.
+std::string without_picks(const std::string& path) {
+  std::string bare;
+  int depth = 0;
+  for (const char c : path) {
+    depth += c == '[' ? 1 : 0;
+    if (depth == 0) bare += c;
+    depth -= c == ']' ? 1 : 0;
+  }
+  return bare;
+}
+
+/// The line of the sweep's file that puts `key` in; 0 where none does.
+int line_of(const Axis& axis, const base::TomlScalar& value, const std::string& key) {
+  const std::string bare = without_picks(key);
+  const auto is_it = [&](const std::string& path) { return without_picks(path) == bare; };
+  for (const Choice& choice : axis.choices) {
+    if (choice.label != std::get<std::string>(value)) continue;
+    const auto found =
+        std::find_if(choice.keys.begin(), choice.keys.end(), [&](const auto& of) { return is_it(of.path); });
+    if (found != choice.keys.end()) return choice.line;
+  }
+  return std::any_of(axis.keys.begin(), axis.keys.end(), is_it) ? axis.line : 0;
+}
+
+/// `tried`: the axis whose value is not its first.
+void try_scenario(const Sweep& sweep, const Values& values, const Axis* tried, const base::TomlScalar* tried_value) {
+  try {
+    scenario_with(sweep, values);
+  } catch (const base::InputError& error) {
+    std::vector<base::Issue> issues = error.issues();
+    for (base::Issue& issue : issues) {
+      if (!issue.file.starts_with(sweep.scenario_file.string() + " with ")) continue;
+      int line = 0;
+      for (std::size_t i = 0; i < values.size() && line == 0; ++i) {
+        line = line_of(sweep.axes[i], values[i], issue.key);
+      }
+      if (line == 0 && tried != nullptr) {
+        line = tried->line;
+        for (const Choice& choice : tried->choices) {
+          if (choice.label == std::get<std::string>(*tried_value)) line = choice.line;
+        }
+      }
+      if (line == 0) continue;  // a mistake of the scenario's own
+      issue.expected += fmt::format(" (in {})", issue.file);
+      issue.file = sweep.file.string();
+      issue.line = line;
+    }
+    throw base::InputError(std::move(issues));
+  }
+}
+
+/// As try_scenario(); of a range whose whole numbers would do, with that.
+void try_value(const Sweep& sweep, Values values, std::size_t i) {
+  const Axis& axis = sweep.axes[i];
+  const base::TomlScalar value = values[i];
+  try {
+    try_scenario(sweep, values, &axis, &value);
+  } catch (const base::InputError& error) {
+    const double* const number = std::get_if<double>(&value);
+    if (axis.source.kind == Kind::list || number == nullptr || *number == std::round(*number)) throw;
+    values[i] = std::round(*number);
+    try {
+      scenario_with(sweep, values);
+    } catch (const base::InputError&) {
+      throw error;  // not for want of being whole
+    }
+    std::vector<base::Issue> issues = error.issues();
+    issues.front().expected += "; \"whole = true\" in the range rounds its values to whole numbers";
+    throw base::InputError(std::move(issues));
+  }
+}
+
+/// A list, the grid of a range, or some values within it: its ends and, for a key that takes whole numbers, one that is
+/// not.
+Values tried_values(const Sweep& sweep, const AxisSource& source) {
+  if (source.kind == Kind::list) return source.values;
+  constexpr double kGolden = 0.3819660112501051;  // of the range: hardly ever a whole number
+  if (source.drawn()) return {value_at(source, 0.25), value_at(source, kGolden), value_at(source, 0.75)};
+  if (sweep.design != Design::factorial) return {source.from, value_at(source, kGolden), source.to};
+  return all_values(source);
+}
+
+}  // namespace
+
+void try_values(const Sweep& sweep) {
+  Values first;
+  for (const Axis& axis : sweep.axes) {
+    first.push_back(axis.source.kind == Kind::list ? axis.source.values.front() : value_at(axis.source, 0.0));
+    if (axis.source.drawn()) first.back() = value_at(axis.source, 0.5);
+  }
+  const auto of_cameras = [](const Axis& axis) { return axis.keys == std::vector<std::string>{"camera_file"}; };
+  const bool cameras = std::any_of(sweep.axes.begin(), sweep.axes.end(), of_cameras);
+  if (!cameras) try_scenario(sweep, first, nullptr, nullptr);
+  constexpr std::size_t kTried = 200;  // of one axis; a longer one is a grid, whose ends and some between tell
+  for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
+    const Values values = tried_values(sweep, sweep.axes[i].source);
+    const std::size_t step = 1 + values.size() / kTried;
+    // A camera that does not suit the scenario's view is a run's outcome, and no mistake of the sweep's.
+    Sweep as_tracks;
+    const Sweep* tried = &sweep;
+    if (of_cameras(sweep.axes[i])) {
+      as_tracks = sweep;
+      as_tracks.level = Level::tracks;
+      tried = &as_tracks;
+    }
+    for (std::size_t k = 0; k < values.size(); k += k + 1 < values.size() ? std::min(step, values.size() - 1 - k) : 1) {
+      Values one_other = first;
+      one_other[i] = values[k];
+      try_value(*tried, one_other, i);
+    }
+  }
 }
 
 }  // namespace glidelab::validate

@@ -1,4 +1,5 @@
-/// The scenario of one run: the sweep's scenario with the run's values in it.
+/// The scenario of one run, which is the sweep's with the run's values in it, and the trial of all values before the
+/// first run.
 #pragma once
 
 #include <string>
@@ -21,5 +22,9 @@ struct RunScenario {
 /// `values` has one for each axis. InputError, with the values in the file's name, where the scenario refuses them.
 /// At the level of tracks what the camera sees is not checked.
 RunScenario scenario_with(const Sweep& sweep, const std::vector<base::TomlScalar>& values);
+
+/// InputError if the scenario refuses a value of an axis, the others at their first ones; with the line of the
+/// sweep's file that the key stands on, or the choice. Up to 200 values of an axis are tried, its ends among them.
+void try_values(const Sweep& sweep);
 
 }  // namespace glidelab::validate

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/files/staged_output.h"
+#include "base/files/file_io.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
-#include "validate/study/sweep/design/sweep_design.h"
+#include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
 #include "validate/study/sweep/run_sweep.h"
 #include "validate/study/sweep/sweep_summary.h"

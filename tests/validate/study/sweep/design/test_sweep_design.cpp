@@ -1,4 +1,4 @@
-#include "validate/study/sweep/design/sweep_design.h"
+#include "validate/study/sweep/design/sweep.h"
 
 #include <cmath>
 #include <map>

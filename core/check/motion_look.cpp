@@ -1,0 +1,179 @@
+#include "core/check/motion_look.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/quantile.h"
+#include "core/motion/smoothing/noise.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kFewestPoints = 12;
+constexpr std::size_t kParts = 10;                    // parabolas go through a tenth of the points,
+constexpr std::size_t kFewestOfParabola = 7;          // and so many at least
+constexpr double kOverNoise = 5.0;                    // standard deviations of a parabola's a that a typical one has
+constexpr double kWayBack = 20.0, kPartOfWay = 0.05;  // standard deviations, part of the way: a turn comes back so far
+constexpr std::size_t kManyTurns = 6;
+constexpr double kHarmonic = 0.8;                       // of the variance of a
+constexpr double kSmoothPart = 1e-7;                    // of the way
+constexpr double kAboveGravity = 1.05;                  // of g: a fall has 1
+constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;  // of g, on an incline of less than 60 degrees
+constexpr double kMostBend = 0.08;                      // a wide lens bends a straight path by half of that
+constexpr double kLongWay_m = 20.0;
+constexpr double kDegrees = 180.0 / 3.14159265358979;
+
+/// x = x0 + v t + a t²/2 through some points.
+Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_m) {
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(t_s.size()), 3);
+  const double middle = 0.5 * (t_s.front() + t_s.back());
+  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+    const double t = t_s[static_cast<std::size_t>(i)] - middle;
+    design.row(i) << 1.0, t, 0.5 * t * t;
+  }
+  return design.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(x_m.data(), design.rows()));
+}
+
+std::size_t turns_in(std::span<const double> x_m, double back_m) {
+  double lowest = x_m[0], highest = x_m[0];
+  int way = 0;
+  std::size_t turns = 0;
+  for (const double x : x_m) {
+    lowest = std::min(lowest, x);
+    highest = std::max(highest, x);
+    const bool falls = way >= 0 && highest - x > back_m, rises = way <= 0 && x - lowest > back_m;
+    if (!falls && !rises) continue;
+    turns += way != 0;
+    way = falls ? -1 : 1;
+    lowest = highest = x;
+  }
+  return turns;
+}
+
+/// Part of the variance of a that a line falling with x explains; 0 where it rises.
+double harmonic_part(const std::vector<double>& x, const std::vector<double>& a) {
+  const auto n = static_cast<Eigen::Index>(x.size());
+  Eigen::ArrayXd dx = Eigen::Map<const Eigen::ArrayXd>(x.data(), n), da = Eigen::Map<const Eigen::ArrayXd>(a.data(), n);
+  dx -= dx.mean();
+  da -= da.mean();
+  const double xa = (dx * da).sum(), xx = dx.square().sum(), aa = da.square().sum();
+  return xa < 0.0 && aa > 0.0 && xx > 0.0 ? xa * xa / (xx * aa) : 0.0;
+}
+
+double bend_of(std::span<const MarkerSighting> sightings) {
+  if (sightings.size() < kFewestPoints) return 0.0;
+  const auto& first = sightings.front();
+  // Along the longest way from the first place, and across it.
+  double along_u = 0.0, along_v = 0.0;
+  for (const MarkerSighting& at : sightings) {
+    const double du = at.u_px - first.u_px, dv = at.v_px - first.v_px;
+    if (std::hypot(du, dv) > std::hypot(along_u, along_v)) along_u = du, along_v = dv;
+  }
+  const double length = std::hypot(along_u, along_v);
+  if (!(length > 0.0)) return 0.0;
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(sightings.size()), 3);
+  Eigen::VectorXd across(design.rows());
+  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+    const MarkerSighting& at = sightings[static_cast<std::size_t>(i)];
+    const double du = at.u_px - first.u_px, dv = at.v_px - first.v_px;
+    const double s = (du * along_u + dv * along_v) / (length * length);
+    design.row(i) << 1.0, s, s * s;
+    across[i] = (dv * along_u - du * along_v) / length;
+  }
+  const Eigen::VectorXd fit = design.colPivHouseholderQr().solve(across);
+  return std::abs(fit[2]) / 4.0 / length;  // sagitta of c s² over the unit length of s
+}
+
+}  // namespace
+
+MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
+                          std::span<const MarkerSighting> sightings, bool forced) {
+  MotionLook look;
+  if (x_m.size() < kFewestPoints) return look;
+  const auto [least, most] = std::minmax_element(x_m.begin(), x_m.end());
+  look.way_m = *most - *least;
+  look.bend = bend_of(sightings);
+  const double noise_m = pilot_noise(t_s, x_m);
+  look.smooth = noise_m < kSmoothPart * look.way_m && rounding_step(x_m) == 0.0;
+  if (forced) return look;
+  const std::size_t size = std::max(kFewestOfParabola, x_m.size() / kParts);
+  std::vector<double> places, accelerations, sizes;
+  double sd_m_s2 = 0.0;
+  for (std::size_t from = 0; from + size <= x_m.size(); from += std::max<std::size_t>(1, size / 2)) {
+    const Eigen::Vector3d fit = parabola(t_s.subspan(from, size), x_m.subspan(from, size));
+    places.push_back(fit[0]);
+    accelerations.push_back(fit[2]);
+    sizes.push_back(std::abs(fit[2]));
+    const double span = t_s[from + size - 1] - t_s[from];
+    // Variance of a by n even points over a time T: 720 s²/(n T⁴).
+    sd_m_s2 = std::max(sd_m_s2, noise_m * std::sqrt(720.0 / static_cast<double>(size)) / (span * span));
+  }
+  const double typical = quantile(sizes, 0.5);
+  if (typical > kOverNoise * sd_m_s2) look.acceleration_m_s2 = typical;
+  look.turns = turns_in(x_m, std::max(kWayBack * noise_m, kPartOfWay * look.way_m));
+  // Fine enough for a swing: eight parabolas between turns.
+  if (look.turns >= kManyTurns) {
+    const std::size_t fine = std::max(kFewestOfParabola, x_m.size() / (8 * (look.turns + 1)));
+    places.clear();
+    accelerations.clear();
+    for (std::size_t from = 0; from + fine <= x_m.size(); from += fine) {
+      const Eigen::Vector3d fit = parabola(t_s.subspan(from, fine), x_m.subspan(from, fine));
+      places.push_back(fit[0]);
+      accelerations.push_back(fit[2]);
+    }
+    look.oscillates = harmonic_part(places, accelerations) > kHarmonic;
+  }
+  return look;
+}
+
+std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2) {
+  std::vector<Finding> findings;
+  FindingBook book(findings, setup.name);
+  const double a = look.acceleration_m_s2.value_or(0.0);
+  if (look.oscillates) {
+    book.add(Severity::unusable,
+             fmt::format("the motion turns {} times, and its acceleration goes with the place: an oscillation, no run "
+                         "along an incline",
+                         look.turns),
+             "the law of motion has no spring in it; cut one run between two turns by start_s and end_s, if it is one");
+  } else if (a > kAboveGravity * gravity_m_s2) {
+    std::string units;
+    if (a < 100.0 * gravity_m_s2) units = "centimetres";
+    if (a > 20.0 * gravity_m_s2 && a < 1000.0 * gravity_m_s2)
+      units += units.empty() ? "millimetres" : " or millimetres";
+    if (units.empty()) units = "another unit";
+    book.add(Severity::unusable,
+             fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline makes that", a,
+                         a / gravity_m_s2),
+             fmt::format("x may be in {} in place of metres, an angle, or the times in another unit: convert the file, "
+                         "or state the scale",
+                         units));
+  } else if (a > kFreeFall * gravity_m_s2 && std::abs(setup.incline_rad) < kShallow_rad) {
+    book.add(Severity::unusable,
+             fmt::format("its accelerations are about {:.2g} times gravity: a free flight, and incline_deg is {:.3g}",
+                         a / gravity_m_s2, setup.incline_rad * kDegrees),
+             "state incline_deg = 90 for a fall; otherwise check the unit of x");
+  } else if (look.way_m > kLongWay_m) {
+    book.add(Severity::change, fmt::format("x covers {:.3g} m", look.way_m),
+             "check the unit of x: it may be centimetres, millimetres, or an angle");
+  }
+  if (look.bend > kMostBend) {
+    book.add(Severity::unusable,
+             fmt::format("the path in the image bends by {} of its length: no straight track", percent(look.bend)),
+             "the law of motion holds along a straight line: film a straight track, and no free flight or swing");
+  }
+  if (look.smooth) {
+    book.add(
+        Severity::change,
+        fmt::format("the positions lie on a smooth curve to {:.0e} of the way: smoothed or integrated, not measured",
+                    kSmoothPart),
+        "give the positions as they were measured: the noise is read off them, and all uncertainties rest on it");
+  }
+  return findings;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,27 @@
+/// Whether positions can be those of a body that slides along a straight incline, from the positions alone.
+///
+/// Typical acceleration a: the median of |a| of parabolas through a tenth of the points each, for friction and drag
+/// aside no incline makes more than g. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of a over
+/// six turns or more. Bend: the sagitta of the marker's path in the image over its length, by a parabola. Smooth: the
+/// scatter off neighbouring positions is below 1e-7 of the way, which no camera or sensor reaches, and no rounding
+/// makes it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/check/recording_check.h"
+#include "core/experiment/clip_setup.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+/// Nothing with fewer than 12 positions. Of a clip whose force was recorded only `smooth` and `bend` are looked at.
+MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
+                          std::span<const MarkerSighting> sightings, bool forced);
+
+/// What is amiss with it; Severity::unusable is what no diagnosis can speak on.
+std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2);
+
+}  // namespace glidelab::core

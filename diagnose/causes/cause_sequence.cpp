@@ -1,0 +1,172 @@
+#include "diagnose/causes/cause_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/gap/gap_sizes.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/scan/effect_scan.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kMostCauses = 4;
+constexpr std::size_t kTried = 3;     // further effects that are fitted in full at each step
+constexpr double kWorthTrying = 5.0;  // log evidence, beside the remainder, from which on an effect may help
+constexpr double kLeastShare = 0.02;  // of the excess: less is no cause that a person would look for
+
+struct Step {
+  MotionFit fit;
+  double gap = 1.0;
+  double standard_error = 0.0;
+  std::vector<ClipSquares> clips;
+};
+
+Step step_of(const TrackSet& set, const MotionFit& nominal, MotionFit fit) {
+  Step step;
+  if (set.clips.size() < 2) {
+    std::vector<Note> notes;
+    const GapSizes gap = gap_of(set, nominal, fit, false, notes);
+    const bool is_nominal = fit.effects.empty() && fit.late.empty();
+    step.gap = is_nominal ? gap.before : gap.after;
+    step.standard_error = gap.standard_error;
+  } else {
+    const HeldOutGap gap = held_out_gap(set, fit);
+    step.gap = gap.value;
+    step.standard_error = gap.standard_error;
+    for (const ClipGap& clip : gap.clips) step.clips.push_back({clip.chi2, clip.freedom});
+  }
+  step.fit = std::move(fit);
+  return step;
+}
+
+ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& before, const Step& after, bool pieces) {
+  ExplainedCause cause;
+  cause.id = effect_list()[effect].id;
+  cause.gap_after = after.gap;
+  cause.share = (before.gap * before.gap - after.gap * after.gap) / (first.gap * first.gap - 1.0);
+  if (!pieces) cause.share_interval95 = share_interval(first.clips, before.clips, after.clips);
+  return cause;
+}
+
+/// A cause after the first takes more than its uncertainty.
+bool is_worth(const ExplainedCause& cause) {
+  return cause.share > kLeastShare && (!cause.share_interval95 || cause.share_interval95->low > 0.0);
+}
+
+/// The fit to `set` with these effects, from where a fit with all of them and others stands.
+std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, const std::vector<std::size_t>& effects) {
+  const ParameterLayout layout(set, effects);
+  FitPoint start;
+  start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
+  const auto& of = from.layout->globals();
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const auto& global = layout.globals()[g];
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      if (of[k].kind == global.kind && of[k].index == global.index && of[k].parameter == global.parameter) {
+        start.global[static_cast<Eigen::Index>(g)] = from.at.global[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+  for (const Eigen::VectorXd& own : from.at.own) {
+    Eigen::VectorXd kept = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 + layout.own().size()));
+    kept.head(2) = own.head(2);
+    for (std::size_t o = 0; o < layout.own().size(); ++o) {
+      for (std::size_t k = 0; k < from.layout->own().size(); ++k) {
+        if (from.layout->own()[k] == layout.own()[o]) {
+          kept[static_cast<Eigen::Index>(2 + o)] = own[static_cast<Eigen::Index>(2 + k)];
+        }
+      }
+    }
+    start.own.push_back(kept);
+  }
+  MotionFit fit = fit_motions(set, effects, start, from.late);
+  if (!std::isfinite(fit.cost)) return {};
+  return fit;
+}
+
+/// The best further cause beside a step's, or nothing.
+std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, const MotionFit& nominal,
+                                                       const TrackSet& with, const Step& here,
+                                                       const std::set<std::size_t>& without) {
+  std::set<std::size_t> out = without;
+  out.insert(here.fit.effects.begin(), here.fit.effects.end());
+  const MotionFit beside = linearise_again(with, here.fit);
+  if (!std::isfinite(beside.cost)) return {};
+  const ScoreSpace space(with, beside);
+  std::vector<EffectScan> scans = scan_effects(space, out, 1);
+  std::erase_if(scans, [](const EffectScan& scan) {
+    return !scan.visible || scan.values.empty() || !(scan.log_evidence > kWorthTrying);
+  });
+  std::sort(scans.begin(), scans.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
+  if (scans.size() > kTried) scans.resize(kTried);
+  std::optional<std::pair<std::size_t, Step>> best;
+  for (const EffectScan& scan : scans) {
+    std::vector<std::size_t> effects = here.fit.effects;
+    effects.push_back(scan.effect);
+    const FitPoint start = with_effect(set, here.fit, scan.effect, scan.values, scan.own);
+    MotionFit fit = fit_motions(set, effects, start, here.fit.late);
+    if (!std::isfinite(fit.cost) || fit.cost > here.fit.cost) continue;
+    Step step = step_of(set, nominal, std::move(fit));
+    if (!best || step.gap < best->second.gap) best = {scan.effect, std::move(step)};
+  }
+  return best;
+}
+
+}  // namespace
+
+CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
+                          const std::set<std::size_t>& without) {
+  CauseSequence sequence;
+  const Step first = step_of(set, nominal, nominal);
+  sequence.gap_before = sequence.gap_after = first.gap;
+  sequence.standard_error = first.standard_error;
+  sequence.named = sequence.last = nominal;
+  if (!sequence.is_gap()) return sequence;
+
+  // What the verdict names, by falling share: of several, each alone first.
+  Step here = first;
+  std::vector<std::size_t> left = named.effects;
+  while (!left.empty()) {
+    std::optional<Step> best;
+    std::size_t which = 0;
+    // A law for all clips comes first: what differs between clips imitates any in which their speeds matter.
+    const bool all_differ = std::all_of(left.begin(), left.end(), differs_between_clips);
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      if (!all_differ && differs_between_clips(left[k])) continue;
+      std::vector<std::size_t> effects = here.fit.effects;
+      effects.push_back(left[k]);
+      std::optional<MotionFit> fit = fit_with(set, named, effects);
+      if (!fit) continue;
+      Step step = step_of(set, nominal, std::move(*fit));
+      if (best && step.gap >= best->gap) continue;
+      best = std::move(step);
+      which = k;
+    }
+    if (!best) break;
+    ExplainedCause cause = cause_of(left[which], first, here, *best, set.pieces);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
+    if (sequence.causes.empty() ? !(cause.share > kLeastShare) : !is_worth(cause)) break;
+    sequence.causes.push_back(std::move(cause));
+    here = std::move(*best);
+  }
+  sequence.named = here.fit;
+  for (const ExplainedCause& cause : sequence.causes) sequence.named_share += cause.share;
+
+  while (sequence.causes.size() < kMostCauses && here.gap > 1.0 + 3.0 * here.standard_error) {
+    auto next = next_cause(set, nominal, with, here, without);
+    if (!next) break;
+    ExplainedCause cause = cause_of(next->first, first, here, next->second, set.pieces);
+    if (!is_worth(cause)) break;
+    sequence.causes.push_back(std::move(cause));
+    here = std::move(next->second);
+  }
+  sequence.gap_after = here.gap;
+  sequence.last = std::move(here.fit);
+  return sequence;
+}
+
+}  // namespace glidelab::diagnose

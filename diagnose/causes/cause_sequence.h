@@ -1,0 +1,41 @@
+/// Causes in order: each takes what it can of the held-out gap, beside those before it, until none takes more than its
+/// uncertainty.
+///
+///     share_i = (g²_{i-1} - g²_i) / (g²_0 - 1),        g the gap of held-out clips (held_out.h), g_0 of the nominal
+///     model
+///
+/// The causes that a verdict names come first, the one with the largest share first of them, and what differs from clip
+/// to clip after the laws that all clips have in common; then others of the list, each fitted in full beside all before
+/// it. The gap is by the position noise alone, as the contract has it, whatever
+/// remainder the causes were weighed with. Intervals are over clips (gap_sizes.h). A single clip is held out in
+/// quarters, and has no interval.
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <vector>
+
+#include "diagnose/fit/motion_fit.h"
+#include "diagnose/result/diagnosis.h"
+#include "diagnose/weigh/hypothesis.h"
+
+namespace glidelab::diagnose {
+
+struct CauseSequence {
+  double gap_before = 1.0, standard_error = 0.0;
+  std::vector<ExplainedCause> causes;
+  double gap_after = 1.0;
+  MotionFit named;  ///< by the noise alone, with the verdict's causes
+  MotionFit last;   ///< with all causes of the sequence
+  double named_share = 0.0;
+
+  /// Whether the gap before is above its floor by more than three standard errors.
+  bool is_gap() const { return gap_before > 1.0 + 3.0 * standard_error; }
+};
+
+/// `set` has the noise alone and `nominal` is its fit; `with` counts a remainder as noise (or is the same), and `named`
+/// is a fit to it with the causes that a verdict would name (none: the nominal one).
+CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
+                          const std::set<std::size_t>& without);
+
+}  // namespace glidelab::diagnose

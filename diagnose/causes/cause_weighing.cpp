@@ -1,0 +1,289 @@
+#include "diagnose/causes/cause_weighing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/long_work.h"
+#include "base/math/dense.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/tracks/whitening.h"
+#include "diagnose/unnamed/unnamed.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kFirst = 6;      // explanations among which the first remainder is sought
+constexpr double kDecades = 9.2;       // ln of 10^4: over which sizes are uniform in their logarithm
+constexpr double kLeastSeen = 2.0;     // standard deviations: a smaller size is not told from none
+constexpr double kFamilies = 3.0;      // ln of some twenty functions without a name, of which the likeliest is taken
+constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their own
+constexpr double kHalf = 0.5;
+constexpr double kNotWeighed = 1e3;  // log evidence that what was not fitted is behind
+
+/// Sizes of one kind, drawn from one normal distribution whose width is uniform in its logarithm; -n log(width) and
+/// what their squares and the width itself cost. `sd`, how well the data tell each.
+struct Spread {
+  std::vector<double> sizes, sds;
+
+  double log_prior() const {
+    double square = 0.0, least = std::numeric_limits<double>::infinity();
+    for (const double size : sizes) square += size * size;
+    for (const double sd : sds) least = std::min(least, sd);
+    const auto n = static_cast<double>(sizes.size());
+    const double width = std::max(std::sqrt(square / n), least);
+    double log = 0.5 * std::log(std::numbers::pi / n) - std::log(kDecades) - 0.5 * square / (width * width);
+    // What the data do not tell has its prior's width, and costs nothing.
+    for (const double sd : sds) log -= std::log(std::max(width, sd));
+    return log;
+  }
+};
+
+/// Log prior density of a fit's effects at its parameters, and sqrt(2 pi) for each, which the likelihood leaves out.
+double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution) {
+  double log = 0.0;
+  const double root = 0.5 * std::log(2.0 * std::numbers::pi);
+  std::map<const EffectParameter*, Spread> spreads;
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    const auto& of = globals[g];
+    if (of.kind != ParameterLayout::Global::Kind::effect) continue;
+    const auto at = static_cast<Eigen::Index>(g);
+    const double sd = std::sqrt(std::max(0.0, solution.covariance(at, at)));
+    const EffectInfo& info = effect_list()[of.effect];
+    const double fitted = fit.at.global[at] + solution.change[at];
+    if (info.search == Search::spread) {
+      // Bumps along the track are of one kind; so is what each clip or configuration has of one parameter.
+      const bool of_all = of.parameter->each == Each::experiment;
+      Spread& spread = spreads[of_all ? &info.parameters.front() : of.parameter];
+      spread.sizes.push_back(fitted);
+      spread.sds.push_back(sd);
+    } else if (of.parameter == &info.parameters.front()) {
+      const double size = std::max(std::abs(fitted), kLeastSeen * sd);
+      log += root - std::log(size * kDecades * (info.both_signs ? 2.0 : 1.0));
+    } else {
+      // What the data do not tell has its prior's width, and costs nothing.
+      log += root - std::log(std::max(of.range.high - of.range.low, sd / std::exp(-root)));
+    }
+  }
+  for (const auto& [parameter, spread] : spreads) log += spread.log_prior();
+  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
+    for (Eigen::Index o = 2; o < fit.motions[i].own.cols(); ++o) {
+      const double seen = std::abs(fit.at.own[i][o]) * fit.motions[i].own.col(o).norm();
+      log += root - std::log(std::max(seen, kLeastSeen) * kDecades);
+    }
+  }
+  return log;
+}
+
+struct Profile {
+  RemainderSpace::Best best;
+  double log_evidence = -std::numeric_limits<double>::infinity();
+  double part_s = 0.0;
+};
+
+Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const RemainderSizes* start,
+                   const RemainderExtra* extra = nullptr) {
+  Profile profile;
+  if (!std::isfinite(noise_alone.cost)) return profile;
+  const RemainderSpace space(set, noise_alone, extra);
+  profile.best = space.likeliest(start);
+  profile.part_s = space.part_s();
+  profile.log_evidence = profile.best.log_likelihood + log_prior(noise_alone, space.solve(profile.best.sizes));
+  return profile;
+}
+
+/// The family's columns over the noise alone: what the remainder's whitening took off is put back.
+RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
+  RemainderExtra extra{family.columns, family.tau};
+  Eigen::Index row = 0;
+  for (const TrackedMotion& motion : with.motions) {
+    const auto n = static_cast<Eigen::Index>(motion.t_s.size());
+    extra.columns.middleRows(row, n) = without_remainder(motion, extra.columns.middleRows(row, n));
+    row += n;
+  }
+  if (!std::isfinite(extra.sd)) {  // one bump at the size that it has
+    double largest = 0.0;
+    for (const double size : family.size) largest = std::max(largest, std::abs(size));
+    extra.sd = largest;
+  }
+  return extra;
+}
+
+/// Evidence of a fit with the likeliest function without a name beside it: one that clips share, or a size of each.
+std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with, const MotionFit& noise_alone,
+                                      const std::vector<UnnamedFamily>& families, const RemainderSizes& start) {
+  std::optional<double> log;
+  for (const UnnamedFamily* family : {likeliest_shared(families), likeliest_of_clips(families)}) {
+    if (family == nullptr || !(family->tau > 0.0)) continue;
+    const RemainderExtra extra = extra_of(with, *family);
+    if (!(extra.sd > 0.0) || !extra.columns.allFinite()) continue;
+    log = std::max(log.value_or(-std::numeric_limits<double>::infinity()),
+                   profile_of(set, noise_alone, &start, &extra).log_evidence - kFamilies);
+  }
+  return log;
+}
+
+/// The hypothesis that a fit alone makes: its effects and nothing else.
+const Hypothesis* pure_of(const Comparison& comparison, int fit) {
+  for (const Hypothesis& one : comparison.all) {
+    if (one.fit != fit || one.unnamed) continue;
+    std::vector<std::size_t> a = one.effects, b = comparison.fits[static_cast<std::size_t>(fit)].effects;
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    // Missing frames are in a fit's times, not among its effects.
+    std::erase(a, effect_index(ids::dropped_frames));
+    std::erase(b, effect_index(ids::dropped_frames));
+    if (a == b) return &one;
+  }
+  return nullptr;
+}
+
+/// The fits that are weighed anew: the nominal one, and those of the likeliest explanations.
+std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
+  std::vector<Hypothesis> fitted;
+  for (const Hypothesis& one : comparison.all) {
+    if (one.fit > 0 && !one.unnamed) fitted.push_back(one);
+  }
+  std::sort(fitted.begin(), fitted.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  std::vector<std::size_t> worth = {0};
+  for (const Hypothesis& one : fitted) {
+    const auto fit = static_cast<std::size_t>(one.fit);
+    // Single effects always: a remainder of their own may serve them better than the common one.
+    if (worth.size() >= kProfiled && one.effects.size() > 1) continue;
+    if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
+  }
+  return worth;
+}
+
+/// Nothing, the two likeliest single effects and the likeliest pair: beside these a function without a name is weighed.
+std::vector<Hypothesis> beside(const Comparison& comparison) {
+  std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
+  for (const Hypothesis& one : leaders_of(comparison, 1, 2)) result.push_back(one);
+  for (const Hypothesis& one : leaders_of(comparison, 2, 1)) result.push_back(one);
+  return result;
+}
+
+/// Effects keep their name beside something without one where they take at least half of the held-out excess: nothing
+/// real is explained to the noise. The probability of both together is then that of the effects.
+void give_remainders_to_their_effects(const TrackSet& set, const std::vector<MotionFit>& noise_alone,
+                                      Comparison& comparison) {
+  if (set.clips.size() < 2) return;
+  const auto square = [&](int fit) {
+    const double gap = held_out_gap(set, noise_alone[static_cast<std::size_t>(fit)]).value;
+    return gap * gap;
+  };
+  const double first = square(0);
+  for (Hypothesis& with : comparison.all) {
+    if (!with.unnamed || with.fit <= 0 || !(first - square(with.fit) > kHalf * (first - 1.0))) continue;
+    for (Hypothesis& named : comparison.all) {
+      if (named.unnamed || named.effects != with.effects) continue;
+      const double moved = std::exchange(with.probability, 0.0);
+      named.probability += moved;
+      comparison.unknown -= moved;
+      for (const std::size_t e : named.effects) comparison.effect_probability[e] += moved;
+    }
+  }
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
+}  // namespace
+
+WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
+                           const PictureEvidence* pictures, const std::function<void(double)>& done) {
+  // The remainder of the best explanation so far.
+  std::vector<int> tried{0};
+  std::vector<Hypothesis> by_evidence = first.all;
+  std::sort(by_evidence.begin(), by_evidence.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  for (const Hypothesis& one : by_evidence) {
+    if (one.fit <= 0 || tried.size() >= kFirst) continue;
+    if (std::find(tried.begin(), tried.end(), one.fit) == tried.end()) tried.push_back(one.fit);
+  }
+  std::vector<Profile> profiles(tried.size());
+  base::for_each_parallel(tried.size(), jobs, [&](std::size_t i) {
+    profiles[i] = profile_of(set, first.fits[static_cast<std::size_t>(tried[i])], nullptr);
+  });
+  const auto best = std::max_element(profiles.begin(), profiles.end(), [](const Profile& a, const Profile& b) {
+    return a.log_evidence < b.log_evidence;
+  });
+  const MotionFit& best_fit =
+      first.fits[static_cast<std::size_t>(tried[static_cast<std::size_t>(best - profiles.begin())])];
+  WeighedCauses weighed;
+  weighed.set = set;
+  weighed.sizes = best->best.sizes;
+  weighed.part_s = best->part_s;
+  add_remainder(best_fit, weighed.sizes, weighed.set);
+  done(0.2);
+
+  const std::vector<std::size_t> left_out(without.begin(), without.end());
+  weighed.comparison =
+      compare_hypotheses(weighed.set, left_out, jobs, pictures, [&](double part) { done(0.2 + 0.5 * part); });
+  Comparison& comparison = weighed.comparison;
+
+  // Each fit with a remainder of its own.
+  std::vector<MotionFit> noise_alone(comparison.fits.size());
+  profiles.assign(comparison.fits.size(), {});
+  const std::vector<std::size_t> worth = worth_profiling(comparison);
+  base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
+    const std::size_t f = worth[k];
+    noise_alone[f] = linearise_again(set, comparison.fits[f]);
+    profiles[f] = profile_of(set, noise_alone[f], &weighed.sizes);
+  });
+  done(0.9);
+  // Functions without a name beside nothing and beside the likeliest explanations, each with a remainder of its own.
+  // The search's own stand beside what was best by the common remainder: they are not comparable.
+  std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed && one.fit > 0; });
+  const double nothing = profiles.front().log_evidence;
+  for (Hypothesis& one : comparison.all) {
+    const int fit = one.fit >= 0 ? one.fit : one.effects.empty() ? 0 : -1;
+    const Hypothesis* pure = fit >= 0 ? pure_of(comparison, fit) : nullptr;
+    one.unnamed_log_evidence = pure != nullptr && !one.unnamed ? one.log_evidence - pure->log_evidence : 0.0;
+  }
+  for (Hypothesis& one : comparison.all) {
+    const int fit = one.fit >= 0 ? one.fit : one.effects.empty() ? 0 : -1;
+    const double profile = fit < 0 ? 0.0 : profiles[static_cast<std::size_t>(fit)].log_evidence;
+    one.log_evidence = fit < 0 || one.unnamed || !std::isfinite(profile)
+                           ? -kNotWeighed
+                           : profile - nothing + std::exchange(one.unnamed_log_evidence, 0.0);
+  }
+  std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed; });
+  for (const Hypothesis& named : beside(comparison)) {
+    const auto fit = static_cast<std::size_t>(named.fit);
+    const std::vector<UnnamedFamily> families =
+        fit == 0 ? comparison.unnamed : unnamed_families(ScoreSpace(weighed.set, comparison.fits[fit]));
+    const std::optional<double> log =
+        unnamed_profile(set, weighed.set, noise_alone[fit], families, profiles[fit].best.sizes);
+    if (!log) continue;
+    Hypothesis both = named;
+    both.unnamed = true;
+    both.unnamed_log_evidence = *log - profiles[fit].log_evidence;
+    both.log_evidence = *log - nothing;
+    comparison.all.push_back(both);
+    if (fit > 0 && comparison.beside_fit == 0) {
+      comparison.beside_fit = comparison.left_fit = named.fit;
+      comparison.unnamed_left = families;
+    }
+  }
+  weigh(weighed.set, without, comparison);
+  give_remainders_to_their_effects(set, noise_alone, comparison);
+  // The remainder that is told is that of the likeliest explanation that names something, or nothing.
+  for (const Hypothesis& one : comparison.all) {
+    if (one.unnamed || one.fit < 0) continue;
+    weighed.sizes = profiles[static_cast<std::size_t>(one.fit)].best.sizes;
+    weighed.part_s = profiles[static_cast<std::size_t>(one.fit)].part_s;
+    break;
+  }
+  done(1.0);
+  return weighed;
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,37 @@
+/// Explanations weighed together with an unmodelled remainder, where the nominal model and the list of effects leave
+/// more than the noise.
+///
+/// Real recordings have one or two main causes and several small imperfections. Against the noise alone whatever is
+/// left beside a name refutes it. Here each explanation, the nominal model too, has a remainder of its own
+/// (remainder.h), and it earns its name by how far it makes that remainder shrink:
+///
+///     log evidence = max over the remainder's sizes of log L(positions; explanation, remainder)
+///                    + log prior density of the effect's parameters at the fit
+///
+/// Sizes of effects and functions without a name are uniform in their logarithm over four decades, and so is the width
+/// of the normal distribution that sizes of one kind are drawn from (of each clip, say); other parameters are uniform
+/// over their ranges. The explanations are those that the search of hypotheses.h finds when the remainder of the best
+/// one so far counts as noise. Functions without a name compete as before, with remainders of their own.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <set>
+
+#include "diagnose/causes/remainder.h"
+#include "diagnose/weigh/hypotheses.h"
+
+namespace glidelab::diagnose {
+
+struct WeighedCauses {
+  TrackSet set;           ///< with the remainder of the likeliest explanation as noise
+  Comparison comparison;  ///< by that set
+  RemainderSizes sizes;
+  double part_s = 0.0;  ///< RemainderSpace::part_s()
+};
+
+/// `first` is the comparison by the noise alone; `set` has no remainder.
+WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
+                           const PictureEvidence* pictures, const std::function<void(double)>& done);
+
+}  // namespace glidelab::diagnose

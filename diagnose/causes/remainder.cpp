@@ -1,0 +1,295 @@
+#include "diagnose/causes/remainder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/math/dense.h"
+#include "diagnose/tracks/whitening.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kMostParts = 24, kFewestParts = 6;
+constexpr std::size_t kPointsOfPart = 4;  // at least, on average
+constexpr double kUnseen = 1e-12;         // of the largest square
+constexpr double kRounding = 1e-13;
+
+/// What the parts' columns rest on.
+struct Parts {
+  Eigen::MatrixXd columns;  ///< response of x to unit accelerations, over the noise
+  Eigen::MatrixXd shapes;   ///< 1, sign(v), (K/m) v in each
+  double length_s = 0.0;
+};
+
+/// Distance and speed after `t` since a unit acceleration began, which lasts for `length`, with a drag rate k.
+double response(double t, double length, double k) {
+  if (t <= 0.0) return 0.0;
+  // Of a step that never ends: x'' = 1 - k x'.
+  const auto step = [k](double s) {
+    const double ks = k * s;
+    if (std::abs(ks) < 1e-3) return 0.5 * s * s * (1.0 - ks / 3.0 + ks * ks / 12.0);
+    return (s - (1.0 - std::exp(-ks)) / k) / k;
+  };
+  return step(t) - (t > length ? step(t - length) : 0.0);
+}
+
+double drag_rate(const TrackSet& set, const MotionFit& fit, std::size_t i) {
+  const TrackModel model = model_of(set, *fit.layout, fit.at, i);
+  return model.k_n_s_m / model.mass_kg;
+}
+
+Parts parts_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
+  const TrackedMotion& data = set.motions[i];
+  const std::size_t n = data.t_s.size();
+  const std::size_t parts = std::clamp(n / kPointsOfPart, kFewestParts, kMostParts);
+  const double from = data.t_s.front(), length = (data.t_s.back() - from) / static_cast<double>(parts);
+  const double k = std::max(0.0, drag_rate(set, fit, i));
+  Parts result;
+  result.length_s = length;
+  Eigen::MatrixXd over_sd = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(parts));
+  result.shapes = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(parts), 3);
+  const std::vector<double>& v = fit.motions[i].v_m_s;
+  std::size_t first = 0;
+  for (std::size_t j = 0; j < parts; ++j) {
+    const double start = from + length * static_cast<double>(j);
+    double speed = 0.0, sign = 0.0, count = 0.0;
+    for (; first < n && (j + 1 == parts || data.t_s[first] < start + length); ++first) {
+      speed += v[first];
+      sign += v[first] > 0.0 ? 1.0 : -1.0;
+      count += 1.0;
+    }
+    const auto row = static_cast<Eigen::Index>(j);
+    result.shapes(row, 1) = count > 0.0 ? sign / count : result.shapes(std::max<Eigen::Index>(0, row - 1), 1);
+    result.shapes(row, 2) = count > 0.0 ? k * speed / count : result.shapes(std::max<Eigen::Index>(0, row - 1), 2);
+    for (std::size_t p = 0; p < n; ++p) {
+      if (data.outlier[p]) continue;
+      over_sd(static_cast<Eigen::Index>(p), row) = response(data.t_s[p] - start, length, k) / data.sd_of(p);
+    }
+  }
+  TrackedMotion noise_alone = data;
+  noise_alone.remainder = {};
+  result.columns = whitened(noise_alone, std::move(over_sd));
+  return result;
+}
+
+/// A root of S: S = root root'.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& shapes, double part_s, const RemainderSizes& sizes, double wider) {
+  const Eigen::Index parts = shapes.rows();
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(parts, parts + 3);
+  root.leftCols(parts).diagonal().setConstant(wider * std::sqrt(sizes.q_m2_s3 / part_s));
+  root.col(parts) = wider * sizes.force_m_s2 * shapes.col(0);
+  root.col(parts + 1) = wider * sizes.force_m_s2 * shapes.col(1);
+  root.col(parts + 2) = wider * sizes.drag * shapes.col(2);
+  return root;
+}
+
+/// A factor f of one motion costs what Student's t with four degrees of freedom would ask for it, 4 log f.
+constexpr double kTails = 4.0;
+
+double price_of(const RemainderSizes& sizes) {
+  double price = 0.0;
+  for (const double f : sizes.wider) price += kTails * std::log(f);
+  return price;
+}
+
+}  // namespace
+
+RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra) {
+  common_ = fit.at.global.size();
+  extra_ = extra != nullptr ? extra->columns.cols() : 0;
+  extra_sd_ = extra != nullptr ? extra->sd : 0.0;
+  stated_weight_ = Eigen::VectorXd::Zero(common_ + extra_);
+  stated_right_ = stated_weight_;
+  for (const FitStatement& s : fit.statements) {
+    const auto g = static_cast<Eigen::Index>(s.global);
+    const double off = s.value - fit.at.global[g], weight = 1.0 / (s.sd * s.sd);
+    stated_weight_[g] += weight;
+    stated_right_[g] += weight * off;
+    stated_square_ += weight * off * off;
+  }
+  for (Eigen::Index e = 0; e < extra_; ++e) stated_weight_[common_ + e] = 1.0 / (extra_sd_ * extra_sd_);
+  Eigen::Index row = 0;
+  scale_ = stated_weight_;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const FitMotion& of = fit.motions[i];
+    const Parts parts = parts_of(set, fit, i);
+    Eigen::MatrixXd z(of.residual.size(), 1 + common_ + extra_ + of.own.cols());
+    z.col(0) = of.residual;
+    z.middleCols(1, common_) = of.global;
+    if (extra_ > 0) z.middleCols(1 + common_, extra_) = extra->columns.middleRows(row, of.residual.size());
+    z.rightCols(of.own.cols()) = of.own * (of.own.colwise().norm().array() + 1e-300).inverse().matrix().asDiagonal();
+    row += of.residual.size();
+    Motion motion;
+    motion.z_z = base::transposed_product(z, z);
+    motion.z_b = base::transposed_product(z, parts.columns);
+    motion.b_b = base::transposed_product(parts.columns, parts.columns);
+    motion.part_s = parts.length_s;
+    motion.shapes = parts.shapes;
+    motion.own = of.own.cols();
+    scale_ += motion.z_z.diagonal().segment(1, common_ + extra_);
+    part_s_ += parts.length_s / static_cast<double>(set.motions.size());
+    motions_.push_back(std::move(motion));
+  }
+  scale_ = (scale_.array() + 1e-30).sqrt().inverse();
+}
+
+RemainderSpace::Sums RemainderSpace::sums_of(std::size_t i, const RemainderSizes& sizes, double wider) const {
+  const Motion& motion = motions_[i];
+  Sums sums;
+  const Eigen::MatrixXd root = root_of(motion.shapes, motion.part_s, sizes, wider);
+  const Eigen::MatrixXd b_root = base::product(motion.b_b, root), z_root = base::product(motion.z_b, root);
+  Eigen::MatrixXd inner = base::transposed_product(root, b_root);
+  // Rounding of products of noise that is far smaller than the remainder must not make it indefinite.
+  inner.diagonal().array() += 1.0 + kRounding * inner.diagonal().maxCoeff();
+  const Eigen::MatrixXd lower = base::cholesky_lower(inner);
+  sums.log_determinant += 2.0 * lower.diagonal().array().log().sum();
+  const Eigen::MatrixXd half = base::solve_lower(lower, z_root.transpose());
+  const Eigen::MatrixXd z = motion.z_z - base::transposed_product(half, half);  // Z' V^-1 Z
+  const Eigen::Index many = 1 + common_ + extra_;
+  Eigen::MatrixXd own = z.bottomRightCorner(motion.own, motion.own);
+  own.diagonal().array() += kUnseen;
+  const Eigen::MatrixXd own_lower = base::cholesky_lower(own);
+  sums.log_determinant += 2.0 * own_lower.diagonal().array().log().sum();
+  const Eigen::MatrixXd own_half = base::solve_lower(own_lower, z.bottomLeftCorner(motion.own, many));
+  const Eigen::MatrixXd rest = z.topLeftCorner(many, many) - base::transposed_product(own_half, own_half);
+  sums.square = rest(0, 0);
+  sums.right = rest.col(0).tail(many - 1);
+  sums.normal = rest.bottomRightCorner(many - 1, many - 1);
+  return sums;
+}
+
+RemainderSpace::Sums RemainderSpace::stated() const {
+  Sums sums;
+  sums.square = stated_square_;
+  sums.right = stated_right_;
+  sums.normal = Eigen::MatrixXd(stated_weight_.asDiagonal());
+  return sums;
+}
+
+RemainderSpace::Sums RemainderSpace::sums_of(const RemainderSizes& sizes) const {
+  Sums sums = stated();
+  for (std::size_t i = 0; i < motions_.size(); ++i) sums.add(sums_of(i, sizes, sizes.of(i)), 1.0);
+  return sums;
+}
+
+double RemainderSpace::log_likelihood(const Sums& sums) const {
+  // Scaled, and held back where the data know nothing: such a direction costs every explanation the same.
+  Eigen::MatrixXd scaled = scale_.asDiagonal() * sums.normal * scale_.asDiagonal();
+  scaled.diagonal().array() += kUnseen;
+  const Eigen::MatrixXd lower = base::cholesky_lower(scaled);
+  const Eigen::VectorXd along = base::solve_lower(lower, scale_.cwiseProduct(sums.right));
+  double log = -0.5 * (sums.square - along.squaredNorm()) - 0.5 * sums.log_determinant;
+  log -= lower.diagonal().array().log().sum() - scale_.array().log().sum();
+  if (extra_ > 0) log -= static_cast<double>(extra_) * std::log(extra_sd_);
+  return log;
+}
+
+double RemainderSpace::log_likelihood(const RemainderSizes& sizes) const {
+  return log_likelihood(sums_of(sizes)) - price_of(sizes);
+}
+
+RemainderSpace::Solution RemainderSpace::solve(const RemainderSizes& sizes) const {
+  const Sums sums = sums_of(sizes);
+  Eigen::MatrixXd scaled = scale_.asDiagonal() * sums.normal * scale_.asDiagonal();
+  scaled.diagonal().array() += kUnseen;
+  const Eigen::MatrixXd inverse = scale_.asDiagonal() * base::inverse_positive(scaled) * scale_.asDiagonal();
+  return {base::product(inverse, sums.right).topRows(common_), inverse.topLeftCorner(common_, common_)};
+}
+
+RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) const {
+  // What each size may be at most: a tenth of g at any speed, half of the drag.
+  constexpr double kMostForce = 1.0, kMostDrag = 0.7, kDecades = 6.0;
+  Best best;
+  if (start != nullptr) best.sizes = *start;
+  best.log_likelihood = log_likelihood(best.sizes);
+  const auto look = [&](double RemainderSizes::*member, double value) {
+    RemainderSizes sizes = best.sizes;
+    sizes.*member = value;
+    const double log = log_likelihood(sizes);
+    if (log <= best.log_likelihood) return false;
+    best.sizes = std::move(sizes);
+    best.log_likelihood = log;
+    return true;
+  };
+  const auto along = [&](double RemainderSizes::*member, double most, double decades, double step) {
+    look(member, 0.0);
+    for (double power = 0.0; power <= decades; power += step) look(member, most * std::pow(10.0, -power));
+  };
+  const auto refine = [&](double RemainderSizes::*member, double ratio) {
+    for (int way = 0; way < 2; ++way, ratio = 1.0 / ratio) {
+      for (int step = 0; step < 6 && best.sizes.*member > 0.0; ++step) {
+        if (!look(member, best.sizes.*member * ratio)) break;
+      }
+    }
+  };
+  const double q_most = kMostForce * kMostForce * part_s_;
+  if (start == nullptr || start->q_m2_s3 == 0.0) along(&RemainderSizes::q_m2_s3, q_most, 2.0 * kDecades, 1.0);
+  if (start == nullptr || start->force_m_s2 == 0.0) along(&RemainderSizes::force_m_s2, kMostForce, kDecades, 1.0);
+  if (start == nullptr || start->drag == 0.0) along(&RemainderSizes::drag, kMostDrag, 0.5 * kDecades, 0.75);
+  for (const double ratio : {3.0, 1.4}) {
+    refine(&RemainderSizes::q_m2_s3, ratio * ratio);
+    refine(&RemainderSizes::force_m_s2, ratio);
+    refine(&RemainderSizes::drag, ratio);
+  }
+  // What makes one motion worse leaves the others with less, and that shows it the more.
+  constexpr int kRounds = 4;
+  constexpr double kSettled = 0.1;  // log likelihood
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = best.log_likelihood;
+    if (motions_.size() > 2) widen_the_worst(best);
+    refine(&RemainderSizes::q_m2_s3, 1.4 * 1.4);
+    refine(&RemainderSizes::force_m_s2, 1.4);
+    if (best.log_likelihood < before + kSettled) break;
+  }
+  return best;
+}
+
+void RemainderSpace::widen_the_worst(Best& best) const {
+  best.sizes.wider.resize(motions_.size(), 1.0);
+  Sums sums = sums_of(best.sizes);
+  double price = price_of(best.sizes);
+  best.log_likelihood = log_likelihood(sums) - price;
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const double now = best.sizes.wider[i];
+    Sums others = sums;
+    others.add(sums_of(i, best.sizes, now), -1.0);
+    for (const double f : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+      Sums with = others;
+      with.add(sums_of(i, best.sizes, f), 1.0);
+      const double log = log_likelihood(with) - price - kTails * std::log(f / now);
+      if (log <= best.log_likelihood) continue;
+      best.log_likelihood = log;
+      best.sizes.wider[i] = f;
+      sums = std::move(with);
+    }
+    price += kTails * std::log(best.sizes.wider[i] / now);
+  }
+}
+
+void add_remainder(const MotionFit& fit, const RemainderSizes& sizes, TrackSet& set) {
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const Parts parts = parts_of(set, fit, i);
+    const Eigen::MatrixXd spread =
+        base::product(parts.columns, root_of(parts.shapes, parts.length_s, sizes, sizes.of(i)));
+    const base::SymmetricEigen eigen = base::symmetric_eigen(base::transposed_product(spread, spread));
+    Remainder remainder;
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index j = 0; j < eigen.values.size(); ++j) {
+      if (eigen.values[j] > 1e-3 && eigen.values[j] > kUnseen * eigen.values.tail(1)[0]) kept.push_back(j);
+    }
+    const auto many = static_cast<Eigen::Index>(kept.size());
+    remainder.span.resize(spread.rows(), many);
+    remainder.shrink.resize(many);
+    for (Eigen::Index k = 0; k < many; ++k) {
+      const double value = eigen.values[kept[static_cast<std::size_t>(k)]];
+      const Eigen::VectorXd along = eigen.vectors.col(kept[static_cast<std::size_t>(k)]);
+      remainder.span.col(k) = base::product(spread, along) / std::sqrt(value);
+      remainder.shrink[k] = 1.0 - 1.0 / std::sqrt(1.0 + value);
+    }
+    set.motions[i].remainder = std::move(remainder);
+  }
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,108 @@
+/// The unmodelled remainder: what no cause of the list makes, as a random acceleration along the way.
+///
+/// In place of m dv/dt = F(x, v, t) each motion follows
+///
+///     dv/dt = F/m + a(t),      a(t) = w(t) + f_1 + f_2 sign(v) + f_3 (K/m) v
+///
+/// with w white of spectral density q (m²/s³), and f_1, f_2 ~ N(0, s_f²), f_3 ~ N(0, s_k²) drawn anew for every motion:
+/// inclination, friction and drag that scatter from clip to clip. It is the grey-box model of Kristensen, Madsen and
+/// Jørgensen (Automatica 40, 225, 2004): a stochastic differential equation, whose noise is what the model lacks. Here
+/// a(t) is constant over parts of a motion, so that its effect on x is a sum of known columns,
+///
+///     x = x_model + B a + noise,     B_j(t) = response of dv/dt = -(K/m) v + [t in part j],     a ~ N(0, S(q, s_f,
+///     s_k))
+///
+/// and the likelihood, with all parameters of the fit and each motion's start integrated out over flat priors (REML),
+/// costs a few products of small matrices whatever the number of frames. Linear in the neighbourhood of a fit. A motion
+/// that is worse than the others (a kick, a hand) may have a remainder that is wider by a factor of its own. SI units.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+#include "diagnose/fit/motion_fit.h"
+
+namespace glidelab::diagnose {
+
+struct RemainderSizes {
+  double q_m2_s3 = 0.0;       ///< spectral density of the white part
+  double force_m_s2 = 0.0;    ///< s_f
+  double drag = 0.0;          ///< s_k, relative
+  std::vector<double> wider;  ///< of each motion, a factor of all three in standard deviations; empty: 1
+  double of(std::size_t motion) const { return wider.empty() ? 1.0 : wider[motion]; }
+};
+
+/// More columns of the common parameters, each with a prior N(0, sd²): a function without a name. Rows are those of all
+/// motions one after the other, over the noise, as ScoreSpace has them.
+struct RemainderExtra {
+  Eigen::MatrixXd columns;
+  double sd = 0.0;
+};
+
+/// A fit and its remainder. `fit` is linearised (central derivatives) with the position noise alone.
+class RemainderSpace {
+ public:
+  RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra = nullptr);
+
+  /// Log likelihood of the positions, parameters integrated out over flat priors, statements and the extra columns'
+  /// sizes over theirs; up to a constant that all fits to one set share (less 0.5 log(2 pi) a parameter). A motion's
+  /// factor f costs 4 log f.
+  double log_likelihood(const RemainderSizes& sizes) const;
+
+  struct Best {
+    RemainderSizes sizes;
+    double log_likelihood = 0.0;
+  };
+  /// The likeliest sizes, by a search along each of their logarithms; from `start` where there is one.
+  Best likeliest(const RemainderSizes* start = nullptr) const;
+
+  /// The common parameters' change from the fit to the minimum under these sizes, and their covariance.
+  struct Solution {
+    Eigen::VectorXd change;
+    Eigen::MatrixXd covariance;
+  };
+  Solution solve(const RemainderSizes& sizes) const;
+
+  /// A part's mean length: w averaged over it has the variance q/length.
+  double part_s() const { return part_s_; }
+
+ private:
+  struct Motion {
+    Eigen::MatrixXd z_z;  ///< products of [residual, common, extra, own]
+    Eigen::MatrixXd z_b;  ///< with the parts' columns
+    Eigen::MatrixXd b_b;
+    double part_s = 0.0;
+    Eigen::MatrixXd shapes;  ///< parts x 3: 1, sign(v), (K/m) v
+    Eigen::Index own = 0;
+  };
+  struct Sums {
+    double log_determinant = 0.0;
+    double square = 0.0;
+    Eigen::VectorXd right;
+    Eigen::MatrixXd normal;
+    void add(const Sums& of, double sign) {
+      log_determinant += sign * of.log_determinant;
+      square += sign * of.square;
+      right += sign * of.right;
+      normal += sign * of.normal;
+    }
+  };
+  Sums stated() const;
+  Sums sums_of(std::size_t motion, const RemainderSizes& sizes, double wider) const;
+  Sums sums_of(const RemainderSizes& sizes) const;
+  double log_likelihood(const Sums& sums) const;
+  void widen_the_worst(Best& best) const;
+
+  std::vector<Motion> motions_;
+  Eigen::VectorXd stated_weight_, stated_right_;
+  double stated_square_ = 0.0;
+  Eigen::Index common_ = 0, extra_ = 0;
+  double extra_sd_ = 0.0, part_s_ = 0.0;
+  Eigen::VectorXd scale_;
+};
+
+/// Adds the remainder to the noise of each motion, so that every fit, scan and evidence counts it.
+void add_remainder(const MotionFit& fit, const RemainderSizes& sizes, TrackSet& set);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,51 @@
+/// A dry friction mu + d and a drag K (1 + e) of each clip, d and e its own. Spreads of 0.02 and 0.5 hold them back.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void scattered_friction(const double* p, const GliderConstants&, const GliderState&, DryFriction& of) {
+  of.mu += p[0];
+}
+
+void scattered_drag(const double* p, const GliderConstants&, const GliderState&, Resistance& of) {
+  of.drag_factor *= 1.0 + p[1];
+}
+
+}  // namespace
+
+EffectInfo clip_scatter() {
+  return {
+      .id = ids::clip_scatter,
+      .stage = Stage::dynamics,
+      .words = "friction and drag that differ from clip to clip",
+      .name = "scatter from clip to clip",
+      .meaning = "each clip has a µ and a K of its own; sd: how far they differ",
+      .search = Search::spread,
+      .both_signs = true,
+      .parameters = {{.key = "sd_mu",
+                      .absent = 0.0,
+                      .low = -0.5,
+                      .high = 0.5,
+                      .step = 1e-6,
+                      .shown_as = ShownAs::together,
+                      .each = Each::clip,
+                      .held_sd = 0.02},
+                     {.key = "sd_k_n_s_m",
+                      .absent = 0.0,
+                      .low = -2.0,
+                      .high = 5.0,
+                      .step = 1e-5,
+                      .shown_as = ShownAs::together,
+                      .each = Each::clip,
+                      .held_sd = 0.5}},
+      .law = {.sizes = 2, .resistance = scattered_drag, .friction = scattered_friction},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("the clips of a configuration have the same forces in a scenario"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

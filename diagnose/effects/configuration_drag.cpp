@@ -1,0 +1,43 @@
+/// A viscous drag K (1 + d) of each configuration, d its own: a mass on a set-up. A spread of 0.5 holds d back.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void own_drag(const double* p, const GliderConstants&, const GliderState&, Resistance& of) {
+  of.drag_factor *= 1.0 + p[0];
+}
+
+void own_drag_twin(const double* p, TwinForces& forces) {
+  forces.k_n_s_m *= 1.0 + p[0];
+}
+
+}  // namespace
+
+EffectInfo configuration_drag() {
+  return {
+      .id = ids::configuration_drag,
+      .stage = Stage::dynamics,
+      .words = "a drag that differs between configurations",
+      .name = "drag by configuration",
+      .meaning = "each mass on each set-up has a K of its own; sd: how far they differ",
+      .search = Search::spread,
+      .both_signs = true,
+      .parameters = {{.key = "sd_n_s_m",
+                      .absent = 0.0,
+                      .low = -2.0,
+                      .high = 5.0,
+                      .step = 1e-5,
+                      .shown_as = ShownAs::together,
+                      .each = Each::configuration,
+                      .held_sd = 0.5}},
+      .law = {.resistance = own_drag},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_force(own_drag_twin),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,43 @@
+/// A dry friction mu + d of each configuration, d its own: a mass on a set-up. A spread of 0.02 holds d back.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void own_friction(const double* p, const GliderConstants&, const GliderState&, DryFriction& of) {
+  of.mu += p[0];
+}
+
+void own_friction_twin(const double* p, TwinForces& forces) {
+  forces.mu += forces.part * p[0];
+}
+
+}  // namespace
+
+EffectInfo configuration_friction() {
+  return {
+      .id = ids::configuration_friction,
+      .stage = Stage::dynamics,
+      .words = "a dry friction that differs between configurations",
+      .name = "friction by configuration",
+      .meaning = "each mass on each set-up has a µ of its own; sd: how far they differ",
+      .search = Search::spread,
+      .both_signs = true,
+      .parameters = {{.key = "sd",
+                      .absent = 0.0,
+                      .low = -0.5,
+                      .high = 0.5,
+                      .step = 1e-6,
+                      .shown_as = ShownAs::together,
+                      .each = Each::configuration,
+                      .held_sd = 0.02}},
+      .law = {.friction = own_friction},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::as_force(own_friction_twin),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

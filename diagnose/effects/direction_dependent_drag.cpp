@@ -1,0 +1,32 @@
+/// A viscous drag K (1 + d sign(v)), as seals, lips and screws have it.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void directed_resistance(const double* p, const GliderConstants&, const GliderState& at, Resistance& of) {
+  of.drag_factor *= at.v < 0.0 ? 1.0 - p[0] : 1.0 + p[0];
+}
+
+}  // namespace
+
+EffectInfo direction_dependent_drag() {
+  return {
+      .id = ids::direction_dependent_drag,
+      .stage = Stage::dynamics,
+      .words = "a drag that is larger in one direction than in the other",
+      .name = "direction-dependent drag",
+      .meaning = "K becomes K (1 + d sign(v))",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "d", .absent = 0.0, .low = -0.99, .high = 0.99, .step = 1e-5}},
+      .law = {.resistance = directed_resistance},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("no drag of a scenario depends on the direction"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

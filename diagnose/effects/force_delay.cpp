@@ -1,0 +1,32 @@
+/// A recorded force F(t) that acts as F(t - tau).
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+double delay_s(const double* p) {
+  return p[0];
+}
+
+}  // namespace
+
+EffectInfo force_delay() {
+  return {
+      .id = ids::force_delay,
+      .stage = Stage::dynamics,
+      .words = "a force that acts later than it was recorded, or earlier",
+      .name = "delay of the force",
+      .meaning = "the force acts tau later than recorded",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "tau_s", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-5}},
+      .law = {.known_late_s = delay_s},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

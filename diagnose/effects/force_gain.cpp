@@ -1,0 +1,32 @@
+/// A recorded force F that acts as (1 + e) F.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+double gain_factor(const double* p) {
+  return 1.0 + p[0];
+}
+
+}  // namespace
+
+EffectInfo force_gain() {
+  return {
+      .id = ids::force_gain,
+      .stage = Stage::dynamics,
+      .words = "a recorded force that is too small or too large by the same part",
+      .name = "wrong scale of the force",
+      .meaning = "the force is (1 + e) times the recorded one",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "e", .absent = 0.0, .low = -0.9, .high = 5.0, .step = 1e-6}},
+      .law = {.known_factor = gain_factor},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,33 @@
+/// A dry friction mu (1 + r n) that changes from clip to clip, n the number of the clip in the order of the file, from
+/// 0.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+void drifting_friction(const double* p, const GliderConstants& glider, const GliderState&, DryFriction& of) {
+  of.mu *= 1.0 + p[0] * glider.clip;
+}
+
+}  // namespace
+
+EffectInfo friction_drift() {
+  return {
+      .id = ids::friction_drift,
+      .stage = Stage::dynamics,
+      .words = "a dry friction that changes from clip to clip, steadily",
+      .name = "drifting friction",
+      .meaning = "µ becomes µ (1 + r n) in the clip of number n, from 0",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "r_1_clip", .absent = 0.0, .low = -1.0, .high = 1.0, .step = 1e-6}},
+      .law = {.friction = drifting_friction},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("the clips of a configuration have the same forces in a scenario"),
+      .next = {},
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,33 @@
+/// An inertia (1 + e) m where a recorded force drives, m the stated mass: without such a force nothing tells it from K
+/// and mu.
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+namespace {
+
+double wrong_mass_kg(const double* p, const GliderConstants& glider) {
+  return glider.driven ? p[0] * glider.mass_kg : 0.0;
+}
+
+}  // namespace
+
+EffectInfo mass_error() {
+  return {
+      .id = ids::mass_error,
+      .stage = Stage::dynamics,
+      .words = "a mass that is off, by the same part of each",
+      .name = "wrong mass",
+      .meaning = "the inertia is (1 + e) times the stated mass",
+      .search = Search::amplitude,
+      .both_signs = true,
+      .parameters = {{.key = "e", .absent = 0.0, .low = -0.9, .high = 5.0, .step = 1e-6}},
+      .law = {.inertia_kg = wrong_mass_kg},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("a scenario has no recorded force, and without one a mass that is off does not show"),
+      .next = {},
+      .alike = {.id = ids::frame_rate_error, .filmed = true},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

@@ -1,0 +1,27 @@
+/// Positions that are whole multiples of a step. They show it themselves (diagnose/tracks/rounded_positions.h).
+#include "diagnose/effects/effect.h"
+
+namespace glidelab::diagnose::effects {
+EffectInfo position_rounding() {
+  return {
+      .id = ids::position_rounding,
+      .stage = Stage::tracking,
+      .words = "positions that are rounded to a step",
+      .name = "rounded positions",
+      .meaning = "every position is a whole multiple of this step",
+      .search = Search::noise,
+      .both_signs = false,
+      .parameters = {},
+      .law = {},
+      .shapes = nullptr,
+      .lines = {},
+      .twin = EffectTwin::none("the positions of a scenario are not rounded"),
+      .next =
+          "Export the positions again with more decimals, or with the sensor nearer to the glider: what a step hides "
+          "of "
+          "single positions no repetition brings back.",
+      .alike = {},
+  };
+}
+
+}  // namespace glidelab::diagnose::effects

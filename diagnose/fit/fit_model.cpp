@@ -1,0 +1,304 @@
+#include "diagnose/fit/fit_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "diagnose/tracks/whitening.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kFewestTurns = 2.0;    // in the longest motion: slower is a drift, which other causes make as well
+constexpr double kFastest = 0.48;       // of the frame rate
+constexpr double kFastestLossy = 0.2;   // a codec takes frames by twos to fours, each with its own error
+constexpr double kLatestRelease = 0.4;  // of the longest motion: later it is no start
+constexpr double kFewFrames = 3.0;
+constexpr double kShortestPush = 4.0;  // frames: one that ends before that is an error of single frames
+
+ParameterRange range_of_waves(const TrackSet& set) {
+  double longest = 0.0, rate = std::numeric_limits<double>::infinity();
+  for (const TrackedMotion& motion : set.motions) {
+    const double span = motion.t_s.back() - motion.t_s.front();
+    longest = std::max(longest, span);
+    rate = std::min(rate, static_cast<double>(motion.t_s.size() - 1) / span);
+  }
+  return {kFewestTurns / longest, (set.lossy ? kFastestLossy : kFastest) * rate};
+}
+
+}  // namespace
+
+bool begins_with_its_clip(const TrackSet& set, const TrackedMotion& motion) {
+  return motion.t_s.front() <= kFewFrames / set.clips[motion.clip].frame_rate_hz;
+}
+
+ParameterRange range_of_places(const TrackSet& set) {
+  ParameterRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const TrackedMotion& motion : set.motions) {
+    for (const double x : motion.x_m) range = {std::min(range.low, x), std::max(range.high, x)};
+  }
+  return range;
+}
+
+ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
+  if (parameter.reach == Reach::places) return range_of_places(set);
+  if (parameter.reach == Reach::waves) return range_of_waves(set);
+  ParameterRange range{parameter.low, parameter.high};
+  if (parameter.reach == Reach::release) {
+    double longest = 0.0, frame = 0.0;
+    for (const TrackedMotion& motion : set.motions) {
+      if (!begins_with_its_clip(set, motion)) continue;
+      longest = std::max(longest, motion.t_s.back());
+      frame = std::max(frame, 1.0 / set.clips[motion.clip].frame_rate_hz);
+    }
+    if (longest > 0.0) range = {kShortestPush * frame, kLatestRelease * longest};
+  }
+  if (parameter.reach == Reach::held_speed) range.low = std::max(range.low, set.held_m_s);
+  if (parameter.reach == Reach::with_mass) {
+    double heaviest_kg = 1.0;
+    for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
+    range.high *= heaviest_kg;
+  }
+  return range;
+}
+
+namespace {
+
+using Global = ParameterLayout::Global;
+
+}  // namespace
+
+bool touches(const TrackSet& set, const Global& global, std::size_t motion) {
+  const TrackedMotion& of = set.motions[motion];
+  if (global.kind == Global::Kind::alpha) return of.group == global.index;
+  if (global.kind == Global::Kind::mass) return of.mass == global.index;
+  if (global.kind == Global::Kind::mode) return global.index < of.shared_m.size() && !of.shared_m[global.index].empty();
+  if (global.kind == Global::Kind::scale) return of.scale_sd > 0.0;
+  if (global.kind != Global::Kind::effect) return true;
+  if (global.parameter->each == Each::configuration) return global.configuration == Configuration{of.group, of.mass};
+  if (global.parameter->each == Each::clip) return global.index == of.clip;
+  return true;
+}
+
+std::vector<Configuration> configurations_of(const TrackSet& set) {
+  std::set<Configuration> configurations;
+  for (const TrackedMotion& motion : set.motions) configurations.insert({motion.group, motion.mass});
+  return {configurations.begin(), configurations.end()};
+}
+
+ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects)
+    : effects_(std::move(effects)), configurations_(configurations_of(set)), places_(range_of_places(set)) {
+  std::set<std::size_t> clips;
+  for (const TrackedMotion& motion : set.motions) clips.insert(motion.clip);
+  clips_.assign(clips.begin(), clips.end());
+  add_common(set);
+  for (const std::size_t effect : effects_) add_effect(set, effect);
+}
+
+ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like)
+    : effects_(std::move(effects)), configurations_(like.configurations_), clips_(like.clips_), places_(like.places_) {
+  add_common(set);
+  for (const std::size_t effect : effects_) add_effect(set, effect);
+}
+
+void ParameterLayout::add_common(const TrackSet& set) {
+  using Kind = Global::Kind;
+  globals_.push_back({Kind::k});
+  globals_.push_back({Kind::mu});
+  for (std::size_t g = 0; g < set.groups.size(); ++g) globals_.push_back({Kind::alpha, g});
+  for (std::size_t m = 0; m < set.masses.size(); ++m) {
+    if (set.masses[m].sd_kg > 0.0) globals_.push_back({Kind::mass, m});
+  }
+  for (std::size_t m = 0; m < set.modes; ++m) globals_.push_back({Kind::mode, m});
+  const bool scale =
+      std::any_of(set.motions.begin(), set.motions.end(), [](const auto& m) { return m.scale_sd > 0.0; });
+  if (scale) globals_.push_back({Kind::scale});
+}
+
+void ParameterLayout::add_effect(const TrackSet& set, std::size_t effect) {
+  for (const EffectParameter& parameter : effect_list()[effect].parameters) {
+    if (parameter.only_filmed && !set.pictures) continue;
+    Global global{Global::Kind::effect, 0, &parameter, effect, parameter.step, range_of(set, parameter)};
+    switch (parameter.each) {
+      case Each::experiment:
+        globals_.push_back(global);
+        break;
+      case Each::configuration:
+        for (const Configuration& configuration : configurations_) {
+          global.configuration = configuration;
+          globals_.push_back(global);
+        }
+        break;
+      case Each::clip:
+        for (const std::size_t clip : clips_) {
+          global.index = clip;
+          globals_.push_back(global);
+        }
+        break;
+      case Each::motion:
+        own_.push_back(&parameter);
+        break;
+    }
+  }
+}
+
+void ParameterLayout::widen_to(const Eigen::VectorXd& start) {
+  for (std::size_t g = 0; g < globals_.size(); ++g) {
+    ParameterRange& range = globals_[g].range;
+    const double at = start[static_cast<Eigen::Index>(g)];
+    if (globals_[g].kind == Global::Kind::effect) range = {std::min(range.low, at), std::max(range.high, at)};
+  }
+}
+
+std::size_t ParameterLayout::first_of(std::size_t effect) const {
+  for (std::size_t g = 0; g < globals_.size(); ++g) {
+    if (globals_[g].kind == Global::Kind::effect && globals_[g].effect == effect) return g;
+  }
+  return globals_.size();
+}
+
+std::vector<std::size_t> ParameterLayout::all_of(const EffectSlot& slot) const {
+  std::vector<std::size_t> found;
+  for (std::size_t g = 0; g < globals_.size(); ++g) {
+    if (globals_[g].parameter != nullptr && globals_[g].parameter->slot == slot) found.push_back(g);
+  }
+  return found;
+}
+
+TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
+                    const UnnamedForce* unnamed) {
+  const TrackedMotion& data = set.motions[motion];
+  TrackModel model;
+  model.mass_kg = set.masses[data.mass].mass_kg;
+  model.gravity_m_s2 = set.gravity_m_s2;
+  model.x_mid_m = set.groups[data.group].x_mid_m;
+  model.x_mid_all_m = set.x_mid_m;
+  model.x_low_m = layout.places().low;
+  model.x_high_m = layout.places().high;
+  model.clip = data.clip;
+  model.known = data.known.t_s.empty() ? nullptr : &data.known;
+  model.unnamed = unnamed;
+  model.row_px = data.row_px;
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    const double value = at.global[static_cast<Eigen::Index>(g)];
+    if (!touches(set, global, motion)) continue;
+    if (global.kind == Global::Kind::k) model.k_n_s_m = value;
+    if (global.kind == Global::Kind::mu) model.mu = value;
+    if (global.kind == Global::Kind::alpha) model.alpha_rad = value;
+    if (global.kind == Global::Kind::mass) model.mass_kg += value * set.masses[global.index].sd_kg;
+    if (global.kind == Global::Kind::effect) model.effects[global.parameter->slot] = value;
+  }
+  model.x0_m = at.own[motion][0];
+  model.v0_m_s = at.own[motion][1];
+  for (std::size_t o = 0; o < layout.own().size(); ++o) {
+    model.effects[layout.own()[o]->slot] = at.own[motion][static_cast<Eigen::Index>(2 + o)];
+  }
+  return model;
+}
+
+std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
+                                  std::size_t motion, const std::vector<double>& x_m) {
+  const TrackedMotion& data = set.motions[motion];
+  std::vector<double> shared(x_m.size(), 0.0);
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const Global& global = layout.globals()[g];
+    if (!touches(set, global, motion)) continue;
+    const double c = at.global[static_cast<Eigen::Index>(g)];
+    for (std::size_t p = 0; p < shared.size(); ++p) {
+      if (global.kind == Global::Kind::mode) shared[p] += c * data.shared_m[global.index][p];
+      if (global.kind == Global::Kind::scale) shared[p] += c * data.scale_sd * x_m[p];
+    }
+  }
+  return shared;
+}
+
+namespace {
+
+using Global = ParameterLayout::Global;
+
+/// As the fit wants it: what each parameter is changed by for a derivative.
+double step_of(const Global& global, double at) {
+  switch (global.kind) {
+    case Global::Kind::k:
+      return 1e-5 * std::max(0.05, std::abs(at));
+    case Global::Kind::mu:
+    case Global::Kind::alpha:
+      return 1e-6;
+    case Global::Kind::mass:
+      return 1e-3;
+    case Global::Kind::effect:
+      return global.step;
+    default:
+      return 1e-3;
+  }
+}
+
+Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
+            const Lateness& late) {
+  const TrackModel model = model_of(set, layout, at, i);
+  return move(model, set.motions[i].t_s, late.empty() ? std::span<const double>() : std::span(late[i]));
+}
+
+}  // namespace
+
+FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
+                    const Lateness& late, Derivatives derivatives) {
+  const TrackedMotion& data = set.motions[i];
+  const auto n = static_cast<Eigen::Index>(data.t_s.size());
+  FitMotion of;
+  Moved base = moved(set, layout, at, i, late);
+  of.v_m_s = base.v_m_s;
+  const auto& globals = layout.globals();
+  const std::vector<double> shared = shared_errors(set, layout, at, i, base.x_m);
+  std::vector<double> weight(data.t_s.size());
+  for (std::size_t p = 0; p < weight.size(); ++p) weight[p] = data.outlier[p] ? 0.0 : 1.0 / data.sd_of(p);
+  of.plain.resize(n);
+  for (Eigen::Index p = 0; p < n; ++p) {
+    const auto q = static_cast<std::size_t>(p);
+    of.plain[p] = weight[q] * (data.x_m[q] - base.x_m[q] - shared[q]);
+  }
+  of.residual = whitened(data, of.plain);
+  if (derivatives == Derivatives::none) return of;
+  of.global = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(globals.size()));
+  of.own = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(2 + layout.own().size()));
+  FitPoint near = at;
+  const bool central = derivatives == Derivatives::central;
+  const auto fill = [&](double& parameter, double step, auto column) {
+    const double kept = parameter;
+    parameter = kept + step;
+    const Moved above = moved(set, layout, near, i, late);
+    parameter = kept - step;
+    const Moved below = central ? moved(set, layout, near, i, late) : base;
+    parameter = kept;
+    const double apart = central ? 2.0 * step : step;
+    for (Eigen::Index p = 0; p < n; ++p) {
+      const auto q = static_cast<std::size_t>(p);
+      column[p] = weight[q] * (above.x_m[q] - below.x_m[q]) / apart;
+    }
+  };
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (!touches(set, globals[g], i)) continue;
+    const auto column = static_cast<Eigen::Index>(g);
+    if (globals[g].kind == Global::Kind::mode || globals[g].kind == Global::Kind::scale) {
+      for (Eigen::Index p = 0; p < n; ++p) {
+        const auto q = static_cast<std::size_t>(p);
+        of.global(p, column) = weight[q] * (globals[g].kind == Global::Kind::mode ? data.shared_m[globals[g].index][q]
+                                                                                  : data.scale_sd * base.x_m[q]);
+      }
+      continue;
+    }
+    fill(near.global[column], step_of(globals[g], near.global[column]), of.global.col(column));
+  }
+  for (Eigen::Index o = 0; o < of.own.cols(); ++o) {
+    fill(near.own[i][o], o < 2 ? 1e-6 : layout.own()[static_cast<std::size_t>(o - 2)]->step, of.own.col(o));
+  }
+  of.global = whitened(data, std::move(of.global));
+  of.own = whitened(data, std::move(of.own));
+  return of;
+}
+
+}  // namespace glidelab::diagnose

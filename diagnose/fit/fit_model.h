@@ -1,0 +1,149 @@
+/// The model that is fitted: the nominal model with any set of effects, its parameters and their ranges, the motion
+/// that they make, and that motion's derivatives.
+///
+/// The constants are limits that several searches share and that must be the same in each.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <compare>
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/effects/effect.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/model/track_model.h"
+#include "diagnose/tracks/track_set.h"
+
+namespace glidelab::diagnose {
+
+/// Standard deviations that the largest size of an effect must make to be visible at all.
+inline constexpr double kVisible_sd = 4.0;
+
+/// Standard deviation that holds back an inclination which nobody states: as good as free.
+inline constexpr double kOpenInclination_rad = 0.35;
+
+/// Near the vertical the inclination is taken as stated, to within a plumb line's error where none is stated. Where
+/// nothing but falls was recorded mu is held at 0 and not determined: next to no force presses on a track, and together
+/// with a free inclination mu would imitate any constant force.
+inline constexpr double kFallInclination_rad = 0.0175, kFallFriction = 1e-4;
+
+/// Log evidence from which on something is acted upon without being weighed against anything else.
+inline constexpr double kBeyondDoubt = 5.0;
+
+/// Points from which on the shape of a scatter tells anything.
+inline constexpr std::size_t kFewestScatter = 50;
+
+/// Uneven times of filmed clips below this are none: a hundredth of a short exposure.
+inline constexpr double kLeastFilmedJitter_s = 1e-5;
+
+struct ParameterRange {
+  double low = 0.0, high = 0.0;
+};
+
+/// The range of an effect's parameter in given data: one range for the scan, which averages evidence over it, and for
+/// the fit. A fit that went further would gain by what its evidence was never asked to pay for. A wave slower than the
+/// clips is any drift. A cable that tightens before the first position, or a lens whose axis is out of the image, is
+/// any bend.
+///
+/// Sizes are as the effects state them, those that go with the mass for the heaviest glider. A place lies within the
+/// positions. A frequency makes at least two turns in the longest motion. A release comes after four frames and in the
+/// first two fifths of the longest motion. A Stribeck speed lies above that at which a codec may hold the marker
+/// (TrackSet::held_m_s).
+ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
+
+/// From the least to the largest position.
+ParameterRange range_of_places(const TrackSet& set);
+
+/// Whether a motion begins with its clip, so that a hand could be in it.
+bool begins_with_its_clip(const TrackSet& set, const TrackedMotion& motion);
+
+/// A mass on a set-up.
+struct Configuration {
+  std::size_t group = 0, mass = 0;
+  auto operator<=>(const Configuration&) const = default;
+};
+
+/// Those of a set's motions, in order.
+std::vector<Configuration> configurations_of(const TrackSet& set);
+
+/// The parameters of the nominal model with any set of effects: which there are for a set of tracks, and where they
+/// stand.
+class ParameterLayout {
+ public:
+  ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects);
+  /// For motions that `like` does not know: an effect's parameters are those of its configurations and clips, and its
+  /// places are the same.
+  ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like);
+
+  struct Global {
+    enum class Kind { k, mu, alpha, mass, mode, scale, effect } kind;
+    std::size_t index = 0;  ///< of the group, mass, mode, or clip
+    const EffectParameter* parameter = nullptr;
+    std::size_t effect = 0;
+    double step = 0.0;
+    ParameterRange range = {};         ///< of an effect: what it may be
+    Configuration configuration = {};  ///< of Each::configuration
+  };
+  const std::vector<Global>& globals() const { return globals_; }
+  const std::vector<const EffectParameter*>& own() const { return own_; }  ///< after x0, v0
+  const std::vector<std::size_t>& effects() const { return effects_; }
+  const ParameterRange& places() const { return places_; }  ///< of all positions
+  /// Index among globals of an effect's first parameter that is not own.
+  std::size_t first_of(std::size_t effect) const;
+  /// The indices among globals of one parameter of an effect: more than one where each configuration or clip has its
+  /// own.
+  std::vector<std::size_t> all_of(const EffectSlot& slot) const;
+  /// Ranges that hold where a fit starts: what was found in whole clips may lie beyond what a part of them shows.
+  void widen_to(const Eigen::VectorXd& start);
+
+ private:
+  void add_common(const TrackSet& set);
+  void add_effect(const TrackSet& set, std::size_t effect);
+
+  std::vector<Global> globals_;
+  std::vector<const EffectParameter*> own_;
+  std::vector<std::size_t> effects_;
+  std::vector<Configuration> configurations_;
+  std::vector<std::size_t> clips_;
+  ParameterRange places_;
+};
+
+struct FitPoint {
+  Eigen::VectorXd global;
+  std::vector<Eigen::VectorXd> own;  ///< x0, v0 (at the motion's first point), then the effects' own
+};
+
+/// Whether a motion depends on a parameter.
+bool touches(const TrackSet& set, const ParameterLayout::Global& global, std::size_t motion);
+
+/// The motion of one track under the point's parameters; `unnamed` is an additional force.
+TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
+                    const UnnamedForce* unnamed = nullptr);
+
+/// What the shared errors (of camera, plane, scale, pixels) at this point add to a motion's modelled positions `x_m`.
+std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
+                                  std::size_t motion, const std::vector<double>& x_m);
+
+/// What is later than stated of each point of each motion (dropped frames); empty: nothing.
+using Lateness = std::vector<std::vector<double>>;
+
+/// One motion at a point of the parameters: what the model leaves of its positions, and the model's derivatives by the
+/// parameters, both over the noise.
+struct FitMotion {
+  Eigen::VectorXd residual;  ///< of unit white noise
+  Eigen::VectorXd plain;     ///< over each position's own noise, with what neighbours share of it
+  Eigen::MatrixXd global;
+  Eigen::MatrixXd own;
+  std::vector<double> v_m_s;
+};
+
+/// `forward` finds the way of a fit in half the time; `central`, with an error that is the square of that, is for what
+/// rests on the result: what is left of an effect that the nuisance nearly takes up must not be their error.
+enum class Derivatives { none, forward, central };
+
+/// Of the motion with this index, by finite differences.
+FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
+                    const Lateness& late, Derivatives derivatives);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,51 @@
+/// The scatter of single positions about a smooth curve, and how it grows with the speed.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/fit/motion_fit.h"
+
+namespace glidelab::diagnose {
+
+/// Of all points of a motion, outliers too.
+struct Leftover {
+  std::vector<double> over_sd;  ///< each over its own noise, and over what so many bumps take up of white noise
+  std::vector<double> v_m_s;    ///< modelled
+};
+
+/// What remains of a motion's residuals after a smooth curve: the scatter of single positions, regardless of any force
+/// that the model lacks.
+///
+/// The curve is a least-squares sum of Gaussian bumps, as fine as it must be until neighbours no longer err alike.
+/// Where the law is off by hundreds of standard deviations, a coarse curve shows an error of its own, first of all at
+/// the clip's ends.
+Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t motion);
+
+/// Residuals of single positions beside their speeds.
+struct SpeedScatter {
+  std::vector<double> squares;  ///< over the motion's sd_m
+  std::vector<double> fast;     ///< (v / sd_m)², 1/s²
+  double top_m_s = 0.0;
+  double widest = 1.0;
+
+  /// `over_sd` is over the point's own noise.
+  void add(const TrackedMotion& motion, std::size_t point, double over_sd, double v_m_s);
+  void add(const SpeedScatter& of_a_motion);
+};
+
+/// Position noise that grows with the speed, as uneven frame times tau cause it: variance sd² + (v tau)².
+struct SpeedNoise {
+  double gain = 0.0, log_evidence = 0.0;  ///< against the same noise at all speeds
+  double jitter_s = 0.0, sd_s = 0.0;
+};
+
+/// `independent` is the share of the residuals that counts as such. Nothing is found in fewer than 50.
+SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, double independent);
+
+/// Where positions scatter about their neighbours (no model goes in) the more the faster they are, beyond doubt, each
+/// gets the noise of its speed, so that no force is fitted to the scatter of the fast ones. `late` as in the fit;
+/// empty: nothing. False where they do not.
+bool give_fast_positions_their_noise(TrackSet& set, const Lateness& late);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,266 @@
+#include "diagnose/lines/line_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/math/dense.h"
+#include "diagnose/effects/effect_list.h"
+#include "diagnose/gap/gap_sizes.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1;
+constexpr double kUnnamedBeside = 0.25;  // odds of something without a name: 0.2 to 0.8
+
+Eigen::VectorXd column(const LineTerm& term, double sd_log_k, double sd_a0) {
+  Eigen::VectorXd both(2 * term.of_a0.size());
+  both << term.of_log_k / sd_log_k, term.of_a0 / sd_a0;
+  return both;
+}
+
+/// What the nominal model and the terms cannot take up of the column.
+Eigen::VectorXd beside(const LineData& data, const std::vector<LineTerm>& terms, const Eigen::VectorXd& of,
+                       double sd_log_k, double sd_a0) {
+  const auto n = data.a0.size();
+  const auto pk = data.base_log_k.cols(), pa = data.base_a0.cols();
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(2 * n, pk + pa + static_cast<Eigen::Index>(terms.size()));
+  x.block(0, 0, n, pk) = data.base_log_k / sd_log_k;
+  x.block(n, pk, n, pa) = data.base_a0 / sd_a0;
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    x.col(pk + pa + static_cast<Eigen::Index>(t)) = column(terms[t], sd_log_k, sd_a0);
+  }
+  return of - base::product(x, base::least_squares(x, of));
+}
+
+}  // namespace
+
+Isolability line_isolability(const LineData& data, const std::vector<LineTerm>& terms, double sd_log_k, double sd_a0) {
+  Isolability alike;
+  std::vector<Eigen::VectorXd> columns;
+  for (const LineTerm& term : terms) {
+    const Eigen::VectorXd seen = beside(data, {}, column(term, sd_log_k, sd_a0), sd_log_k, sd_a0);
+    if (!(seen.norm() > 0.0)) continue;
+    alike.ids.push_back(term.id);
+    alike.least_seen.push_back(1.0 / seen.norm());
+    columns.push_back(seen.normalized());
+  }
+  for (const Eigen::VectorXd& a : columns) {
+    std::vector<double> row;
+    for (const Eigen::VectorXd& b : columns) row.push_back(std::min(1.0, std::abs(a.dot(b))));
+    alike.cosine.push_back(std::move(row));
+  }
+  return alike;
+}
+
+bool taken_up(const LineData& data, const LineTerm& term, const std::vector<LineTerm>& by, double sd_log_k,
+              double sd_a0) {
+  const Eigen::VectorXd whole = beside(data, {}, column(term, sd_log_k, sd_a0), sd_log_k, sd_a0);
+  const Eigen::VectorXd rest = beside(data, by, whole, sd_log_k, sd_a0);
+  return rest.squaredNorm() <= (1.0 - kAlike * kAlike) * whole.squaredNorm();
+}
+
+std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineTerm>& named,
+                                         const std::vector<LineFamily>& families) {
+  std::vector<LineExplanation> all;
+  const auto add = [&](const std::vector<std::size_t>& ids, std::optional<std::size_t> family, double prior) {
+    std::vector<LineTerm> terms;
+    for (const std::size_t t : ids) terms.push_back(named[t]);
+    if (family) terms.insert(terms.end(), families[*family].terms.begin(), families[*family].terms.end());
+    LineExplanation explanation{ids, family, solve_lines(data, terms), 0.0, prior};
+    if (!all.empty()) {
+      explanation.log_evidence = log_evidence_of(data, terms, explanation.solution, all.front().solution);
+    }
+    all.push_back(std::move(explanation));
+  };
+  const auto many = static_cast<double>(named.size());
+  std::vector<std::pair<std::vector<std::size_t>, double>> together = {{{}, kPriorNone}};
+  for (std::size_t t = 0; t < named.size(); ++t) {
+    together.push_back({{t}, kPriorOne / many});
+    for (std::size_t u = 0; u < t; ++u) together.push_back({{u, t}, kPriorTwo / (0.5 * many * (many - 1.0))});
+  }
+  for (const auto& [ids, prior] : together) add(ids, {}, prior);
+  const LineSolution nominal = all.front().solution;
+  for (const auto& [ids, prior] : together) {
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      const bool says = std::none_of(ids.begin(), ids.end(), [&](std::size_t t) {
+        return taken_up(data, named[t], families[f].terms, nominal.sd_k, nominal.sd_a);
+      });
+      if (says) add(ids, f, prior * kUnnamedBeside * families[f].share);
+    }
+  }
+  double most = 0.0, sum = 0.0;
+  for (const LineExplanation& e : all) {
+    if (!e.solution.left_out) most = std::max(most, e.log_evidence);
+  }
+  for (LineExplanation& e : all) {
+    e.probability *= !e.solution.left_out ? std::exp(e.log_evidence - most) : 0.0;
+    sum += e.probability;
+  }
+  for (LineExplanation& e : all) e.probability /= sum;
+  return all;
+}
+
+namespace {
+
+constexpr double kReadAngle = 0.3;  // degrees: how well a person reads a plumb line, where a table says nothing
+constexpr double kOff = 3.0;        // standard deviations from which on a group of lines is off
+constexpr int kPoints = 60;         // of a curve
+
+/// The projection that leaves what the columns do not explain.
+Eigen::MatrixXd leaves(const Eigen::MatrixXd& columns) {
+  const auto n = columns.rows();
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(n, n);
+  return unit - base::product(columns, base::least_squares(columns, unit));
+}
+
+struct Mean {
+  double value = 0.0, sd = 0.0;
+};
+
+Mean mean_of(const Eigen::VectorXd& residual, const Eigen::MatrixXd& leaving, const Eigen::VectorXd& group,
+             double scatter) {
+  const Eigen::VectorXd w = group / group.sum();
+  return {w.dot(residual), scatter * std::sqrt(std::max(0.0, w.dot(base::product(leaving, w).col(0))))};
+}
+
+double drag_of(const std::vector<TableLine>& lines) {
+  double sum = 0.0;
+  for (const TableLine& line : lines) sum += std::log(line.k_over_m_1_s * line.mass_kg);
+  return std::exp(sum / static_cast<double>(lines.size()));
+}
+
+/// Over lines, each of which is held out by itself.
+void add_intervals(GapSizes& gap) {
+  std::vector<ClipSquares> before, after;
+  for (const double one : gap.before_by_clip) before.push_back({one * one, 1.0});
+  for (const double one : gap.after_by_clip) after.push_back({one * one, 1.0});
+  gap.interval95.too_few = too_few_clips(before.size());
+  gap.interval95.before = rms_interval(before);
+  gap.interval95.after = rms_interval(after);
+  if (gap.shrink) gap.interval95.shrink = shrink_interval(before, after);
+}
+
+double mean_intercept(const std::vector<TableLine>& lines, double incline_deg) {
+  double mean = 0.0, count = 0.0;
+  for (const TableLine& line : lines) {
+    if (line.incline_deg != incline_deg) continue;
+    mean += line.a0_m_s2;
+    count += 1.0;
+  }
+  return mean / count;
+}
+
+void compare_inclination(double stated_deg, double intercept_m_s2, double g, LineGap& gap) {
+  const std::string stated = fmt::format("{} deg", stated_deg);
+  if (!(std::abs(intercept_m_s2) <= g)) {
+    gap.sizes.parameters.push_back({"alpha_deg", "stated", stated});
+    gap.notes.emplace_back(BeyondGravity{stated_deg, intercept_m_s2, g});
+    return;
+  }
+  const double degrees = std::asin(intercept_m_s2 / g) * 180.0 / std::numbers::pi;
+  const double z = (degrees - stated_deg) / kReadAngle;
+  gap.sizes.parameters.push_back({"alpha_deg", "stated", stated, z, z});
+  gap.notes.emplace_back(MeanIncline{stated_deg, degrees, kReadAngle});
+}
+
+}  // namespace
+
+LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
+                 const OwnScatter& scatter) {
+  LineGap result;
+  GapSizes& gap = result.sizes;
+  gap.before = gap_of_lines(before, scatter);
+  gap.after = gap_of_lines(after, scatter);
+  gap.standard_error = std::sqrt(0.5 / static_cast<double>(lines.size()) + 0.5 / static_cast<double>(scatter.freedom));
+  if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - 1.0);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    gap.held_out.push_back(fmt::format("{:.0f} g, {}°, v {} 0", 1000.0 * lines[i].mass_kg, lines[i].incline_deg,
+                                       lines[i].direction > 0 ? ">" : "<"));
+    gap.before_by_clip.push_back(gap_of_line(before, scatter, i));
+    gap.after_by_clip.push_back(gap_of_line(after, scatter, i));
+  }
+  add_intervals(gap);
+  for (const double incline : different(lines, &TableLine::incline_deg)) {
+    compare_inclination(incline, mean_intercept(lines, incline), g, result);
+  }
+  return result;
+}
+
+std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const LineData& data,
+                                    const LineSolution& nominal, const OwnScatter& scatter) {
+  std::vector<GapRegion> regions;
+  if (!scatter.known()) return regions;
+  const Eigen::MatrixXd leaves_a = leaves(data.base_a0), leaves_k = leaves(data.base_log_k);
+  const double drag = drag_of(lines);
+  const auto look = [&](const std::string& variable, double TableLine::*member, double value, int direction) {
+    Eigen::VectorXd group(data.a0.size());
+    for (Eigen::Index i = 0; i < group.size(); ++i) {
+      const TableLine& line = lines[static_cast<std::size_t>(i)];
+      group[i] = line.*member == value && (direction == 0 || line.direction == direction) ? 1.0 : 0.0;
+    }
+    if (!(group.sum() > 0.0)) return;
+    const bool slopes = direction == 0;
+    const Mean mean = slopes ? mean_of(nominal.off_k, leaves_k, group, scatter.slope)
+                             : mean_of(nominal.off_a, leaves_a, group, scatter.intercept_m_s2);
+    if (!(mean.sd > 0.0) || std::abs(mean.value) < kOff * mean.sd) return;
+    GapRegion region{variable, value, value, std::abs(mean.value) / mean.sd, mean.value, "m/s²", "intercept", ""};
+    region.size_sd = mean.sd;
+    region.direction = direction;
+    if (slopes) {
+      region.what = "drag";
+      region.unit = "N s/m";
+      region.size *= drag;
+      *region.size_sd *= drag;
+    }
+    regions.push_back(region);
+  };
+  for (const int direction : {-1, 1, 0}) {
+    for (const double mass : different(lines, &TableLine::mass_kg)) {
+      look("mass_kg", &TableLine::mass_kg, mass, direction);
+    }
+    for (const double incline : different(lines, &TableLine::incline_deg)) {
+      look("group", &TableLine::incline_deg, incline, direction);
+    }
+  }
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const GapRegion& a, const GapRegion& b) { return a.excess > b.excess; });
+  return regions;
+}
+
+std::vector<LineOff> lines_off(const std::vector<TableLine>& lines, const LineSolution& nominal) {
+  std::vector<LineOff> off;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const TableLine& line = lines[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    off.push_back({line.mass_kg, line.incline_deg, line.direction, line.k_over_m_1_s,
+                   -line.direction * nominal.off_a[at], nominal.off_k[at]});
+  }
+  return off;
+}
+
+LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineTerm& term,
+                     const LineSolution& with) {
+  LineCurve curve{term.id, {}, {}, {}};
+  const bool force = term.id == ids::load_independent_friction;
+  if (!force && term.id != ids::smoothing_bias) return curve;
+  // What the term takes from mu goes with it: the part of its column that the nominal model would have fitted.
+  const Eigen::VectorXd fitted = base::least_squares(data.base_a0, term.of_a0).col(0);
+  const double taken = fitted[fitted.size() - 1] * -data.base_a0.col(data.base_a0.cols() - 1).cwiseAbs().mean();
+  const std::vector<double> masses = different(lines, &TableLine::mass_kg);
+  const double drag = drag_of(lines), from = 1.0 / masses.back(), to = 1.0 / masses.front();
+  for (int i = 0; i <= kPoints; ++i) {
+    const double mass = 1.0 / (from + (to - from) * (1.1 * i / kPoints - 0.05));
+    const double k = drag / mass, column = force ? 1.0 / mass : k * k;
+    curve.mass_kg.push_back(mass);
+    curve.k_over_m_1_s.push_back(k);
+    curve.friction_m_s2.push_back(with.size[0] * (column + taken));
+  }
+  return curve;
+}
+
+}  // namespace glidelab::diagnose

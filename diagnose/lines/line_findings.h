@@ -1,0 +1,68 @@
+/// What a fit of lines says: how probable each explanation is, how far the lines lie off it, and where.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "diagnose/lines/line_model.h"
+#include "diagnose/result/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+struct LineExplanation {
+  std::vector<std::size_t> named;     ///< indices of the named terms; two at most
+  std::optional<std::size_t> family;  ///< index of the family without a name
+  LineSolution solution;
+  double log_evidence = 0.0;
+  double probability = 0.0;  ///< 0 where a size is impossible
+};
+
+/// How probable each explanation of a table of lines is, the nominal model first.
+///
+/// The odds are those of tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. Each is four times as likely alone as
+/// with something without a name beside it. Of what has no name each variable (mass, set-up, both together, direction)
+/// is as likely as another.
+std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineTerm>& named,
+                                         const std::vector<LineFamily>& families);
+
+/// How similar every two of the terms are in a table of lines. They are as alike as the angle between their columns is
+/// small (ln K/m and a0 of all lines, each over its scatter), the nominal model projected out. Measured sizes do not
+/// enter. `least_seen` is the size that makes one standard deviation. The scatters are above 0.
+Isolability line_isolability(const LineData& data, const std::vector<LineTerm>& terms, double sd_log_k, double sd_a0);
+
+/// Whether terms without a name take up nearly all (a cosine of kAlike) of what this one does: beside it they say
+/// nothing that they do not say alone.
+bool taken_up(const LineData& data, const LineTerm& term, const std::vector<LineTerm>& by, double sd_log_k,
+              double sd_a0);
+
+struct LineGap {
+  GapSizes sizes;
+  std::vector<Note> notes;  ///< of the inclinations
+};
+
+/// How far a table's lines lie off an explanation, each held out of it in turn, and how far their inclinations lie off
+/// what is stated. `before` is the fit of the nominal model, `after` that of the explanation. The lines' own scatter,
+/// which is known, is the unit of the gap. The stated inclination is compared with the mean intercept, asin(a0 / g).
+LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
+                 const OwnScatter& scatter);
+
+/// Where lines depart from the nominal model: by the intercepts (m/s²) of each mass, and of each set-up, in one
+/// direction, and by the drag K (N s/m) of each mass and of each set-up. None where the lines' own scatter is not
+/// known.
+///
+/// Regions are groups of lines whose mean is off by three of its standard deviations or more, the largest first. For a
+/// group with weights w (each 1/n) the mean of the residuals r = (1 - H) y is w'r, and its standard deviation is
+/// sqrt(w' (1 - H) w) times the lines' own scatter, H being the nominal model's projection.
+std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const LineData& data,
+                                    const LineSolution& nominal, const OwnScatter& scatter);
+
+/// What the nominal model leaves, for the plots.
+std::vector<LineOff> lines_off(const std::vector<TableLine>& lines, const LineSolution& nominal);
+
+/// The friction that a single effect on intercepts (a friction force, a smoothing bias) adds to the nominal model's, as
+/// the lines were fitted with it. Nothing for another term.
+LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineTerm& term,
+                     const LineSolution& with);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,369 @@
+#include "diagnose/lines/line_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "base/math/dense.h"
+#include "base/text/csv.h"
+#include "diagnose/effects/effect_library.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kSmallest = 1e-6, kLargest = 1e6;  // kg, m/s², 1/s: beyond all tables, and squares stay numbers
+
+}  // namespace
+
+std::vector<TableLine> read_lines(const std::filesystem::path& file) {
+  const base::CsvTable table =
+      base::read_csv(file, {"mass_kg", "incline_deg", "direction", "a0_m_s2", "k_over_m_1_s"}, {"r2"}, true);
+  std::vector<TableLine> lines;
+  std::vector<base::Issue> issues;
+  const auto& mass = table.column("mass_kg");
+  const auto& incline = table.column("incline_deg");
+  const auto& direction = table.column("direction");
+  const auto& a0 = table.column("a0_m_s2");
+  const auto& k = table.column("k_over_m_1_s");
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const auto wrong = [&](const char* key, double value, const char* expected) {
+      issues.push_back({file.string(), table.line[i], key, fmt::format("{}", value), expected});
+    };
+    if (!(mass[i] >= kSmallest && mass[i] <= kLargest)) wrong("mass_kg", mass[i], "a number from 1e-6 to 1e6");
+    if (!(std::abs(incline[i]) < 90.0)) wrong("incline_deg", incline[i], "an angle between -90 and 90");
+    if (direction[i] != 1.0 && direction[i] != -1.0) wrong("direction", direction[i], "1 or -1, the sign of v");
+    if (!(std::abs(a0[i]) <= kLargest)) wrong("a0_m_s2", a0[i], "a number from -1e6 to 1e6");
+    if (!(k[i] >= kSmallest && k[i] <= kLargest)) wrong("k_over_m_1_s", k[i], "a number from 1e-6 to 1e6");
+    lines.push_back({mass[i], incline[i], direction[i] > 0.0 ? 1 : -1, a0[i], k[i], table.last_digit_of("a0_m_s2"),
+                     table.last_digit_of("k_over_m_1_s")});
+  }
+  if (!issues.empty()) throw base::InputError(std::move(issues));
+  if (lines.size() < kFewestLines) throw base::InputError(too_few_lines(file.string(), lines.size()));
+  return lines;
+}
+
+core::Experiment read_recording(const std::filesystem::path& path, core::OutsideFiles outside) {
+  std::error_code ignored;  // what cannot be looked at is read as a folder, which says what is wrong
+  if (path.extension() != ".csv" || !std::filesystem::is_regular_file(path, ignored)) {
+    return core::read_experiment(path, outside);
+  }
+  core::Experiment experiment;
+  experiment.folder = path.parent_path();
+  experiment.file = path;
+  experiment.name = path.stem().string();
+  experiment.lines = path;
+  return experiment;
+}
+
+base::Issue too_few_lines(const std::string& file, std::size_t lines) {
+  return {file, 0, "lines", fmt::format("{} of them", lines), fmt::format("{} or more", kFewestLines)};
+}
+
+std::vector<double> different(const std::vector<TableLine>& lines, double TableLine::*member) {
+  std::set<double> values;
+  for (const TableLine& line : lines) values.insert(line.*member);
+  return {values.begin(), values.end()};
+}
+
+namespace {
+
+constexpr double kUnlimited = 1e9;  // a size that no table reaches
+
+Eigen::Index count(const std::vector<TableLine>& lines) {
+  return static_cast<Eigen::Index>(lines.size());
+}
+
+const TableLine& at(const std::vector<TableLine>& lines, Eigen::Index i) {
+  return lines[static_cast<std::size_t>(i)];
+}
+
+bool contains(const std::vector<std::string>& ids, const std::string& id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
+/// Mass and inclination by which lines are put together; a member that does not matter is 0.
+using Cell = std::pair<double, double>;
+
+/// A friction, or a drag, of each cell by itself but for the first, which is mu or K.
+std::vector<LineTerm> of_each(const std::vector<TableLine>& lines, const std::vector<Cell>& cells, bool friction) {
+  std::map<Cell, std::size_t> seen;
+  std::vector<LineTerm> terms;
+  for (Eigen::Index i = 0; i < count(lines); ++i) {
+    const auto [found, first] = seen.emplace(cells[static_cast<std::size_t>(i)], terms.size());
+    if (first) {
+      terms.push_back({"", friction ? "friction" : "drag", "dynamics", "", Eigen::VectorXd::Zero(count(lines)),
+                       Eigen::VectorXd::Zero(count(lines)), true, kUnlimited});
+    }
+    LineTerm& term = terms[found->second];
+    if (friction) term.of_a0[i] = -at(lines, i).direction;
+    if (!friction) term.of_log_k[i] = 1.0;
+  }
+  terms.erase(terms.begin());
+  return terms;
+}
+
+}  // namespace
+
+std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std::vector<std::string>& without) {
+  if (different(lines, &TableLine::mass_kg).size() < 2) return {};
+  std::vector<LineTerm> terms;
+  for (const EffectInfo& effect : all_effects()) {
+    if (effect.lines.change == nullptr || contains(without, std::string(effect.id))) continue;
+    LineTerm term{std::string(effect.id),    std::string(effect.lines.key), std::string(to_text(effect.stage)),
+                  std::string(effect.words), Eigen::VectorXd(count(lines)), Eigen::VectorXd(count(lines)),
+                  effect.both_signs,         effect.lines.largest};
+    for (Eigen::Index i = 0; i < count(lines); ++i) {
+      const TableLine& line = at(lines, i);
+      const LineChange change =
+          effect.lines.change({line.mass_kg, static_cast<double>(line.direction), line.a0_m_s2, line.k_over_m_1_s});
+      term.of_log_k[i] = change.of_log_k;
+      term.of_a0[i] = change.of_a0_m_s2;
+    }
+    terms.push_back(std::move(term));
+  }
+  // What moves intercepts alone comes first.
+  std::stable_partition(terms.begin(), terms.end(), [](const LineTerm& term) { return term.of_log_k.isZero(0.0); });
+  return terms;
+}
+
+std::vector<LineFamily> unnamed_families(const std::vector<TableLine>& lines) {
+  std::vector<LineFamily> families;
+  const auto add = [&](UnnamedInLines::Over over, const auto& cell_of) {
+    std::vector<Cell> cells;
+    for (const TableLine& line : lines) cells.push_back(cell_of(line));
+    for (const bool friction : {true, false}) {
+      const auto what = friction ? UnnamedInLines::What::friction : UnnamedInLines::What::drag;
+      families.push_back({{what, over}, 0.5, of_each(lines, cells, friction)});
+    }
+  };
+  const bool masses = different(lines, &TableLine::mass_kg).size() > 1;
+  const bool setups = different(lines, &TableLine::incline_deg).size() > 1;
+  if (masses) add(UnnamedInLines::Over::mass, [](const TableLine& l) { return Cell{l.mass_kg, 0.0}; });
+  if (setups) add(UnnamedInLines::Over::set_up, [](const TableLine& l) { return Cell{0.0, l.incline_deg}; });
+  if (masses && setups) {
+    add(UnnamedInLines::Over::mass_and_set_up, [](const TableLine& l) { return Cell{l.mass_kg, l.incline_deg}; });
+  }
+  LineTerm ways{
+      "",   "drag",    "dynamics", "", Eigen::VectorXd::Zero(count(lines)), Eigen::VectorXd::Zero(count(lines)),
+      true, kUnlimited};
+  for (Eigen::Index i = 0; i < count(lines); ++i) ways.of_log_k[i] = at(lines, i).direction;
+  families.push_back({{UnnamedInLines::What::drag, UnnamedInLines::Over::direction}, 1.0, {ways}});
+  std::set<UnnamedInLines::Over> variables;
+  for (const LineFamily& family : families) variables.insert(family.of.over);
+  for (LineFamily& family : families) family.share /= static_cast<double>(variables.size());
+  return families;
+}
+
+std::vector<std::string> alike_friction_force(const std::vector<std::string>& without) {
+  std::vector<std::string> alike;
+  for (const EffectInfo& effect : all_effects()) {
+    if (effect.lines.same_as == ids::load_independent_friction) alike.emplace_back(effect.id);
+  }
+  std::erase_if(alike, [&](const std::string& id) { return contains(without, id); });
+  return alike;
+}
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kLeastLeft = 1e-6;                     // of lines with very many digits: log of K/m, and m/s²
+constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
+constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
+constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
+constexpr int kMostTurns = 50;                          // of fitting sizes and scatters in turn
+constexpr double kLeastUnseen =
+    0.05;  // of a line that the others leave undetermined; its held-out residual is divided by no less
+
+std::optional<ImpossibleSize> impossible(const LineTerm& term, double size) {
+  if (!term.both_signs && !(size > 0.0)) return ImpossibleSize{term.key, size, {}};
+  if (std::abs(size) > term.largest) return ImpossibleSize{term.key, size, term.largest};
+  return {};
+}
+
+/// Mean of intercepts of one mass and set-up over both directions; nothing where one is missing.
+std::vector<double> means_over_directions(const std::vector<TableLine>& lines, double incline) {
+  std::vector<double> means;
+  for (const double mass : different(lines, &TableLine::mass_kg)) {
+    double up = 0.0, down = 0.0, ups = 0.0, downs = 0.0;
+    for (const TableLine& line : lines) {
+      if (line.mass_kg != mass || line.incline_deg != incline) continue;
+      (line.direction < 0 ? up : down) += line.a0_m_s2;
+      (line.direction < 0 ? ups : downs) += 1.0;
+    }
+    if (ups > 0.0 && downs > 0.0) means.push_back(0.5 * (up / ups + down / downs));
+  }
+  return means;
+}
+
+double squares_about_mean(const std::vector<double>& values) {
+  double mean = 0.0, sum = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return sum;
+}
+
+double root_mean_square(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+LineData line_data(const std::vector<TableLine>& lines, double g) {
+  const std::vector<double> inclines = different(lines, &TableLine::incline_deg);
+  const auto n = static_cast<Eigen::Index>(lines.size());
+  LineData data{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::MatrixXd::Ones(n, 1),
+                Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(inclines.size()) + 1)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const TableLine& line = lines[static_cast<std::size_t>(i)];
+    data.log_k[i] = std::log(line.k_over_m_1_s * line.mass_kg);
+    data.a0[i] = line.a0_m_s2;
+    const auto at = std::find(inclines.begin(), inclines.end(), line.incline_deg) - inclines.begin();
+    data.base_a0(i, at) = 1.0;
+    data.base_a0(i, data.base_a0.cols() - 1) = -line.direction * g * std::cos(line.incline_deg * kDegree);
+  }
+  double of_k = 0.0, of_a = 0.0;  // squares of errors, relative ones of K/m
+  for (const TableLine& line : lines) {
+    of_k += std::pow(line.k_digit_1_s / line.k_over_m_1_s, 2) * kRoundingVariance / static_cast<double>(n);
+    of_a += std::pow(line.a0_digit_m_s2, 2) * kRoundingVariance / static_cast<double>(n);
+  }
+  data.rounding_log_k = std::max(std::sqrt(of_k), kLeastLeft);
+  data.rounding_a0 = std::max(std::sqrt(of_a), kLeastLeft);
+  return data;
+}
+
+LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& terms) {
+  const auto n = data.a0.size();
+  const auto pk = data.base_log_k.cols(), pa = data.base_a0.cols(), pt = static_cast<Eigen::Index>(terms.size());
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(2 * n, pk + pa + pt);
+  Eigen::VectorXd y(2 * n);
+  x.block(0, 0, n, pk) = data.base_log_k;
+  x.block(n, pk, n, pa) = data.base_a0;
+  for (Eigen::Index t = 0; t < pt; ++t) {
+    x.block(0, pk + pa + t, n, 1) = terms[static_cast<std::size_t>(t)].of_log_k;
+    x.block(n, pk + pa + t, n, 1) = terms[static_cast<std::size_t>(t)].of_a0;
+  }
+  y << data.log_k, data.a0;
+  LineSolution s;
+  s.sd_k = kFirstSd_k;
+  s.sd_a = kFirstSd_a;
+  Eigen::VectorXd weight(2 * n), off, fit;
+  Eigen::MatrixXd inverse;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    weight << Eigen::VectorXd::Constant(n, 1.0 / s.sd_k), Eigen::VectorXd::Constant(n, 1.0 / s.sd_a);
+    const Eigen::MatrixXd wx = weight.asDiagonal() * x;
+    Eigen::MatrixXd normal = base::transposed_product(wx, wx);
+    const Eigen::VectorXd scale = (normal.diagonal().array() + 1e-300).sqrt().inverse();
+    normal = scale.asDiagonal() * normal * scale.asDiagonal();
+    normal.diagonal().array() += 1e-10;
+    inverse = scale.asDiagonal() * base::inverse_positive(normal) * scale.asDiagonal();
+    fit = base::product(inverse, base::transposed_product(wx, Eigen::VectorXd(weight.cwiseProduct(y))));
+    off = y - base::product(x, fit);
+    const double sd_k = std::max(root_mean_square(off.head(n)), data.rounding_log_k);
+    const double sd_a = std::max(root_mean_square(off.tail(n)), data.rounding_a0);
+    const bool settled = std::abs(sd_k - s.sd_k) <= kSettled * sd_k && std::abs(sd_a - s.sd_a) <= kSettled * sd_a;
+    s.sd_k = sd_k;
+    s.sd_a = sd_a;
+    if (settled) break;
+  }
+  s.off_k = off.head(n);
+  s.off_a = off.tail(n);
+  s.size = fit.tail(pt);
+  // With the degrees of freedom that the fit takes.
+  const auto values = static_cast<double>(2 * n), parameters = static_cast<double>(pk + pa + pt);
+  s.sd = inverse.diagonal().tail(pt).cwiseSqrt() * std::sqrt(values / std::max(1.0, values - parameters));
+  for (Eigen::Index t = 0; t < pt && !s.left_out; ++t) {
+    s.left_out = impossible(terms[static_cast<std::size_t>(t)], s.size[t]);
+  }
+  // Each line predicted by the others: residual over 1 - leverage.
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd row_k = x.row(i).transpose() / s.sd_k, row_a = x.row(n + i).transpose() / s.sd_a;
+    const double leverage_k = row_k.dot(base::product(inverse, row_k).col(0));
+    const double leverage_a = row_a.dot(base::product(inverse, row_a).col(0));
+    s.held_out_k.push_back(off[i] / std::max(kLeastUnseen, 1.0 - leverage_k));
+    s.held_out_a.push_back(off[n + i] / std::max(kLeastUnseen, 1.0 - leverage_a));
+  }
+  return s;
+}
+
+OwnScatter own_scatter(const std::vector<TableLine>& lines) {
+  double sum_a = 0.0, count_a = 0.0, sum_k = 0.0, count_k = 0.0;
+  for (const double incline : different(lines, &TableLine::incline_deg)) {
+    const std::vector<double> means = means_over_directions(lines, incline);
+    sum_a += 2.0 * squares_about_mean(means);  // a mean of two has half the variance
+    if (!means.empty()) count_a += static_cast<double>(means.size()) - 1.0;
+  }
+  for (const double mass : different(lines, &TableLine::mass_kg)) {
+    std::vector<double> logs;
+    for (const TableLine& line : lines) {
+      if (line.mass_kg == mass) logs.push_back(std::log(line.k_over_m_1_s));
+    }
+    sum_k += squares_about_mean(logs);
+    count_k += static_cast<double>(logs.size()) - 1.0;
+  }
+  return {count_a > 0.0 ? std::sqrt(sum_a / count_a) : 0.0, count_k > 0.0 ? std::sqrt(sum_k / count_k) : 0.0,
+          static_cast<std::size_t>(count_a + count_k)};
+}
+
+double log_bayes_factor(double left, double nominal_left, double lines, double nominal_parameters, double terms) {
+  const double freedom = lines - nominal_parameters;
+  if (!(freedom > terms)) return 0.0;
+  const double ratio = std::pow(left / nominal_left, 2);
+  // Over ln g; even steps are exact to rounding for what falls off smoothly at both ends.
+  constexpr double kFrom = -8.0, kTo = 45.0, kStep = 0.05;
+  std::vector<double> logs;
+  for (double u = kFrom; u < kTo; u += kStep) {
+    const double g = std::exp(u);
+    const double prior = 0.5 * std::log(lines / (2.0 * std::numbers::pi)) - 0.5 * u - 0.5 * lines / g;
+    logs.push_back(prior + 0.5 * (freedom - terms) * std::log1p(g) - 0.5 * freedom * std::log1p(g * ratio));
+  }
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (const double l : logs) sum += kStep * std::exp(l - most);
+  return most + std::log(sum);
+}
+
+double log_evidence_of(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
+                       const LineSolution& nominal) {
+  double of_k = 0.0, of_a = 0.0;
+  for (const LineTerm& term : terms) {
+    const double k = term.of_log_k.isZero(0.0) ? 0.0 : 1.0, a = term.of_a0.isZero(0.0) ? 0.0 : 1.0;
+    of_k += k / std::max(1.0, k + a);
+    of_a += a / std::max(1.0, k + a);
+  }
+  const auto lines = static_cast<double>(data.a0.size());
+  double sum = 0.0;
+  if (of_k > 0.0) {
+    sum += log_bayes_factor(with.sd_k, nominal.sd_k, lines, static_cast<double>(data.base_log_k.cols()), of_k);
+  }
+  if (of_a > 0.0) {
+    sum += log_bayes_factor(with.sd_a, nominal.sd_a, lines, static_cast<double>(data.base_a0.cols()), of_a);
+  }
+  return sum;
+}
+
+double log_likelihood_gain_of(const LineSolution& with, const LineSolution& nominal) {
+  return static_cast<double>(with.off_a.size()) * std::log(nominal.sd_k / with.sd_k * nominal.sd_a / with.sd_a);
+}
+
+double chi_square_of(const LineSolution& solution, const OwnScatter& scatter) {
+  return solution.off_k.squaredNorm() / std::pow(scatter.slope, 2) +
+         solution.off_a.squaredNorm() / std::pow(scatter.intercept_m_s2, 2);
+}
+
+double gap_of_line(const LineSolution& solution, const OwnScatter& scatter, std::size_t i) {
+  return std::sqrt(0.5 * (std::pow(solution.held_out_k[i] / scatter.slope, 2) +
+                          std::pow(solution.held_out_a[i] / scatter.intercept_m_s2, 2)));
+}
+
+double gap_of_lines(const LineSolution& solution, const OwnScatter& scatter) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < solution.held_out_a.size(); ++i) sum += std::pow(gap_of_line(solution, scatter, i), 2);
+  return std::sqrt(sum / static_cast<double>(solution.held_out_a.size()));
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,354 @@
+#include "diagnose/pictures/picture_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "base/math/dense.h"
+#include "core/math/quantile.h"
+#include "core/pictures/scene/camera_traces.h"
+#include "diagnose/effects/effect_library.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kMemory = 0.05;      // of a ratio of variances that should be 1: what it errs by,
+constexpr double kUsualMemory = 1.1;  // and what it is where nothing is wrong
+
+}  // namespace
+
+double memory_log_evidence(const std::vector<FilmedClip>& clips) {
+  double memory = 1.0;
+  for (const FilmedClip& clip : clips) memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
+  return log_evidence_of((memory - kUsualMemory) / kMemory, 1.0 / kMemory);
+}
+
+void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  double excess = 0.0, relative = 0.0, memory = 0.0;
+  std::size_t lossy = 0, lossless = 0;
+  std::string codec, lossy_codec;
+  for (const FilmedClip& clip : clips) {
+    const core::BlockEdges edges = core::block_edges(clip.record->steps);
+    if (edges.z > excess) {
+      excess = edges.z;
+      relative = edges.relative;
+    }
+    memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
+    if (clip.record->lossy) ++(*clip.record->lossy ? lossy : lossless);
+    if (codec.empty()) codec = clip.record->codec;
+    if (lossy_codec.empty() && clip.record->lossy.value_or(false)) lossy_codec = clip.record->codec;
+  }
+  const bool changes = std::any_of(evidence.findings.begin(), evidence.findings.end(), [](const PictureFinding& other) {
+    return (other.id == ids::light_flicker || other.id == ids::camera_motion) && other.log_evidence > kSeenInPictures;
+  });
+  PictureFinding finding = finding_of(ids::compression);
+  const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // of columns that tell their scatter poorly
+  // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
+  finding.stated = lossy > 0;
+  finding.log_evidence =
+      std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks, changes ? blocks : memory_log_evidence(clips));
+  finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
+  if (!lossy_codec.empty()) finding.parameters.push_back({"codec", 0.0, 0.0, lossy_codec});
+  const std::string steps =
+      relative > 2.0 ? fmt::format("{:.2g} times as large", 1.0 + relative)
+                     : fmt::format("{:.1f} % {}", 100.0 * std::abs(relative), relative < 0.0 ? "smaller" : "larger");
+  finding.words = fmt::format("{}; steps between pixels are {} at the edges of 8 × 8 blocks {} elsewhere.",
+                              lossy > 0      ? fmt::format("The file is compressed with loss ({})", lossy_codec)
+                              : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
+                                             : std::string("What the file was compressed with is not known"),
+                              steps, relative > 2.0 ? "as" : "than");
+  if (memory > kUsualMemory)
+    finding.words +=
+        fmt::format(" Noise lasts over frames (changes over two frames are {:.2f} times those over one).", memory);
+  evidence.findings.push_back(std::move(finding));
+}
+
+void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  std::size_t missing = 0, repeated = 0, frames = 0;
+  for (const FilmedClip& clip : clips) {
+    missing += clip.record->stamps_missing;
+    const auto& looks = clip.record->marker;
+    frames += looks.size();
+    for (std::size_t i = 2; i < looks.size(); ++i) {
+      const bool same = looks[i].u_px == looks[i - 1].u_px && looks[i].v_px == looks[i - 1].v_px;
+      if (same && std::abs(looks[i - 1].u_px - looks[i - 2].u_px) > 0.05) ++repeated;
+    }
+  }
+  if (missing + repeated == 0) return;
+  PictureFinding finding = finding_of(ids::dropped_frames);
+  finding.log_evidence = std::min(50.0, 5.0 * static_cast<double>(missing + repeated));
+  const double count = static_cast<double>(missing + repeated);
+  finding.parameters = {
+      {"fraction", count / static_cast<double>(frames), std::sqrt(count) / static_cast<double>(frames)}};
+  finding.words =
+      fmt::format("{} frames repeat the image before, and the time stamps leave a gap for {}.", repeated, missing);
+  evidence.findings.push_back(std::move(finding));
+}
+
+namespace {
+
+constexpr int kReach = 4;                         // frames to each side that give a frame's speed
+constexpr std::size_t kFewestFramesOfShape = 40;  // frames of all clips together
+constexpr int kPlace = 4;                         // terms of a cubic
+constexpr double kShortest_s = 2e-5;
+constexpr double kFinest = 1.06;  // step of the exposures that are tried
+constexpr int kBins = 24;
+constexpr int kRounds = 3;                  // of the fit, each without the last one's outliers
+constexpr double kOutlier = 7.0;            // median deviations
+constexpr double kLeastScatter_px2 = 1e-9;  // so that exact data have one
+constexpr double kSlowest_px_s = 1.0;       // of the fastest sample: slower, nothing smears
+constexpr double kLongestSmear = 3.0;       // radii
+
+struct Sample {
+  double place = 0.0;  ///< u, -1 to 1 over the image
+  std::size_t view = 0;
+  double wu = 0.0, wv = 0.0, vv = 0.0;
+  double stretch = 0.0, shear = 0.0;  ///< m_uu - m_vv, m_uv
+};
+
+/// Speed of the marker's image by a line through the frames around.
+std::vector<Sample> samples_of(const FilmedClip& clip) {
+  const auto& looks = clip.record->marker;
+  std::vector<Sample> samples;
+  for (std::size_t i = kReach; i + kReach < looks.size(); ++i) {
+    if (looks[i + kReach].frame - looks[i - kReach].frame != 2 * kReach) continue;
+    double tt = 0.0, tu = 0.0, tv = 0.0, mean_t = 0.0;
+    for (std::size_t j = i - kReach; j <= i + kReach; ++j) mean_t += looks[j].t_s / (2 * kReach + 1);
+    for (std::size_t j = i - kReach; j <= i + kReach; ++j) {
+      const double t = looks[j].t_s - mean_t;
+      tt += t * t;
+      tu += t * looks[j].u_px;
+      tv += t * looks[j].v_px;
+    }
+    const auto& m = looks[i];
+    samples.push_back(
+        {2.0 * m.u_px / clip.record->width_px - 1.0, clip.view, tu / tt, tv / tt, m.vv_px2, m.stretch_px2, m.uv_px2});
+  }
+  return samples;
+}
+
+/// What a smear adds along it more than across it.
+double smear(double length_px) {
+  return length_px * length_px / 12.0;
+}
+
+struct Solved {
+  double chi2 = 0.0;
+  double line = 0.0, line_variance = 0.0;  ///< for a variance of 1
+  Eigen::VectorXd rest;
+};
+
+/// Everything linear (the place's cubics, the line time) at a given exposure. Rows: stretch of all, then shear of all.
+class Linear {
+ public:
+  Linear(const std::vector<Sample>& samples, std::size_t views, double shear_weight)
+      : samples_(samples), w_(shear_weight) {
+    const auto n = static_cast<Eigen::Index>(samples.size());
+    const auto columns = static_cast<Eigen::Index>(2 * views * kPlace + 1);
+    design_ = Eigen::MatrixXd::Zero(2 * n, columns);
+    data_.resize(2 * n);
+    double top = 1.0;
+    for (const Sample& s : samples) top = std::max(top, std::abs(s.wu) * s.vv);
+    scale_ = 1.0 / top;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Sample& s = samples[static_cast<std::size_t>(i)];
+      double power = 1.0;
+      for (Eigen::Index k = 0; k < kPlace; ++k, power *= s.place) {
+        design_(i, static_cast<Eigen::Index>(2 * s.view) * kPlace + k) = power;
+        design_(n + i, static_cast<Eigen::Index>(2 * s.view + 1) * kPlace + k) = w_ * power;
+      }
+      design_(i, columns - 1) = -2.0 * s.wv * s.vv * scale_;
+      design_(n + i, columns - 1) = w_ * s.wu * s.vv * scale_;
+      data_[i] = s.stretch;
+      data_[n + i] = w_ * s.shear;
+    }
+    Eigen::MatrixXd normal = base::transposed_product(design_, design_);
+    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
+    inverse_ = base::inverse_positive(normal);
+  }
+
+  Solved at(double exposure_s) const {
+    const auto n = static_cast<Eigen::Index>(samples_.size());
+    Eigen::VectorXd left = data_;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Sample& s = samples_[static_cast<std::size_t>(i)];
+      const double speed2 = std::max(1e-12, s.wu * s.wu + s.wv * s.wv);
+      const double stretch = smear(std::sqrt(speed2) * exposure_s);
+      left[i] -= stretch * (s.wu * s.wu - s.wv * s.wv) / speed2;
+      left[n + i] -= w_ * stretch * s.wu * s.wv / speed2;
+    }
+    const Eigen::VectorXd coefficients = base::product(inverse_, base::transposed_product(design_, left));
+    Solved solved;
+    solved.rest = left - base::product(design_, coefficients);
+    solved.chi2 = solved.rest.squaredNorm();
+    const Eigen::Index last = design_.cols() - 1;
+    solved.line = coefficients[last] * scale_;
+    solved.line_variance = inverse_(last, last) * scale_ * scale_;
+    return solved;
+  }
+
+ private:
+  const std::vector<Sample>& samples_;
+  double w_;
+  double scale_ = 1.0;
+  Eigen::MatrixXd design_, inverse_;
+  Eigen::VectorXd data_;
+};
+
+/// How many independent values a series of correlated ones has fewer: 1 + 2 sum of its correlations, while they last.
+double memory_of(const Eigen::VectorXd& rest) {
+  const double variance = rest.squaredNorm() / static_cast<double>(rest.size());
+  double memory = 1.0;
+  for (Eigen::Index lag = 1; lag < std::min<Eigen::Index>(40, rest.size() / 4); ++lag) {
+    const double r = rest.head(rest.size() - lag).dot(rest.tail(rest.size() - lag)) /
+                     static_cast<double>(rest.size() - lag) / variance;
+    if (r < 2.0 / std::sqrt(static_cast<double>(rest.size()))) break;
+    memory += 2.0 * r;
+  }
+  return memory;
+}
+
+double fastest_of(const std::vector<Sample>& samples) {
+  double fastest = 0.0;
+  for (const Sample& s : samples) fastest = std::max(fastest, std::hypot(s.wu, s.wv));
+  return fastest;
+}
+
+PictureCurve lengthening(const std::vector<Sample>& samples, const Eigen::VectorXd& rest, double exposure_s,
+                         const std::optional<double>& stated_s) {
+  PictureCurve curve;
+  curve.what = "lengthening";
+  const double fastest = std::max(kSlowest_px_s, fastest_of(samples));
+  std::vector<std::vector<double>> bins(kBins);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double speed = std::hypot(samples[i].wu, samples[i].wv);
+    const auto bin = std::min<std::size_t>(kBins - 1, static_cast<std::size_t>(speed / fastest * kBins));
+    bins[bin].push_back(rest[static_cast<Eigen::Index>(i)] + smear(speed * exposure_s));
+  }
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    if (bins[b].size() < 2) continue;
+    const double speed = fastest * (static_cast<double>(b) + 0.5) / kBins;
+    double mean = 0.0, square = 0.0;
+    const auto count = static_cast<double>(bins[b].size());
+    for (const double value : bins[b]) mean += value / count;
+    for (const double value : bins[b]) square += (value - mean) * (value - mean) / (count - 1.0);
+    curve.at.push_back(speed);
+    curve.value.push_back(mean);
+    curve.sd.push_back(std::sqrt(square / count));
+    curve.fitted.push_back(smear(speed * exposure_s));
+    if (stated_s) curve.expected.push_back(smear(speed * *stated_s));
+  }
+  return curve;
+}
+
+/// Every clip's samples; its view counted from 0 in the order of the clips.
+std::vector<Sample> all_samples(const std::vector<FilmedClip>& clips, std::size_t& views) {
+  std::map<std::size_t, std::size_t> numbers;
+  std::vector<Sample> samples;
+  for (const FilmedClip& clip : clips) {
+    for (Sample sample : samples_of(clip)) {
+      sample.view = numbers.emplace(sample.view, numbers.size()).first->second;
+      samples.push_back(sample);
+    }
+  }
+  views = numbers.size();
+  return samples;
+}
+
+/// The fit at every exposure that may be, and the best of them.
+struct Scan {
+  std::vector<double> tried_s, chi2;
+  double best_s = 0.0;
+  Solved best;
+};
+
+Scan scan_exposures(const Linear& linear, double longest_s, double longest_px, double fastest_px_s) {
+  Scan scan;
+  scan.tried_s = {0.0};
+  for (double t = kShortest_s; t < longest_s && t * fastest_px_s < longest_px; t *= kFinest) scan.tried_s.push_back(t);
+  scan.best.chi2 = std::numeric_limits<double>::infinity();
+  for (const double t : scan.tried_s) {
+    Solved solved = linear.at(t);
+    scan.chi2.push_back(solved.chi2);
+    if (solved.chi2 >= scan.best.chi2) continue;
+    scan.best_s = t;
+    scan.best = std::move(solved);
+  }
+  return scan;
+}
+
+/// Leaves out what lies off the last fit, and weighs the shear anew by its scatter against the stretch's.
+void leave_outliers(const Solved& last, std::vector<Sample>& samples, double& shear_weight) {
+  const auto n = static_cast<Eigen::Index>(samples.size());
+  std::vector<double> of_stretch, of_shear;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    of_stretch.push_back(std::abs(last.rest[i]));
+    of_shear.push_back(std::abs(last.rest[n + i] / shear_weight));
+  }
+  const double stretch = std::max(kLeastScatter_px2, core::median_of(of_stretch));
+  const double shear = std::max(kLeastScatter_px2, core::median_of(of_shear));
+  std::vector<Sample> kept;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (of_stretch[i] < kOutlier * stretch && of_shear[i] < kOutlier * shear) kept.push_back(samples[i]);
+  }
+  samples = std::move(kept);
+  shear_weight = stretch / shear;
+}
+
+/// Mean and spread over the likelihood of the exposures tried, each with the step that it stands for.
+void tell_exposure(const Scan& scan, double variance, ShapeFit& result) {
+  double sum = 0.0, mean = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < scan.tried_s.size(); ++i) {
+    const double t = scan.tried_s[i];
+    const double step = i == 0 ? kShortest_s : t * (kFinest - 1.0);
+    const double w = step * std::exp(-0.5 * (scan.chi2[i] - scan.best.chi2) / variance);
+    sum += w;
+    mean += w * t;
+    square += w * t * t;
+  }
+  result.exposure_s = mean / sum;
+  result.exposure_sd_s = std::sqrt(
+      std::max(square / sum - result.exposure_s * result.exposure_s, std::pow(scan.best_s * (kFinest - 1.0) / 3.0, 2)));
+}
+
+}  // namespace
+
+ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
+  ShapeFit result;
+  std::size_t views = 0;
+  std::vector<Sample> samples = all_samples(clips, views);
+  if (samples.size() < kFewestFramesOfShape) return result;
+  std::vector<double> radii;
+  double longest_s = 0.0;
+  for (const FilmedClip& clip : clips) {
+    for (const auto& look : clip.record->marker) radii.push_back(2.0 * std::sqrt(look.vv_px2));
+    longest_s = std::max(longest_s, 1.0 / clip.camera.frame_rate_hz);
+  }
+  result.radius_px = core::median_of(radii);
+  result.fastest_px_s = fastest_of(samples);
+  if (!(result.fastest_px_s > kSlowest_px_s)) return result;
+
+  double weight = 1.0;
+  Scan scan;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round > 0) leave_outliers(scan.best, samples, weight);
+    if (samples.size() < kFewestFramesOfShape) return result;
+    scan = scan_exposures({samples, views, weight}, longest_s, kLongestSmear * result.radius_px, result.fastest_px_s);
+  }
+  const Solved& best = scan.best;
+  const auto n = static_cast<Eigen::Index>(samples.size());
+  const double memory = std::max(memory_of(best.rest.head(n)), memory_of(best.rest.tail(n)));
+  const double variance = memory * best.chi2 / static_cast<double>(2 * n);
+  result.known = true;
+  tell_exposure(scan, variance, result);
+  result.line_s = best.line;
+  result.line_sd_s = std::sqrt(best.line_variance * variance);
+  result.curves.push_back(lengthening(samples, best.rest, scan.best_s, clips.front().camera.exposure_s));
+  return result;
+}
+
+}  // namespace glidelab::diagnose

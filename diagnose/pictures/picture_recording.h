@@ -1,0 +1,48 @@
+/// Findings about how the camera recorded: compression, missing frames, exposure, line time.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/pictures/picture_search.h"
+
+namespace glidelab::diagnose {
+
+/// Log evidence that pixels at rest remember what they were: a codec's predicted images do.
+double memory_log_evidence(const std::vector<FilmedClip>& clips);
+
+/// Whether the clip was lossily compressed, and whether that is visible. To be called after add_flicker and add_sway,
+/// whose findings it reads.
+///
+/// Blocks: steps between pixels at the edges of 8 x 8 blocks against those of the other seven columns. Memory: a
+/// resting pixel's change over two frames against that over one, 1 where noise is new in every frame. Light or a scene
+/// that changes makes it differ from 1 as well, so that it counts only where both rest. (What flickers by less than 1 %
+/// where pixels remember is no light: picture_scene.h.) A file that says itself that it is compressed with loss
+/// withholds nothing: it is named for what it does to the positions (joined_evidence.h).
+void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
+/// Whether frames are missing or repeated.
+void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
+
+struct ShapeFit {
+  bool known = false;
+  double exposure_s = 0.0, exposure_sd_s = 0.0;
+  double line_s = 0.0, line_sd_s = 0.0;  ///< top row first
+  double fastest_px_s = 0.0;
+  double radius_px = 0.0;
+  std::vector<PictureCurve> curves;  ///< lengthening over speed
+};
+
+/// Exposure and line time from the shape of the marker's image.
+///
+/// An exposure T smears the image of a marker that moves at w px/s over L = |w| T. Rows that are exposed one after the
+/// other shear it. With second moments m (of its brightness for the difference, of its outline for the mixed one), the
+/// speed's components w and `line` the time from one row to the next,
+///
+///     m_uu - m_vv = p(u) + (w_u² - w_v²) T²/12 - 2 line w_v m_vv
+///     m_uv        = q(u) + w_u w_v T²/12 + line w_u m_vv
+///
+/// p and q are cubic in the place in the image, one pair for each view. They stand for perspective and lens, which do
+/// not go with the speed. T is found by trying exposures, all else by least squares. Outliers beyond seven median
+/// deviations are left out, and variances are multiplied by how long residuals last.
+ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,260 @@
+#include "diagnose/pictures/picture_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/math/dense.h"
+#include "base/text/number_text.h"
+#include "core/pictures/scene/camera_traces.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/pictures/picture_recording.h"
+#include "diagnose/pictures/picture_search.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kLeastFlicker = 0.002;      // of the light: below, nothing that a threshold would notice
+constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames brighten and darken by as much
+constexpr double kOfDrift = 0.01;            // of the light, for each pixel that the scene has moved
+constexpr double kUsualGradient_1_m = 0.1;   // of the light, in a room where nothing is wrong
+constexpr double kFull = 0.96;               // of the largest code: a marker as bright may be cut off there
+
+/// sinc of an exposure's average over a wave.
+double averaged(double f_hz, double exposure_s) {
+  const double x = std::numbers::pi * f_hz * exposure_s;
+  return x < 1e-6 ? 1.0 : std::sin(x) / x;
+}
+
+/// Mains light flickers at 100 or 120 Hz, of which the frames see an alias; else what is seen.
+double flicker_of_mains(double seen_hz, double sd_hz, double rate_hz) {
+  for (const double mains : {100.0, 120.0}) {
+    const double folded = std::abs(mains - rate_hz * std::round(mains / rate_hz));
+    // Mains itself keeps to 0.2 %.
+    if (std::abs(folded - seen_hz) < 0.002 * mains + 3.0 * sd_hz + 0.1) return mains;
+  }
+  return seen_hz;
+}
+
+}  // namespace
+
+void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  std::vector<Series> series;
+  for (const FilmedClip& clip : clips) {
+    const bool rolling = clip.camera.shutter == core::Shutter::rolling;
+    std::vector<Series> bands(core::kRowBands);
+    for (const core::SceneLook& look : clip.record->scene) {
+      double sum = 0.0, weight = 0.0;
+      for (std::size_t b = 0; b < core::kRowBands; ++b) {
+        if (!(look.gain_sd[b] > 0.0)) continue;
+        const double w = 1.0 / (look.gain_sd[b] * look.gain_sd[b]);
+        if (rolling) {
+          bands[b].t_s.push_back(look.t_s);
+          bands[b].value.push_back(look.gain[b]);
+        }
+        sum += w * look.gain[b];
+        weight += w;
+      }
+      if (rolling || weight == 0.0) continue;
+      bands[0].t_s.push_back(look.t_s);
+      bands[0].value.push_back(sum / weight);
+    }
+    PictureCurve curve;
+    curve.what = "brightness";
+    curve.clip = clip.name;
+    curve.at = bands[0].t_s;
+    curve.value = bands[0].value;
+    for (std::size_t b = 1; b < core::kRowBands && curve.at.empty(); ++b) {
+      curve.at = bands[b].t_s;
+      curve.value = bands[b].value;
+    }
+    if (!curve.at.empty()) evidence.curves.push_back(std::move(curve));
+    for (Series& band : bands) series.push_back(std::move(band));
+  }
+  const SeriesWave wave = strongest_wave(series);
+  if (!(wave.f_hz > 0.0)) return;
+  const core::CameraSettings& camera = clips.front().camera;
+  const double f_hz = flicker_of_mains(wave.f_hz, wave.sd_hz, camera.frame_rate_hz);
+  const double passed = std::max(0.1, std::abs(averaged(f_hz, camera.exposure_s.value_or(0.0))));
+  PictureFinding finding = finding_of(ids::light_flicker);
+  // Where the file does not tell, pixels that remember do: light that changes by less than 1 % cannot make them.
+  double least = memory_log_evidence(clips) > kSeenInPictures ? kLeastFlickerLossy : kLeastFlicker;
+  for (const FilmedClip& clip : clips) {
+    if (core::through_lossy_codec(*clip.record)) least = kLeastFlickerLossy;
+    for (const core::SceneLook& look : clip.record->scene) {
+      least = std::max(least, kOfDrift * std::hypot(look.u_px, look.v_px));
+    }
+  }
+  finding.log_evidence = wave.amplitude < least ? std::min(wave.log_evidence, -2.0) : wave.log_evidence;
+  finding.parameters = {{"depth", wave.amplitude / passed, wave.sd / passed}, {"f_hz", f_hz, wave.sd_hz}};
+  finding.words =
+      finding.log_evidence > kSeenInPictures
+          ? fmt::format("The brightness of the fixed scene varies by ±{:.2g} % at {:.4g} Hz{}.", 100.0 * wave.amplitude,
+                        wave.f_hz,
+                        f_hz != wave.f_hz ? fmt::format(" ({:.0f} Hz looks like this at this frame rate)", f_hz) : "")
+          : fmt::format("The light does not flicker: no wave above {:.2g} % in the fixed scene.",
+                        100.0 * std::max(wave.amplitude, 3.0 * wave.sd));
+  evidence.findings.push_back(std::move(finding));
+}
+
+/// Light along the path from how bright the marker is: ln(brightness) = a + g s + q s² about the image's middle.
+void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  const auto columns = static_cast<Eigen::Index>(clips.size() + 2);
+  std::vector<Eigen::VectorXd> rows;
+  std::vector<double> values;
+  double px_per_m = 0.0, reach = 0.0;
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    px_per_m += clips[c].px_per_m / static_cast<double>(clips.size());
+    for (const core::MarkerLook& look : clips[c].record->marker) {
+      const double code = look.amplitude + look.background;
+      if (!(code > 0.0) || code > kFull * clips[c].record->full_code) continue;
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
+      const double s = (look.u_px - 0.5 * clips[c].record->width_px) / std::max(1.0, clips[c].px_per_m);
+      row[static_cast<Eigen::Index>(c)] = 1.0;
+      row[columns - 2] = s;
+      row[columns - 1] = s * s;
+      reach = std::max(reach, std::abs(s));
+      rows.push_back(std::move(row));
+      values.push_back(std::log(look.amplitude + look.background));
+    }
+  }
+  if (!(px_per_m > 0.0) || rows.size() < 40 || reach < 0.05) return;
+  Eigen::MatrixXd design(std::ssize(rows), columns);
+  for (std::size_t i = 0; i < rows.size(); ++i) design.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
+  const Eigen::VectorXd data = Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
+  Eigen::MatrixXd normal = base::transposed_product(design, design);
+  normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();
+  const Eigen::MatrixXd inverse = base::inverse_positive(normal);
+  const Eigen::VectorXd found = base::product(inverse, base::transposed_product(design, data));
+  const double variance = (data - base::product(design, found)).squaredNorm() / static_cast<double>(rows.size());
+  const double gradient = found[columns - 2];
+  // Neighbouring frames share what the pixels' own response does; one in ten counts.
+  const double sd = std::sqrt(10.0 * variance * inverse(columns - 2, columns - 2));
+  PictureFinding finding = finding_of(ids::light_gradient);
+  const double usual = std::hypot(sd, kUsualGradient_1_m);
+  finding.log_evidence = log_evidence_of(std::abs(gradient) / usual, 10.0 / usual);
+  finding.parameters = {{"gradient", gradient, sd}};
+  finding.words =
+      fmt::format("The light on the marker changes by {} % a metre to the right; {:.0f} % is usual in a room.",
+                  base::value_and_sd_text(100.0 * gradient, 100.0 * sd), 100.0 * kUsualGradient_1_m);
+  evidence.findings.push_back(std::move(finding));
+}
+
+namespace {
+
+constexpr double kLeastSway_px = 0.02;      // what a patch of scene can be trusted to
+constexpr double kLeastSwayLossy_px = 0.3;  // of a codec, which keeps the scene where it was, or moves it, by blocks
+
+double least_sway_px(const std::vector<FilmedClip>& clips) {
+  const bool lossy = std::any_of(clips.begin(), clips.end(),
+                                 [](const FilmedClip& clip) { return core::through_lossy_codec(*clip.record); });
+  return lossy ? kLeastSwayLossy_px : kLeastSway_px;
+}
+
+std::vector<Series> drift_of(const FilmedClip& clip) {
+  Series u, v;
+  for (const core::SceneLook& look : clip.record->scene) {
+    if (look.sd_u_px > 0.0) {
+      u.t_s.push_back(look.t_s);
+      u.value.push_back(look.u_px);
+    }
+    if (look.sd_v_px > 0.0) {
+      v.t_s.push_back(look.t_s);
+      v.value.push_back(look.v_px);
+    }
+  }
+  return {std::move(u), std::move(v)};
+}
+
+/// Range of the means of eight parts of a series beyond what its noise makes of it, with its standard error.
+struct Drift {
+  double size = 0.0, sd = 0.0;
+};
+
+Drift slow_drift(const Series& series) {
+  constexpr std::size_t kParts = 8;
+  const std::size_t n = series.value.size() / kParts;
+  if (n < 3) return {};
+  std::vector<double> means;
+  double within = 0.0;
+  for (std::size_t p = 0; p < kParts; ++p) {
+    double mean = 0.0, square = 0.0;
+    for (std::size_t i = p * n; i < (p + 1) * n; ++i) mean += series.value[i] / static_cast<double>(n);
+    for (std::size_t i = p * n; i < (p + 1) * n; ++i) square += std::pow(series.value[i] - mean, 2);
+    means.push_back(mean);
+    within += square / static_cast<double>((n - 1) * kParts);
+  }
+  const auto [low, high] = std::minmax_element(means.begin(), means.end());
+  // The range of eight means of noise is 2.85 of their standard deviations, with a spread of 0.82.
+  const double sd = std::sqrt(within / static_cast<double>(n));
+  return {*high - *low - 2.85 * sd, 0.82 * sd};
+}
+
+}  // namespace
+
+void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+  const double least_px = least_sway_px(clips);
+  std::vector<Series> series;
+  Drift drift;
+  for (const FilmedClip& clip : clips) {
+    std::vector<Series> both = drift_of(clip);
+    for (std::size_t axis = 0; axis < both.size(); ++axis) {
+      if (both[axis].value.empty()) continue;
+      PictureCurve curve;
+      curve.what = axis == 0 ? "drift across" : "drift down";
+      curve.clip = clip.name;
+      curve.at = both[axis].t_s;
+      curve.value = both[axis].value;
+      evidence.curves.push_back(std::move(curve));
+      const Drift mine = slow_drift(both[axis]);
+      if (mine.size > drift.size) drift = mine;
+      series.push_back(std::move(both[axis]));
+    }
+  }
+  if (series.empty()) return;
+  const SeriesWave wave = strongest_wave(series);
+  PictureFinding finding = finding_of(ids::camera_motion);
+  const bool shakes = wave.log_evidence > kSeenInPictures && wave.amplitude > least_px;
+  const double drift_sd = std::hypot(drift.sd, least_px);
+  const double of_drift = log_evidence_of(drift.size / drift_sd, 100.0 / drift_sd);
+  if (shakes) {
+    finding.log_evidence = std::max(wave.log_evidence, of_drift);
+    finding.parameters = {{"amplitude_px", wave.amplitude, wave.sd}, {"f_hz", wave.f_hz, wave.sd_hz}};
+    finding.words = fmt::format("The fixed scene sways in the image by ±{:.2g} px at {:.3g} Hz: the camera shakes.",
+                                wave.amplitude, wave.f_hz);
+  } else if (of_drift > kSeenInPictures) {
+    finding.log_evidence = of_drift;
+    finding.parameters = {{"amplitude_px", 0.5 * drift.size, 0.5 * drift_sd}};
+    finding.words =
+        fmt::format("The fixed scene drifts in the image by {:.2g} px within a clip: the camera moves.", drift.size);
+  } else {
+    finding.log_evidence = std::min({of_drift, wave.log_evidence, -2.0});
+    finding.parameters = {{"amplitude_px", 0.0, std::max(least_px, wave.amplitude)}};
+    finding.words = fmt::format("The camera is at rest: the fixed scene stays within {:.2g} px in the image.",
+                                std::max(least_px, std::max(wave.amplitude, drift.size)));
+  }
+  evidence.findings.push_back(std::move(finding));
+}
+
+double camera_sway_support(const std::vector<FilmedClip>& clips, double amplitude_m, double f_hz) {
+  const double least_px = least_sway_px(clips);
+  // How much less or more than the marker the background moves depends on its depth and the kind of motion.
+  std::vector<double> logs;
+  for (double ratio = 0.5; ratio < 2.1; ratio *= 1.26) {
+    double sum = 0.0;
+    for (const FilmedClip& clip : clips) {
+      const Series u = drift_of(clip).front();
+      const Amplitude seen = amplitude_at(u, f_hz);
+      if (!(seen.sd > 0.0)) continue;
+      const double sd = std::hypot(seen.sd, 0.3 * least_px), expected = ratio * amplitude_m * clip.px_per_m;
+      sum += 0.5 * (seen.size * seen.size - std::pow(seen.size - expected, 2)) / (sd * sd);
+    }
+    logs.push_back(sum);
+  }
+  return log_mean(logs);
+}
+
+}  // namespace glidelab::diagnose

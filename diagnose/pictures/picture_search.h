@@ -1,0 +1,71 @@
+/// What the searches in images share: the clips that they read, waves in series, and where their findings go.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+#include "core/result/picture_record.h"
+#include "diagnose/pictures/twin_camera.h"
+#include "diagnose/result/diagnosis.h"
+
+namespace glidelab::diagnose {
+
+/// A clip's images, with what the folder states of the camera.
+struct FilmedClip {
+  std::string name;
+  std::size_t view = 0;  ///< clips of one view (folder and set-up) see a place at the same pixel
+  std::shared_ptr<const core::PictureRecord> record;
+  core::CameraSettings camera;
+  double px_per_m = 0.0;  ///< along the motion; 0 where unknown
+};
+
+struct PictureEvidence {
+  std::vector<PictureFinding> findings;
+  std::vector<PictureCurve> curves;
+  std::vector<FilmedClip> clips;
+  double fastest_px_s = 0.0;   ///< of the marker
+  double stated_line_s = 0.0;  ///< of the camera whose clips show the shutter best; of the first where none does
+  std::optional<Filming> filming;
+};
+
+inline constexpr double kSeenInPictures = 3.0;  ///< log evidence from which a finding counts as seen
+
+/// An empty finding of an effect of the list.
+PictureFinding finding_of(std::string_view id);
+
+/// Time from one row to the next below, as stated: 0 for a global shutter, below 0 where the bottom row is first.
+double stated_line_s(const core::CameraSettings& camera);
+
+/// Log evidence of a deviation of z standard deviations, equal odds for each factor of ten from 1 to `largest`.
+double log_evidence_of(double z, double largest);
+
+struct Series {
+  std::vector<double> t_s, value;
+};
+
+struct SeriesWave {
+  double log_evidence = 0.0;
+  double f_hz = 0.0, sd_hz = 0.0;
+  double amplitude = 0.0, sd = 0.0;  ///< root mean square over the series
+};
+
+/// The strongest wave, between 3 periods a series and half the sampling rate, that the series of several clips have in
+/// common: brightness that flickers, a scene that sways in the image.
+///
+/// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, with a and b free in
+/// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known.
+/// Its evidence is less by Schwarz's penalty for what is free, and by four times the median gain over all frequencies,
+/// as the gain is where noise is not white.
+SeriesWave strongest_wave(const std::vector<Series>& series);
+
+/// Amplitude at one frequency and its standard deviation (of a component), of one series.
+struct Amplitude {
+  double size = 0.0, sd = 0.0;
+};
+Amplitude amplitude_at(const Series& series, double f_hz);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,31 @@
+/// The noise of positions that are whole multiples of a step, as a motion sensor's export has them.
+///
+/// The error of rounding to a step q is e = x - q round(x/q): a saw-tooth of the true place with a standard deviation
+/// of q/sqrt(12). From frame to frame the place in the tooth moves on by d = v dt/q less the nearest whole number; with
+/// u the shift between two frames along it, the correlation of their errors is 1 - 6 u + 6 u², and changes its sign at
+/// u = 0.21. So where the motion passes many steps a frame by no round number, the errors are as good as independent.
+/// Where it is slow, or passes a whole number of steps a frame, n successive frames err alike: they count as one
+/// measurement, each with sqrt(n) times the standard deviation. (Of what moves on steadily the errors average out even
+/// faster; of a turn or a rest they do not.) Noise of the sensor itself, added before the rounding, breaks that up:
+/// with a standard deviation s of it the correlation falls by exp(-(2 pi s/q)²).
+///
+/// B. Widrow, I. Kollar, Quantization Noise (2008), 5 and 20.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/tracks/tracked_motions.h"
+
+namespace glidelab::diagnose {
+
+/// How many frames about each err alike, itself among them, for positions that are whole multiples of `step_m`, in
+/// order of time.
+std::vector<double> frames_alike(const std::vector<double>& t_s, const std::vector<double>& x_m, double step_m);
+
+/// Raises sd_m to what rounding makes, and sets `wider`; a motion without a step is left as it is.
+void add_rounding(TrackedMotion& motion);
+
+/// Whether what rounding makes is most of the noise of some motion: then neighbouring positions tell of no other.
+bool noise_is_rounding(const TrackSet& set);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,35 @@
+#include "diagnose/tracks/usable_motions.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/errors.h"
+#include "core/check/motion_look.h"
+
+namespace glidelab::diagnose {
+
+void require_usable_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups) {
+  std::vector<base::Issue> issues;
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    const core::ClipResult& clip = results.clips[c];
+    std::vector<double> t_s, x_m;
+    for (const core::MotionPoint& point : clip.motion) {
+      const bool stated_out =
+          point.left_out == core::LeftOut::before_start || point.left_out == core::LeftOut::after_end;
+      if (!point.measured_m || stated_out) continue;
+      t_s.push_back(point.t_s);
+      x_m.push_back(*point.measured_m);
+    }
+    const core::MotionLook look = core::look_at_motion(t_s, x_m, clip.sightings, clip.forced);
+    for (core::Finding& finding : core::motion_findings(look, setups[c], results.gravity_m_s2)) {
+      if (finding.severity != core::Severity::unusable) continue;
+      issues.push_back({(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
+                        fmt::format("clip \"{}\"", clip.name), std::move(finding.found),
+                        fmt::format("the motion of a body along a straight incline ({})", finding.advice)});
+    }
+  }
+  if (!issues.empty()) throw base::InputError(std::move(issues));
+}
+
+}  // namespace glidelab::diagnose

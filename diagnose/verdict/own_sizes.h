@@ -1,0 +1,29 @@
+/// The sizes that are told of an effect whose parameters say something only together: deviations of each configuration
+/// or clip from a common mu or K, a friction along the track, a drag of each direction.
+///
+///     direction_dependent_drag   k_plus_n_s_m, k_minus_n_s_m: K (1 + d) and K (1 - d), towards larger x and back
+///     place_friction             sd: root mean square of s over the range of positions; s.at X m: s there
+///     configuration_friction     sd: standard deviation of mu over the configurations; mu.NAME: mu of each
+///     configuration_drag         sd_n_s_m: of K; k_n_s_m.NAME: K of each
+///     clip_scatter               sd_mu, sd_k_n_s_m: standard deviations of mu and K over the clips
+///
+/// Each comes with the standard deviation that the fit's covariance gives it to first order. That of a spread holds
+/// where it is larger than the sizes' own errors.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/fit/motion_fit.h"
+#include "diagnose/result/diagnosis.h"
+#include "diagnose/tracks/track_set.h"
+
+namespace glidelab::diagnose {
+
+/// The group's name, with its inclination where another set-up has that name.
+std::string own_name(const TrackSet& set, std::size_t group);
+
+/// Empty for an effect whose parameters speak for themselves.
+std::vector<DiagnosedParameter> own_sizes(const TrackSet& set, const MotionFit& fit, std::size_t effect);
+
+}  // namespace glidelab::diagnose

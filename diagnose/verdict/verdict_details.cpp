@@ -1,0 +1,292 @@
+#include "diagnose/verdict/verdict_details.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/verdict/own_sizes.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kSameScale = 1.05;
+
+/// `share` of the way from the set-up's own middle to that of all.
+std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, double share_sd) {
+  std::vector<DiagnosedParameter> parameters;
+  for (std::size_t g = 0; g < set.groups.size(); ++g) {
+    const double way = set.x_mid_m - set.groups[g].x_mid_m;
+    parameters.push_back({set.groups.size() == 1 ? "x_mid_m" : "x_mid_m." + own_name(set, g),
+                          set.groups[g].x_mid_m + share * way, way == 0.0 ? 0.0 : std::abs(way) * share_sd});
+  }
+  return parameters;
+}
+
+/// Pixels of a metre along the motion; 0 where the clips do not have one.
+double px_per_m(const PictureEvidence& pictures) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const FilmedClip& clip : pictures.clips) {
+    least = std::min(least, clip.px_per_m);
+    most = std::max(most, clip.px_per_m);
+  }
+  return most > 0.0 && most < kSameScale * least ? 0.5 * (least + most) : 0.0;
+}
+
+}  // namespace
+
+std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
+                                                   const PictureEvidence& pictures,
+                                                   const std::vector<DiagnosedParameter>& known) {
+  if (std::vector<DiagnosedParameter> own = own_sizes(set, fit, effect); !own.empty()) return own;
+  const auto& globals = fit.layout->globals();
+  const auto at = [&](const EffectSlot& slot) {
+    return std::find_if(globals.begin(), globals.end(), [&](const ParameterLayout::Global& global) {
+      return global.parameter != nullptr && global.effect == effect && global.parameter->slot == slot;
+    });
+  };
+  const auto index = [&](auto global) { return static_cast<Eigen::Index>(global - globals.begin()); };
+  if (at(slot_of(ids::track_bow)) != globals.end()) return middles(set, 0.0, 0.0);
+  if (const auto about = at(slot_of(ids::damping_gradient, 1)); about != globals.end()) {
+    const Eigen::MatrixXd covariance = common_covariance(fit);
+    const double variance = covariance(index(about), index(about));
+    return middles(set, fit.at.global[index(about)], std::sqrt(std::max(0.0, variance)));
+  }
+  const auto in_metres = std::find_if(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_m"; });
+  const bool in_pixels = std::any_of(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_px"; });
+  const double scale = px_per_m(pictures);
+  if (in_metres == known.end() || in_pixels || scale == 0.0) return {};
+  return {{"amplitude_px", in_metres->value * scale, in_metres->sd * scale}};
+}
+
+namespace {
+
+constexpr double kBelowZero = 5.0;    // standard deviations from which on a drag or friction counts as negative
+constexpr double kContradicts = 5.0;  // standard deviations of a statement from everything else
+constexpr double kLargePart = 0.2;    // of the motion: from here on a reader must know that it is set aside
+
+std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
+  std::vector<NegativeLoss> found;
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
+    const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
+    if (!(value < -kBelowZero * sd)) continue;
+    found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, value, sd});
+  }
+  return found;
+}
+
+std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, const MotionFit& fit) {
+  std::vector<ContradictedIncline> found;
+  for (const StatementPull& pull : statement_pulls(set, fit)) {
+    if (!pull.z || std::abs(*pull.z) < kContradicts) continue;
+    found.push_back({pull.group, pull.against, pull.stated_rad, pull.stated_sd_rad, pull.else_rad, pull.else_sd_rad,
+                     !fit.effects.empty(), std::abs(*pull.z)});
+  }
+  return found;
+}
+
+/// Positions that no explanation answers for: those that look like a hand or a stop, or lie far off.
+std::optional<SetAside> set_aside(const TrackSet& set) {
+  double points = 0.0, outliers = 0.0;
+  for (const TrackedMotion& motion : set.motions) {
+    points += static_cast<double>(motion.t_s.size());
+    outliers +=
+        static_cast<double>(std::count_if(motion.outlier.begin(), motion.outlier.end(), [](char o) { return o != 0; }));
+  }
+  const auto moving = static_cast<double>(set.moving), left_out = static_cast<double>(set.left_out);
+  if (!(moving > 0.0 && points > 0.0)) return {};
+  const double part = (left_out + (moving - left_out) * outliers / points) / moving;
+  if (part < kLargePart) return {};
+  return SetAside{set.moving, part};
+}
+
+}  // namespace
+
+VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit) {
+  return {what_drives(fit), contradicted_statements(set, fit), set_aside(set)};
+}
+
+namespace {
+
+constexpr double kNotable = 3.0;  // log evidence from which on an unnamed family is worth a region
+constexpr std::size_t kMostRegions = 6;
+constexpr std::size_t kMostCurves = 4;
+constexpr double kBelieved = 2.0;  // times what accelerations lack, up to which a size is believed: a fit takes up some
+
+/// Place, speed and acceleration of what a fit leaves of a motion, each at its largest; the latter two by the parabola
+/// through nine neighbours at even times, none of them set aside.
+struct LargestRest {
+  double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;
+};
+
+LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>& rest_m) {
+  constexpr std::size_t kBeside = 4;
+  constexpr double kMean = 20.0 / 3.0, kSquares = 60.0, kFourths = 308.0;  // sums of k², and of (k² - mean)², k to 4
+  constexpr double kUneven = 0.2;
+  LargestRest largest;
+  for (std::size_t p = 0; p < rest_m.size(); ++p) {
+    if (motion.outlier[p] == 0) largest.x_m = std::max(largest.x_m, std::abs(rest_m[p]));
+  }
+  for (std::size_t p = kBeside; p + kBeside < motion.t_s.size(); ++p) {
+    const double before = motion.t_s[p] - motion.t_s[p - kBeside], behind = motion.t_s[p + kBeside] - motion.t_s[p];
+    if (std::abs(behind - before) > kUneven * before) continue;
+    const double step = (before + behind) / (2.0 * kBeside);
+    double first = 0.0, second = 0.0;
+    bool aside = false;
+    for (std::size_t j = 0; j <= 2 * kBeside; ++j) {
+      const double k = static_cast<double>(j) - static_cast<double>(kBeside);
+      first += k * rest_m[p - kBeside + j];
+      second += (k * k - kMean) * rest_m[p - kBeside + j];
+      aside = aside || motion.outlier[p - kBeside + j] != 0;
+    }
+    if (aside) continue;
+    largest.v_m_s = std::max(largest.v_m_s, std::abs(first / (kSquares * step)));
+    largest.a_m_s2 = std::max(largest.a_m_s2, std::abs(2.0 * second / (kFourths * step * step)));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Lacking most_lacking(const TrackSet& set, const MotionFit& nominal) {
+  Lacking most;
+  double slowest_m_s = std::numeric_limits<double>::infinity(), shortest_m = slowest_m_s;
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    const TrackedMotion& motion = set.motions[i];
+    const TrackModel model = model_of(set, *nominal.layout, nominal.at, i);
+    const Moved moved =
+        move(model, motion.t_s, nominal.late.empty() ? std::span<const double>() : std::span(nominal.late[i]));
+    std::vector<double> rest_m = shared_errors(set, *nominal.layout, nominal.at, i, moved.x_m);
+    double fastest = 0.0;
+    for (std::size_t p = 0; p < rest_m.size(); ++p) {
+      rest_m[p] = motion.x_m[p] - moved.x_m[p] - rest_m[p];
+      fastest = std::max(fastest, std::abs(moved.v_m_s[p]));
+    }
+    const LargestRest rest = largest_rest(motion, rest_m);
+    const auto [low, high] = std::minmax_element(moved.x_m.begin(), moved.x_m.end());
+    if (low != high) shortest_m = std::min(shortest_m, *high - *low);
+    slowest_m_s = std::min(slowest_m_s, fastest);
+    most.position_m = std::max(most.position_m, rest.x_m);
+    most.force_n = std::max(most.force_n, model.mass_kg * rest.a_m_s2 + std::abs(model.k_n_s_m) * rest.v_m_s);
+  }
+  most.drag_n_s_m = most.force_n / slowest_m_s;
+  most.scale = most.position_m / shortest_m;
+  most.time_s = most.position_m / slowest_m_s;
+  for (const TrackedMass& mass : set.masses) {
+    most.acceleration_m_s2 = std::max(most.acceleration_m_s2, most.force_n / mass.mass_kg);
+  }
+  return most;
+}
+
+double Lacking::in(const std::string& unit) const {
+  return unit == "N"       ? force_n
+         : unit == "m/s²"  ? acceleration_m_s2
+         : unit == "N s/m" ? drag_n_s_m
+         : unit == "m"     ? position_m
+         : unit == "s"     ? time_s
+                           : scale;
+}
+
+void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
+                 Diagnosis& diagnosis) {
+  const Lacking most = most_lacking(set, nominal);
+  std::vector<const UnnamedFamily*> sorted;
+  for (const UnnamedFamily& family : families) sorted.push_back(&family);
+  // The evidence is that of a linear neighbourhood: where it is large it is not known to a hundredth, and what clips
+  // share goes before curves of each.
+  const auto weight = [](const UnnamedFamily* family) {
+    return (family->variable == "clip" ? 0.99 : 1.0) * family->log_evidence;
+  };
+  std::sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return weight(a) > weight(b); });
+  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
+  std::set<std::pair<std::string, std::string>> shown;                               // variables and what acts there
+  for (const UnnamedFamily* family : sorted) {
+    // What a verdict rests on has its place named, however many looks there were.
+    const bool rests = diagnosis.verdict == Verdict::unknown && diagnosis.regions.empty() && family == sorted.front();
+    if (family->log_evidence < (rests ? 0.0 : notable)) break;
+    const auto what = std::pair(family->variable, family->what);
+    if (shown.contains(what)) continue;  // the same at another width
+    if (family->names.empty() && !family->at.empty() && diagnosis.curves.size() < kMostCurves) {
+      diagnosis.curves.push_back(
+          {family->variable, family->what, family->unit, family->log_evidence, family->at, family->size, family->sd});
+      shown.insert(what);
+    }
+    if (!family->regions.empty()) shown.insert(what);
+    std::vector<UnnamedRegion> regions = family->regions;
+    std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.excess > b.excess; });
+    for (std::size_t r = 0; r < regions.size() && r < 2 && diagnosis.regions.size() < kMostRegions; ++r) {
+      GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
+                       regions[r].size,  family->unit,    family->what,  ""};
+      const double lacking = most.in(region.unit);
+      if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
+      if (family->names.empty()) {
+        region.size_sd = regions[r].sd;
+        region.at = regions[r].at;
+      }
+      if (family->variable == "clip") {  // a clip as a whole
+        const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
+        const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
+                                       [&](const GapRegion& other) { return other.clip == clip.name; });
+        if (named) continue;  // by what explains it better
+        region.variable = "t_s";
+        region.clip = clip.name;
+        region.from = 0.0;
+        region.to = clip.duration_s;
+      }
+      diagnosis.regions.push_back(region);
+    }
+  }
+}
+
+bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
+                    const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis) {
+  double most = kNotable;
+  for (const UnnamedFamily& family : families) most = std::max(most, family.log_evidence);
+  bool any = false;
+  for (const FrameEffect& frame : frames) {
+    if (!frame.run || frame.in_runs < kNotable || frame.log_evidence + frame.in_runs < most) continue;
+    const std::string clip = frame.run->clip ? set.clips[*frame.run->clip].name : "";
+    diagnosis.regions.push_back(
+        {"t_s", frame.run->from_s, frame.run->to_s, frame.run->excess, frame.run->size_m, "m", "displacement", clip});
+    any = true;
+  }
+  return any;
+}
+
+void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
+  static const std::map<std::string, std::pair<const char*, const char*>> kWhere = {
+      {ids::exposure_blur, {"v_m_s", "marker's width"}},  {ids::rolling_shutter, {"v_px", "marker's shear"}},
+      {ids::light_flicker, {"t_s", "brightness"}},        {ids::light_gradient, {"u_px", "brightness"}},
+      {ids::camera_motion, {"t_s", "the scene's place"}}, {ids::compression, {"u_px", "steps between blocks"}}};
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    for (const PictureFinding& finding : pictures.findings) {
+      const auto where = kWhere.find(finding.id);
+      if (finding.id != effect.id || !finding.seen || where == kWhere.end() || finding.parameters.empty()) continue;
+      GapRegion region;
+      region.variable = where->second.first;
+      region.what = where->second.second;
+      const core::PictureRecord& record = *pictures.clips.front().record;
+      region.to = region.variable == "u_px"   ? record.width_px
+                  : region.variable == "v_px" ? record.height_px
+                  : record.scene.empty()      ? 0.0
+                                              : record.scene.back().t_s;
+      if (region.variable == "v_m_s" && pictures.clips.front().px_per_m > 0.0) {
+        region.to = pictures.fastest_px_s / pictures.clips.front().px_per_m;
+      }
+      const DiagnosedParameter& size = finding.parameters.front();
+      region.size = size.value;
+      region.unit = size.key;
+      region.excess = std::sqrt(2.0 * finding.log_evidence);
+      diagnosis.regions.push_back(region);
+    }
+  }
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,337 @@
+#include "report/blind/everyday_report.h"
+
+#include <fmt/format.h>
+
+#include "base/text/number_text.h"
+#include "report/html/html.h"
+#include "report/text/display_text.h"
+#include "report/text/json_numbers.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::BlindShare;
+using validate::EverydayScore;
+using validate::SharesByCase;
+
+using TextRows = std::vector<std::vector<std::string>>;
+
+/// "86 % (43 of 50; 95 %: 73 to 94 %)", a dash of none.
+std::string share_and_interval(const BlindShare& share) {
+  if (share.of == 0) return "–";
+  const validate::ProportionInterval interval = share.interval95();
+  return fmt::format("{:.0f} % ({} of {}; 95 %: {:.0f} to {:.0f} %)", 100.0 * share.share(), share.yes, share.of,
+                     100.0 * interval.low, 100.0 * interval.high);
+}
+
+BlindShare all_covered(const EverydayScore& score, const std::string& quantity) {
+  BlindShare sum;
+  for (const auto& [kind, by_quantity] : score.covered) {
+    for (const auto& [key, share] : by_quantity) {
+      if (!quantity.empty() && key != quantity) continue;
+      sum.of += share.of;
+      sum.yes += share.yes;
+    }
+  }
+  return sum;
+}
+
+std::string found_text(const EverydayTarget& target) {
+  if (!bears(target)) return "–";
+  return target.value ? base::number_text(*target.value, 2) : share_and_interval(target.share);
+}
+
+std::string limits_text(const EverydayTarget& target) {
+  const auto text = [&](double limit) {
+    return target.value ? base::number_text(limit, 2) : fmt::format("{:.0f} %", 100.0 * limit);
+  };
+  if (target.low > 0.0 && target.high < 1.0) return text(target.low) + " to " + text(target.high);
+  return target.low > 0.0 ? "at least " + text(target.low) : "at most " + text(target.high);
+}
+
+std::string words_of_class(const std::string& kind) {
+  if (kind == "one") return "one cause";
+  if (kind == "two") return "two causes";
+  if (kind == "dirt") return "dirt alone";
+  if (kind == "outside") return "off the list";
+  return "all";
+}
+
+/// Every share of a table by class and strength, one a row.
+void add_rows(const std::string& what, const SharesByCase& shares, const std::string& method, TextRows& rows) {
+  for (const auto& [kind, by_strength] : shares) {
+    for (const auto& [strength, share] : by_strength) {
+      rows.push_back({what, words_of_class(kind), strength, method, share_and_interval(share)});
+    }
+  }
+}
+
+TextRows detail_rows(const EverydayScore& score) {
+  TextRows rows;
+  for (const auto& method : score.methods) add_rows("main cause first", method.main_first, method.name, rows);
+  for (const auto& method : score.methods)
+    add_rows("first cannot be told from it", method.main_in_set, method.name, rows);
+  for (const auto& method : score.methods) add_rows("both named", method.both, method.name, rows);
+  for (const auto& method : score.methods)
+    add_rows("half of the excess claimed", method.false_claim, method.name, rows);
+  for (const auto& method : score.methods) add_rows("a wrong name above 0.8", method.wrong_name, method.name, rows);
+  const std::string& first = score.methods.front().name;
+  add_rows("main cause helps most, claimed or not", score.main_helps, first, rows);
+  add_rows("the verdict is unknown", score.unknown, first, rows);
+  rows.push_back(
+      {"claims that are a fair name of the dirt", "dirt alone", "", first, share_and_interval(score.fair_claim)});
+  return rows;
+}
+
+TextRows number_rows(const EverydayScore& score) {
+  TextRows rows;
+  for (const auto& method : score.methods) {
+    rows.push_back({"share of a cause that is named, claimed less true: rms, mean", method.name,
+                    method.share_error.of == 0
+                        ? "–"
+                        : fmt::format("{}, {} (of {})", base::number_text(method.share_error.rms(), 2),
+                                      base::number_text(method.share_error.mean(), 2), method.share_error.of)});
+    rows.push_back({"the same of every cause, 0 where it is not named", method.name,
+                    method.any_share_error.of == 0
+                        ? "–"
+                        : fmt::format("{}, {} (of {})", base::number_text(method.any_share_error.rms(), 2),
+                                      base::number_text(method.any_share_error.mean(), 2), method.any_share_error.of)});
+  }
+  for (const auto& [kind, by_quantity] : score.covered) {
+    for (const auto& [key, share] : by_quantity) {
+      rows.push_back({"interval of " + key + " holds the truth", words_of_class(kind), share_and_interval(share)});
+    }
+  }
+  for (const auto& [kind, of] : score.calibration) {
+    rows.push_back({"expected calibration error", words_of_class(kind),
+                    fmt::format("{} (stated {}, right {}, of {})", base::number_text(of.error, 2),
+                                base::number_text(of.stated, 2), base::number_text(of.right, 2), of.of)});
+  }
+  for (const auto& [kind, many] : score.cases) {
+    const auto failed = score.failed.find(kind);
+    rows.push_back({"cases, of which could not be diagnosed", words_of_class(kind),
+                    fmt::format("{}, {}", many, failed == score.failed.end() ? 0 : failed->second)});
+  }
+  if (score.timed > 0) {
+    rows.push_back({"seconds a diagnosis: mean, most", "",
+                    fmt::format("{}, {}", base::number_text(score.mean_s, 2), base::number_text(score.most_s, 2))});
+  }
+  return rows;
+}
+
+Json interval_json(const BlindShare& share) {
+  Json object{{"of", share.of}, {"yes", share.yes}};
+  if (share.of == 0) return object;
+  const validate::ProportionInterval interval = share.interval95();
+  object["interval95"] = {interval.low, interval.high};
+  return object;
+}
+
+Json by_case_json(const SharesByCase& shares) {
+  Json object = Json::object();
+  for (const auto& [kind, by_strength] : shares) {
+    for (const auto& [strength, share] : by_strength) object[kind][strength] = interval_json(share);
+  }
+  return object;
+}
+
+Json error_json(const validate::ErrorSum& error) {
+  Json object{{"of", error.of}};
+  if (error.of > 0) object.update({{"rms", error.rms()}, {"mean", error.mean()}});
+  return object;
+}
+
+Json score_json(const EverydayScore& score) {
+  Json everyday = Json::object();
+  everyday["methods"] = Json::array();
+  for (const auto& method : score.methods) {
+    everyday["methods"].push_back({{"name", method.name},
+                                   {"main_first", by_case_json(method.main_first)},
+                                   {"main_in_set", by_case_json(method.main_in_set)},
+                                   {"both", by_case_json(method.both)},
+                                   {"false_claim", by_case_json(method.false_claim)},
+                                   {"wrong_name", by_case_json(method.wrong_name)},
+                                   {"share_error", error_json(method.share_error)},
+                                   {"any_share_error", error_json(method.any_share_error)}});
+  }
+  everyday["main_helps_most"] = by_case_json(score.main_helps);
+  everyday["unknown"] = by_case_json(score.unknown);
+  everyday["fair_claim"] = interval_json(score.fair_claim);
+  everyday["remainder_error"] = error_json(score.remainder_error);
+  everyday["covered"] = Json::object();
+  for (const auto& [kind, by_quantity] : score.covered) {
+    for (const auto& [key, share] : by_quantity) everyday["covered"][kind][key] = interval_json(share);
+  }
+  everyday["calibration"] = Json::object();
+  for (const auto& [kind, of] : score.calibration) {
+    everyday["calibration"][kind] = {{"of", of.of}, {"stated", of.stated}, {"right", of.right}, {"error", of.error}};
+  }
+  everyday["cases"] = score.cases;
+  everyday["failed"] = score.failed;
+  if (score.timed > 0) everyday["seconds"] = {{"of", score.timed}, {"mean", score.mean_s}, {"most", score.most_s}};
+  return everyday;
+}
+
+Json case_json(const validate::BlindOutcome& outcome) {
+  const validate::EverydayTruth& truth = *outcome.everyday;
+  Json one{{"case", outcome.index},
+           {"kind", validate::word(truth.kind)},
+           {"strength", truth.strong ? "strong" : "moderate"},
+           {"clips", outcome.clips}};
+  put(one, "excess", truth.excess);
+  put(one, "remainder", truth.remainder);
+  one["truth"] = Json::array();
+  for (std::size_t c = 0; c < outcome.causes.size(); ++c) {
+    one["truth"].push_back(
+        {{"id", outcome.causes[c].id}, {"share", truth.shares[c]}, {"parameters", outcome.causes[c].parameters}});
+  }
+  one["dirt"] = Json::array();
+  for (const auto& dirt : truth.dirt) one["dirt"].push_back(dirt.id);
+  one["verdict"] = outcome.verdict.verdict;
+  if (!outcome.verdict.why.empty()) one["why"] = outcome.verdict.why;
+  one["named"] = Json::array();
+  for (const auto& name : validate::said_by_diagnosis(outcome.verdict).names) {
+    Json named{{"id", name.id}, {"probability", name.probability}, {"equivalent_to", name.equivalent_to}};
+    if (name.share) named["share"] = *name.share;
+    one["named"].push_back(std::move(named));
+  }
+  put(one, "gap_before", outcome.verdict.gap_before);
+  put(one, "none", outcome.verdict.none);
+  put(one, "unknown", outcome.verdict.unknown);
+  if (outcome.seconds) put(one, "seconds", *outcome.seconds);
+  return one;
+}
+
+std::string named_text(const validate::EverydaySaying& saying) {
+  std::string text;
+  for (const auto& name : saying.names) {
+    text += (text.empty() ? "" : " + ") + name.id;
+    if (name.share) text += fmt::format(" {:.0f} %", 100.0 * *name.share);
+  }
+  return text;
+}
+
+std::string everyday_cases_table(const BlindRun& run) {
+  HtmlTable table({"case", "class", "truth", "excess", "verdict", "named", "forward selection"}, 7);
+  for (const validate::BlindOutcome& outcome : run.outcomes) {
+    const validate::EverydayTruth& truth = *outcome.everyday;
+    std::string causes;
+    for (std::size_t c = 0; c < outcome.causes.size(); ++c) {
+      causes += fmt::format("{}{} {:.0f} %", c == 0 ? "" : " + ", outcome.causes[c].id, 100.0 * truth.shares[c]);
+    }
+    table.row({fmt::format("{}", outcome.index),
+               fmt::format("{}, {}", words_of_class(std::string(validate::word(truth.kind))),
+                           truth.strong ? "strong" : "moderate"),
+               escape(causes), base::number_text(truth.excess, 2), escape(outcome.verdict.verdict),
+               escape(named_text(validate::said_by_diagnosis(outcome.verdict))),
+               escape(named_text(validate::said_by_forward_selection(outcome.verdict)))});
+  }
+  return table.str();
+}
+
+}  // namespace
+
+std::vector<EverydayTarget> everyday_targets(const EverydayScore& score) {
+  const validate::EverydayMethod& diagnosis = score.methods.front();
+  std::vector<EverydayTarget> targets = {
+      {"the main cause is named first", sum_of(diagnosis.main_first), {}, 0.85, 1.0},
+      {"two causes: both are named", sum_of(diagnosis.both), {}, 0.70, 1.0},
+      {"dirt alone: a cause with half of the excess is claimed", sum_of(diagnosis.false_claim), {}, 0.0, 0.05},
+      {"off the list: a wrong name above 0.8", sum_of(diagnosis.wrong_name), {}, 0.0, 0.03},
+      {"recovered intervals hold the truth", all_covered(score, ""), {}, 0.90, 0.98}};
+  EverydayTarget shares{"rms error of the shares of named causes", {}, {}, 0.0, 0.1};
+  if (diagnosis.share_error.of > 0) shares.value = diagnosis.share_error.rms();
+  targets.push_back(std::move(shares));
+  for (const char* kind : {"one", "two", "dirt", "outside"}) {
+    EverydayTarget calibration{"expected calibration error, " + words_of_class(kind), {}, {}, 0.0, kWantedCalibration};
+    const auto found = score.calibration.find(kind);
+    if (found != score.calibration.end()) calibration.value = found->second.error;
+    targets.push_back(std::move(calibration));
+  }
+  return targets;
+}
+
+bool bears(const EverydayTarget& target) {
+  return target.value.has_value() || target.share.of > 0;
+}
+
+bool is_met(const EverydayTarget& target) {
+  const double found = target.value.value_or(target.share.share());
+  return found >= target.low && found <= target.high;
+}
+
+std::string everyday_json(const BlindRun& run) {
+  const EverydayScore& score = *run.everyday;
+  Json document;
+  document["format"] = 1;
+  document["seed"] = run.seed;
+  document["cases"] = run.outcomes.size();
+  std::size_t failed = 0;
+  for (const auto& [kind, many] : score.failed) failed += many;
+  document["failed"] = failed;
+  document["targets"] = Json::array();
+  for (const EverydayTarget& target : everyday_targets(score)) {
+    Json one = target.share.of > 0 ? interval_json(target.share) : Json::object();
+    one["what"] = target.what;
+    if (target.value) put(one, "value", *target.value);
+    if (target.low > 0.0) one["at_least"] = target.low;
+    if (target.high < 1.0) one["at_most"] = target.high;
+    if (bears(target)) one["met"] = is_met(target);
+    document["targets"].push_back(std::move(one));
+  }
+  const auto all = score.calibration.find("all");
+  put(document, "expected_calibration_error", all == score.calibration.end() ? 0.0 : all->second.error);
+  document["everyday"] = score_json(score);
+  document["outcomes"] = Json::array();
+  for (const auto& outcome : run.outcomes) document["outcomes"].push_back(case_json(outcome));
+  return json_text(document);
+}
+
+std::string everyday_text(const BlindRun& run) {
+  const EverydayScore& score = *run.everyday;
+  TextRows rows = {{fmt::format("of {} everyday cases", run.outcomes.size()), "found", "wanted"}};
+  for (const EverydayTarget& target : everyday_targets(score)) {
+    rows.push_back({target.what, found_text(target), limits_text(target)});
+  }
+  std::string text = text_table(rows, 1) + "\n";
+  rows = detail_rows(score);
+  rows.insert(rows.begin(), {"", "class", "strength", "by", "cases"});
+  text += text_table(rows, 4) + "\n";
+  rows = number_rows(score);
+  rows.insert(rows.begin(), {"", "of", ""});
+  return text + text_table(rows, 2);
+}
+
+Page everyday_page(const BlindRun& run) {
+  const EverydayScore& score = *run.everyday;
+  Html body = fmt::format(
+      "<h1>Blind cases as students record them</h1>\n<p class=\"soft\">{} experiments of tracks, seed {}, made by a "
+      "generator that shares no model with the diagnosis. Each has three to five small imperfections besides its "
+      "causes; each was diagnosed by another process that was given the experiment folder only.</p>\n",
+      run.outcomes.size(), run.seed);
+  HtmlTable targets({"what", "found (95 % interval)", "wanted"});
+  for (const EverydayTarget& target : everyday_targets(score)) {
+    const char* how = !bears(target) ? "" : is_met(target) ? ": met" : ": missed";
+    targets.row({escape(target.what), escape(found_text(target)), escape(limits_text(target)) + how});
+  }
+  body += "<h2>Results against the targets</h2>\n" + targets.str();
+  HtmlTable details({"what", "class", "strength", "by", "cases (95 % interval)"}, 5);
+  for (const auto& row : detail_rows(score)) {
+    details.row({escape(row[0]), escape(row[1]), escape(row[2]), escape(row[3]), escape(row[4])});
+  }
+  body += "<h2>By class and strength</h2>\n" + details.str();
+  HtmlTable numbers({"what", "of", "found"}, 3);
+  for (const auto& row : number_rows(score)) numbers.row({escape(row[0]), escape(row[1]), escape(row[2])});
+  body += "<h2>Shares, intervals, probabilities</h2>\n" + numbers.str();
+  body +=
+      "<p class=\"soft\">The excess is g² - 1, g the gap of held-out clips without noise: 1.5 to 4 is moderate, more "
+      "is "
+      "strong. A cause's share is the part of it that goes when the cause is added to the law after those before it. "
+      "Forward selection takes the effect with the least held-out gap, then the one that lowers it most beside it, and "
+      "claims them where they take half of the excess; it states no probability, so that each of its names counts as "
+      "sure.</p>\n<h2>All cases</h2>\n" +
+      everyday_cases_table(run);
+  return page("Everyday blind cases", body);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,325 @@
+#include "report/diagnosis/cause_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "base/text/number_text.h"
+#include "report/diagnosis/diagnosis_words.h"
+#include "report/text/display_text.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr double kPercent = 100.0;
+constexpr double kNearEnd = 0.01;      // of a share: within it a tenth of a percent tells something
+constexpr double kNothing = 5e-4;      // a share that prints as 0.0 %
+constexpr std::size_t kSizesTold = 2;  // parameters of a cause in its sentence
+
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+/// "uneven frame times", "outliers": not "inertia of wheels", "smoothing bias".
+bool is_plural(const std::string& name) {
+  std::string head = name;
+  for (const char* behind : {" of ", " that ", " from ", " at ", " off ", " longer "}) {
+    head = head.substr(0, head.find(behind));
+  }
+  return head.ends_with('s') && !head.ends_with("ss") && !head.ends_with("bias");
+}
+
+const diagnose::DiagnosedEffect* effect_in(const diagnose::Diagnosis& diagnosis, const std::string& id) {
+  const auto found = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                  [&](const diagnose::DiagnosedEffect& effect) { return effect.id == id; });
+  return found == diagnosis.effects.end() ? nullptr : &*found;
+}
+
+bool is_explained(const diagnose::Diagnosis& diagnosis, const std::string& id) {
+  return std::any_of(diagnosis.explained.begin(), diagnosis.explained.end(),
+                     [&](const diagnose::ExplainedCause& cause) { return cause.id == id; });
+}
+
+/// ", c = 0.0031 ± 0.0002 kg/m,": what was fitted, of the effect as a whole; empty where nothing was.
+std::string sizes_aside(const diagnose::Diagnosis& diagnosis, const std::string& id) {
+  const diagnose::DiagnosedEffect* const effect = effect_in(diagnosis, id);
+  if (effect == nullptr) return {};
+  std::vector<std::string> sizes;
+  for (const diagnose::DiagnosedParameter& parameter : effect->parameters) {
+    const bool told = !parameter.text.empty() || (parameter.why.empty() && parameter.sd > 0.0);
+    if (told && parameter.key.find('.') == std::string::npos && sizes.size() < kSizesTold) {
+      sizes.push_back(parameter_text(parameter));
+    }
+  }
+  return sizes.empty() ? std::string() : ", " + list_of(sizes) + ",";
+}
+
+std::string left_words(const diagnose::GapRemainder& remainder) {
+  if (remainder.share < kNothing) return "nothing is left above the noise";
+  return fmt::format("{} are left, {}", share_text(remainder.share), over_noise_text(remainder.gap));
+}
+
+/// "Quadratic drag, c = …, explains 91 % (…) of the gap on clips that were held out; …"; `of_what` is told already.
+std::string causes_words(const diagnose::Diagnosis& diagnosis, bool of_what = false) {
+  std::string text;
+  for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
+    const std::string name = effect_name(cause.id);
+    const std::string share = share_text(cause.share, cause.share_interval95);
+    const bool first = text.empty();
+    text +=
+        fmt::format("{}{}{} {} {}{}{}", first ? "" : "; ", first && !of_what ? capital(name) : name,
+                    sizes_aside(diagnosis, cause.id), is_plural(name) ? "explain" : "explains", first ? "" : "another ",
+                    share, first && !of_what ? " of the gap on clips that were held out" : "");
+  }
+  if (diagnosis.remainder) text += "; " + left_words(*diagnosis.remainder);
+  return text + ".";
+}
+
+std::string traces_words(const diagnose::Diagnosis& diagnosis) {
+  const std::vector<std::string> names = effect_names(diagnosis.traces);
+  if (names.empty()) return {};
+  return fmt::format("Traces: {} {} seen, without consequence for K/m, µ and α.", list_of(names),
+                     names.size() > 1 || is_plural(names.front()) ? "are" : "is");
+}
+
+std::string unknown_sequence_words(const diagnose::Diagnosis& diagnosis) {
+  const std::string text =
+      "Something is missing, and no cause that this program knows takes half of the gap on clips that were held out";
+  if (!diagnosis.explained.empty()) return text + ": " + causes_words(diagnosis, true);
+  return text + ". None makes it smaller by more than its uncertainty" +
+         (diagnosis.remainder ? fmt::format(": it is {}.", over_noise_text(diagnosis.remainder->gap)) : ".");
+}
+
+std::string configuration_label(const diagnose::RecoveredConfiguration& of,
+                                const std::vector<diagnose::RecoveredConfiguration>& all) {
+  const bool groups = std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.group != of.group; });
+  return fmt::format("{:.6g} kg, {:.4g}°", of.mass_kg, of.incline_deg) +
+         (groups && !of.group.empty() ? ", " + of.group : "");
+}
+
+}  // namespace
+
+std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval) {
+  const bool near_end = share < kNearEnd || share > 1.0 - kNearEnd;
+  const int decimals = near_end && std::abs(share) >= kNothing && std::abs(share - 1.0) >= kNothing ? 1 : 0;
+  std::string text = fmt::format("{:.{}f} %", kPercent * share, decimals);
+  if (interval) {
+    text +=
+        fmt::format(" ({:.{}f} to {:.{}f} %)", kPercent * interval->low, decimals, kPercent * interval->high, decimals);
+  }
+  return text;
+}
+
+std::string over_noise_text(double gap) {
+  return base::number_text(gap, 3) + " times the noise";
+}
+
+std::string largest_words(const diagnose::GapRegion& region) {
+  if (!region.at || !region.size_sd) return base::size_text(region.size, 2, region.unit);
+  const std::string unit = base::name_and_unit(region.variable).unit;
+  return fmt::format("{} {} {}", base::size_and_sd_text(region.size, *region.size_sd, region.unit),
+                     region.variable == "t_s" ? "after" : "at", base::size_text(*region.at, 3, unit));
+}
+
+std::string region_words(const diagnose::GapRegion& region) {
+  const std::string unit = base::name_and_unit(region.variable).unit;
+  const auto range = [&](const char* of) {
+    return fmt::format("at {} from {} to {} {}", of, base::number_text(region.from, 3), base::number_text(region.to, 3),
+                       unit);
+  };
+  std::string text;
+  if (region.variable == "x_m") {
+    text = range("positions");
+  } else if (region.variable == "v_m_s") {
+    text = range("speeds");
+  } else if (region.variable == "t_s") {
+    text = range("times");
+  } else if (region.variable == "a_m_s2") {
+    text = range("accelerations");
+  } else if (region.variable == "mass_kg") {
+    text = region.from == region.to ? fmt::format("with {:.6g} kg", region.from) : range("masses");
+  } else if (region.variable == "direction") {
+    text = region.from < 0.0 ? "in the motion with v < 0" : "in the motion with v > 0";
+  } else if (region.variable == "group") {
+    text = "in one of the set-ups";
+  } else if (region.variable == "u_px") {
+    text = range("image columns");
+  } else if (region.variable == "v_px") {
+    text = range("image rows");
+  } else {
+    text = "over " + region.variable;
+  }
+  return region.clip.empty() ? text : text + " of clip " + region.clip;
+}
+
+std::string holds_within_words(const diagnose::Diagnosis& diagnosis) {
+  if (!diagnosis.levels || !diagnosis.levels->holds_within || !diagnosis.levels->configuration) return {};
+  return fmt::format("The law holds within each configuration (gap {}); across them it does not ({}).",
+                     base::number_text(*diagnosis.levels->configuration, 3),
+                     base::number_text(diagnosis.levels->all, 3));
+}
+
+std::string sequence_words(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  switch (diagnosis.verdict) {
+    case diagnose::Verdict::none:
+      if (diagnosis.traces.empty()) return {};
+      text = "Nothing that matters is missing.";
+      break;
+    case diagnose::Verdict::effect:
+      if (diagnosis.explained.empty()) return {};
+      text = causes_words(diagnosis);
+      break;
+    case diagnose::Verdict::unknown:
+      if (diagnosis.explained.empty() && !diagnosis.remainder) return {};
+      text = unknown_sequence_words(diagnosis);
+      break;
+  }
+  const std::string level = holds_within_words(diagnosis), traces = traces_words(diagnosis);
+  return (level.empty() ? "" : level + " ") + text + (traces.empty() ? "" : " " + traces);
+}
+
+std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::string> alone;
+  std::string text;
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    if (effect.alike.empty()) {
+      alone.push_back(effect_name(effect.id) + " " + percent(effect.probability));
+      continue;
+    }
+    std::vector<std::string> members;
+    for (const diagnose::AlikeEffect& one : effect.alike) {
+      members.push_back(effect_name(one.id) + (one.probability ? fmt::format(" ({})", percent(*one.probability)) : ""));
+    }
+    text += fmt::format(" These data cannot tell {} apart; one of them acts with a probability of {}.",
+                        list_of(members), percent(effect.joint_probability));
+  }
+  if (!alone.empty()) text = fmt::format(" Probability: {}.", list_of(alone, ", ")) + text;
+  std::vector<std::string> besides;
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    if (!is_explained(diagnosis, effect.id)) besides.push_back(effect_name(effect.id));
+  }
+  if (!besides.empty() && besides.size() < diagnosis.effects.size()) {
+    text += fmt::format(" {} {} no share of this gap.", capital(list_of(besides)),
+                        besides.size() > 1 || is_plural(besides.front()) ? "have" : "has");
+  }
+  return text.empty() ? text : text.substr(1);
+}
+
+std::string levels_words(const diagnose::Diagnosis& diagnosis) {
+  if (!diagnosis.levels || (!diagnosis.levels->configuration && !diagnosis.levels->clip)) return {};
+  const diagnose::GapLevels& levels = *diagnosis.levels;
+  std::vector<std::string> of;
+  if (levels.clip) of.push_back(base::number_text(*levels.clip, 3) + " with parameters of each clip");
+  if (levels.configuration) {
+    of.push_back(base::number_text(*levels.configuration, 3) + " with those of each configuration");
+  }
+  of.push_back(base::number_text(levels.all, 3) + " with those common to all");
+  return fmt::format("The nominal model's gap is {} (1 is the noise).", list_of(of));
+}
+
+std::string remainder_words(const diagnose::GapRemainder& of) {
+  std::vector<std::string> scatter;
+  if (of.clip_scatter_m_s2 > 0.0) {
+    scatter.push_back("friction and inclination scatter by " + base::size_text(of.clip_scatter_m_s2, 2, "m/s²"));
+  }
+  if (of.drag_scatter > 0.0) {
+    scatter.push_back(fmt::format("the drag {}by {} %", scatter.empty() ? "scatters " : "",
+                                  base::number_text(kPercent * of.drag_scatter, 2)));
+  }
+  std::string text;
+  if (of.acceleration_m_s2 > 0.0) {
+    text = fmt::format("What is left amounts to a random acceleration of {} (root mean square) along the way.",
+                       base::size_text(of.acceleration_m_s2, 2, "m/s²"));
+  }
+  if (!scatter.empty()) text += fmt::format("{}From clip to clip, {}.", text.empty() ? "" : " ", list_of(scatter));
+  return text;
+}
+
+std::string clearest_words(const diagnose::GapRemainder& of, const std::string& subject) {
+  if (of.regions.empty()) return {};
+  const diagnose::GapRegion& region = of.regions.front();
+  const std::string where = fmt::format("{} is clearest {}: {}", subject, region_words(region), region.what);
+  if (region.lacking) return where + ". These data do not tell how large it is.";
+  return fmt::format("{} of up to {}.", where, largest_words(region));
+}
+
+std::string with_words(const std::vector<std::string>& ids) {
+  return ids.empty() ? "by the nominal model" : fmt::format("with {} in the model", list_of(effect_names(ids)));
+}
+
+std::vector<std::vector<std::string>> explained_rows(const diagnose::Diagnosis& diagnosis, bool ids) {
+  if (diagnosis.explained.empty()) return {};
+  std::vector<std::vector<std::string>> rows = {{"cause", "share of the gap", "gap after"}};
+  for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
+    rows.push_back({ids ? cause.id : effect_name(cause.id), share_text(cause.share, cause.share_interval95),
+                    base::digits_text(cause.gap_after, 3)});
+  }
+  if (diagnosis.remainder) {
+    rows.push_back({"left", share_text(diagnosis.remainder->share), base::digits_text(diagnosis.remainder->gap, 3)});
+  }
+  return rows;
+}
+
+std::vector<RecoveredTable> recovered_tables(const diagnose::Diagnosis& diagnosis) {
+  std::vector<RecoveredTable> tables;
+  for (const diagnose::RecoveredConfiguration& of : diagnosis.recovered) {
+    auto table = std::find_if(tables.begin(), tables.end(), [&](const auto& other) { return other.with == of.with; });
+    if (table == tables.end()) {
+      RecoveredTable next{of.with, {{"configuration"}}, {}};
+      for (const QuantityName& name : kQuantities) next.rows.front().push_back(heading_of(name.key));
+      table = tables.insert(tables.end(), std::move(next));
+    }
+    const std::string label = configuration_label(of, diagnosis.recovered);
+    std::vector<std::string> row = {label};
+    for (const QuantityName& name : kQuantities) {
+      const core::Quantity& quantity = core::value_of(of, name.which);
+      row.push_back(quantity.estimate ? base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) : "–");
+      if (!quantity.estimate && !quantity.why.empty()) {
+        table->why.push_back(fmt::format("{} of {}: {}", name.symbol, label, quantity.why));
+      }
+    }
+    table->rows.push_back(std::move(row));
+  }
+  return tables;
+}
+
+std::vector<std::vector<std::string>> member_rows(const diagnose::DiagnosedEffect& effect) {
+  std::vector<std::string> names, keys;
+  const auto note = [](std::vector<std::string>& list, const std::string& one) {
+    if (std::find(list.begin(), list.end(), one) == list.end()) list.push_back(one);
+  };
+  const auto split = [](const std::string& key) {
+    const std::size_t at = key.find('.');
+    return std::pair(key.substr(0, at), at == std::string::npos ? std::string() : key.substr(at + 1));
+  };
+  for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
+    const auto [key, name] = split(parameter.key);
+    if (name.empty()) continue;
+    note(keys, key);
+    note(names, name);
+  }
+  if (names.empty()) return {};
+  std::vector<std::vector<std::string>> rows = {{""}};
+  for (const std::string& key : keys) {
+    const NamedUnit of = name_and_unit(key);
+    rows.front().push_back(with_unit(of.name == "mu" ? "µ" : of.name == "k" ? "K" : of.name, of.unit));
+  }
+  for (const std::string& name : names) {
+    std::vector<std::string> row = {name};
+    for (const std::string& key : keys) {
+      const auto found =
+          std::find_if(effect.parameters.begin(), effect.parameters.end(),
+                       [&](const diagnose::DiagnosedParameter& one) { return one.key == key + "." + name; });
+      const bool known = found != effect.parameters.end() && found->why.empty();
+      row.push_back(known ? base::value_and_sd_text(found->value, found->sd) : "–");
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,439 @@
+#include "report/diagnosis/diagnosis_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/text/number_text.h"
+#include "report/html/html.h"
+#include "report/text/display_text.h"
+
+namespace glidelab::report {
+namespace {
+
+std::vector<std::string> ids_of(const diagnose::Explanation& explanation) {
+  std::vector<std::string> ids = explanation.effects;
+  if (explanation.unnamed) ids.emplace_back("unknown");
+  if (ids.empty()) ids.emplace_back("none");
+  return ids;
+}
+
+}  // namespace
+
+std::string verdict_id(diagnose::Verdict verdict) {
+  switch (verdict) {
+    case diagnose::Verdict::none:
+      return "none";
+    case diagnose::Verdict::effect:
+      return "effect";
+    case diagnose::Verdict::unknown:
+      return "unknown";
+  }
+  return {};
+}
+
+std::string explanation_id(const diagnose::Explanation& explanation) {
+  return fmt::format("{}", fmt::join(ids_of(explanation), " + "));
+}
+
+std::string explanation_name(const diagnose::Explanation& explanation) {
+  return fmt::format("{}", fmt::join(effect_names(ids_of(explanation)), " + "));
+}
+
+std::string explanation_html(const diagnose::Explanation& explanation) {
+  const std::string name = explanation_name(explanation), id = explanation_id(explanation);
+  if (name == id) return escape(id);
+  return fmt::format("{} <small><code>{}</code></small>", escape(name), escape(id));
+}
+
+std::string percent(double probability) {
+  if (probability > 0.995) return "more than 99 %";
+  if (probability < 0.005) return "less than 1 %";
+  return fmt::format("{:.0f} %", 100.0 * probability);
+}
+
+std::string list_of(const std::vector<std::string>& words, const std::string& last) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
+  }
+  return text;
+}
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// Decimals of a value to the first digit of its standard deviation, two at least.
+int decimals_for(double sd) {
+  return sd > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(sd))), 2, 9) : 2;
+}
+
+/// `-ups "a", "b"`, or `-up "a"` of one.
+std::string ups(const std::vector<std::string>& names) {
+  std::string text = names.size() > 1 ? "-ups" : "-up";
+  for (std::size_t i = 0; i < names.size(); ++i) text += fmt::format("{} \"{}\"", i == 0 ? "" : ",", names[i]);
+  return text;
+}
+
+/// A sentence for every kind; a kind without one does not compile.
+struct Sentence {
+  std::string operator()(const diagnose::NoFreeMotion& of) const {
+    return fmt::format("Clip {} holds no free motion of {} points or more.", of.clip, of.fewest);
+  }
+  std::string operator()(const diagnose::ThinnedPositions& of) const {
+    return fmt::format("Of {} positions{}, one in {} is used: the law needs no more, and more would slow the search.",
+                       of.points, of.driven ? " with a recorded force" : "", of.every);
+  }
+  std::string operator()(const diagnose::CutAtTurns& of) const {
+    return fmt::format(
+        "The recorded force turns the motion {} times. The motion is weighed in pieces of {} turns, each with a start "
+        "of its own; anything that shows only over longer times, such as a slow drift, is not examined.",
+        of.turns, of.turns_of_piece);
+  }
+  std::string operator()(const diagnose::SomePieces& of) const {
+    return fmt::format(
+        "Of {} pieces of motion with a recorded force, {} are weighed, spread evenly over clips and time.", of.pieces,
+        of.kept);
+  }
+  std::string operator()(const diagnose::HandLeftOut& of) const {
+    return fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
+                       of.frames);
+  }
+  std::string operator()(const diagnose::SetAside& of) const {
+    return fmt::format(
+        "Of the {} positions of the motion, {:.0f} % are set aside: they look like a hand or a stop, or lie far off, "
+        "and no effect of the list explains them. The verdict holds for the rest.",
+        of.positions, 100.0 * of.part);
+  }
+  std::string operator()(const diagnose::PiecesHeldOut&) const {
+    return "There is only one clip: each piece of its motion is held out in turn.";
+  }
+  std::string operator()(const diagnose::QuartersHeldOut&) const {
+    return "There is only one clip, and no other to predict it from: the gap is measured on held-out quarters of it.";
+  }
+  std::string operator()(const diagnose::LastingErrors& of) const {
+    return fmt::format(
+        "Errors of successive positions are correlated ({:.2f} from one frame to the next, {:.2f} to the fourth), as "
+        "with a tracker that follows its own last image, or with positions that were smoothed: they tell less than "
+        "their number suggests.",
+        of.next, of.fourth);
+  }
+  std::string operator()(const diagnose::StatementsDisagree& of) const {
+    return fmt::format(
+        "Set-up \"{}\": the {} and the {} inclination contradict each other by {:.1f} standard deviations. One of them "
+        "is wrong, and the results that depend on them are uncertain.",
+        of.group, of.one, of.other, of.z);
+  }
+  std::string operator()(const diagnose::NoInclination& of) const {
+    return fmt::format(
+        "Set{} {} neither a plumb line nor an inclination with its uncertainty (incline_sd_deg): effects that show "
+        "only in the inclination (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
+        ups(of.groups), of.groups.size() > 1 ? "have" : "has");
+  }
+  std::string operator()(const diagnose::OnlyFalls&) const {
+    return "The motions are falls, with an inclination of 80 degrees or more: next to no force presses on a track, and "
+           "µ is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 "
+           "degree.";
+  }
+  std::string operator()(const diagnose::SplitSetUps& of) const {
+    return fmt::format("Clips of set{} state different inclinations; each inclination counts as a set-up of its own.",
+                       ups(of.groups));
+  }
+  std::string operator()(const diagnose::LaunchedOtherWay& of) const {
+    return fmt::format("Clip {} is stated as launched {}, but starts in the opposite direction.", of.clip,
+                       of.stated_up ? "up" : "down");
+  }
+  std::string operator()(const diagnose::NegativeLoss& of) const {
+    const bool drag = of.of == diagnose::NegativeLoss::Of::drag;
+    return fmt::format(
+        "The fit has a {} below zero ({}), which would drive the glider: either the missing effect pushes it there, or "
+        "the stated inclination, downhill direction or masses are wrong.",
+        drag ? "drag" : "friction", base::size_and_sd_text(of.value, of.sd, drag ? "N s/m" : ""));
+  }
+  std::string operator()(const diagnose::ContradictedIncline& of) const {
+    const auto with_sd = [](double angle_rad, double sd_rad) {
+      const double sd = kDegrees * sd_rad;
+      return fmt::format("{:.{}f} ± {:.{}f}°", kDegrees * angle_rad, decimals_for(sd), sd, decimals_for(sd));
+    };
+    const std::string stated = fmt::format("The inclination of set-up \"{}\" is {} {}, and the motion says ", of.group,
+                                           with_sd(of.stated_rad, of.stated_sd_rad),
+                                           of.against == "plumb" ? "by the plumb line" : "as " + of.against);
+    if (!(of.motion_sd_rad > 0.0)) {
+      return stated +
+             fmt::format("{:.2f}° by the nominal model, which leaves out what is missing.", kDegrees * of.motion_rad);
+    }
+    return stated + fmt::format("{} by the {} ({:.3g} standard deviations apart).",
+                                with_sd(of.motion_rad, of.motion_sd_rad),
+                                of.named ? "model with the named effects" : "nominal model", of.z);
+  }
+  std::string operator()(const diagnose::BeyondGravity& of) const {
+    return fmt::format(
+        "Lines stated at {} degrees have a mean intercept of {:.3g} m/s², more than gravity ({:.6g} m/s²): no "
+        "inclination has it.",
+        of.stated_deg, of.intercept_m_s2, of.gravity_m_s2);
+  }
+  std::string operator()(const diagnose::MeanIncline& of) const {
+    return fmt::format(
+        "Lines stated at {} degrees have the mean intercept of {:.3f} degrees. A table does not say how well the angle "
+        "was read; {} degrees are assumed.",
+        of.stated_deg, of.intercept_deg, of.read_deg);
+  }
+  std::string operator()(const diagnose::TableOfLines& of) const {
+    return fmt::format(
+        "A table of {} lines states no errors: they are taken from the scatter of the lines. It states no speeds "
+        "either, so effects of the speed (quadratic_drag, power_law_drag, stribeck) cannot be weighed.",
+        of.lines);
+  }
+};
+
+}  // namespace
+
+std::string note_words(const diagnose::Note& note) {
+  return std::visit(Sentence{}, note);
+}
+
+diagnose::ContradictedIncline as_told(diagnose::ContradictedIncline of, const diagnose::Diagnosis& diagnosis) {
+  const bool missing = diagnosis.verdict != diagnose::Verdict::none && !only_statements_fail(diagnosis);
+  if (missing && !of.named) of.motion_sd_rad = 0.0;
+  return of;
+}
+
+std::vector<std::string> notes_words(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::string> sentences;
+  for (const diagnose::Note& note : diagnosis.notes) {
+    const auto* const incline = std::get_if<diagnose::ContradictedIncline>(&note);
+    sentences.push_back(incline != nullptr ? note_words(as_told(*incline, diagnosis)) : note_words(note));
+  }
+  return sentences;
+}
+
+std::vector<std::string> notes_words(const std::vector<diagnose::Note>& notes) {
+  std::vector<std::string> sentences;
+  for (const diagnose::Note& note : notes) sentences.push_back(note_words(note));
+  return sentences;
+}
+
+namespace {
+
+using diagnose::Change;
+using diagnose::ChangeKind;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which its figure means no more
+constexpr const char* kMoveCamera =
+    "what belongs to the track stays in place on it, what belongs to the image moves with the camera.";
+
+const char* kind_words(ChangeKind kind) {
+  switch (kind) {
+    case ChangeKind::launch:
+      return "launches";
+    case ChangeKind::mass:
+      return "masses";
+    case ChangeKind::inclination:
+      return "inclinations";
+    case ChangeKind::frame_rate:
+      return "frame rates";
+    case ChangeKind::exposure:
+      return "exposures";
+    case ChangeKind::plumb:
+      return "a plumb view";
+    case ChangeKind::pattern:
+      return "a pattern check";
+    case ChangeKind::clock:
+      return "a stopwatch";
+  }
+  return "";
+}
+
+/// "62 changes weighed (launches, masses, …)"
+std::string weighed_words(const diagnose::ChangesWeighed& of) {
+  std::string kinds;
+  for (const ChangeKind kind : of.kinds) kinds += (kinds.empty() ? "" : ", ") + std::string(kind_words(kind));
+  return fmt::format("{} changes weighed ({})", of.count, kinds);
+}
+
+/// An order: "Record a launch uphill at 1.2 m/s with 535 g".
+std::string change_words(const Change& change) {
+  const std::string on = change.on.empty() ? "" : fmt::format(" on set-up \"{}\"", change.on);
+  std::string launch, grams;
+  if (change.clip) {
+    launch = fmt::format("Record a launch {} at {:.2g} m/s", change.clip->v0_m_s < 0.0 ? "uphill" : "downhill",
+                         std::abs(change.clip->v0_m_s));
+    grams = fmt::format("{:.0f} g", 1000.0 * change.clip->mass_kg);
+  }
+  switch (change.kind) {
+    case ChangeKind::launch:
+      return fmt::format("{}{} with {}", launch, on, grams);
+    case ChangeKind::mass:
+      return fmt::format("{}{} with the mass changed to {}", launch, on, grams);
+    case ChangeKind::inclination:
+      return fmt::format("{} with {} on the track {}", launch, grams,
+                         change.set_up->alpha_rad == 0.0
+                             ? "made level"
+                             : fmt::format("tilted to {:.1f}°", change.set_up->alpha_rad / kDegree));
+    case ChangeKind::frame_rate:
+      return fmt::format("{}{} with {} at {:.4g} frames per second instead of {:.4g}", launch, on, grams,
+                         change.clip->rate_hz, change.rate_so_far_hz);
+    case ChangeKind::exposure:
+      return fmt::format("{}{} with {} with half the exposure (it halves the blur)", launch, on, grams);
+    case ChangeKind::plumb:
+      return fmt::format("Film a plumb line{} (it states the inclination to {:.2g}°)", on,
+                         change.statements.front().sd / kDegree);
+    case ChangeKind::pattern:
+      return fmt::format(
+          "Lay the pattern (or a ruler) in the plane of motion on each half of the track, and compare its length there "
+          "({:.1f} mm in {:.2g} m)",
+          1000.0 * change.statements.front().sd, change.statements.front().to_m - change.statements.front().from_m);
+    case ChangeKind::clock:
+      return fmt::format("Film a running stopwatch for {:.0f} s (it shows the frame rate)",
+                         1.0 / (change.statements.front().sd * change.rate_so_far_hz));
+  }
+  return {};
+}
+
+/// "whether it is scale_error or direction_asymmetry or frame_rate_error, and whether stribeck acts".
+std::string doubt_words(const std::vector<diagnose::Alternative>& doubt) {
+  std::string between, acts;
+  for (const diagnose::Alternative& of : doubt) {
+    const std::string one = explanation_id(of.one);
+    if (of.other.is_nothing()) {
+      acts += (acts.empty() ? "" : " or ") + one;
+      continue;
+    }
+    if (between.find(one) == std::string::npos) between += (between.empty() ? "" : " or ") + one;
+    between += " or " + explanation_id(of.other);
+  }
+  std::string words = between.empty() ? "" : "whether it is " + between;
+  if (!acts.empty()) words += (words.empty() ? "" : ", and ") + fmt::format("whether {} acts", acts);
+  return words;
+}
+
+std::string likelihood_words(double gain) {
+  if (gain > kMostStated) return fmt::format("more than {:.0f}", kMostStated);
+  return gain < 10.0 ? fmt::format("{:.1f}", gain) : fmt::format("{:.0f}", gain);
+}
+
+std::string routine_words(diagnose::Routine routine) {
+  using diagnose::Routine;
+  switch (routine) {
+    case Routine::repeat_each_kind:
+      return "Repeat one launch of each kind: more clips make the verdict surer.";
+    case Routine::repeat_launch:
+      return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
+             "is not due to the law of motion.";
+    case Routine::start_later:
+      return "Repeat one of the launches three times, each one second later after the start of the camera: what "
+             "belongs to the clip's time (a clock, something that warms or settles) stays at that time, what acts on "
+             "the glider shifts with it.";
+    case Routine::turn_glider:
+      return "Turn the glider round on the track and record the same launches each way: what belongs to the glider "
+             "turns with it, what belongs to the track does not.";
+    case Routine::set_up_again:
+      return "Take the track down, set it up again at the same inclination, and record the same launches: what differs "
+             "then comes from setting it up, not from the inclination.";
+    case Routine::move_camera:
+      return std::string(
+                 "Move the camera along the track by a third of the view and record the same launches again: ") +
+             kMoveCamera;
+    case Routine::other_speeds:
+      return "Record launches at two further speeds, with one mass and at one inclination: the missing force depends "
+             "on the speed, and its shape tells what it is.";
+    case Routine::measure_inclination:
+      return "Measure the inclination again, with a level on the track or a plumb line in the image: the motion and "
+             "the statement cannot both be right.";
+    case Routine::check_statements:
+      return "Check the stated downhill direction, inclinations and masses, then launch one glider both ways: friction "
+             "slows it in both directions, an inclination does not.";
+    case Routine::second_mass:
+      return "Record a second mass: with one, a friction force is simply mu.";
+  }
+  return {};
+}
+
+/// Words for every kind of step; a kind without them does not compile.
+struct Words {
+  std::string operator()(std::monostate) const { return {}; }
+
+  std::string operator()(diagnose::Routine of) const { return routine_words(of); }
+
+  std::string operator()(const diagnose::RepeatClip& of) const {
+    return fmt::format(
+        "Repeat clip {} three times without changing anything: what belongs to that clip alone does not recur; what "
+        "its launch, mass or set-up causes recurs each time.",
+        of.clip);
+  }
+
+  std::string operator()(const diagnose::CoverRegion& of) const {
+    const bool places = of.over == diagnose::CoverRegion::Over::places;
+    const std::string launch = fmt::format(
+        "{}: of {} launches it has the most positions ({} of {}) at {} from {} to {} {}, where the excess lies",
+        change_words(of.launch), of.launches, of.inside, of.positions, places ? "places" : "speeds",
+        base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
+    if (!places) return launch + ", and its shape over the speed tells what it is.";
+    return fmt::format("Move the camera along the track by a third of the view. {}; {}", launch, kMoveCamera);
+  }
+
+  std::string operator()(const diagnose::AddMass& of) const {
+    return fmt::format(
+        "Record a further mass of {:.0f} g both ways, and the lightest one again: what depends on the mass then has a "
+        "third point on its curve, what differed by chance does not recur.",
+        1000.0 * of.mass_kg);
+  }
+
+  std::string operator()(const diagnose::RecordForEffect& of) const {
+    return of.doubt ? fmt::format("It is in doubt {}. {}", doubt_words({*of.doubt}), of.words) : of.words;
+  }
+
+  std::string operator()(const diagnose::SettleDoubt& of) const {
+    if (!of.by) {
+      return fmt::format(
+          "None of {} would settle {} (expected log likelihood {:.2g} at most): less noise (a longer lens, a larger "
+          "marker) or many more clips would.",
+          weighed_words(of.weighed), doubt_words(of.doubt), of.log_likelihood);
+    }
+    return fmt::format("{}: of {} this one would best settle {} (expected log likelihood {}).", change_words(*of.by),
+                       weighed_words(of.weighed), doubt_words(of.doubt), likelihood_words(of.log_likelihood));
+  }
+
+  std::string operator()(const diagnose::SharpenParameter& of) const {
+    const base::NamedUnit named =
+        of.effect.empty() ? base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""} : base::name_and_unit(of.key);
+    std::string text =
+        fmt::format("Nothing else is likely. The least well known parameter is {}{} ({}).", named.name,
+                    of.effect.empty() ? "" : " of " + of.effect, base::size_and_sd_text(of.value, of.sd, named.unit));
+    if (of.by) {
+      text += fmt::format(" {}: of {} this one sharpens it most, to ± {}.", change_words(*of.by),
+                          weighed_words(of.weighed), base::size_text(of.sd_after, 2, named.unit));
+    } else {
+      text += fmt::format(
+          " None of {} would sharpen it by a twentieth: more clips of each kind would, by the square root of their "
+          "number.",
+          weighed_words(of.weighed));
+    }
+    if (of.one_mass) {
+      text += " With one mass, a friction that does not grow with the load counts as mu: a second mass would tell.";
+    }
+    return text;
+  }
+
+  std::string operator()(const diagnose::TellLinesApart& of) const {
+    return fmt::format(
+        "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its square, "
+        "a friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} moves its "
+        "intercepts by {} each, the smoothing bias by {}.",
+        1000.0 * of.mass_kg, base::size_text(of.force_n, 2, "N"), base::size_text(of.by_force_m_s2, 2, "m/s²"),
+        base::size_text(of.by_bias_m_s2, 2, "m/s²"));
+  }
+};
+
+}  // namespace
+
+std::string next_step_words(const diagnose::NextStep& step) {
+  return std::visit(Words{}, step);
+}
+
+}  // namespace glidelab::report

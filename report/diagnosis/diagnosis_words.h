@@ -1,0 +1,47 @@
+/// Words of a diagnosis: its explanations and verdicts as ids (for files and terminals) and as names (for people), its
+/// notes (diagnose/result/note.h) as sentences, and what to record next (diagnose/result/next_step.h) as a sentence or
+/// two.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/result/diagnosis.h"
+#include "diagnose/result/next_step.h"
+#include "diagnose/result/note.h"
+
+namespace glidelab::report {
+
+/// "none", "effect", "unknown", as diagnosis.json has it.
+std::string verdict_id(diagnose::Verdict verdict);
+
+/// "none", "scale_error", "scale_error + tether", "unknown", "scale_error + unknown".
+std::string explanation_id(const diagnose::Explanation& explanation);
+
+/// The same in the short names of effects: "wrong scale + something without a name".
+std::string explanation_name(const diagnose::Explanation& explanation);
+
+/// The name, and the id small beside it. HTML.
+std::string explanation_html(const diagnose::Explanation& explanation);
+
+/// A probability for a person: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
+std::string percent(double probability);
+
+/// "a, b and c", or with another last word: "a, b, or c".
+std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ");
+
+std::string note_words(const diagnose::Note& note);
+
+std::vector<std::string> notes_words(const std::vector<diagnose::Note>& notes);
+
+/// Without the standard deviation of the motion's angle (0) where that is the nominal model's and something is missing:
+/// such an angle may be off by many of them.
+diagnose::ContradictedIncline as_told(diagnose::ContradictedIncline of, const diagnose::Diagnosis& diagnosis);
+
+/// The diagnosis' notes, angles as_told().
+std::vector<std::string> notes_words(const diagnose::Diagnosis& diagnosis);
+
+/// Empty where no step was looked for.
+std::string next_step_words(const diagnose::NextStep& step);
+
+}  // namespace glidelab::report

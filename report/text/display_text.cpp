@@ -1,0 +1,191 @@
+#include "report/text/display_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include "base/text/number_text.h"
+#include "diagnose/effects/effect_library.h"
+#include "fit/estimators.h"
+#include "report/html/html.h"
+#include "validate/study/coverage/interval_coverage.h"
+
+namespace glidelab::report {
+
+std::string with_unit(std::string_view name, std::string_view unit) {
+  std::string text(name);
+  if (!unit.empty()) text.append(" (").append(unit).append(")");
+  return text;
+}
+
+std::string heading_of(std::string_view key) {
+  return with_unit(symbol_of(key), unit_of(key));
+}
+
+std::string unit_suffix(std::string_view unit) {
+  std::string text;
+  if (!unit.empty() && unit != "°") text += ' ';
+  return text.append(unit);
+}
+
+std::string estimator_name(std::string_view estimator) {
+  if (const fit::Estimator* known = fit::find_estimator(estimator)) return std::string(known->title);
+  if (estimator == validate::kNaiveLines) return "naive lines (for contrast)";
+  return std::string(estimator);
+}
+
+std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::ConfigurationResult& configuration) {
+  std::array<NamedQuantity, kQuantities.size()> named;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    named[i] = {kQuantities[i], &core::value_of(configuration, kQuantities[i].which)};
+  }
+  return named;
+}
+
+std::string configuration_name(const core::AnalysisResults& results, const core::ConfigurationResult& configuration) {
+  const auto alike = std::count_if(
+      results.configurations.begin(), results.configurations.end(), [&](const core::ConfigurationResult& other) {
+        return other.mass_kg == configuration.mass_kg && other.incline_deg == configuration.incline_deg;
+      });
+  const std::string name = fmt::format("{:.6g} kg, {:.4g}°", configuration.mass_kg, configuration.incline_deg);
+  return alike > 1 ? name + ", " + configuration.group : name;
+}
+
+std::string file_name_part(std::string_view text) {
+  std::string name;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '/' || c == '%' || byte < 0x20 || byte == 0x7f) {
+      name += fmt::format("%{:02X}", byte);
+    } else {
+      name += c;
+    }
+  }
+  return name;
+}
+
+std::vector<std::string> phase_file_names(const core::AnalysisResults& results) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const core::ClipResult& clip : results.clips) {
+    const auto same = std::count_if(results.clips.begin(), results.clips.end(),
+                                    [&](const core::ClipResult& other) { return other.name == clip.name; });
+    const std::string stem = same == 1
+                                 ? file_name_part(clip.name)
+                                 : fmt::format("{}-{}", file_name_part(clip.experiment), file_name_part(clip.name));
+    std::string name = fmt::format("phase-{}.csv", stem);
+    for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("phase-{}-{}.csv", stem, n);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+namespace {
+
+std::string_view name_of(std::string_view id) {
+  if (id == "none") return "nothing is missing";
+  if (id == "unknown") return "something without a name";
+  for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
+    if (effect.id == id) return effect.name;
+  }
+  return id;
+}
+
+}  // namespace
+
+std::string effect_name(std::string_view ids) {
+  constexpr std::string_view kAnd = " + ";
+  std::string text;
+  for (std::size_t at = 0; at <= ids.size();) {
+    const std::size_t end = std::min(ids.find(kAnd, at), ids.size());
+    text += (text.empty() ? "" : std::string(kAnd)) + std::string(name_of(ids.substr(at, end - at)));
+    at = end + kAnd.size();
+  }
+  return text;
+}
+
+std::vector<std::string> effect_names(const std::vector<std::string>& ids) {
+  std::vector<std::string> names;
+  for (const std::string& id : ids) names.push_back(effect_name(id));
+  return names;
+}
+
+std::string effect_meaning(std::string_view id) {
+  for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
+    if (effect.id == id) return std::string(effect.meaning);
+  }
+  return {};
+}
+
+std::string effect_html(std::string_view ids) {
+  const std::string name = effect_name(ids);
+  if (name == ids) return escape(ids);
+  return fmt::format("{} <small><code>{}</code></small>", escape(name), escape(ids));
+}
+
+std::string parameter_text(std::string_view key, double value, double sd) {
+  const std::string_view member = key.substr(std::min(key.find('.'), key.size()));
+  const NamedUnit of = name_and_unit(key.substr(0, key.size() - member.size()));
+  return fmt::format("{}{} = {}", of.name, member, size_and_sd_text(value, sd, of.unit));
+}
+
+std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
+  if (!parameter.text.empty()) return fmt::format("{} = {}", parameter.key, parameter.text);
+  if (!parameter.why.empty()) return fmt::format("{}: not known: {}", parameter.key, parameter.why);
+  return parameter_text(parameter.key, parameter.value, parameter.sd);
+}
+
+std::string interval_text(const std::optional<diagnose::GapInterval>& interval) {
+  if (!interval) return "–";
+  return fmt::format("{} to {}", base::digits_text(interval->low, 3), base::digits_text(interval->high, 3));
+}
+
+std::string shrink_text(const diagnose::GapSizes& gap) {
+  if (!gap.shrink) return "";
+  std::string text = fmt::format("{:.1f} %", 100.0 * *gap.shrink);
+  if (const auto& of = gap.interval95.shrink)
+    text += fmt::format(" ({:.1f} to {:.1f} %)", 100.0 * of->low, 100.0 * of->high);
+  return text;
+}
+
+namespace {
+
+/// Code points of UTF-8: every byte that does not continue one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - width_of(row[i]), ' ');
+      if (i > 0) line += "  ";
+      line += i >= first_number ? padding + printable(row[i]) : printable(row[i]) + padding;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,44 @@
+/// Pages for class: the explorer, on which a motion's parameters are chosen by hand, and the cases of `laws` with their
+/// films.
+///
+/// The strings are the fixed parts of the pages, the files of teach/page/explorer and teach/page/laws.
+/// teach/CMakeLists.txt makes their source.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/long_work.h"
+#include "report/html/html.h"
+#include "teach/study/law_study.h"
+#include "teach/study/phase_explorer.h"
+
+namespace glidelab::teach {
+
+extern const std::string_view kExplorerStyle;
+extern const std::string_view kExplorerBody;    ///< controls, plots and the line of words; HTML
+extern const std::string_view kExplorerMotion;  ///< script: a motion from the orbits
+extern const std::string_view kExplorerWords;   ///< script: what becomes of a motion
+extern const std::string_view kExplorerView;    ///< script: controls and drawing
+extern const std::string_view kFilmStyle;
+extern const std::string_view kFilmScript;  ///< script: the points that run along a(v) with the film
+
+/// The page on which a motion's parameters are chosen by hand, for class: self-contained HTML without plots of gnuplot.
+///
+/// Its script scales, interpolates (Hermite, fifth order) and joins the orbits of teach/study/phase_explorer.h; it
+/// solves no equation of motion. It also compares itself with the reference motions and says how far it was off.
+report::Page explorer_page(const PhaseExplorer& explorer);
+
+/// The film with the browser's own controls and its rows' names over it, and a sheet for a(v). HTML.
+std::string film_figure(const LawStudy& study, const LawFilm& film);
+
+/// Once a page: the style and the script of all its film_figure().
+std::string film_script();
+
+/// The page of `laws`: each case with a film, x(t), and a(v) with its equilibrium. It needs nothing but itself.
+/// EnvironmentError where gnuplot fails; std::logic_error where there is not one film a study.
+report::Page laws_report(const std::vector<LawStudy>& studies, const std::vector<LawFilm>& films,
+                         const base::Progress& progress = base::no_progress);
+
+}  // namespace glidelab::teach

@@ -1,0 +1,110 @@
+#include "core/check/motion_look.h"
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kGravity_m_s2 = 9.80665;
+
+struct Positions {
+  std::vector<double> t_s, x_m;
+};
+
+/// 2 s at 100 Hz with noise of 0.1 mm.
+Positions positions(const std::function<double(double t_s)>& x_m, double noise_m = 1e-4) {
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal(0.0, noise_m > 0.0 ? noise_m : 1.0);
+  Positions made;
+  for (int i = 0; i < 200; ++i) {
+    made.t_s.push_back(0.01 * i);
+    made.x_m.push_back(x_m(made.t_s.back()) + (noise_m > 0.0 ? normal(random) : 0.0));
+  }
+  return made;
+}
+
+std::vector<core::Finding> findings(const Positions& of, double incline_deg = 4.0,
+                                    const std::vector<core::MarkerSighting>& sightings = {}) {
+  core::ClipSetup setup;
+  setup.name = "clip";
+  setup.incline_rad = incline_deg * std::acos(-1.0) / 180.0;
+  return core::motion_findings(core::look_at_motion(of.t_s, of.x_m, sightings, false), setup, kGravity_m_s2);
+}
+
+bool unusable(const std::vector<core::Finding>& found, const std::string& words) {
+  return found.size() == 1 && found[0].severity == core::Severity::unusable &&
+         (found[0].found + found[0].advice).find(words) != std::string::npos;
+}
+
+/// Up an incline and down again at 0.7 m/s².
+double run(double t_s) {
+  return 0.6 - 0.8 * t_s + 0.35 * t_s * t_s;
+}
+
+}  // namespace
+
+TEST_CASE("a run along an incline and a fall are plausible") {
+  CHECK(findings(positions(run)).empty());
+  CHECK(findings(positions([](double t) { return 0.5 * kGravity_m_s2 * t * t; }), 90.0).empty());
+}
+
+TEST_CASE("x in centimetres or millimetres makes accelerations that no incline has") {
+  CHECK(unusable(findings(positions([](double t) { return 100.0 * run(t); }, 0.01)), "centimetres"));
+  CHECK(unusable(findings(positions([](double t) { return 1000.0 * run(t); }, 0.1)), "millimetres"));
+}
+
+TEST_CASE("a free fall on a stated slope of 4 degrees is none") {
+  CHECK(unusable(findings(positions([](double t) { return 0.5 * kGravity_m_s2 * t * t; })), "incline_deg = 90"));
+}
+
+TEST_CASE("a swing over many periods is an oscillation, and bounces of a cart are none") {
+  CHECK(unusable(findings(positions([](double t) { return 0.2 * std::sin(2.0 * std::acos(-1.0) * 3.0 * t); })),
+                 "an oscillation"));
+  // Flights of 0.25 s under 0.7 m/s², without loss: ten turns.
+  CHECK(findings(positions(
+                     [](double t) {
+                       const double u = std::fmod(t, 0.25) - 0.125;
+                       return 1.0 - 2.0 * 0.0055 + 0.35 * u * u;
+                     },
+                     1e-5))
+            .empty());
+}
+
+TEST_CASE("a path in the image that bends is no straight track") {
+  const Positions of = positions(run);
+  const auto path = [&](double bend) {
+    std::vector<core::MarkerSighting> sightings(of.x_m.size());
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+      const double s = of.x_m[i] - 0.4;
+      sightings[i].u_px = 100.0 + 1000.0 * s;
+      sightings[i].v_px = 300.0 + 50.0 * s + 4000.0 * bend * s * s;  // sagitta over a length of 1000 s: bend at s of 1
+    }
+    return sightings;
+  };
+  // From 0.14 to 0.6 m: s from -0.26 to 0.2, half of the unit length, and half of its sagitta over length.
+  CHECK(findings(of, 4.0, path(0.05)).empty());
+  CHECK(unusable(findings(of, 4.0, path(0.5)), "bends"));
+}
+
+TEST_CASE("positions without any noise are smoothed or integrated, and such as were rounded are not") {
+  // Not run() alone: with its round numbers all positions are multiples of 5 µm.
+  const std::vector<core::Finding> exact =
+      findings(positions([](double t) { return run(t) + 0.01 * std::exp(-t); }, 0.0));
+  REQUIRE(exact.size() == 1);
+  CHECK(exact[0].severity == core::Severity::change);
+  CHECK(exact[0].found.find("not measured") != std::string::npos);
+  CHECK(findings(positions([](double t) { return 0.001 * std::round(1000.0 * run(t)); }, 0.0)).empty());
+}
+
+TEST_CASE("of a motion that a recorded force drives the size of the acceleration says nothing") {
+  const Positions of = positions([](double t) { return 0.2 * std::sin(20.0 * t); });
+  const core::MotionLook look = core::look_at_motion(of.t_s, of.x_m, {}, true);
+  CHECK_FALSE(look.acceleration_m_s2);
+  CHECK_FALSE(look.oscillates);
+}

@@ -1,0 +1,125 @@
+#include "diagnose/causes/cause_weighing.h"
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// What students record: friction that scatters by 10 % from clip to clip, a track that is wavy by 0.3 mrad, a draught
+/// of each clip of 1 mN, positions clicked to 0.2 mm; and a force besides.
+class Everyday {
+ public:
+  Everyday(unsigned seed, std::size_t clips, std::function<double(double x, double v)> force)
+      : force_(std::move(force)) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    for (std::size_t c = 0; c < clips; ++c) {
+      friction_.push_back(0.1 * normal(random));
+      draught_n_.push_back(1e-3 * normal(random));
+    }
+    for (double& phase : phase_) phase = 6.0 * normal(random);
+  }
+
+  tests::MadeExperiment experiment(const std::vector<tests::MadeLaunch>& launches, unsigned seed) {
+    tests::MadeEffect effect;
+    effect.force = [this](double m, double x, double v, double t) {
+      if (t < before_ - 0.1) ++clip_;
+      before_ = t;
+      const std::size_t c = std::min(clip_ - 1, friction_.size() - 1);
+      double force = draught_n_[c] + force_(x, v);
+      const double sign = v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0;
+      force -= sign * friction_[c] * 0.006 * m * 9.80665;
+      for (int k = 0; k < 3; ++k) force += m * 9.80665 * 3e-4 * std::sin((4.0 + 3.0 * k) * x + phase_[k]);
+      return force;
+    };
+    return tests::made_experiment(launches, effect, seed, 2e-4, 100, 60.0);
+  }
+
+ private:
+  std::function<double(double, double)> force_;
+  std::vector<double> friction_, draught_n_;
+  double phase_[3] = {};
+  std::size_t clip_ = 0;
+  double before_ = 1.0;
+};
+
+diagnose::Diagnosis diagnosed(unsigned seed, const std::function<double(double x, double v)>& force) {
+  const std::vector<tests::MadeLaunch> launches = tests::made_launches();
+  Everyday everyday(seed, launches.size(), force);
+  const tests::MadeExperiment made = everyday.experiment(launches, seed);
+  return diagnose::diagnose_results(made.results, made.setups, {});
+}
+
+double sum_of_shares(const diagnose::Diagnosis& diagnosis) {
+  double sum = 0.0;
+  for (const diagnose::ExplainedCause& cause : diagnosis.explained) sum += cause.share;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a main cause is named beside small imperfections that have no name") {
+  for (const unsigned seed : {1u, 2u}) {
+    const diagnose::Diagnosis found = diagnosed(seed, [](double, double v) { return -0.15 * v * std::abs(v); });
+    INFO("seed " << seed);
+    REQUIRE(found.verdict == diagnose::Verdict::effect);
+    REQUIRE(!found.effects.empty());
+    CHECK(found.effects.front().id == "quadratic_drag");
+    REQUIRE(!found.explained.empty());
+    CHECK(found.explained.front().id == "quadratic_drag");
+    CHECK(found.explained.front().share > 0.5);
+    REQUIRE(found.remainder);
+    // By the definition of the shares: what is left of the excess is the remainder.
+    CHECK(found.remainder->share == Approx(1.0 - sum_of_shares(found)).margin(1e-12));
+    const double excess = found.gap->before * found.gap->before - 1.0;
+    CHECK((found.remainder->gap * found.remainder->gap - 1.0) / excess == Approx(found.remainder->share).margin(1e-6));
+    CHECK(found.remainder->gap > 1.2);  // the imperfections are there
+  }
+}
+
+TEST_CASE("imperfections by themselves are no cause") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const diagnose::Diagnosis found = diagnosed(seed, [](double, double) { return 0.0; });
+    INFO("seed " << seed);
+    CHECK(found.verdict == diagnose::Verdict::unknown);
+    CHECK(found.effects.empty());
+    REQUIRE(found.remainder);
+    CHECK(found.remainder->gap > 1.2);
+  }
+}
+
+TEST_CASE("what a cause in the model gives of K/m, mu and the inclination holds the truth beside a remainder") {
+  const diagnose::Diagnosis found = diagnosed(1, [](double, double v) { return -0.15 * v * std::abs(v); });
+  REQUIRE(found.recovered.size() == 4);  // two masses, two inclinations
+  for (const diagnose::RecoveredConfiguration& one : found.recovered) {
+    CHECK(one.with == std::vector<std::string>{"quadratic_drag"});
+    REQUIRE(one.k_over_m_1_s.estimate);
+    REQUIRE(one.mu.estimate);
+    REQUIRE(one.alpha_deg.estimate);
+    // Eight clips, one seed: four standard deviations, which Student's t with seven degrees leaves in 5 of 1000.
+    CHECK(std::abs(one.k_over_m_1_s.estimate->value - 0.93 / one.mass_kg) < 4.0 * one.k_over_m_1_s.estimate->sd);
+    CHECK(std::abs(one.mu.estimate->value - 0.006) < 4.0 * one.mu.estimate->sd);
+    CHECK(std::abs(one.alpha_deg.estimate->value - one.incline_deg) < 4.0 * one.alpha_deg.estimate->sd);
+    CHECK(one.k_over_m_1_s.estimate->sd < 0.2 / one.mass_kg);
+    if (one.incline_deg < 1.0) {
+      CHECK(!one.v_lim_m_s.estimate);
+      CHECK(!one.v_lim_m_s.why.empty());
+      continue;
+    }
+    // m g sin(alpha) = K v + C v² + mu m g cos(alpha), solved here.
+    const double alpha = one.incline_deg * std::acos(-1.0) / 180.0, weight = one.mass_kg * 9.80665;
+    const double b = 0.93, c = 0.15, f = weight * (std::sin(alpha) - 0.006 * std::cos(alpha));
+    const double v = (-b + std::sqrt(b * b + 4.0 * c * f)) / (2.0 * c);
+    REQUIRE(one.v_lim_m_s.estimate);
+    CHECK(std::abs(one.v_lim_m_s.estimate->value - v) < 4.0 * one.v_lim_m_s.estimate->sd);
+    CHECK(one.v_lim_m_s.estimate->sd < 0.1 * v);
+  }
+}

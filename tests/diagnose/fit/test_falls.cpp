@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/motion_fit.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kC_kg_m = 0.0031;  // of a coffee filter
+
+/// Stacks of one to ten coffee filters that fall for 0.7 s, seen at 50 Hz: a quadratic drag, no K, no track.
+tests::MadeExperiment falls(double incline_deg, double incline_sd_deg, unsigned seed) {
+  std::vector<tests::MadeLaunch> launches;
+  for (int filters = 1; filters <= 10; ++filters) launches.push_back({1e-3 * filters, incline_deg, 0.0, 0.3});
+  tests::MadeEffect drag;
+  drag.force = [](double, double, double v, double) { return -kC_kg_m * v * std::abs(v); };
+  return tests::made_experiment(launches, drag, seed, 5e-4, 36, 50.0, incline_sd_deg, 0.0, {.k_n_s_m = 0.0, .mu = 0.0});
+}
+
+/// chi² of x = x0 + u t + (v0 - u)(1 - exp(-k t))/k, u = g/k and k = K/m, at the best x0 and v0 of each motion: linear.
+double chi2_of(const diagnose::TrackSet& set, double k_n_s_m, double driving_m_s2) {
+  double chi2 = 0.0;
+  for (const diagnose::TrackedMotion& motion : set.motions) {
+    const double k = k_n_s_m / set.masses[motion.mass].mass_kg, u = driving_m_s2 / k;
+    double s11 = 0.0, s12 = 0.0, s22 = 0.0, b1 = 0.0, b2 = 0.0, bb = 0.0;
+    for (std::size_t p = 0; p < motion.t_s.size(); ++p) {
+      if (motion.outlier[p]) continue;
+      const double t = motion.t_s[p] - motion.t_s.front(), w = 1.0 / motion.sd_of(p);
+      const double of_v0 = -std::expm1(-k * t) / k, y = w * (motion.x_m[p] - u * (t - of_v0));
+      s11 += w * w;
+      s12 += w * w * of_v0;
+      s22 += w * w * of_v0 * of_v0;
+      b1 += w * y;
+      b2 += w * of_v0 * y;
+      bb += y * y;
+    }
+    const double det = s11 * s22 - s12 * s12;
+    chi2 += bb - (s22 * b1 * b1 - 2.0 * s12 * b1 * b2 + s11 * b2 * b2) / det;
+  }
+  return chi2;
+}
+
+}  // namespace
+
+TEST_CASE("the nominal fit of falls has the K of a search over the closed form, from 80 to 90 degrees") {
+  for (const double incline_deg : {80.0, 86.0, 90.0}) {
+    CAPTURE(incline_deg);
+    // As good as exact, so that the search need not know about it.
+    const tests::MadeExperiment made = falls(incline_deg, 1e-4, 5);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    REQUIRE(set.motions.size() == 10);
+    const diagnose::MotionFit fit = diagnose::fit_nominal(set);
+    CHECK(fit.converged);
+    const double normal = std::cos(set.groups[0].stated_rad), slope = std::sin(set.groups[0].stated_rad);
+    const double driving = set.gravity_m_s2 * (slope - fit.at.global[1] * normal);
+    double best = std::numeric_limits<double>::infinity(), k = 0.0;
+    for (double tried = 1e-4; tried < 0.05; tried *= 1.0005) {
+      const double chi2 = chi2_of(set, tried, driving);
+      if (chi2 >= best) continue;
+      best = chi2;
+      k = tried;
+    }
+    // The grid's step, 0.05 %, and the integrator's error, far below the noise.
+    CHECK(fit.at.global[0] == Approx(k).epsilon(1e-3));
+    double held = 0.0;  // what the statements add to the fit's chi²
+    for (const diagnose::FitStatement& s : fit.statements) {
+      held += std::pow((s.value - fit.at.global[static_cast<Eigen::Index>(s.global)]) / s.sd, 2);
+    }
+    CHECK(fit.cost - held == Approx(best).epsilon(1e-4));
+    if (incline_deg == 90.0) CHECK(std::abs(fit.at.global[1]) < 1e-6);  // nothing tells mu
+  }
+}
+
+TEST_CASE(
+    "of falling coffee filters quadratic drag is named, with its C, whether or not the inclination's error is stated") {
+  for (const double sd_deg : {0.0, 0.5}) {
+    CAPTURE(sd_deg);
+    const tests::MadeExperiment made = falls(90.0, sd_deg, 8);
+    const diagnose::Diagnosis diagnosis =
+        diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+    CHECK(diagnosis.verdict == diagnose::Verdict::effect);
+    // Beside it the scatter of single positions may be named: what it is read off is the nominal fit's, a hundred
+    // deviations off.
+    const auto drag = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                   [](const auto& effect) { return effect.id == "quadratic_drag"; });
+    REQUIRE(drag != diagnosis.effects.end());
+    REQUIRE_FALSE(drag->parameters.empty());
+    const diagnose::DiagnosedParameter& c = drag->parameters.front();
+    CHECK(c.key == "c_kg_m");
+    CHECK(std::abs(c.value - kC_kg_m) < 3.0 * c.sd);
+    CHECK(c.sd < 0.1 * kC_kg_m);
+    const auto falls_only = [](const diagnose::Note& note) {
+      return std::holds_alternative<diagnose::OnlyFalls>(note);
+    };
+    CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), falls_only));
+  }
+}

@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/motion_fit.h"
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Two clips in which little of the list fits: the track has a kink in it that pulls hard, and the positions jump.
+tests::MadeExperiment strange_motions(unsigned seed) {
+  const tests::MadeEffect kink{.force = [](double, double x, double, double) { return x > 0.0 ? -0.6 : 0.5; },
+                               .seen = [](double x, double t) { return x + (std::fmod(t, 0.37) < 0.1 ? 0.01 : 0.0); }};
+  return tests::made_experiment({{0.335, 4.0, 0.3, -1.1}, {0.535, 4.0, -0.6, 1.2}, {0.535, 4.0, 0.2, -0.9}}, kink, seed,
+                                3e-5, 60, 60.0);
+}
+
+}  // namespace
+
+TEST_CASE("a fit with one more effect ends no worse than without it, from wherever it starts") {
+  const tests::MadeExperiment made = strange_motions(3);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  std::size_t led_away = 0;
+  for (const char* id : {"quadratic_drag", "tether", "stribeck", "base_vibration", "track_bow", "perspective_error"}) {
+    CAPTURE(id);
+    const std::size_t effect = diagnose::effect_index(id);
+    // As far out as the effect's parameters go.
+    std::vector<double> values;
+    for (const diagnose::EffectParameter& parameter : diagnose::effect_list()[effect].parameters) {
+      const diagnose::ParameterRange range = diagnose::range_of(set, parameter);
+      if (parameter.each == diagnose::Each::experiment)
+        values.push_back(values.empty() ? 0.9 * range.high : 0.5 * (range.low + range.high));
+    }
+    const diagnose::FitPoint start = diagnose::with_effect(set, nominal, effect, values, {});
+    led_away += !(diagnose::fit_motions(set, {effect}, start).cost <= nominal.cost) ? 1 : 0;
+    // The model with the effect absent is the nominal one, bit by bit but for the order of sums.
+    CHECK(diagnose::fit_with_effect(set, nominal, effect, start).cost <= nominal.cost * (1.0 + 1e-9));
+  }
+  CHECK(led_away > 0);  // else this tests nothing
+}
+
+TEST_CASE("no explanation that was fitted gains less than nothing, and each says whether its fit came to an end") {
+  const tests::MadeExperiment made = strange_motions(4);
+  const diagnose::Diagnosis diagnosis =
+      diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  REQUIRE_FALSE(diagnosis.ranking.empty());
+  for (const diagnose::RankedExplanation& ranked : diagnosis.ranking) {
+    if (ranked.left_out) continue;
+    CAPTURE(ranked.explanation.effects);
+    // chi² of some 1e5 to 1e7, to the rounding of its sums.
+    CHECK(ranked.log_likelihood_gain >= -1e-3);
+  }
+}

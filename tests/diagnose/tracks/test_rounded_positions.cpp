@@ -1,0 +1,88 @@
+#include "diagnose/tracks/rounded_positions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/smoothing/noise.h"
+#include "diagnose/tracks/track_set.h"
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kStep_m = 0.01;
+
+/// An ideal cart, up an incline and down again, as a motion sensor exports it: 50 Hz, whole centimetres. The phase of
+/// the start in the step goes by the seed.
+tests::MadeExperiment exported(unsigned seed) {
+  std::vector<tests::MadeLaunch> launches;
+  for (int clip = 0; clip < 6; ++clip) {
+    const double phase = std::fmod(0.6180339887 * (7 * seed + clip), 1.0) * kStep_m;
+    launches.push_back({clip % 2 == 0 ? 0.3 : 0.5, 3.0, 1.5 + phase, -1.2 - 0.05 * clip});
+  }
+  tests::MadeEffect rounded;
+  rounded.seen = [](double x, double) { return kStep_m * std::round(x / kStep_m); };
+  return tests::made_experiment(launches, rounded, seed, 0.0, 200, 50.0, 0.1, 0.0, {.k_n_s_m = 0.02, .mu = 0.005});
+}
+
+}  // namespace
+
+TEST_CASE("the step of rounded positions is found, also where no two neighbours lie a single step apart") {
+  std::vector<double> slow, fast, fine;
+  for (int i = 0; i < 40; ++i) {
+    slow.push_back(kStep_m * std::round(0.1 * i * i));
+    fast.push_back(kStep_m * (5.0 * i + i % 3));  // changes of 3 and 6 steps: their largest common part
+    fast.back() += i % 4 == 0 ? kStep_m : 0.0;
+    fine.push_back(0.0123 * std::sin(0.3 * i));
+  }
+  CHECK(core::rounding_step(slow) == Approx(kStep_m).epsilon(1e-9));
+  CHECK(core::rounding_step(fast) == Approx(kStep_m).epsilon(1e-9));
+  CHECK(core::rounding_step(fine) == 0.0);
+}
+
+TEST_CASE("frames err alike where the motion is slow or passes whole steps, and not between") {
+  // Positions that move on by so many steps a frame, evenly.
+  const auto alike = [](double steps) {
+    std::vector<double> t, x;
+    for (int i = 0; i < 60; ++i) {
+      t.push_back(0.02 * i);
+      x.push_back(kStep_m * std::round(steps * i + 0.31));
+    }
+    return diagnose::frames_alike(t, x, kStep_m)[30];
+  };
+  // The shift is 0.2 of a step after 0.2/0.05 = 4 frames either way; the slope errs by up to 0.03 steps.
+  CHECK(alike(0.05) >= 4.0);
+  CHECK(alike(0.05) <= 21.0);
+  CHECK(alike(3.05) >= 4.0);
+  CHECK(alike(3.05) <= 21.0);
+  CHECK(alike(0.45) == 1.0);
+  CHECK(alike(2.37) == 1.0);
+  CHECK(alike(0.0) == 60.0);  // at rest
+}
+
+TEST_CASE("the noise of rounded positions is no less than what rounding makes, and wider about the turn") {
+  const tests::MadeExperiment made = exported(1);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(set.motions.size() == 6);
+  CHECK(diagnose::noise_is_rounding(set));
+  for (const diagnose::TrackedMotion& motion : set.motions) {
+    CHECK(motion.step_m == Approx(kStep_m).epsilon(1e-9));
+    CHECK(motion.sd_m >= kStep_m / std::sqrt(12.0) * (1.0 - 1e-9));
+    const auto top = std::min_element(motion.x_m.begin(), motion.x_m.end()) - motion.x_m.begin();
+    CHECK(motion.wider[static_cast<std::size_t>(top)] > 1.5);
+    CHECK(motion.wider.front() < 2.0);
+  }
+}
+
+TEST_CASE("an ideal cart whose positions are rounded to a centimetre has no effect") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    CAPTURE(seed);
+    const tests::MadeExperiment made = exported(seed);
+    const diagnose::Diagnosis diagnosis =
+        diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+    CHECK(diagnosis.verdict == diagnose::Verdict::none);
+  }
+}

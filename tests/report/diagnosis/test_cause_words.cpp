@@ -1,0 +1,174 @@
+#include "report/diagnosis/cause_words.h"
+
+#include "report/diagnosis/diagnosis_report.h"
+#include "report/diagnosis/verdict_words.h"
+#include "tests/catch.h"
+#include "tests/report/made_diagnoses.h"
+
+using namespace glidelab;
+
+namespace {
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a share has whole percents, tenths near its ends, and its interval") {
+  CHECK(report::share_text(0.914) == "91 %");
+  CHECK(report::share_text(0.91, diagnose::GapInterval{0.86, 0.95}) == "91 % (86 to 95 %)");
+  CHECK(report::share_text(0.997, diagnose::GapInterval{0.98, 1.004}) == "99.7 % (98.0 to 100.4 %)");
+  CHECK(report::share_text(0.003) == "0.3 %");
+  CHECK(report::share_text(-0.02) == "-2.0 %");
+  CHECK(report::share_text(0.0) == "0 %");
+  CHECK(report::share_text(1.0) == "100 %");
+}
+
+TEST_CASE("the answer says how much each cause explains, with its size, and what is left") {
+  const diagnose::Diagnosis of = tests::two_causes();
+  // The gap that is left: g² = 1 + 0.03 (5.3² - 1) = 1.8127, g = 1.346.
+  const std::string answer =
+      "Quadratic drag, c = 0.00310 ± 0.00020 kg/m, explains 91 % (86 to 95 %) of the gap on clips that were held out; "
+      "inertia without weight, mass = 0.0123 ± 0.0014 kg, explains another 6 % (2 to 10 %); 3 % are left, 1.35 times the "
+      "noise.";
+  CHECK(report::sequence_words(of) == answer);
+  const std::string words = report::verdict_words(of);
+  CHECK(words.starts_with(answer + " Probability: quadratic drag 97 %, inertia without weight 81 %."));
+  CHECK(says(words, "Held-out clips lie 5.30 times as far from the nominal model"));
+  CHECK_FALSE(says(words, "with these effects in the model"));  // what is left is told once
+  CHECK(says(report::diagnosis_meaning(of), "<p><b>Quadratic drag"));
+}
+
+TEST_CASE("a cause is told without what was not fitted, of each set-up by itself, or not found") {
+  diagnose::Diagnosis of = tests::two_causes();
+  of.effects.front().parameters = {
+      {"x_mid_m", 0.4, 0.0}, {"x_mid_m.slope", 0.4, 0.01}, {"n", 0.0, 0.0, "", "no speeds"}};
+  CHECK(report::sequence_words(of).starts_with("Quadratic drag explains 91 %"));
+  of.remainder.reset();
+  CHECK(report::sequence_words(of).ends_with("explains another 6 % (2 to 10 %)."));
+  of.remainder = diagnose::GapRemainder{-0.001, 0.99, 0.0, 0.0, 0.0, {}};
+  CHECK(report::sequence_words(of).ends_with("; nothing is left above the noise."));
+}
+
+TEST_CASE("the verb follows the name of the cause: several frame times explain, one drag explains") {
+  diagnose::Diagnosis of = tests::two_causes();
+  const auto begins = [&](const char* id, const char* words) {
+    of.explained.front().id = id;
+    INFO(report::sequence_words(of));
+    return report::sequence_words(of).starts_with(words);
+  };
+  CHECK(begins("timestamp_jitter", "Uneven frame times explain 91 %"));
+  CHECK(begins("heavy_tailed_noise", "Outliers explain 91 %"));
+  CHECK(begins("rotational_inertia", "Inertia without weight, mass = 0.0123 ± 0.0014 kg, explains 91 %"));
+  CHECK(begins("late_release", "Hand that lets go late explains 91 %"));
+  CHECK(begins("damping_gradient", "Drag that varies along x explains 91 %"));
+  CHECK(begins("stribeck", "More friction at low speed explains 91 %"));
+  CHECK(begins("smoothing_bias", "Smoothing bias explains 91 %"));
+}
+
+TEST_CASE("causes that look alike, and effects that have no share, are told behind the answer") {
+  diagnose::Diagnosis of = tests::two_causes();
+  of.effects.front().joint_probability = 0.98;
+  of.effects.front().alike = {{"quadratic_drag", "", 0.68}, {"power_law_drag", "", 0.30}, {"eddy_rolloff", "", {}}};
+  of.explained.pop_back();
+  CHECK(report::sureness_words(of) ==
+        "Probability: inertia without weight 81 %. These data cannot tell quadratic drag (68 %), power-law drag (30 %) and "
+        "magnetic drag that levels off apart; one of them acts with a probability of 98 %. Inertia without weight has no "
+        "share of this gap.");
+}
+
+TEST_CASE("traces are no part of the verdict: nothing that matters is missing, whatever is likeliest") {
+  const diagnose::Diagnosis of = tests::traces_alone();
+  CHECK(report::sequence_words(of) ==
+        "Nothing that matters is missing. Traces: uneven frame times are seen, without consequence for K/m, µ and α.");
+  CHECK(report::verdict_words(of).starts_with("Nothing that matters is missing."));
+  CHECK_FALSE(says(report::verdict_words(of), "leave it open"));
+  diagnose::Diagnosis one = of;
+  one.traces = {"rolling_shutter"};
+  CHECK(says(report::sequence_words(one), "Traces: rolling shutter is seen,"));
+  one.traces.clear();
+  CHECK(report::sequence_words(one).empty());
+}
+
+TEST_CASE("where no cause takes half, the answer says so, what helps, and where the rest lies") {
+  diagnose::Diagnosis of = tests::no_half();
+  // g² = 1 + 0.69 (5.3² - 1) = 19.69, g = 4.44.
+  CHECK(report::verdict_words(of).starts_with(
+      "Something is missing, and no cause that this program knows takes half of the gap on clips that were held out: "
+      "uneven frame times explain 31 % (20 to 42 %); 69 % are left, 4.44 times the noise. What is left is clearest at "
+      "times from 0 to 0.1 s of clip m2-up: force of up to 1.20 ± 0.10 mN after 50 ms."));
+  of.explained.clear();
+  of.remainder->share = 1.0;
+  of.remainder->gap = 5.3;
+  CHECK(
+      says(report::verdict_words(of),
+           "None makes it smaller by more than its uncertainty: it is 5.3 times the noise. What is left is clearest"));
+  of.remainder->regions.front().lacking = 1e-5;  // far less than the size that was found
+  CHECK(says(report::verdict_words(of), "force. These data do not tell how large it is."));
+}
+
+TEST_CASE("a law that holds within each configuration and not across them is told first, with what differs") {
+  const diagnose::Diagnosis of = tests::law_within();
+  CHECK(report::sequence_words(of).starts_with(
+      "The law holds within each configuration (gap 1.02); across them it does not (5.3)."));
+  const auto rows = report::member_rows(of.effects.front());
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[0] == std::vector<std::string>{"", "µ"});
+  CHECK(rows[1] == std::vector<std::string>{"0.335 kg, 4°", "0.00710 ± 0.00010"});
+  CHECK(rows[2] == std::vector<std::string>{"0.435 kg, 4°", "0.00830 ± 0.00010"});
+  CHECK(report::member_rows(tests::two_causes().effects.front()).empty());
+  const std::string page = report::diagnosis_report("within", of).html;
+  CHECK(says(page, "<h2>What differs</h2>"));
+  CHECK(says(page, "kg, 4°</td><td class=\"n\">0.00830\u00a0±\u00a00.00010</td>"));
+}
+
+TEST_CASE("what is left is told as an acceleration and a scatter, with their units") {
+  diagnose::GapRemainder of = *tests::two_causes().remainder;
+  CHECK(report::remainder_words(of) ==
+        "What is left amounts to a random acceleration of 4.1 mm/s² (root mean square) along the way. From clip to "
+        "clip, friction and inclination scatter by 0.8 mm/s² and the drag by 2.1 %.");
+  of.clip_scatter_m_s2 = 0.0;
+  CHECK(report::remainder_words(of).ends_with("From clip to clip, the drag scatters by 2.1 %."));
+  of.acceleration_m_s2 = of.drag_scatter = 0.0;
+  CHECK(report::remainder_words(of).empty());
+  diagnose::GapRegion region{"mass_kg", 0.335, 0.335, 4.0, 0.01, "m/s²", "acceleration", ""};
+  CHECK(report::region_words(region) == "with 0.335 kg");
+  region.variable = "x_m";
+  region.to = 0.5;
+  region.clip = "m1-up";
+  CHECK(report::region_words(region) == "at positions from 0.335 to 0.5 m of clip m1-up");
+}
+
+TEST_CASE("recovered quantities stand under the causes that are in their model, with why one is undetermined") {
+  diagnose::Diagnosis of = tests::two_causes();
+  auto tables = report::recovered_tables(of);
+  REQUIRE(tables.size() == 1);
+  CHECK(report::with_words(tables[0].with) == "with quadratic drag and inertia without weight in the model");
+  REQUIRE(tables[0].rows.size() == 3);
+  CHECK(tables[0].rows[1][0] == "0.335 kg, 4°");
+  CHECK(tables[0].rows[1][1] == "2.7463 ± 0.0060");  // 0.92/0.335
+  CHECK(tables[0].rows[2][4] == "–");
+  CHECK(tables[0].why == std::vector<std::string>{"limit velocity of 0.435 kg, 4°: the clips hold no motion downhill"});
+  of.recovered.back().group = "other";
+  of.recovered.back().with.clear();
+  tables = report::recovered_tables(of);
+  REQUIRE(tables.size() == 2);
+  CHECK(tables[0].rows[1][0] == "0.335 kg, 4°, slope");
+  CHECK(report::with_words(tables[1].with) == "by the nominal model");
+}
+
+TEST_CASE("a terminal has the answer, the causes, what is left, the quantities and the next step before the ranking") {
+  const std::string text = report::diagnosis_text(tests::two_causes());
+  std::size_t at = 0;
+  for (const char* part :
+       {"verdict: effect", "Quadratic drag, c =", "\nquadratic_drag      91 % (86 to 95 %)       1.85\n", "\nleft ",
+        "random acceleration", "It is clearest at times", "in the model:\n", "\n0.335 kg, 4°", "\nnext: Repeat",
+        "ln evidence", "\ngap of held-out clips: 5.300 before"}) {
+    INFO(part << "\n" << text);
+    const std::size_t found = text.find(part, at);
+    REQUIRE(found != std::string::npos);
+    at = found;
+  }
+  CHECK(text.find("next: ") == text.rfind("next: "));
+}

@@ -1,0 +1,109 @@
+/// The page of a diagnosis with a sequence of causes: what is open, what is folded, and which numbers are not shown.
+#include "report/diagnosis/diagnosis_answer.h"
+
+#include <algorithm>
+
+#include "report/diagnosis/diagnosis_report.h"
+#include "tests/catch.h"
+#include "tests/report/made_diagnoses.h"
+
+using namespace glidelab;
+
+namespace {
+
+bool shows(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string page_of(const diagnose::Diagnosis& diagnosis) {
+  return report::diagnosis_report("made", diagnosis).html;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the page has verdict, waterfall, quantities, the rest and the next step open, in this order, and all else "
+    "folded") {
+  const std::string page = page_of(tests::two_causes());
+  const std::size_t folds = page.find("<details");
+  REQUIRE(folds != std::string::npos);
+  const std::string open = page.substr(0, folds);
+  std::size_t at = 0;
+  for (const char* part : {"<b>Quadratic drag", "What explains the gap", "Waterfall of the gap",
+                           "K/m, µ, α and limit velocity", "with quadratic drag and inertia without weight in the model",
+                           "Where the rest lies", "random acceleration", "What to record next"}) {
+    INFO(part);
+    const std::size_t found = open.find(part, at);
+    CHECK(found != std::string::npos);
+    at = std::min(found, open.size());
+  }
+  CHECK_FALSE(shows(open, "class=\"tiles\""));
+  CHECK(std::count(open.begin(), open.end(), '\n') < 120);
+  for (const char* part : {"Probability of each explanation", "How large the gap is", "Where the gap lies",
+                           "The gap, clip by clip", "Method"}) {
+    INFO(part);
+    CHECK(page.find(part, folds) != std::string::npos);
+    CHECK_FALSE(shows(open, part));
+  }
+  const auto count = [&](const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t i = page.find(what); i != std::string::npos; i = page.find(what, i + 1)) ++n;
+    return n;
+  };
+  CHECK(count("<details") == count("</details>"));
+}
+
+TEST_CASE("without a sequence of causes the page keeps its tiles open and has no empty part") {
+  diagnose::Diagnosis of = tests::two_causes();
+  of.explained.clear();
+  of.remainder.reset();
+  of.levels.reset();
+  of.recovered.clear();
+  const std::string page = page_of(of);
+  CHECK(page.find("class=\"tiles\"") < page.find("<details"));
+  for (const char* part : {"What explains the gap", "K/m, µ, α and limit velocity", "Where the rest lies", "Notes ("}) {
+    INFO(part);
+    CHECK_FALSE(shows(page, part));
+  }
+}
+
+TEST_CASE("where something is missing no page shows the nominal model's K with a standard deviation") {
+  diagnose::Diagnosis of = tests::two_causes();
+  // Beside what was recovered it is not shown at all.
+  CHECK_FALSE(shows(page_of(of), "0.9412"));
+  CHECK_FALSE(shows(page_of(of), "nominal model, alone"));
+  of.recovered.clear();
+  for (const diagnose::Verdict verdict : {diagnose::Verdict::effect, diagnose::Verdict::unknown}) {
+    of.verdict = verdict;
+    const std::string page = page_of(of);
+    CHECK(shows(page, "nominal model, alone"));
+    CHECK(shows(page, "0.941\u00a0N\u00a0s/m</td>"));
+    CHECK_FALSE(shows(page, "0.9412"));
+    CHECK(shows(page, "not those of the glider"));
+  }
+  of.verdict = diagnose::Verdict::none;
+  CHECK(shows(page_of(of), "0.9412340\u00a0±\u00a00.0000077"));
+}
+
+TEST_CASE("where nothing has a name the curve over what matters most is open, and no other") {
+  diagnose::Diagnosis of = tests::no_half();
+  const auto open_part = [&] {
+    const std::string page = page_of(of);
+    return page.substr(0, page.find("<details"));
+  };
+  CHECK_FALSE(shows(open_part(), "Curve of the force"));  // over the position, and the rest lies over time
+  of.curves.front().variable = "t_s";
+  CHECK(shows(open_part(), "Curve of the force over time"));
+  CHECK(shows(open_part(), "The smooth force over time"));
+  of.verdict = diagnose::Verdict::effect;
+  CHECK_FALSE(shows(open_part(), "Curve of the force"));
+  // Without a remainder `unknown` has the places of the whole gap.
+  of.verdict = diagnose::Verdict::unknown;
+  of.regions = of.remainder->regions;
+  of.regions.front().what = "friction";
+  of.remainder.reset();
+  CHECK(shows(open_part(), "<h2>Where the gap lies</h2>"));
+  CHECK(shows(open_part(), "<td>friction</td>"));
+  of.regions.front().variable = "group";
+  CHECK(shows(open_part(), "one of the set-ups of m2-up"));
+}

@@ -1,0 +1,85 @@
+/// One everyday experiment with a known truth: one cause, two, none or one outside the list, and several small
+/// imperfections besides (everyday_dirt.h).
+///
+/// Drawn from (seed, index) alone. Of 100 cases 50 have one cause, 20 two, 15 dirt alone, 15 a cause outside. The
+/// causes make an excess of the squared gap (blind_strength.h: g² - 1 of held-out clips, without noise) of 1.5 to 4 in
+/// moderate cases and 4 to 40 in strong ones. With X(L) that excess for a law L that has the named causes in it,
+///
+///     share of cause i = (X(causes before i) - X(those and i)) / X(nominal),      the main cause first,
+///     share of dirt    = X(all causes) / X(nominal),                              between 0.02 and 0.30.
+///
+/// The second of two causes has a share of a quarter or more. Dirt alone is as large as it would be beside a cause.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validate/blind/case/blind_case.h"
+#include "validate/blind/case/everyday_dirt.h"
+
+namespace glidelab::validate {
+
+enum class EverydayClass { one, two, dirt, outside };
+inline constexpr EverydayClass kEverydayClasses[] = {EverydayClass::one, EverydayClass::two, EverydayClass::dirt,
+                                                     EverydayClass::outside};
+
+/// "one", "two", "dirt", "outside".
+std::string_view word(EverydayClass kind);
+
+inline constexpr double kLeastDirt = 0.02, kMostDirt = 0.30;         ///< share of the excess
+inline constexpr double kLeastSecond = 0.25;                         ///< share of the second of two causes
+inline constexpr double kModerateExcess = 1.5, kStrongExcess = 4.0;  ///< of a position's squared gap
+
+/// K/m, mu, alpha and terminal velocity of clips of one mass and one group, with the causes in the law.
+struct EverydayConfiguration {
+  std::string group;
+  double mass_kg = 0.0, incline_deg = 0.0;  ///< as stated
+  double k_over_m_1_s = 0.0, mu = 0.0, alpha_deg = 0.0;
+  std::optional<double> v_lim_m_s;  ///< none where it comes to rest, or has none
+};
+
+struct ActingDirt {
+  std::string id;
+  double size = 0.0;
+  std::string unit;
+  double excess = 0.0;               ///< its own beside nothing, taken to grow as the square of its size
+  std::vector<std::string> effects;  ///< fair names for it
+};
+
+struct EverydayTruth {
+  EverydayClass kind = EverydayClass::dirt;
+  bool strong = false;
+  double excess = 0.0;                           ///< g² - 1 of the nominal law, of everything that acts
+  std::vector<double> shares;                    ///< of the causes, the main one first
+  double remainder = 1.0;                        ///< dirt's
+  std::vector<std::vector<std::string>> equals;  ///< of each cause: other ids that are the same law here
+  std::vector<ActingDirt> dirt;
+  std::vector<EverydayConfiguration> configurations;
+};
+
+struct EverydayCase : BlindCase {
+  EverydayTruth truth;
+  EverydayNoise noise;
+};
+
+struct EverydayDraw {
+  std::string only;  ///< an effect that every case has; empty: all classes
+};
+
+/// The class of a case, without making it.
+EverydayClass everyday_class(std::uint64_t seed, std::size_t index);
+
+/// NumericalError where no design of many shows the wanted causes.
+EverydayCase make_everyday_case(std::uint64_t seed, std::size_t index, const EverydayDraw& draw = {});
+
+/// 4 to 12 clips at 25 to 240 Hz on up to 2.6 m of track, noise of 0.05 to 1.5 mm, one to three masses, one or two
+/// inclinations, launched both ways.
+BlindDesign draw_everyday_design(BlindRandom& random);
+
+/// truth_of(), shares, dirt, noise, and what is true of each configuration.
+std::string everyday_truth_json(const EverydayCase& one);
+
+}  // namespace glidelab::validate

@@ -1,0 +1,101 @@
+#include "validate/blind/case/everyday_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "validate/blind/case/everyday_causes.h"
+
+namespace glidelab::validate {
+namespace {
+
+const std::set<std::string> kLawsOfSpeed = {
+    "quadratic_drag",           "eddy_rolloff",       "power_law_drag",        "stribeck", "load_independent_friction",
+    "direction_dependent_drag", "configuration_drag", "configuration_friction"};
+
+/// Middle of the range of x over all clips of a group.
+double middle_of(const BlindDesign& design, const std::vector<std::vector<double>>& x_m, std::size_t group) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t c = 0; c < design.clips.size(); ++c) {
+    if (design.clips[c].group != group) continue;
+    for (const double x : x_m[c]) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+/// Terms of the law of a clip with the causes that `of` names.
+BlindTerms law_terms(const BlindDesign& design, std::size_t clip, const std::vector<BlindPut>& causes,
+                     const std::set<std::string>& of, double x, double v) {
+  BlindFilm film = nominal_film(design, design.clips[clip]);
+  const double weight = film.law.mass_kg * film.law.gravity_m_s2;
+  for (const BlindPut& put : causes) {
+    if (of.contains(put.effect->id)) put.effect->put(put.size, clip, film);
+  }
+  BlindTerms terms{weight * std::sin(film.law.alpha_rad), film.law.k_n_s_m * v,
+                   film.law.mu * weight * std::cos(film.law.alpha_rad), film.law.mass_kg, film.law.mass_kg};
+  for (const BlindChange& change : film.law.changes) change(x, v, 0.0, terms);
+  return terms;
+}
+
+/// The first root of `net` above rest; none where it does not move off, or nothing holds it below 50 m/s.
+std::optional<double> first_balance(const std::function<double(double)>& net) {
+  constexpr double kSlowest = 1e-6, kFastest = 50.0, kStep = 0.01;  // m/s
+  constexpr int kRootHalvings = 60;
+  if (!(net(kSlowest) > 0.0)) return std::nullopt;
+  double low = kSlowest;
+  for (double high = kStep; high < kFastest; high += kStep) {
+    if (net(high) > 0.0) {
+      low = high;
+      continue;
+    }
+    for (int i = 0; i < kRootHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (net(middle) > 0.0 ? low : high) = middle;
+    }
+    return low;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<EverydayConfiguration> everyday_configurations(const BlindDesign& design,
+                                                           const std::vector<BlindPut>& causes,
+                                                           const std::vector<std::vector<double>>& x_m) {
+  constexpr double kDegree = std::numbers::pi / 180.0, kAnySpeed = 1.0;
+  std::vector<EverydayConfiguration> list;
+  std::set<std::size_t> seen;
+  for (std::size_t c = 0; c < design.clips.size(); ++c) {
+    const BlindClip& clip = design.clips[c];
+    if (!seen.insert(configuration_of(design, clip)).second) continue;
+    const BlindGroup& group = design.groups[clip.group];
+    const double mass = design.masses[clip.mass].true_kg, weight = mass * design.gravity_m_s2;
+    const double middle = middle_of(design, x_m, clip.group);
+    const auto terms = [&](const std::set<std::string>& of, double v) {
+      return law_terms(design, c, causes, of, middle, v);
+    };
+    EverydayConfiguration one;
+    one.group = group.name;
+    one.mass_kg = design.masses[clip.mass].stated_kg;
+    one.incline_deg = group.stated_rad / kDegree;
+    one.k_over_m_1_s = terms({"configuration_drag", "damping_gradient"}, kAnySpeed).drag_n / kAnySpeed / mass;
+    one.mu = terms({"configuration_friction"}, kAnySpeed).friction_n / (weight * std::cos(group.true_rad));
+    const double drive = terms({"track_bow"}, kAnySpeed).drive_n;
+    one.alpha_deg = std::asin(std::clamp(drive / weight, -1.0, 1.0)) / kDegree;
+    std::set<std::string> of = kLawsOfSpeed;
+    of.insert({"track_bow", "damping_gradient", "direction_asymmetry"});
+    one.v_lim_m_s = first_balance([&](double v) {
+      const BlindTerms at = terms(of, v);
+      return at.drive_n - at.drag_n - std::max(0.0, at.friction_n);
+    });
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+}  // namespace glidelab::validate

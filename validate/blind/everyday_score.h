@@ -1,0 +1,92 @@
+/// Diagnoses of everyday cases compared with the truth: the main cause, both of two, dirt alone, a cause off the list;
+/// shares, recovered quantities and stated probabilities.
+///
+/// A way of deciding claims something or does not (a diagnosis: its verdict is `effect`), and names ids in an order:
+/// for a diagnosis those of `explained`, or of `effects` where that is empty. A name is right where it is the cause's
+/// id, of one class with it (blind_class), or the same law on that design (EverydayTruth::equals); "in the set" also
+/// where the diagnosis says that the data cannot tell the name from it.
+///
+/// Of a diagnosis that claims, the probability of its first name counts, together with what it cannot be told from; of
+/// dirt alone `none` and `unknown` are both right, and their sum counts; a cause off the list is rightly `unknown`.
+///
+/// Beside it stands plain forward selection by held-out residuals, from the same `ranking`: the effect with the least
+/// gap of held-out clips, then the one that lowers it most beside the first, if by more than two standard errors; it
+/// claims where the excess g² - 1 falls to a half or less. It states no probability: every name of it counts as sure.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "validate/blind/blind_score.h"
+
+namespace glidelab::validate {
+
+struct EverydayName {
+  std::string id;
+  std::vector<std::string> equivalent_to;
+  double probability = 1.0;
+  std::optional<double> share;
+};
+
+/// What one way of deciding says of a case.
+struct EverydaySaying {
+  bool failed = false;
+  bool claims = false;
+  std::vector<EverydayName> names;
+};
+
+EverydaySaying said_by_diagnosis(const BlindVerdict& verdict);
+EverydaySaying said_by_forward_selection(const BlindVerdict& verdict);
+
+/// Root mean square and mean of errors.
+struct ErrorSum {
+  std::size_t of = 0;
+  double squares = 0.0, sum = 0.0;
+  void add(double error);
+  double rms() const;  ///< 0 of none
+  double mean() const;
+};
+
+/// By class ("one", "two", "dirt", "outside") and strength ("moderate", "strong").
+using SharesByCase = std::map<std::string, std::map<std::string, BlindShare>>;
+/// Over all that are in it, of some classes or of all.
+BlindShare sum_of(const SharesByCase& shares, const std::vector<std::string>& classes = {});
+
+struct EverydayMethod {
+  std::string name;
+  SharesByCase main_first;   ///< one, two: claimed, and the main cause comes first
+  SharesByCase main_in_set;  ///< the same, or the first cannot be told from it
+  SharesByCase both;         ///< two: claimed, and both are among the names
+  SharesByCase false_claim;  ///< dirt: a cause with half of the excess
+  SharesByCase wrong_name;   ///< outside: claimed, a name above kSureName
+  ErrorSum share_error;      ///< one, two: of the causes that it names, claimed less true
+  ErrorSum any_share_error;  ///< of all causes; one that is not named claims 0
+};
+
+struct EverydayCalibration {
+  std::size_t of = 0;
+  double stated = 0.0, right = 0.0;  ///< means
+  double error = 0.0;                ///< expected, over ten bins of the probability
+};
+
+struct EverydayScore {
+  std::vector<EverydayMethod> methods;  ///< the diagnosis, then forward selection
+  SharesByCase main_helps;              ///< one, two: the main cause is the first of the names, claimed or not
+  SharesByCase unknown;                 ///< outside, dirt: the verdict is `unknown`
+  BlindShare fair_claim;  ///< of the false claims of dirt: a fair name of what makes half of the dirt's excess or more
+  std::map<std::string, std::map<std::string, BlindShare>> covered;  ///< by class and quantity, of those that are told
+  std::map<std::string, EverydayCalibration> calibration;            ///< by class, and "all"
+  ErrorSum remainder_error;                                          ///< one, two, where the diagnosis has one
+  std::map<std::string, std::size_t> cases, failed;                  ///< by class
+  std::size_t timed = 0;
+  double mean_s = 0.0, most_s = 0.0;  ///< of a diagnosis
+};
+
+/// std::logic_error of a case that is no everyday one.
+EverydayScore score_everyday(const std::vector<BlindOutcome>& outcomes);
+
+}  // namespace glidelab::validate

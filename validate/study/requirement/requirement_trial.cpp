@@ -1,0 +1,222 @@
+#include "validate/study/requirement/requirement_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/long_work.h"
+#include "core/math/quantile.h"
+#include "fit/estimators.h"
+#include "validate/film/film_studio.h"
+#include "validate/study/requirement/target.h"
+#include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/sweep_run.h"
+#include "validate/tracks/made_tracks.h"
+#include "validate/truth/comparison.h"
+#include "validate/truth/cramer_rao.h"
+
+namespace glidelab::validate {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+std::vector<double> noise_without(const Setting& setting, const Truth& truth, const WithoutLimit& without) {
+  if (setting.given_noise_m) return std::vector<double>(truth.clips.size(), *setting.given_noise_m);
+  return predicted_noise_m(setting.scenario, truth, without);
+}
+
+double need_of(const Setting& setting, const WithoutLimit& without, const std::vector<Target>& targets) {
+  const MadeTracks made = make_tracks(setting.scenario, 1);
+  return hardest(bounds(made, noise_without(setting, made.truth, without), targets), targets);
+}
+
+}  // namespace
+
+std::vector<double> noise_of(const Setting& setting, const Truth& truth) {
+  return noise_without(setting, truth, {});
+}
+
+std::vector<TargetResult> bounds(const MadeTracks& made, const std::vector<double>& noise_m,
+                                 const std::vector<Target>& targets) {
+  std::vector<TargetResult> results(targets.size());
+  if (std::any_of(noise_m.begin(), noise_m.end(), [](double noise) { return !std::isfinite(noise); })) {
+    for (TargetResult& result : results) result.bound = kNever;
+    return results;
+  }
+  const std::vector<LeastSd> all = least_sds(made.truth, noise_m, made.gravity_m_s2);
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    for (const LeastSd& least : all) {
+      const std::optional<double> sd = least_sd_of(least, targets[t].quantity);
+      if (!sd) continue;
+      const double factor = targets[t].measure == Target::Measure::sd        ? 1.0
+                            : targets[t].measure == Target::Measure::error95 ? core::kNormal95
+                                                                             : 0.0;
+      results[t].bound = std::max(results[t].bound.value_or(0.0), factor * *sd);
+    }
+  }
+  return results;
+}
+
+double hardest(const std::vector<TargetResult>& results, const std::vector<Target>& targets) {
+  double need = 0.0;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    need = std::max(need, results[t].bound ? *results[t].bound / targets[t].value : kNever);
+  }
+  return need;
+}
+
+std::vector<Limit> limits_of(const Setting& setting, double need, const std::vector<Target>& targets) {
+  std::vector<Limit> limits;
+  const auto try_without = [&](const std::string& name, const Setting& changed, const WithoutLimit& without) {
+    const double then = need_of(changed, without, targets);
+    if (std::isfinite(then) && then > 0.0) limits.push_back({name, need / then});
+  };
+  constexpr double kFast_hz = 1000.0;
+  if (setting.scenario.recording.frame_rate_hz < kFast_hz) {
+    Setting fast = setting;
+    fast.scenario.recording.frame_rate_hz = kFast_hz;
+    try_without("frame rate (1000 Hz instead, the same exposure)", fast, {});
+  }
+  if (!setting.given_noise_m) {
+    try_without("light (no shot noise)", setting, {.shot_noise = true});
+    try_without("the camera's own noise (none)", setting, {.camera_noise = true});
+    try_without("motion blur (none)", setting, {.motion_blur = true});
+    try_without("resolution (4 times finer)", setting, {.finer = 4.0});
+  }
+  std::sort(limits.begin(), limits.end(), [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
+  return limits;
+}
+
+namespace {
+
+/// Errors of one estimator in one quantity of one configuration, run by run; infinite where there is no answer.
+struct Errors {
+  std::string estimator, configuration, quantity;
+  std::vector<double> errors;
+};
+
+void add_errors(const std::vector<QuantityComparison>& quantities, std::vector<Errors>& all) {
+  for (const QuantityComparison& q : quantities) {
+    if (!q.truth) continue;
+    auto found = std::find_if(all.begin(), all.end(), [&](const Errors& e) {
+      return e.estimator == q.estimator && e.configuration == q.configuration && e.quantity == q.quantity;
+    });
+    if (found == all.end()) found = all.insert(all.end(), {q.estimator, q.configuration, q.quantity, {}});
+    found->errors.push_back(q.error.value_or(std::numeric_limits<double>::infinity()));
+  }
+}
+
+/// The better estimator's measure, each judged by its worst configuration.
+void judge_errors(const std::vector<Errors>& all, const Target& target, TargetResult& result) {
+  for (const fit::Estimator& estimator : fit::judged_estimators()) {
+    std::optional<ErrorMeasure> worst;
+    for (const Errors& errors : all) {
+      if (errors.estimator != estimator.name || errors.quantity != target.quantity) continue;
+      const ErrorMeasure measure = measure_errors(errors.errors, target);
+      if (!worst || measure.value > worst->value) worst = measure;
+    }
+    if (!worst || (result.found && *result.found <= worst->value)) continue;
+    result.found = worst->value;
+    result.found_sd = worst->sd;
+    result.runs = worst->runs;
+    result.beyond = worst->beyond;
+    result.estimator = estimator.name;
+  }
+}
+
+/// Of one target, or of several: one that is missed decides.
+Verdict verdict_of(const std::vector<TargetResult>& results, const std::vector<Target>& targets) {
+  bool sure = true;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const TargetResult& result = results[t];
+    if (!result.found || !std::isfinite(*result.found)) return Verdict::missed;
+    if (*result.found - result.found_sd > targets[t].value) return Verdict::missed;
+    sure = sure && *result.found + result.found_sd <= targets[t].value;
+  }
+  return sure ? Verdict::reached : Verdict::undecided;
+}
+
+}  // namespace
+
+MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run,
+                                   Confirm confirm) {
+  const std::uint64_t seed = seed_of(sweep_, point_ * options_.runs + run);
+  if (confirm == Confirm::clips) {
+    std::unique_ptr<FilmStudio>& studio = studios_[run];
+    if (!studio) {
+      studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_,
+                                            [this](std::string_view, double) { options_.watch(); });
+    }
+    return studio->film(setting.scenario, seed, 1,
+                        setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
+  }
+  // Clips of one scenario have about one noise: their root mean square.
+  const std::vector<double> noise_m = noise_of(setting, clean.truth);
+  double square = 0.0;
+  for (const double noise : noise_m) square += noise * noise / static_cast<double>(noise_m.size());
+  return with_noise(clean, std::sqrt(square), seed);
+}
+
+Verdict RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results) {
+  for (TargetResult& result : results) result.found.reset();
+  // A studio whose clips go through a file draws what stands still with each of them.
+  if (confirm == Confirm::clips && !stage_ && !render::lossy(setting.scenario.codec)) {
+    stage_ = render::set_stage(setting.scenario, options_.jobs, options_.watch);
+  }
+  std::vector<std::vector<QuantityComparison>> of_runs(options_.runs);
+  base::for_each_parallel(options_.runs, options_.jobs, [&](std::size_t run) {
+    if (options_.before_run) options_.before_run();
+    const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
+    const MadeTracks made = tracks_of(setting, clean, run, confirm);
+    const auto analyze = [&](core::LineMethod lines) {
+      return analyze_tracks(made, core::MotionOptions{.lines = lines});
+    };
+    for (const core::AnalysisResults& by : fit::estimate_each(fit::judged_estimators(), analyze)) {
+      const auto quantities = compare_quantities(by, clean.truth);
+      of_runs[run].insert(of_runs[run].end(), quantities.begin(), quantities.end());
+    }
+  });
+  std::vector<Errors> all;
+  for (const std::vector<QuantityComparison>& of_run : of_runs) add_errors(of_run, all);
+  for (std::size_t t = 0; t < options_.targets.size(); ++t) judge_errors(all, options_.targets[t], results[t]);
+  return verdict_of(results, options_.targets);
+}
+
+std::vector<Limit> RecordedRuns::limits(const std::vector<TargetResult>& results) {
+  std::vector<Limit> limits;
+  const Setting& setting = setting_;
+  const auto try_without = [&](const char* name, const Setting& changed, Confirm confirm) {
+    std::vector<TargetResult> then(options_.targets.size());
+    judge(changed, confirm, then);
+    double gain = 0.0;
+    for (std::size_t t = 0; t < then.size(); ++t) {
+      if (results[t].found && then[t].found) gain = std::max(gain, *results[t].found / *then[t].found);
+    }
+    if (std::isfinite(gain) && gain > 0.0) limits.push_back({name, gain});
+  };
+  Setting changed = setting;
+  changed.scenario.recording.clock = {};
+  try_without("the camera's clock (even instead, by runs)", changed, options_.confirm);
+  if (options_.confirm != Confirm::clips) return limits;
+  if (setting.scenario.recording.shutter.rolling) {
+    changed = setting;
+    changed.scenario.recording.shutter.rolling = false;
+    try_without("rolling shutter (global instead, by runs)", changed, options_.confirm);
+  }
+  if (render::lossy(setting.scenario.codec)) {
+    changed = setting;
+    changed.scenario.codec = render::Codec::ffv1;
+    try_without("codec (lossless instead, by runs)", changed, options_.confirm);
+  }
+  if (true_camera(setting.scenario.camera)) {
+    changed = setting;
+    changed.lens_known = true;
+    try_without("calibration (the true camera instead, by runs)", changed, options_.confirm);
+  }
+  try_without("lens, calibration and tracking (true positions with the expected noise, by runs)", setting,
+              Confirm::tracks);
+  return limits;
+}
+
+}  // namespace glidelab::validate
