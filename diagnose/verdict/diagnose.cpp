@@ -141,7 +141,7 @@ void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
   });
 }
 
-constexpr double kUnfelt_sd = 0.3, kUnfeltPart = 1e-4;  // of the noise, and of what the nominal model leaves
+constexpr double kUnfelt_sd = 0.3, kUnfeltPart = 1e-3;  // of the noise, and of what the nominal model leaves
 
 /// Recorded forces without what neither the noise nor the misfit would let anyone see.
 void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
@@ -242,6 +242,7 @@ constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 /// Odds of a name that takes three quarters of the gap and is a law for all clips, against a function without a name,
 /// beyond what the evidence says of the two: what is on no list seldom leaves so much to a name.
 constexpr double kNameOdds = 30.0, kMost = 0.75;
+constexpr double kNoNoise = 1000.0, kTrusted = 0.8;  // a gap; the probability of a name by its share alone
 
 /// Whether all of an explanation shows in the motion, and so in the gap.
 bool shows_in_gap(const Hypothesis& best) {
@@ -251,7 +252,7 @@ bool shows_in_gap(const Hypothesis& best) {
 
 /// Probabilities of a comparison as a verdict on a gap above its floor. What the remainder makes is unknown, and so is
 /// all of it where the named causes take less than half.
-void settle(const CauseSequence& sequence, Comparison& comparison) {
+void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& comparison) {
   const bool half = sequence.named_share >= kHalf;
   if (sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id))) {
     const double sum = 1.0 - comparison.unknown + comparison.unknown / kNameOdds;
@@ -262,6 +263,16 @@ void settle(const CauseSequence& sequence, Comparison& comparison) {
   }
   comparison.unknown += std::exchange(comparison.none, 0.0);
   if (!half) comparison.unknown = 1.0;
+  // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
+  if (sequence.named_share < kMost || sequence.gap_before < kNoNoise || comparison.unknown < 1.0 - kTrusted) return;
+  for (Hypothesis& one : comparison.all) {
+    one.probability = !one.unnamed && one.effects == best.effects ? kTrusted : one.probability * (1.0 - kTrusted);
+  }
+  for (double& probability : comparison.effect_probability) probability *= 1.0 - kTrusted;
+  for (const std::size_t e : best.effects) comparison.effect_probability[e] = kTrusted;
+  comparison.unknown = 1.0 - kTrusted;
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
 GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& sizes, double part_s) {
@@ -314,8 +325,8 @@ Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvide
       sequence_of(set, nominal, with, names ? by.fits[static_cast<std::size_t>(best->fit)] : nominal, without);
   Diagnosis diagnosis;
   // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
-  const bool settled = weighed && sequence.is_gap();
-  if (settled) settle(sequence, weighed->comparison);
+  const bool settled = weighed && sequence.is_gap() && names;
+  if (settled) settle(sequence, Hypothesis(*best), weighed->comparison);
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
