@@ -30,7 +30,8 @@ TEST_CASE("the answer says how much each cause explains, with its size, and what
   // The gap that is left: g² = 1 + 0.03 (5.3² - 1) = 1.8127, g = 1.346.
   const std::string answer =
       "Quadratic drag, c = 0.00310 ± 0.00020 kg/m, explains 91 % (86 to 95 %) of the gap on clips that were held out; "
-      "inertia without weight, mass = 0.0123 ± 0.0014 kg, explains another 6 % (2 to 10 %); 3 % are left, 1.35 times the "
+      "inertia without weight, mass = 0.0123 ± 0.0014 kg, explains another 6 % (2 to 10 %); 3 % are left, 1.35 times "
+      "the "
       "noise.";
   CHECK(report::sequence_words(of) == answer);
   const std::string words = report::verdict_words(of);
@@ -72,10 +73,12 @@ TEST_CASE("causes that look alike, and effects that have no share, are told behi
   of.effects.front().joint_probability = 0.98;
   of.effects.front().alike = {{"quadratic_drag", "", 0.68}, {"power_law_drag", "", 0.30}, {"eddy_rolloff", "", {}}};
   of.explained.pop_back();
-  CHECK(report::sureness_words(of) ==
-        "Probability: inertia without weight 81 %. These data cannot tell quadratic drag (68 %), power-law drag (30 %) and "
-        "magnetic drag that levels off apart; one of them acts with a probability of 98 %. Inertia without weight has no "
-        "share of this gap.");
+  CHECK(
+      report::sureness_words(of) ==
+      "Probability: inertia without weight 81 %. These data cannot tell quadratic drag (68 %), power-law drag (30 %) "
+      "and "
+      "magnetic drag that levels off apart; one of them acts with a probability of 98 %. Inertia without weight has no "
+      "share of this gap.");
 }
 
 TEST_CASE("traces are no part of the verdict: nothing that matters is missing, whatever is likeliest") {
