@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 
 #include "base/text/number_text.h"
 #include "report/diagnosis/diagnosis_words.h"
@@ -264,8 +265,41 @@ std::vector<std::vector<std::string>> explained_rows(const diagnose::Diagnosis& 
   return rows;
 }
 
+namespace {
+
+/// Why a quantity has no value, and in which configurations.
+struct Reason {
+  std::string symbol, why;
+  std::vector<std::string> labels;
+};
+
+/// "µ of 0.335 kg, 90°: a fall has …"; one sentence for all that share a reason.
+std::vector<std::string> reasons_text(const std::vector<Reason>& reasons, std::size_t configurations) {
+  std::vector<Reason> joined;
+  for (const Reason& one : reasons) {
+    const auto same = std::find_if(joined.begin(), joined.end(), [&](const Reason& other) {
+      return other.symbol == one.symbol && other.why == one.why;
+    });
+    if (same == joined.end()) {
+      joined.push_back(one);
+    } else {
+      same->labels.insert(same->labels.end(), one.labels.begin(), one.labels.end());
+    }
+  }
+  std::vector<std::string> texts;
+  for (const Reason& one : joined) {
+    const bool all = one.labels.size() > 1 && one.labels.size() == configurations;
+    texts.push_back(
+        fmt::format("{} of {}: {}", one.symbol, all ? "all" : fmt::format("{}", fmt::join(one.labels, "; ")), one.why));
+  }
+  return texts;
+}
+
+}  // namespace
+
 std::vector<RecoveredTable> recovered_tables(const diagnose::Diagnosis& diagnosis) {
   std::vector<RecoveredTable> tables;
+  std::map<std::size_t, std::vector<Reason>> reasons;  // by table
   for (const diagnose::RecoveredConfiguration& of : diagnosis.recovered) {
     auto table = std::find_if(tables.begin(), tables.end(), [&](const auto& other) { return other.with == of.with; });
     if (table == tables.end()) {
@@ -279,11 +313,13 @@ std::vector<RecoveredTable> recovered_tables(const diagnose::Diagnosis& diagnosi
       const core::Quantity& quantity = core::value_of(of, name.which);
       row.push_back(quantity.estimate ? base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) : "–");
       if (!quantity.estimate && !quantity.why.empty()) {
-        table->why.push_back(fmt::format("{} of {}: {}", name.symbol, label, quantity.why));
+        reasons[static_cast<std::size_t>(table - tables.begin())].push_back(
+            {std::string(name.symbol), quantity.why, {label}});
       }
     }
     table->rows.push_back(std::move(row));
   }
+  for (const auto& [table, of] : reasons) tables[table].why = reasons_text(of, tables[table].rows.size() - 1);
   return tables;
 }
 

@@ -263,7 +263,7 @@ std::string change_words(const Change& change) {
   if (change.clip) {
     launch = fmt::format("Record a launch {} at {:.2g} m/s", change.clip->v0_m_s < 0.0 ? "uphill" : "downhill",
                          std::abs(change.clip->v0_m_s));
-    grams = fmt::format("{:.0f} g", 1000.0 * change.clip->mass_kg);
+    grams = base::digits_text(1000.0 * change.clip->mass_kg, 3) + " g";
   }
   switch (change.kind) {
     case ChangeKind::launch:

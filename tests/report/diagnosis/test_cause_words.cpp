@@ -161,6 +161,23 @@ TEST_CASE("recovered quantities stand under the causes that are in their model, 
   CHECK(report::with_words(tables[1].with) == "by the nominal model");
 }
 
+TEST_CASE("a reason that several configurations share is told once") {
+  diagnose::Diagnosis of;
+  for (const double mass_kg : {0.001, 0.002, 0.003}) {
+    diagnose::RecoveredConfiguration one;
+    one.group = "fall";
+    one.mass_kg = mass_kg;
+    one.incline_deg = 90.0;
+    one.mu = {.estimate = {}, .why = "a fall has no normal force"};
+    if (mass_kg < 0.0025) one.v_lim_m_s = {.estimate = {}, .why = "too short"};
+    of.recovered.push_back(one);
+  }
+  const auto tables = report::recovered_tables(of);
+  REQUIRE(tables.size() == 1);
+  CHECK(tables[0].why == std::vector<std::string>{"µ of all: a fall has no normal force",
+                                                  "limit velocity of 0.001 kg, 90°; 0.002 kg, 90°: too short"});
+}
+
 TEST_CASE("a terminal has the answer, the causes, what is left, the quantities and the next step before the ranking") {
   const std::string text = report::diagnosis_text(tests::two_causes());
   std::size_t at = 0;
