@@ -67,7 +67,7 @@ std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, co
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const auto& global = layout.globals()[g];
     for (std::size_t k = 0; k < of.size(); ++k) {
-      if (of[k].kind == global.kind && of[k].index == global.index && of[k].parameter == global.parameter) {
+      if (ParameterLayout::same(of[k], global)) {
         start.global[static_cast<Eigen::Index>(g)] = from.at.global[static_cast<Eigen::Index>(k)];
       }
     }

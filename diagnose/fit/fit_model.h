@@ -85,6 +85,10 @@ class ParameterLayout {
     ParameterRange range = {};         ///< of an effect: what it may be
     Configuration configuration = {};  ///< of Each::configuration
   };
+  /// Whether two layouts mean the same parameter by these, of the same group, mass, mode, configuration or clip.
+  static bool same(const Global& a, const Global& b) {
+    return a.kind == b.kind && a.index == b.index && a.parameter == b.parameter && a.configuration == b.configuration;
+  }
   const std::vector<Global>& globals() const { return globals_; }
   const std::vector<const EffectParameter*>& own() const { return own_; }  ///< after x0, v0
   const std::vector<std::size_t>& effects() const { return effects_; }

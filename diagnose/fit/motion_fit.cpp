@@ -284,7 +284,7 @@ FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t eff
     if (global.kind != Global::Kind::effect || global.effect != effect || is_size) continue;
     for (std::size_t k = 0; k < like.layout->globals().size(); ++k) {
       const Global& other = like.layout->globals()[k];
-      if (other.parameter != global.parameter || other.index != global.index) continue;
+      if (!ParameterLayout::same(other, global)) continue;
       point.global[static_cast<Eigen::Index>(g)] = like.at.global[static_cast<Eigen::Index>(k)];
     }
   }

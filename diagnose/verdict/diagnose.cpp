@@ -254,7 +254,8 @@ bool shows_in_gap(const Hypothesis& best) {
 /// all of it where the named causes take less than half.
 void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& comparison) {
   const bool half = sequence.named_share >= kHalf;
-  if (sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id))) {
+  const bool most = sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id));
+  if (most) {
     const double sum = 1.0 - comparison.unknown + comparison.unknown / kNameOdds;
     for (Hypothesis& one : comparison.all) one.probability /= one.unnamed ? kNameOdds * sum : sum;
     for (double& probability : comparison.effect_probability) probability /= sum;
@@ -264,7 +265,7 @@ void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& c
   comparison.unknown += std::exchange(comparison.none, 0.0);
   if (!half) comparison.unknown = 1.0;
   // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
-  if (sequence.named_share < kMost || sequence.gap_before < kNoNoise || comparison.unknown < 1.0 - kTrusted) return;
+  if (!most || sequence.gap_before < kNoNoise || comparison.unknown < 1.0 - kTrusted) return;
   for (Hypothesis& one : comparison.all) {
     one.probability = !one.unnamed && one.effects == best.effects ? kTrusted : one.probability * (1.0 - kTrusted);
   }
@@ -306,7 +307,7 @@ void order_by_share(Diagnosis& diagnosis) {
 }
 
 /// The verdict, the causes in order, what remains, and what K/m, mu and alpha are with the causes in the model.
-Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvidence pictures,
+Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pictures,
                       const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress) {
   const std::set<std::size_t> without(left_out.begin(), left_out.end());
   const MotionFit& nominal = first.fits.front();
@@ -318,31 +319,33 @@ Diagnosis with_causes(const TrackSet& set, const Comparison& first, PictureEvide
   progress("measuring the gap", 0.9);
   const Comparison& by = weighed ? weighed->comparison : first;
   const TrackSet& with = weighed ? weighed->set : set;
-  const Hypothesis* best = best_named(with, by);
+  const Hypothesis* found = best_named(with, by);
   const bool names =
-      best != nullptr && best->fit > 0 && (weighed || verdict_by(by.none, by.unknown) == Verdict::effect);
-  const CauseSequence sequence =
-      sequence_of(set, nominal, with, names ? by.fits[static_cast<std::size_t>(best->fit)] : nominal, without);
+      found != nullptr && found->fit > 0 && (weighed || verdict_by(by.none, by.unknown) == Verdict::effect);
+  const Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
+  const MotionFit& fit = names ? by.fits[static_cast<std::size_t>(best.fit)] : nominal;
+  const CauseSequence sequence = sequence_of(set, nominal, with, fit, without);
   Diagnosis diagnosis;
   // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
   const bool settled = weighed && sequence.is_gap() && names;
-  if (settled) settle(sequence, Hypothesis(*best), weighed->comparison);
+  if (settled) settle(sequence, best, weighed->comparison);
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
   } else {
-    Comparison alone = first;
     // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding.
-    if (noise_is_rounding(set) && !sequence.is_gap()) alone.none += std::exchange(alone.unknown, 0.0);
+    if (noise_is_rounding(set) && !sequence.is_gap()) first.none += std::exchange(first.unknown, 0.0);
     // A name that takes next to nothing of a gap explains something else.
-    const bool explains = !names || !shows_in_gap(*best) || sequence.named_share >= kHalf;
-    if (!weighed && sequence.is_gap() && !explains) alone.unknown = 1.0;
-    diagnosis = verdict_of(set, alone, std::move(pictures));
+    const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalf;
+    if (!weighed && sequence.is_gap() && !explains) first.unknown = 1.0;
+    diagnosis = verdict_of(set, first, std::move(pictures));
   }
   if (noise_is_rounding(set)) diagnosis.traces.emplace_back(ids::position_rounding);
   diagnosis.explained = sequence.causes;
   order_by_share(diagnosis);
-  const MotionFit& reported = diagnosis.verdict == Verdict::effect ? sequence.named : nominal;
+  // Without a gap there is no sequence, and the explanation's own fit has the effect.
+  const MotionFit& with_effect = sequence.is_gap() ? sequence.named : fit;
+  const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;
   RemainderSizes sizes;
   if (sequence.is_gap()) {
     const RemainderSpace space(set, reported);
@@ -400,7 +403,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
       comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.5, 0.9));
     }
   }
-  Diagnosis diagnosis = with_causes(set, comparison, std::move(pictures), without, options.jobs, progress);
+  Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(pictures), without, options.jobs, progress);
   add_speeds(results, diagnosis.measured);
   for (const core::CalibrationResult& of : results.calibrations) {
     diagnosis.calibrations.push_back({of.experiment, of.rests});

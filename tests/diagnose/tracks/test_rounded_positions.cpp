@@ -84,5 +84,6 @@ TEST_CASE("an ideal cart whose positions are rounded to a centimetre has no effe
     const diagnose::Diagnosis diagnosis =
         diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
     CHECK(diagnosis.verdict == diagnose::Verdict::none);
+    CHECK(diagnosis.traces == std::vector<std::string>{"position_rounding"});
   }
 }

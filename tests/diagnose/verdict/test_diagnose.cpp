@@ -93,6 +93,9 @@ TEST_CASE("a wrong scale and a wrong frame rate are named together: tracks canno
   named.push_back(first.id);
   CHECK(std::find(named.begin(), named.end(), "scale_error") != named.end());
   CHECK(std::find(named.begin(), named.end(), "frame_rate_error") != named.end());
+  // The inclination alone tells, and no held-out clip lies off: the quantities have the effect in their model as well.
+  REQUIRE_FALSE(diagnosis.recovered.empty());
+  for (const auto& one : diagnosis.recovered) CHECK(one.with == std::vector<std::string>{first.id});
 }
 
 TEST_CASE("a size that only the inclination tells is found in full, however well the positions are known") {

@@ -36,6 +36,17 @@ TEST_CASE("frames that are lost beside a force are named with it") {
   const auto with_air = diagnosed({.force = air, .lost = lost}, 31, 2e-4);
   CHECK(with_air.verdict == diagnose::Verdict::effect);
   CHECK(named(with_air) == std::set<std::string>{"dropped_frames", "quadratic_drag"});
+  // Each has a share of its own, and the two take all of the gap.
+  REQUIRE(with_air.explained.size() >= 2);
+  std::set<std::string> causes;
+  double shares = 0.0;
+  for (std::size_t c = 0; c < 2; ++c) {
+    causes.insert(with_air.explained[c].id);
+    CHECK(with_air.explained[c].share > 0.02);
+    shares += with_air.explained[c].share;
+  }
+  CHECK(causes == named(with_air));
+  CHECK(std::abs(shares - 1.0) < 0.1);
   const auto with_bow = diagnosed({.force = bow, .lost = lost}, 31, 2e-4);
   CHECK(with_bow.verdict == diagnose::Verdict::effect);
   CHECK(named(with_bow) == std::set<std::string>{"dropped_frames", "track_bow"});
