@@ -128,7 +128,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   const Step first = step_of(set, nominal, nominal);
   sequence.gap_before = sequence.gap_after = first.gap;
   sequence.standard_error = first.standard_error;
-  sequence.named = sequence.last = nominal;
+  sequence.named = nominal;
   if (!sequence.is_gap()) return sequence;
 
   // What the verdict names, by falling share: of several, each alone first.
@@ -171,7 +171,6 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     here = std::move(next->second);
   }
   sequence.gap_after = here.gap;
-  sequence.last = std::move(here.fit);
   return sequence;
 }
 

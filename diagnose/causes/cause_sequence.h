@@ -26,7 +26,6 @@ struct CauseSequence {
   std::vector<ExplainedCause> causes;
   double gap_after = 1.0;
   MotionFit named;  ///< by the noise alone, with the verdict's causes
-  MotionFit last;   ///< with all causes of the sequence
   double named_share = 0.0;
 
   /// Whether the gap before is above its floor by more than three standard errors.

@@ -11,6 +11,7 @@
 
 #include "base/long_work.h"
 #include "base/math/dense.h"
+#include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/tracks/whitening.h"
@@ -85,7 +86,6 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
 struct Profile {
   RemainderSpace::Best best;
   double log_evidence = -std::numeric_limits<double>::infinity();
-  double part_s = 0.0;
 };
 
 Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const RemainderSizes* start,
@@ -94,7 +94,6 @@ Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const Rema
   if (!std::isfinite(noise_alone.cost)) return profile;
   const RemainderSpace space(set, noise_alone, extra);
   profile.best = space.likeliest(start);
-  profile.part_s = space.part_s();
   profile.log_evidence = profile.best.log_likelihood + log_prior(noise_alone, space.solve(profile.best.sizes));
   return profile;
 }
@@ -219,9 +218,8 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       first.fits[static_cast<std::size_t>(tried[static_cast<std::size_t>(best - profiles.begin())])];
   WeighedCauses weighed;
   weighed.set = set;
-  weighed.sizes = best->best.sizes;
-  weighed.part_s = best->part_s;
-  add_remainder(best_fit, weighed.sizes, weighed.set);
+  const RemainderSizes sizes = best->best.sizes;
+  add_remainder(best_fit, sizes, weighed.set);
   done(0.2);
 
   const std::vector<std::size_t> left_out(without.begin(), without.end());
@@ -236,7 +234,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
     const std::size_t f = worth[k];
     noise_alone[f] = linearise_again(set, comparison.fits[f]);
-    profiles[f] = profile_of(set, noise_alone[f], &weighed.sizes);
+    profiles[f] = profile_of(set, noise_alone[f], &sizes);
   });
   done(0.9);
   // Functions without a name beside nothing and beside the likeliest explanations, each with a remainder of its own.
@@ -275,13 +273,6 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   }
   weigh(weighed.set, without, comparison);
   give_remainders_to_their_effects(set, noise_alone, comparison);
-  // The remainder that is told is that of the likeliest explanation that names something, or nothing.
-  for (const Hypothesis& one : comparison.all) {
-    if (one.unnamed || one.fit < 0) continue;
-    weighed.sizes = profiles[static_cast<std::size_t>(one.fit)].best.sizes;
-    weighed.part_s = profiles[static_cast<std::size_t>(one.fit)].part_s;
-    break;
-  }
   done(1.0);
   return weighed;
 }

@@ -18,7 +18,6 @@
 #include <functional>
 #include <set>
 
-#include "diagnose/causes/remainder.h"
 #include "diagnose/weigh/hypotheses.h"
 
 namespace glidelab::diagnose {
@@ -26,8 +25,6 @@ namespace glidelab::diagnose {
 struct WeighedCauses {
   TrackSet set;           ///< with the remainder of the likeliest explanation as noise
   Comparison comparison;  ///< by that set
-  RemainderSizes sizes;
-  double part_s = 0.0;  ///< RemainderSpace::part_s()
 };
 
 /// `first` is the comparison by the noise alone; `set` has no remainder.

@@ -18,8 +18,7 @@ EffectInfo position_rounding() {
       .twin = EffectTwin::none("the positions of a scenario are not rounded"),
       .next =
           "Export the positions again with more decimals, or with the sensor nearer to the glider: what a step hides "
-          "of "
-          "single positions no repetition brings back.",
+          "of single positions no repetition brings back.",
       .alike = {},
   };
 }

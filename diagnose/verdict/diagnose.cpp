@@ -13,6 +13,7 @@
 #include "diagnose/causes/cause_weighing.h"
 #include "diagnose/causes/gap_levels.h"
 #include "diagnose/causes/recovered.h"
+#include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/frame_effects.h"
 #include "diagnose/frames/missing_frames.h"

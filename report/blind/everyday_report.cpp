@@ -324,9 +324,9 @@ Page everyday_page(const BlindRun& run) {
   for (const auto& row : number_rows(score)) numbers.row({escape(row[0]), escape(row[1]), escape(row[2])});
   body += "<h2>Shares, intervals, probabilities</h2>\n" + numbers.str();
   body +=
-      "<p class=\"soft\">The excess is g² - 1, g the gap of held-out clips without noise: 1.5 to 4 is moderate, more "
-      "is "
-      "strong. A cause's share is the part of it that goes when the cause is added to the law after those before it. "
+      "<p class=\"soft\">The excess is g² - 1, g the gap of held-out clips without noise: 1.5 to 4 is moderate, "
+      "more is strong. A cause's share is the part of it that goes when the cause is added to the law after those "
+      "before it. "
       "Forward selection takes the effect with the least held-out gap, then the one that lowers it most beside it, and "
       "claims them where they take half of the excess; it states no probability, so that each of its names counts as "
       "sure.</p>\n<h2>All cases</h2>\n" +
