@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMostCauses = 4;
 constexpr std::size_t kTried = 3;     // further effects that are fitted in full at each step
 constexpr double kWorthTrying = 5.0;  // log evidence, beside the remainder, from which on an effect may help
+constexpr double kClear = 3.0;        // standard errors
 constexpr double kLeastShare = 0.02;  // of the excess: less is no cause that a person would look for
 
 struct Step {
@@ -43,6 +44,10 @@ Step step_of(const TrackSet& set, const MotionFit& nominal, MotionFit fit) {
   return step;
 }
 
+bool is_above_floor(const Step& step) {
+  return step.gap > 1.0 + kClear * step.standard_error;
+}
+
 ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& before, const Step& after, bool pieces) {
   ExplainedCause cause;
   cause.id = effect_list()[effect].id;
@@ -52,7 +57,7 @@ ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& befor
   return cause;
 }
 
-/// A cause after the first takes more than its uncertainty.
+/// A cause beside those of the verdict takes more than its uncertainty.
 bool is_worth(const ExplainedCause& cause) {
   return cause.share > kLeastShare && (!cause.share_interval95 || cause.share_interval95->low > 0.0);
 }
@@ -122,6 +127,15 @@ std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, cons
 
 }  // namespace
 
+bool has_gap(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit) {
+  return is_above_floor(step_of(set, nominal, fit));
+}
+
+double held_out_excess(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit) {
+  const double gap = step_of(set, nominal, fit).gap;
+  return gap * gap - 1.0;
+}
+
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
                           const std::set<std::size_t>& without) {
   CauseSequence sequence;
@@ -129,7 +143,8 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   sequence.gap_before = sequence.gap_after = first.gap;
   sequence.standard_error = first.standard_error;
   sequence.named = nominal;
-  if (!sequence.is_gap()) return sequence;
+  sequence.is_gap = is_above_floor(first);
+  if (!sequence.is_gap) return sequence;
 
   // What the verdict names, by falling share: of several, each alone first.
   Step here = first;
@@ -139,10 +154,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   while (!left.empty()) {
     std::optional<Step> best;
     std::size_t which = 0;
-    // A law for all clips comes first: sizes of each clip imitate any law in which the clips' speeds matter.
-    const bool all_follow = std::all_of(left.begin(), left.end(), follows_each_clip);
     for (std::size_t k = 0; k < left.size(); ++k) {
-      if (!all_follow && follows_each_clip(left[k])) continue;
       std::vector<std::size_t> effects = here.fit.effects;
       if (left[k] != dropped) effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);
@@ -155,14 +167,14 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     if (!best) break;
     ExplainedCause cause = cause_of(left[which], first, here, *best, set.pieces);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
-    if (sequence.causes.empty() ? !(cause.share > kLeastShare) : !is_worth(cause)) break;
+    if (!(cause.share > kLeastShare)) break;
     sequence.causes.push_back(std::move(cause));
     here = std::move(*best);
   }
   sequence.named = here.fit;
   for (const ExplainedCause& cause : sequence.causes) sequence.named_share += cause.share;
 
-  while (sequence.causes.size() < kMostCauses && here.gap > 1.0 + 3.0 * here.standard_error) {
+  while (sequence.causes.size() < kMostCauses && is_above_floor(here)) {
     auto next = next_cause(set, nominal, with, here, without);
     if (!next) break;
     ExplainedCause cause = cause_of(next->first, first, here, next->second, set.pieces);

@@ -4,11 +4,10 @@
 ///     share_i = (g²_{i-1} - g²_i) / (g²_0 - 1),        g the gap of held-out clips (held_out.h), g_0 of the nominal
 ///     model
 ///
-/// The causes that a verdict names come first, the one with the largest share first of them, and what differs from clip
-/// to clip after the laws that all clips have in common; then others of the list, each fitted in full beside all before
-/// it. The gap is by the position noise alone, as the contract has it, whatever
-/// remainder the causes were weighed with. Intervals are over clips (gap_sizes.h). A single clip is held out in
-/// quarters, and has no interval.
+/// The causes that a verdict names come first, the one with the largest share first of them; then others of the list,
+/// each fitted in full beside all before it, and what differs from clip to clip after the laws that all clips have in
+/// common. The gap is by the position noise alone, as the contract has it, whatever remainder the causes were weighed
+/// with. Intervals are over clips (gap_sizes.h). A single clip is held out in quarters, and has no interval.
 #pragma once
 
 #include <cstddef>
@@ -28,13 +27,18 @@ struct CauseSequence {
   MotionFit named;  ///< by the noise alone, with the verdict's causes
   double named_share = 0.0;
 
-  /// Whether the gap before is above its floor by more than three standard errors.
-  bool is_gap() const { return gap_before > 1.0 + 3.0 * standard_error; }
+  bool is_gap = false;  ///< has_gap()
 };
 
 /// `set` has the noise alone and `nominal` is its fit; `with` counts a remainder as noise (or is the same), and `named`
 /// is a fit to it with the causes that a verdict would name (none: the nominal one).
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
                           const std::set<std::size_t>& without);
+
+/// Whether a fit's gap is above its floor by more than three standard errors.
+bool has_gap(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);
+
+/// g² - 1 of a fit to `set`, g the gap of held-out clips, or of the quarters of a single one.
+double held_out_excess(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose

@@ -11,22 +11,24 @@
 
 #include "base/long_work.h"
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
+#include "diagnose/causes/cause_odds.h"
+#include "diagnose/causes/cause_sequence.h"
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/gap/held_out.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFirst = 6;      // explanations among which the first remainder is sought
-constexpr double kDecades = 9.2;       // ln of 10^4: over which sizes are uniform in their logarithm
-constexpr double kLeastSeen = 2.0;     // standard deviations: a smaller size is not told from none
-constexpr double kFamilies = 3.0;      // ln of some twenty functions without a name, of which the likeliest is taken
-constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their own
-constexpr double kHalf = 0.5;
-constexpr double kNotWeighed = 1e3;  // log evidence that what was not fitted is behind
+constexpr std::size_t kFirst = 6;       // explanations among which the first remainder is sought
+constexpr double kDecades = 9.2;        // ln of 10^4: over which sizes are uniform in their logarithm
+constexpr double kLeastSeen = 2.0;      // standard deviations: a smaller size is not told from none
+constexpr double kFamilies = 3.0;       // ln of some twenty functions without a name, of which the likeliest is taken
+constexpr std::size_t kProfiled = 14;   // explanations with a remainder of their own
+constexpr double kRemainderCost = 3.0;  // log evidence that a remainder has against it, its sizes being unknown
+constexpr double kNotWeighed = 1e3;     // log evidence that what was not fitted is behind
 
 /// Sizes of one kind, drawn from one normal distribution whose width is uniform in its logarithm; -n log(width) and
 /// what their squares and the width itself cost. `sd`, how well the data tell each.
@@ -43,6 +45,51 @@ struct Spread {
     // What the data do not tell has its prior's width, and costs nothing.
     for (const double sd : sds) log -= std::log(std::max(width, sd));
     return log;
+  }
+};
+
+constexpr EffectSlot kPush = slot_of(ids::late_release, 1);
+
+const EffectParameter* parameter_of(EffectSlot slot) {
+  return &effect_list()[slot.effect].parameters[slot.parameter];
+}
+
+constexpr double kAnyPushes = 0.1;   // of hands that let go late: pushes of any size and sign, each clip its own
+constexpr double kPushSpread = 0.5;  // of one hand's pushes, over their mean
+
+/// Which way a motion goes, at first.
+double way_of(const FitMotion& motion) {
+  const auto moves = std::find_if(motion.v_m_s.begin(), motion.v_m_s.end(), [](double v) { return v != 0.0; });
+  return moves != motion.v_m_s.end() && *moves < 0.0 ? -1.0 : 1.0;
+}
+
+/// Pushes of a hand that lets go late, along each motion: those of one hand are about alike and go with the motion; a
+/// tenth are of any size and sign.
+struct Pushes {
+  std::vector<double> along, sds;
+
+  void add(double push, double sd) {
+    along.push_back(push);
+    sds.push_back(sd);
+  }
+  /// In units of each push's sd.
+  double log_prior() const {
+    const double root = 0.5 * std::log(2.0 * std::numbers::pi), n = static_cast<double>(along.size());
+    double any = std::log(kAnyPushes), mean = 0.0, mean_sd = 0.0;
+    for (std::size_t k = 0; k < along.size(); ++k) {
+      any += root - std::log(std::max(std::abs(along[k]) / sds[k], kLeastSeen) * kDecades);
+      mean += along[k] / n;
+      mean_sd += sds[k] / n;
+    }
+    if (!(mean > 0.0)) return any;
+    const double of_mean = std::max(kPushSpread * mean, mean_sd) / std::sqrt(n);  // how well it is known
+    double one_hand =
+        std::log1p(-kAnyPushes) + root + std::log(of_mean / (std::max(mean, kLeastSeen * of_mean) * kDecades));
+    for (std::size_t k = 0; k < along.size(); ++k) {
+      const double width = std::max(kPushSpread * mean, sds[k]), off = (along[k] - mean) / width;
+      one_hand -= std::log(width / sds[k]) + 0.5 * off * off;
+    }
+    return base::log_sum({any, one_hand});
   }
 };
 
@@ -74,12 +121,20 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
     }
   }
   for (const auto& [parameter, spread] : spreads) log += spread.log_prior();
+  const auto& own = fit.layout->own();
+  Pushes pushes;
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     for (Eigen::Index o = 2; o < fit.motions[i].own.cols(); ++o) {
-      const double seen = std::abs(fit.at.own[i][o]) * fit.motions[i].own.col(o).norm();
+      const double norm = fit.motions[i].own.col(o).norm();
+      const double size = fit.at.own[i][o], seen = std::abs(size) * norm;
+      if (own[static_cast<std::size_t>(o - 2)] == parameter_of(kPush)) {
+        if (norm > 0.0) pushes.add(size * way_of(fit.motions[i]), 1.0 / norm);
+        continue;
+      }
       log += root - std::log(std::max(seen, kLeastSeen) * kDecades);
     }
   }
+  if (!pushes.along.empty()) log += pushes.log_prior();
   return log;
 }
 
@@ -162,36 +217,35 @@ std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
   return worth;
 }
 
+/// What is likeliest by the noise alone is weighed beside a remainder too; the fits that join.
+std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) {
+  std::vector<Hypothesis> likeliest;
+  for (const Hypothesis& one : first.all) {
+    if (one.fit > 0 && !one.unnamed && pure_of(first, one.fit) == &one) likeliest.push_back(one);
+  }
+  std::sort(likeliest.begin(), likeliest.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  if (likeliest.size() > kFirst) likeliest.resize(kFirst);
+  std::set<int> joined;
+  for (Hypothesis& one : likeliest) {
+    if (find(comparison, {one.effects.begin(), one.effects.end()}) != nullptr) continue;
+    const auto fit = static_cast<int>(comparison.fits.size());
+    comparison.fits.push_back(first.fits[static_cast<std::size_t>(one.fit)]);
+    one.fit = fit;
+    std::erase_if(comparison.all,
+                  [&](const Hypothesis& other) { return !other.unnamed && other.effects == one.effects; });
+    comparison.all.push_back(one);
+    joined.insert(fit);
+  }
+  return joined;
+}
+
 /// Nothing, the two likeliest single effects and the likeliest pair: beside these a function without a name is weighed.
 std::vector<Hypothesis> beside(const Comparison& comparison) {
   std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
   for (const Hypothesis& one : leaders_of(comparison, 1, 2)) result.push_back(one);
   for (const Hypothesis& one : leaders_of(comparison, 2, 1)) result.push_back(one);
   return result;
-}
-
-/// Effects keep their name beside something without one where they take at least half of the held-out excess: nothing
-/// real is explained to the noise. The probability of both together is then that of the effects.
-void give_remainders_to_their_effects(const TrackSet& set, const std::vector<MotionFit>& noise_alone,
-                                      Comparison& comparison) {
-  if (set.clips.size() < 2) return;
-  const auto square = [&](int fit) {
-    const double gap = held_out_gap(set, noise_alone[static_cast<std::size_t>(fit)]).value;
-    return gap * gap;
-  };
-  const double first = square(0);
-  for (Hypothesis& with : comparison.all) {
-    if (!with.unnamed || with.fit <= 0 || !(first - square(with.fit) > kHalf * (first - 1.0))) continue;
-    for (Hypothesis& named : comparison.all) {
-      if (named.unnamed || named.effects != with.effects) continue;
-      const double moved = std::exchange(with.probability, 0.0);
-      named.probability += moved;
-      comparison.unknown -= moved;
-      for (const std::size_t e : named.effects) comparison.effect_probability[e] += moved;
-    }
-  }
-  std::stable_sort(comparison.all.begin(), comparison.all.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
 }  // namespace
@@ -222,19 +276,46 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   add_remainder(best_fit, sizes, weighed.set);
   done(0.2);
 
-  const std::vector<std::size_t> left_out(without.begin(), without.end());
-  weighed.comparison =
-      compare_hypotheses(weighed.set, left_out, jobs, pictures, [&](double part) { done(0.2 + 0.5 * part); });
   Comparison& comparison = weighed.comparison;
+  const MotionFit& nominal = first.fits.front();
+  const bool searched = held_out_excess(set, nominal, nominal) < kLargestExcess;
+  if (!searched) {
+    // Next to such a gap there is no noise, and the remainder changes nothing of what is found.
+    comparison = first;
+    base::for_each_parallel(comparison.fits.size(), jobs, [&](std::size_t f) {
+      comparison.fits[f] = linearise_again(weighed.set, comparison.fits[f]);
+    });
+  } else {
+    const std::vector<std::size_t> left_out(without.begin(), without.end());
+    comparison =
+        compare_hypotheses(weighed.set, left_out, jobs, pictures, [&](double part) { done(0.2 + 0.5 * part); });
+  }
+  const std::set<int> also = add_likeliest_of(first, comparison);
 
   // Each fit with a remainder of its own.
   std::vector<MotionFit> noise_alone(comparison.fits.size());
   profiles.assign(comparison.fits.size(), {});
-  const std::vector<std::size_t> worth = worth_profiling(comparison);
+  std::vector<std::size_t> worth = worth_profiling(comparison);
+  for (const int fit : also) {
+    const auto f = static_cast<std::size_t>(fit);
+    if (std::find(worth.begin(), worth.end(), f) == worth.end()) worth.push_back(f);
+  }
+  std::vector<double> excess(comparison.fits.size(), std::numeric_limits<double>::quiet_NaN());
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
     const std::size_t f = worth[k];
     noise_alone[f] = linearise_again(set, comparison.fits[f]);
     profiles[f] = profile_of(set, noise_alone[f], &sizes);
+  });
+  base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
+    const std::size_t f = worth[k];
+    if (!std::isfinite(noise_alone[f].cost)) return;
+    // By the noise alone the fit is another: where there is a remainder, the one that leaves less.
+    excess[f] = held_out_excess(set, noise_alone.front(), noise_alone[f]);
+    if (f == 0 || !searched || also.contains(static_cast<int>(f))) return;
+    const MotionFit anew = fit_motions(set, comparison.fits[f].effects, comparison.fits[f].at, comparison.fits[f].late);
+    if (std::isfinite(anew.cost)) {
+      excess[f] = std::min(excess[f], held_out_excess(set, noise_alone.front(), anew));
+    }
   });
   done(0.9);
   // Functions without a name beside nothing and beside the likeliest explanations, each with a remainder of its own.
@@ -271,10 +352,32 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       comparison.unnamed_left = families;
     }
   }
-  weigh(weighed.set, without, comparison);
-  give_remainders_to_their_effects(set, noise_alone, comparison);
+  weigh_by_share_left(excess, comparison);
+  weighed.fits.resize(comparison.fits.size());
+  for (const std::size_t f : worth) {
+    if (std::isfinite(profiles[f].log_evidence)) {
+      weighed.fits[f] = WeighedFit{std::move(noise_alone[f]), profiles[f].best.sizes};
+    }
+  }
   done(1.0);
   return weighed;
+}
+
+void allow_for_remainders(const TrackSet& set, const std::set<std::size_t>& without, int jobs, Comparison& comparison) {
+  std::vector<Hypothesis*> worth;
+  for (Hypothesis& one : comparison.all) {
+    if (one.unnamed || (one.fit < 0 && !one.effects.empty())) continue;
+    if (one.effects.empty() || worth.size() < kProfiled) worth.push_back(&one);
+  }
+  std::vector<double> gains(worth.size(), 0.0);
+  base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
+    const MotionFit& fit = comparison.fits[static_cast<std::size_t>(std::max(0, worth[k]->fit))];
+    const RemainderSpace space(set, fit);
+    gains[k] =
+        std::max(0.0, space.likeliest().log_likelihood - space.log_likelihood(RemainderSizes{}) - kRemainderCost);
+  });
+  for (std::size_t k = 0; k < worth.size(); ++k) worth[k]->log_evidence += gains[k];
+  weigh(set, without, comparison);
 }
 
 }  // namespace glidelab::diagnose

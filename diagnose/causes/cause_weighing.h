@@ -10,25 +10,41 @@
 ///
 /// Sizes of effects and functions without a name are uniform in their logarithm over four decades, and so is the width
 /// of the normal distribution that sizes of one kind are drawn from (of each clip, say); other parameters are uniform
-/// over their ranges. The explanations are those that the search of hypotheses.h finds when the remainder of the best
-/// one so far counts as noise. Functions without a name compete as before, with remainders of their own.
+/// over their ranges; the pushes of one hand that lets go late go with the motions and are about alike. The
+/// explanations are those that the search of hypotheses.h finds when the remainder of the best one so far counts as
+/// noise, and the likeliest by the noise alone. Functions without a name compete as before, with remainders of their
+/// own. Probabilities follow from the evidence and from what each explanation leaves of the gap (cause_odds.h).
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <set>
+#include <vector>
 
+#include "diagnose/causes/remainder.h"
 #include "diagnose/weigh/hypotheses.h"
 
 namespace glidelab::diagnose {
 
+/// A fit of the comparison, linearised by the noise alone, and the remainder that serves it best.
+struct WeighedFit {
+  MotionFit noise_alone;
+  RemainderSizes sizes;
+};
+
 struct WeighedCauses {
-  TrackSet set;           ///< with the remainder of the likeliest explanation as noise
-  Comparison comparison;  ///< by that set
+  TrackSet set;                                 ///< with the remainder of the likeliest explanation as noise
+  Comparison comparison;                        ///< by that set
+  std::vector<std::optional<WeighedFit>> fits;  ///< as comparison.fits; those that were weighed
 };
 
 /// `first` is the comparison by the noise alone; `set` has no remainder.
 WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
                            const PictureEvidence* pictures, const std::function<void(double)>& done);
+
+/// The comparison by the noise alone once more, each of its likeliest explanations with the remainder that serves it
+/// best: for data without a gap, in which small imperfections show all the same.
+void allow_for_remainders(const TrackSet& set, const std::set<std::size_t>& without, int jobs, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

@@ -50,44 +50,52 @@ std::optional<double> terminal_velocity(const TrackModel& model) {
   return 0.5 * (low + high);
 }
 
-core::Quantity quantity(double value, double sd, double degrees, bool known, const std::string& why) {
-  if (!known || !std::isfinite(value) || !std::isfinite(sd)) return core::undetermined(why);
-  return core::determined(core::estimate(value, sd, degrees));
-}
+/// One quantity of one configuration under one explanation.
+struct Recovered {
+  double value = 0.0, sd = 0.0, degrees = 0.0;
+  bool known = false;
+  const char* why = kWhyTogether;
+};
 
-}  // namespace
+struct RecoveredSet {
+  std::pair<std::size_t, std::size_t> of;  ///< group and mass
+  Recovered k_over_m_1_s, mu, alpha_rad, v_lim_m_s;
+};
 
-std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const MotionFit& fit,
-                                                 const RemainderSizes& sizes) {
-  const RemainderSpace space(set, fit);
-  const RemainderSpace::Solution solution = space.solve(sizes);
-  MotionFit at = fit;
-  at.at.global += solution.change;
-  // The scatter from motion to motion is known as well as there are motions.
-  const bool scatters = sizes.force_m_s2 > 0.0 || sizes.drag > 0.0;
-  const double degrees =
-      scatters ? std::max(1.0, static_cast<double>(set.motions.size()) - 1.0) : std::numeric_limits<double>::infinity();
-  const auto sd_of = [&](const Eigen::VectorXd& by) {
-    const Eigen::VectorXd along = base::product(solution.covariance, by);
-    return std::sqrt(std::max(0.0, by.dot(along)));
-  };
-  const auto& globals = fit.layout->globals();
-
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> configurations;  // to its first motion
+/// Each configuration, to its first motion.
+std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_motions(const TrackSet& set) {
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> configurations;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     configurations.emplace(std::pair(set.motions[i].group, set.motions[i].mass), i);
   }
-  std::vector<RecoveredConfiguration> recovered;
-  for (const auto& [of, motion] : configurations) {
-    const auto& [group, mass] = of;
+  return configurations;
+}
+
+std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {
+  const RemainderSpace space(set, fit);
+  const RemainderSpace::Solution solution = space.solve(sizes);
+  FitPoint at = fit.at;
+  at.global += solution.change;
+  // The scatter from motion to motion is known as well as there are motions, that of scores as there are clips.
+  const bool scatters = sizes.force_m_s2 > 0.0 || sizes.drag > 0.0;
+  const double of_motions =
+      scatters ? std::max(1.0, static_cast<double>(set.motions.size()) - 1.0) : std::numeric_limits<double>::infinity();
+  const double of_clips = std::max(1.0, static_cast<double>(set.clips.size()) - 1.0);
+  const auto root_of = [](const Eigen::MatrixXd& covariance, const Eigen::VectorXd& by) {
+    const Eigen::VectorXd along = base::product(covariance, by);
+    return std::sqrt(std::max(0.0, by.dot(along)));
+  };
+  const auto& globals = fit.layout->globals();
+  std::vector<RecoveredSet> all;
+  for (const auto& [of, motion] : first_motions(set)) {
     // Each quantity as a function of the common parameters, and its derivatives by finite differences.
-    const auto gradient = [&](const auto& value) {
-      Eigen::VectorXd by = Eigen::VectorXd::Zero(at.at.global.size());
+    const auto gradient = [&, i = motion](const auto& value) {
+      Eigen::VectorXd by = Eigen::VectorXd::Zero(at.global.size());
       for (std::size_t g = 0; g < globals.size(); ++g) {
-        if (!touches(set, globals[g], motion)) continue;
+        if (!touches(set, globals[g], i)) continue;
         const auto k = static_cast<Eigen::Index>(g);
         const double step = std::max(1e-9, 0.01 * std::sqrt(std::max(0.0, solution.covariance(k, k))));
-        FitPoint near = at.at;
+        FitPoint near = at;
         near.global[k] += step;
         const double above = value(near);
         near.global[k] -= 2.0 * step;
@@ -95,34 +103,87 @@ std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const Moti
       }
       return by;
     };
+    const auto found = [&](double value, const Eigen::VectorXd& by, double scale) {
+      Recovered one;
+      const double model = root_of(solution.covariance, by), between = root_of(solution.between_clips, by);
+      one.value = value;
+      one.sd = std::max(model, between) * scale;
+      one.degrees = between > model ? of_clips : of_motions;
+      one.known = std::isfinite(one.value) && std::isfinite(one.sd);
+      return one;
+    };
     const auto model_at = [&, i = motion](const FitPoint& point) { return model_of(set, *fit.layout, point, i); };
     const auto rate = [&](const FitPoint& point) { return model_at(point).k_n_s_m / model_at(point).mass_kg; };
     const auto mu = [&](const FitPoint& point) { return model_at(point).mu; };
     const auto alpha = [&](const FitPoint& point) { return model_at(point).alpha_rad; };
+    RecoveredSet one;
+    one.of = of;
+    one.k_over_m_1_s = found(rate(at), gradient(rate), 1.0);
+    one.k_over_m_1_s.known &= one.k_over_m_1_s.sd < std::max(kUnknownRate, kUnknownRate * std::abs(rate(at)));
+    one.mu = found(mu(at), gradient(mu), 1.0);
+    one.mu.known &= one.mu.sd < kUnknownMu;
+    if (!(std::cos(alpha(at)) > kNoLoad)) {
+      one.mu.known = false;
+      one.mu.why = "a fall has no normal force, and so no friction";
+    }
+    one.alpha_rad = found(alpha(at), gradient(alpha), 1.0);
+    one.alpha_rad.known &= one.alpha_rad.sd < kUnknownAngle_rad;
+    if (const std::optional<double> v = terminal_velocity(model_at(at))) {
+      // v_lim by what a small change of the acceleration moves it: dv = -da/a'(v).
+      const double apart = 1e-3 * *v;
+      const double slope =
+          (acceleration(model_at(at), *v + apart) - acceleration(model_at(at), *v - apart)) / (2.0 * apart);
+      const auto there = [&](const FitPoint& point) { return acceleration(model_at(point), *v); };
+      one.v_lim_m_s = found(*v, gradient(there), 1.0 / std::abs(slope));
+      one.v_lim_m_s.known &= one.v_lim_m_s.sd < *v;
+    } else {
+      one.v_lim_m_s.why = "the forces balance at no speed downhill";
+    }
+    all.push_back(one);
+  }
+  return all;
+}
+
+/// What is said of a quantity under one explanation and `others`, as far as they are likely: its own value, and
+/// sd² = sum of p (sd² + (value - own value)²).
+core::Quantity mixed(const Recovered& own, double probability, const std::vector<std::pair<Recovered, double>>& others,
+                     double unit) {
+  if (!own.known) return core::undetermined(own.why);
+  double sum = probability, square = probability * own.sd * own.sd;
+  for (const auto& [other, p] : others) {
+    if (!other.known) continue;
+    const double off = other.value - own.value;
+    sum += p;
+    square += p * (other.sd * other.sd + off * off);
+  }
+  return core::determined(core::estimate(own.value / unit, std::sqrt(square / sum) / unit, own.degrees));
+}
+
+}  // namespace
+
+std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const Explanations& explanations) {
+  const LikelyFit& reported = explanations.front();
+  std::vector<std::vector<RecoveredSet>> under;
+  for (const LikelyFit& one : explanations) under.push_back(recovered_under(set, *one.fit, one.sizes));
+  const auto mixture = [&](std::size_t c, Recovered RecoveredSet::*quantity, double unit) {
+    std::vector<std::pair<Recovered, double>> others;
+    for (std::size_t h = 1; h < under.size(); ++h) {
+      others.emplace_back(under[h][c].*quantity, explanations[h].probability);
+    }
+    return mixed(under.front()[c].*quantity, reported.probability, others, unit);
+  };
+  std::vector<RecoveredConfiguration> recovered;
+  for (std::size_t c = 0; c < under.front().size(); ++c) {
+    const auto& [group, mass] = under.front()[c].of;
     RecoveredConfiguration one;
     one.group = set.groups[group].name;
     one.mass_kg = set.masses[mass].mass_kg;
     one.incline_deg = set.groups[group].stated_rad / kDegree;
-    for (const std::size_t e : fit.effects) one.with.emplace_back(effect_list()[e].id);
-    const double k_sd = sd_of(gradient(rate)), mu_sd = sd_of(gradient(mu)), alpha_sd = sd_of(gradient(alpha));
-    const double k = rate(at.at), angle = alpha(at.at);
-    one.k_over_m_1_s =
-        quantity(k, k_sd, degrees, k_sd < std::max(kUnknownRate, kUnknownRate * std::abs(k)), kWhyTogether);
-    one.mu = std::cos(angle) > kNoLoad ? quantity(mu(at.at), mu_sd, degrees, mu_sd < kUnknownMu, kWhyTogether)
-                                       : core::undetermined("a fall has no normal force, and so no friction");
-    one.alpha_deg = quantity(angle / kDegree, alpha_sd / kDegree, degrees, alpha_sd < kUnknownAngle_rad, kWhyTogether);
-    const std::optional<double> terminal = terminal_velocity(model_at(at.at));
-    if (!terminal) {
-      one.v_lim_m_s = core::undetermined("the forces balance at no speed downhill");
-    } else {
-      // v_lim by what a small change of the acceleration moves it: dv = -da/a'(v).
-      const double v = *terminal, apart = 1e-3 * v;
-      const double slope =
-          (acceleration(model_at(at.at), v + apart) - acceleration(model_at(at.at), v - apart)) / (2.0 * apart);
-      const Eigen::VectorXd by = gradient([&](const FitPoint& point) { return acceleration(model_at(point), v); });
-      const double sd = sd_of(by) / std::abs(slope);
-      one.v_lim_m_s = quantity(v, sd, degrees, sd < v, kWhyTogether);
-    }
+    for (const std::size_t e : reported.fit->effects) one.with.emplace_back(effect_list()[e].id);
+    one.k_over_m_1_s = mixture(c, &RecoveredSet::k_over_m_1_s, 1.0);
+    one.mu = mixture(c, &RecoveredSet::mu, 1.0);
+    one.alpha_deg = mixture(c, &RecoveredSet::alpha_rad, kDegree);
+    one.v_lim_m_s = mixture(c, &RecoveredSet::v_lim_m_s, 1.0);
     recovered.push_back(std::move(one));
   }
   return recovered;

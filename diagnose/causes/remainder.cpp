@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "base/math/dense.h"
@@ -128,6 +129,7 @@ RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const 
     motion.part_s = parts.length_s;
     motion.shapes = parts.shapes;
     motion.own = of.own.cols();
+    motion.clip = set.motions[i].clip;
     scale_ += motion.z_z.diagonal().segment(1, common_ + extra_);
     part_s_ += parts.length_s / static_cast<double>(set.motions.size());
     motions_.push_back(std::move(motion));
@@ -191,11 +193,26 @@ double RemainderSpace::log_likelihood(const RemainderSizes& sizes) const {
 }
 
 RemainderSpace::Solution RemainderSpace::solve(const RemainderSizes& sizes) const {
-  const Sums sums = sums_of(sizes);
+  std::map<std::size_t, Sums> of_clips;
+  Sums sums = stated();
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const Sums of = sums_of(i, sizes, sizes.of(i));
+    sums.add(of, 1.0);
+    const auto [clip, is_new] = of_clips.try_emplace(motions_[i].clip, of);
+    if (!is_new) clip->second.add(of, 1.0);
+  }
   Eigen::MatrixXd scaled = scale_.asDiagonal() * sums.normal * scale_.asDiagonal();
   scaled.diagonal().array() += kUnseen;
   const Eigen::MatrixXd inverse = scale_.asDiagonal() * base::inverse_positive(scaled) * scale_.asDiagonal();
-  return {base::product(inverse, sums.right).topRows(common_), inverse.topLeftCorner(common_, common_)};
+  const Eigen::VectorXd change = base::product(inverse, sums.right);
+  Eigen::MatrixXd scatter = Eigen::MatrixXd(stated_weight_.asDiagonal());
+  const auto clips = static_cast<double>(of_clips.size());
+  for (const auto& [clip, of] : of_clips) {
+    const Eigen::VectorXd score = of.right - base::product(of.normal, change);
+    scatter += clips / std::max(1.0, clips - 1.0) * score * score.transpose();
+  }
+  const Eigen::MatrixXd between = base::product(base::product(inverse, scatter), inverse);
+  return {change.head(common_), inverse.topLeftCorner(common_, common_), between.topLeftCorner(common_, common_)};
 }
 
 RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) const {

@@ -57,10 +57,11 @@ class RemainderSpace {
   /// The likeliest sizes, by a search along each of their logarithms; from `start` where there is one.
   Best likeliest(const RemainderSizes* start = nullptr) const;
 
-  /// The common parameters' change from the fit to the minimum under these sizes, and their covariance.
+  /// The common parameters' change from the fit to the minimum under these sizes, their covariance by the model, and
+  /// by how the scores of clips scatter (recovered.h).
   struct Solution {
     Eigen::VectorXd change;
-    Eigen::MatrixXd covariance;
+    Eigen::MatrixXd covariance, between_clips;
   };
   Solution solve(const RemainderSizes& sizes) const;
 
@@ -75,6 +76,7 @@ class RemainderSpace {
     double part_s = 0.0;
     Eigen::MatrixXd shapes;  ///< parts x 3: 1, sign(v), (K/m) v
     Eigen::Index own = 0;
+    std::size_t clip = 0;
   };
   struct Sums {
     double log_determinant = 0.0;

@@ -235,6 +235,11 @@ constexpr bool shows_in_motion(Search search) {
   return search != Search::frames && search != Search::noise && search != Search::pictures;
 }
 
+/// Whether such an effect moves positions, and so makes a gap: lost frames do, scatter of single points does not.
+constexpr bool takes_part_of_gap(Search search) {
+  return search == Search::frames || shows_in_motion(search);
+}
+
 /// What a search on a grid goes by.
 struct ShapeReach {
   double x_low_m, x_high_m;  ///< of the positions

@@ -54,7 +54,10 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
       longest = std::max(longest, motion.t_s.back());
       frame = std::max(frame, 1.0 / set.clips[motion.clip].frame_rate_hz);
     }
-    if (longest > 0.0) range = {kShortestPush * frame, kLatestRelease * longest};
+    if (longest > 0.0) {
+      range.low = kShortestPush * frame;
+      range.high = std::max(range.low, std::min(parameter.high, kLatestRelease * longest));
+    }
   }
   if (parameter.reach == Reach::held_speed) range.low = std::max(range.low, set.held_m_s);
   if (parameter.reach == Reach::with_mass) {

@@ -47,9 +47,9 @@ struct ParameterRange {
 /// any bend.
 ///
 /// Sizes are as the effects state them, those that go with the mass for the heaviest glider. A place lies within the
-/// positions. A frequency makes at least two turns in the longest motion. A release comes after four frames and in the
-/// first two fifths of the longest motion. A Stribeck speed lies above that at which a codec may hold the marker
-/// (TrackSet::held_m_s).
+/// positions. A frequency makes at least two turns in the longest motion. A release comes after four frames, and within
+/// half a second and the first two fifths of the longest motion. A Stribeck speed lies above that at which a codec may
+/// hold the marker (TrackSet::held_m_s).
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
 
 /// From the least to the largest position.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
@@ -88,14 +89,6 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
     q.col(kept++) = v / rest;
   }
   return q.leftCols(kept);
-}
-
-double log_sum(const std::vector<double>& logs) {
-  const double most = *std::max_element(logs.begin(), logs.end());
-  if (!std::isfinite(most)) return most;
-  double sum = 0.0;
-  for (const double l : logs) sum += std::exp(l - most);
-  return most + std::log(sum);
 }
 
 std::vector<double> weights_of(const TrackedMotion& motion) {
@@ -247,10 +240,6 @@ double ScoreSpace::dot(const ScoreColumn& a, const ScoreColumn& b) const {
   return a.rest.dot(b.rest) - a.common.dot(b.common);
 }
 
-double log_mean(const std::vector<double>& logs) {
-  return log_sum(logs) - std::log(static_cast<double>(logs.size()));
-}
-
 double log_amplitude_evidence(double z_hat, double z_most, bool both_signs) {
   constexpr double kLeast = 2.0;
   const double most = std::max(z_most, kLeast * 10.0);  // at least one decade
@@ -272,7 +261,7 @@ double log_amplitude_evidence(double z_hat, double z_most, bool both_signs) {
       logs.push_back(at * z - 0.5 * at * at + std::log(top / kParts / width));
     }
   }
-  return log_sum(logs) - (both_signs ? std::log(2.0) : 0.0);
+  return base::log_sum(logs) - (both_signs ? std::log(2.0) : 0.0);
 }
 
 SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen::VectorXd& scores) {
@@ -306,7 +295,7 @@ SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen:
   for (Eigen::Index j = 0; j < n; ++j) {
     if (eigen.values[j] > kUnseen * largest) result.free_gain += 0.5 * along[j] * along[j] / eigen.values[j];
   }
-  result.log_evidence = log_mean(logs);
+  result.log_evidence = base::log_mean(logs);
   result.tau = std::sqrt(best_tau2);
   Eigen::VectorXd shrink(n);
   for (Eigen::Index j = 0; j < n; ++j) {

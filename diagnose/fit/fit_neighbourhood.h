@@ -119,9 +119,6 @@ class ScoreSpace {
   ScoreColumn residual_;
 };
 
-/// log of the mean of exp(logs); logs is not empty.
-double log_mean(const std::vector<double>& logs);
-
 /// log of the evidence for an amplitude against its absence. The likelihood is that of a measured size z_hat (in
 /// standard deviations); the prior spreads evenly over log z from 2 (less cannot be told from nothing) to z_most, over
 /// both signs or one.

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/math/log_sum.h"
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_model.h"
@@ -137,7 +138,7 @@ Tails find_tails(const std::vector<double>& e, bool filmed) {
   if (filmed) {
     std::vector<double> logs = {usual};
     for (const double freedom : {24.0, 12.0, 8.0, 5.0}) logs.push_back(uneven_log_likelihood(e, freedom));
-    usual = log_mean(logs);
+    usual = base::log_mean(logs);
   }
   std::vector<double> logs;
   for (const double share : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2}) {
@@ -161,7 +162,7 @@ Tails find_tails(const std::vector<double>& e, bool filmed) {
       if (logs.back() > tails.gain) tails = {logs.back(), 0.0, share, wide, s2};
     }
   }
-  if (!logs.empty()) tails.log_evidence = log_mean(logs);
+  if (!logs.empty()) tails.log_evidence = base::log_mean(logs);
   return tails;
 }
 

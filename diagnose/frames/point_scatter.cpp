@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
 #include "core/motion/smoothing/noise.h"
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/fit/fit_neighbourhood.h"
@@ -217,7 +218,7 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
     found.jitter_s = tau * std::sqrt(mean_square);  // sd_m may hold the jitter of the mean speed already
   }
   if (logs.empty()) return found;
-  found.log_evidence = log_mean(logs);
+  found.log_evidence = base::log_mean(logs);
   found.sd_s = found.jitter_s / std::sqrt(std::max(1.0, 2.0 * found.gain));
   return found;
 }

@@ -218,7 +218,7 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
   if (lines.size() < kFewestLines) throw base::InputError(too_few_lines("", lines.size()));
   const LineData data = line_data(lines, g);
   const std::vector<LineTerm> terms = named_terms(lines, without);
-  const std::vector<LineFamily> families = unnamed_families(lines);
+  const std::vector<LineFamily> families = unnamed_line_families(lines);
   const std::vector<LineExplanation> all = weigh_lines(data, terms, families);
   const LineSolution& nominal = all.front().solution;
   const OwnScatter scatter = own_scatter(lines);

@@ -73,7 +73,7 @@ std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector
     if (family) terms.insert(terms.end(), families[*family].terms.begin(), families[*family].terms.end());
     LineExplanation explanation{ids, family, solve_lines(data, terms), 0.0, prior};
     if (!all.empty()) {
-      explanation.log_evidence = log_evidence_of(data, terms, explanation.solution, all.front().solution);
+      explanation.log_evidence = log_line_evidence(data, terms, explanation.solution, all.front().solution);
     }
     all.push_back(std::move(explanation));
   };

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
 #include "base/text/csv.h"
 #include "diagnose/effects/effect_library.h"
 
@@ -131,7 +132,7 @@ std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std
   return terms;
 }
 
-std::vector<LineFamily> unnamed_families(const std::vector<TableLine>& lines) {
+std::vector<LineFamily> unnamed_line_families(const std::vector<TableLine>& lines) {
   std::vector<LineFamily> families;
   const auto add = [&](UnnamedInLines::Over over, const auto& cell_of) {
     std::vector<Cell> cells;
@@ -321,14 +322,11 @@ double log_bayes_factor(double left, double nominal_left, double lines, double n
     const double prior = 0.5 * std::log(lines / (2.0 * std::numbers::pi)) - 0.5 * u - 0.5 * lines / g;
     logs.push_back(prior + 0.5 * (freedom - terms) * std::log1p(g) - 0.5 * freedom * std::log1p(g * ratio));
   }
-  const double most = *std::max_element(logs.begin(), logs.end());
-  double sum = 0.0;
-  for (const double l : logs) sum += kStep * std::exp(l - most);
-  return most + std::log(sum);
+  return base::log_sum(logs) + std::log(kStep);
 }
 
-double log_evidence_of(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
-                       const LineSolution& nominal) {
+double log_line_evidence(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
+                         const LineSolution& nominal) {
   double of_k = 0.0, of_a = 0.0;
   for (const LineTerm& term : terms) {
     const double k = term.of_log_k.isZero(0.0) ? 0.0 : 1.0, a = term.of_a0.isZero(0.0) ? 0.0 : 1.0;

@@ -78,7 +78,7 @@ std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std
 
 /// Friction and drag without a name. With the line's mass m, direction s and K/m they make a0 - s f or ln(K/m) + d,
 /// with f or d of each mass, of each set-up, or of each mass in each set-up, and ln(K/m) + s d.
-std::vector<LineFamily> unnamed_families(const std::vector<TableLine>& lines);
+std::vector<LineFamily> unnamed_line_families(const std::vector<TableLine>& lines);
 
 /// Effects of the speed whose lines are those of load_independent_friction, less what is left `without`.
 std::vector<std::string> alike_friction_force(const std::vector<std::string>& without);
@@ -119,8 +119,8 @@ OwnScatter own_scatter(const std::vector<TableLine>& lines);
 double log_bayes_factor(double left, double nominal_left, double lines, double nominal_parameters, double terms);
 
 /// Of both kinds together, against the nominal model. A term that acts on both is half a one of each.
-double log_evidence_of(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
-                       const LineSolution& nominal);
+double log_line_evidence(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
+                         const LineSolution& nominal);
 
 /// Of both kinds together, each with an unknown scatter: n ln(nominal rms / rms).
 double log_likelihood_gain_of(const LineSolution& with, const LineSolution& nominal);

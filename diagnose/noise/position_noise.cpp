@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_model.h"
@@ -236,7 +237,7 @@ void weigh_lasting(const NoiseLikelihood& likelihood, const Dial& lasting, Posit
     }
   }
   noise.lasting_gain = std::max(0.0, *std::max_element(logs.begin(), logs.end()));
-  noise.lasting_log_evidence = log_mean(logs);
+  noise.lasting_log_evidence = base::log_mean(logs);
 }
 
 /// Noise in proportion to the speed, of one size.
@@ -268,8 +269,8 @@ const OfSpeed* weigh_speed(const std::vector<OfSpeed>& sizes, bool handed_on, Po
   }
   const auto many = static_cast<double>(sizes.size());
   // Sizes below the least that is tried are as good as none.
-  const double codecs_evidence = handed_on ? std::max(0.0, log_mean(of_codec) + std::log(many / weights)) : 0.0;
-  noise.jitter_log_evidence = log_mean(uneven) - codecs_evidence;
+  const double codecs_evidence = handed_on ? std::max(0.0, base::log_mean(of_codec) + std::log(many / weights)) : 0.0;
+  noise.jitter_log_evidence = base::log_mean(uneven) - codecs_evidence;
   if (likeliest != nullptr) {
     noise.jitter_s = likeliest->jitter_s;
     noise.jitter_gain = std::max(0.0, likeliest->gain - (handed_on ? codecs_gain : 0.0));

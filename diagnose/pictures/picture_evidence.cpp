@@ -65,7 +65,8 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   if (camera.exposure_s) {
     const double sd =
         std::sqrt(std::pow(fit.exposure_sd_s, 2) + std::pow(kToneOfShape * *camera.exposure_s, 2) + least_s * least_s);
-    blur.log_evidence = log_evidence_of((fit.exposure_s - *camera.exposure_s) / sd, 1.0 / camera.frame_rate_hz / sd);
+    blur.log_evidence =
+        log_deviation_evidence((fit.exposure_s - *camera.exposure_s) / sd, 1.0 / camera.frame_rate_hz / sd);
     blur.words = fmt::format("The marker is smeared as by an exposure of {} ms; {:.3g} ms is stated.",
                              base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * sd), 1e3 * *camera.exposure_s);
   } else {
@@ -82,7 +83,8 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   const double sd = std::hypot(fit.line_sd_s, least_line_s, 0.05 * stated);
   const double rows = clips.front().record->height_px;
   shutter.parameters = {{"line_s", fit.line_s, sd}};
-  shutter.log_evidence = log_evidence_of(std::abs(fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
+  shutter.log_evidence =
+      log_deviation_evidence(std::abs(fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
   shutter.words = fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
                               base::value_and_sd_text(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
                               stated == 0.0 ? "(a global shutter) is stated" : "is stated");

@@ -24,7 +24,7 @@ constexpr double kUsualMemory = 1.1;  // and what it is where nothing is wrong
 double memory_log_evidence(const std::vector<FilmedClip>& clips) {
   double memory = 1.0;
   for (const FilmedClip& clip : clips) memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
-  return log_evidence_of((memory - kUsualMemory) / kMemory, 1.0 / kMemory);
+  return log_deviation_evidence((memory - kUsualMemory) / kMemory, 1.0 / kMemory);
 }
 
 void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
@@ -46,7 +46,8 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
     return (other.id == ids::light_flicker || other.id == ids::camera_motion) && other.log_evidence > kSeenInPictures;
   });
   PictureFinding finding = finding_of(ids::compression);
-  const double blocks = log_evidence_of((excess - 3.0) / 2.0, 100.0);  // of columns that tell their scatter poorly
+  const double blocks =
+      log_deviation_evidence((excess - 3.0) / 2.0, 100.0);  // of columns that tell their scatter poorly
   // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
   finding.stated = lossy > 0;
   finding.log_evidence =

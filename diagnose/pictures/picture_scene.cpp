@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
 #include "base/text/number_text.h"
 #include "core/pictures/scene/camera_traces.h"
 #include "diagnose/effects/effect_library.h"
@@ -135,7 +136,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   const double sd = std::sqrt(10.0 * variance * inverse(columns - 2, columns - 2));
   PictureFinding finding = finding_of(ids::light_gradient);
   const double usual = std::hypot(sd, kUsualGradient_1_m);
-  finding.log_evidence = log_evidence_of(std::abs(gradient) / usual, 10.0 / usual);
+  finding.log_evidence = log_deviation_evidence(std::abs(gradient) / usual, 10.0 / usual);
   finding.parameters = {{"gradient", gradient, sd}};
   finding.words =
       fmt::format("The light on the marker changes by {} % a metre to the right; {:.0f} % is usual in a room.",
@@ -219,7 +220,7 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   PictureFinding finding = finding_of(ids::camera_motion);
   const bool shakes = wave.log_evidence > kSeenInPictures && wave.amplitude > least_px;
   const double drift_sd = std::hypot(drift.sd, least_px);
-  const double of_drift = log_evidence_of(drift.size / drift_sd, 100.0 / drift_sd);
+  const double of_drift = log_deviation_evidence(drift.size / drift_sd, 100.0 / drift_sd);
   if (shakes) {
     finding.log_evidence = std::max(wave.log_evidence, of_drift);
     finding.parameters = {{"amplitude_px", wave.amplitude, wave.sd}, {"f_hz", wave.f_hz, wave.sd_hz}};
@@ -254,7 +255,7 @@ double camera_sway_support(const std::vector<FilmedClip>& clips, double amplitud
     }
     logs.push_back(sum);
   }
-  return log_mean(logs);
+  return base::log_mean(logs);
 }
 
 }  // namespace glidelab::diagnose

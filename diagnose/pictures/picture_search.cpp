@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/math/log_sum.h"
 #include "core/math/quantile.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 
@@ -24,10 +25,10 @@ double stated_line_s(const core::CameraSettings& camera) {
   return camera.bottom_row_first ? -camera.line_readout_s : camera.line_readout_s;
 }
 
-double log_evidence_of(double z, double largest) {
+double log_deviation_evidence(double z, double largest) {
   std::vector<double> logs;
   for (double s = 1.0; s < std::max(2.0, largest); s *= 1.25) logs.push_back(z * s - 0.5 * s * s);
-  return log_mean(logs);
+  return base::log_mean(logs);
 }
 
 namespace {

@@ -41,7 +41,7 @@ PictureFinding finding_of(std::string_view id);
 double stated_line_s(const core::CameraSettings& camera);
 
 /// Log evidence of a deviation of z standard deviations, equal odds for each factor of ten from 1 to `largest`.
-double log_evidence_of(double z, double largest);
+double log_deviation_evidence(double z, double largest);
 
 struct Series {
   std::vector<double> t_s, value;

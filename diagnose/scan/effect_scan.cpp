@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/long_work.h"
+#include "base/math/log_sum.h"
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/scan/timed_scan.h"
 
@@ -49,7 +50,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
     scan.values.insert(scan.values.end(), shape.begin(), shape.end());
     scan.direction = scan.shapes.back().column;
   }
-  scan.log_evidence = log_mean(logs);
+  scan.log_evidence = base::log_mean(logs);
   return scan;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
 #include "diagnose/fit/fit_model.h"
 
 namespace glidelab::diagnose {
@@ -79,7 +80,7 @@ WaveEvidence weigh_wave(const std::vector<WavePart>& parts, double least_m) {
       found.size_m = size;
     }
   }
-  found.log_evidence = log_mean(logs);
+  found.log_evidence = base::log_mean(logs);
   return found;
 }
 
@@ -100,7 +101,7 @@ Wave find_wave(const ScoreSpace& space) {
     logs.push_back(at.log_evidence);
     if (at.gain > wave.gain) wave = {at.gain, 0.0, at.size_m, f};
   }
-  if (!logs.empty()) wave.log_evidence = log_mean(logs);
+  if (!logs.empty()) wave.log_evidence = base::log_mean(logs);
   return wave;
 }
 
@@ -170,7 +171,7 @@ double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
     positive += log_below(z);
     negative += log_below(-z);
   }
-  return log_mean({positive, negative}) + std::log(2.0);
+  return base::log_mean({positive, negative}) + std::log(2.0);
 }
 
 /// log of the probability that pushes_of_one_hand() all have one sign, of two, before anything is measured: the mean
@@ -233,8 +234,7 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
         log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
     const double of_one_hand = std::log1p(-kShareOfAnyPushes) + evidence.log_evidence + one_sign;
     const double of_any = std::log(kShareOfAnyPushes) + any.log_evidence;
-    const double more = std::max(of_one_hand, of_any);
-    logs.push_back(more + std::log(std::exp(of_one_hand - more) + std::exp(of_any - more)));
+    logs.push_back(base::log_sum({of_one_hand, of_any}));
     const bool alike = of_one_hand >= of_any;
     if (!alike) push = any.mean;
     const double gain = alike ? evidence.gain : any.gain;
@@ -249,7 +249,7 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
   }
   if (logs.empty() || scan.values.empty()) return scan;
   scan.visible = true;
-  scan.log_evidence = log_mean(logs);
+  scan.log_evidence = base::log_mean(logs);
   return scan;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/math/dense.h"
+#include "base/math/log_sum.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/unnamed/unnamed_family.h"
 #include "diagnose/unnamed/unnamed_places.h"
@@ -148,7 +149,7 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
       }
     }
   }
-  if (!logs.empty()) family.log_evidence = log_mean(logs);
+  if (!logs.empty()) family.log_evidence = base::log_mean(logs);
   if (!late) {
     for (const TrackedClip& clip : set.clips) family.names.push_back(clip.name);
   }
@@ -288,8 +289,8 @@ double log_unnamed_evidence(const std::vector<UnnamedFamily>& families) {
   std::map<std::string, std::vector<double>> by_variable;
   for (const UnnamedFamily& family : families) by_variable[family.variable].push_back(family.log_evidence);
   std::vector<double> logs;
-  for (const auto& [variable, of_one] : by_variable) logs.push_back(log_mean(of_one));
-  return log_mean(logs);
+  for (const auto& [variable, of_one] : by_variable) logs.push_back(base::log_mean(of_one));
+  return base::log_mean(logs);
 }
 
 }  // namespace glidelab::diagnose

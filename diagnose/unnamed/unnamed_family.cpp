@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include "base/math/log_sum.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -73,7 +74,7 @@ UnnamedFamily one_place(const ScoreSpace& space, const Normal& normal, const std
     best_from = from;
   }
   if (logs.empty() || best.gain < 0.0) return family;
-  family.log_evidence = log_mean(logs);
+  family.log_evidence = base::log_mean(logs);
   family.gain = best.gain;
   family.columns = Eigen::MatrixXd::Zero(columns.front().rest.size(), 1);
   for (Eigen::Index c = best_from; c < (step ? n : best_from + 1); ++c) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/math/log_sum.h"
 #include "core/math/quantile.h"
 #include "diagnose/unnamed/unnamed_family.h"
 
@@ -237,7 +238,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
     }
     if (best_f > 0.0) logs[best] = try_swing(best_f);
   }
-  if (!logs.empty()) family.log_evidence = log_mean(logs);
+  if (!logs.empty()) family.log_evidence = base::log_mean(logs);
   name_everywhere(x, family);
   return family;
 }
@@ -266,7 +267,7 @@ UnnamedFamily pull_family(const ScoreSpace& space, const Grid& x) {
     if (tried.better) draw_swing(x, periods / range, evidence, family);
     logs.push_back(tried.log_evidence);
   }
-  family.log_evidence = log_mean(logs);
+  family.log_evidence = base::log_mean(logs);
   name_everywhere(x, family);
   return family;
 }

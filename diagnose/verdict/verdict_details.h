@@ -37,7 +37,7 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
 VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit);
 
 /// Where a gap lies: regions and curves of each variable in which something unnamed would act, of the families that are
-/// worth it, corrected for as many looks. `nominal` is the fit of the usual model, for what it lacks.
+/// worth it, corrected for as many looks. `nominal` is the fit of the nominal model, for what it lacks.
 void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families,
                  Diagnosis& diagnosis);
 

@@ -16,12 +16,11 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
-constexpr double kAnyPower = 0.2;     // odds of a power of the speed that no theory gives, against another effect
-constexpr std::size_t kFitted = 9;    // effects of the short list that are fitted in full
-constexpr double kLeads = 3.0;        // log evidence from which on something else is weighed beside an effect
-constexpr double kNoLossSeen = -3.0;  // log evidence of lost frames where none is found
-constexpr double kTrifle = 6.0;       // log evidence below which something unnamed shows weakly
-constexpr double kTriflePart = 0.01;  // of that of the effects, below which it leaves them their name
+constexpr std::size_t kFitted = 9;     // effects of the short list that are fitted in full
+constexpr double kLeads = 3.0;         // log evidence from which on something else is weighed beside an effect
+constexpr double kNoLossSeen = -3.0;   // log evidence of lost frames where none is found
+constexpr double kWeakEvidence = 6.0;  // log evidence below which something unnamed shows weakly
+constexpr double kWeakShare = 0.01;    // of that of the effects, below which it leaves them their name
 
 void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) {
   std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
@@ -82,7 +81,7 @@ void give_trifles_to_their_effects(Comparison& comparison) {
   for (Hypothesis& with : comparison.all) {
     if (!with.unnamed || with.effects.empty()) continue;
     const double of_effects = with.log_evidence - with.unnamed_log_evidence;
-    if (with.unnamed_log_evidence >= std::min(kTrifle, kTriflePart * of_effects)) continue;
+    if (with.unnamed_log_evidence >= std::min(kWeakEvidence, kWeakShare * of_effects)) continue;
     const auto named = std::find_if(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& other) {
       return !other.unnamed && other.effects == with.effects;
     });
@@ -121,21 +120,9 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   const double most = *std::max_element(logs.begin(), logs.end());
   double sum = 0.0;
   for (double& l : logs) sum += l = std::exp(l - most);
-  comparison.effect_probability.assign(list.size(), 0.0);
-  comparison.none = comparison.unknown = 0.0;
   for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
   if (set.pictures) give_trifles_to_their_effects(comparison);
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (hypothesis.unnamed) {
-      comparison.unknown += hypothesis.probability;
-    } else if (hypothesis.effects.empty()) {
-      comparison.none += hypothesis.probability;
-    } else {
-      for (const std::size_t e : hypothesis.effects) comparison.effect_probability[e] += hypothesis.probability;
-    }
-  }
-  std::stable_sort(comparison.all.begin(), comparison.all.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  set_probabilities(comparison);
 }
 
 Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs,

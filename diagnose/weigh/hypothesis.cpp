@@ -81,6 +81,22 @@ const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>
   return nullptr;
 }
 
+void set_probabilities(Comparison& comparison) {
+  comparison.effect_probability.assign(effect_list().size(), 0.0);
+  comparison.none = comparison.unknown = 0.0;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed) {
+      comparison.unknown += hypothesis.probability;
+    } else if (hypothesis.effects.empty()) {
+      comparison.none += hypothesis.probability;
+    } else {
+      for (const std::size_t e : hypothesis.effects) comparison.effect_probability[e] += hypothesis.probability;
+    }
+  }
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
   std::map<std::multiset<std::size_t>, double> sums;
   const auto causes = [&](const Hypothesis& hypothesis) {

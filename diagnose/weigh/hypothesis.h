@@ -71,6 +71,13 @@ std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t siz
 void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<const EffectScan*>& best,
               const Hypothesis& beside, const Work& work, Comparison& comparison);
 
+/// `none`, `unknown` and the probability of each effect, by those of the hypotheses, which then stand by falling
+/// probability.
+void set_probabilities(Comparison& comparison);
+
+/// Odds of a power of the speed that no theory gives, against another effect.
+inline constexpr double kAnyPower = 0.4;
+
 /// One explanation among those fitted; null: none.
 const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/log_sum.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/gap/held_out.h"
@@ -95,7 +96,7 @@ CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
       }
     }
   }
-  found.log_evidence = log_mean(logs);
+  found.log_evidence = base::log_mean(logs);
   return found;
 }
 

@@ -175,10 +175,10 @@ TEST_CASE("A wave is found with its frequency, and white noise has none", "[pict
 }
 
 TEST_CASE("Evidence of a deviation falls below nothing at none and grows with its square", "[pictures]") {
-  CHECK(diagnose::log_evidence_of(0.0, 100.0) < -1.0);
-  CHECK(diagnose::log_evidence_of(10.0, 100.0) > 40.0);
-  CHECK(diagnose::log_evidence_of(10.0, 100.0) < 50.0);  // z²/2 less what the unknown size costs
-  CHECK(diagnose::log_evidence_of(-10.0, 100.0) < diagnose::log_evidence_of(0.0, 100.0));
+  CHECK(diagnose::log_deviation_evidence(0.0, 100.0) < -1.0);
+  CHECK(diagnose::log_deviation_evidence(10.0, 100.0) > 40.0);
+  CHECK(diagnose::log_deviation_evidence(10.0, 100.0) < 50.0);  // z²/2 less what the unknown size costs
+  CHECK(diagnose::log_deviation_evidence(-10.0, 100.0) < diagnose::log_deviation_evidence(0.0, 100.0));
 }
 
 TEST_CASE("clips of several cameras are each held to what is stated of their own") {

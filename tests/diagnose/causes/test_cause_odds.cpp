@@ -1,0 +1,103 @@
+#include "diagnose/causes/cause_odds.h"
+
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "diagnose/effects/effect_library.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Nothing, something without a name, and two effects, fits 1 and 2.
+diagnose::Comparison comparison_of(double unnamed, double first, double second) {
+  diagnose::Comparison comparison;
+  comparison.fits.resize(3);
+  comparison.all.push_back({{}, false, 0.0, 0.0, 0.0, 0});
+  comparison.all.push_back({{}, true, 0.0, unnamed, 0.0, 0});
+  comparison.all.push_back({{diagnose::effect_index(diagnose::ids::quadratic_drag)}, false, 0.0, first, 0.0, 1});
+  comparison.all.push_back({{diagnose::effect_index(diagnose::ids::track_bow)}, false, 0.0, second, 0.0, 2});
+  return comparison;
+}
+
+double probability_of(const diagnose::Comparison& comparison, std::string_view id) {
+  return comparison.effect_probability[diagnose::effect_index(id)];
+}
+
+}  // namespace
+
+TEST_CASE("of two causes with the same evidence the one that leaves less of the gap is likelier") {
+  diagnose::Comparison comparison = comparison_of(20.0, 20.0, 20.0);
+  diagnose::weigh_by_share_left({10.0, 0.5, 5.0}, comparison);
+  double sum = 0.0;
+  for (const diagnose::Hypothesis& one : comparison.all) sum += one.probability;
+  CHECK(sum == Approx(1.0).epsilon(1e-12));
+  CHECK(comparison.none + comparison.unknown + probability_of(comparison, diagnose::ids::quadratic_drag) +
+            probability_of(comparison, diagnose::ids::track_bow) ==
+        Approx(1.0).epsilon(1e-12));
+  CHECK(comparison.all.front().fit == 1);
+  CHECK(probability_of(comparison, diagnose::ids::quadratic_drag) >
+        10.0 * probability_of(comparison, diagnose::ids::track_bow));
+}
+
+TEST_CASE("log odds are linear in what is left") {
+  const auto log_odds = [](double left) {
+    diagnose::Comparison comparison = comparison_of(-30.0, 0.0, 0.0);
+    diagnose::weigh_by_share_left({10.0, 0.0, 10.0 * left}, comparison);
+    return std::log(probability_of(comparison, diagnose::ids::quadratic_drag) /
+                    probability_of(comparison, diagnose::ids::track_bow));
+  };
+  CHECK(log_odds(0.0) == Approx(0.0).margin(1e-9));
+  CHECK(log_odds(0.4) == Approx(2.0 * log_odds(0.2)).epsilon(1e-9));
+  CHECK(log_odds(1.0) == Approx(5.0 * log_odds(0.2)).epsilon(1e-9));
+  CHECK(log_odds(3.0) == Approx(log_odds(1.0)).epsilon(1e-9));  // a cause that makes it worse leaves all
+}
+
+TEST_CASE("evidence beside a remainder gives no certainty") {
+  // Evidence of 60 more: 1e26 to one against the noise alone.
+  diagnose::Comparison comparison = comparison_of(-1000.0, 60.0, 0.0);
+  diagnose::weigh_by_share_left({10.0, 2.0, 2.0}, comparison);
+  const double behind = probability_of(comparison, diagnose::ids::track_bow);
+  CHECK(behind > 1e-6);
+  CHECK(behind < 0.05);
+  // The odds fall with a power of the difference in evidence: from 1e3 to 1e4, and from 1e4 to 1e5, by the same factor.
+  const auto odds = [](double ahead) {
+    diagnose::Comparison far = comparison_of(-1000.0, ahead, 0.0);
+    diagnose::weigh_by_share_left({10.0, 2.0, 2.0}, far);
+    return probability_of(far, diagnose::ids::track_bow) / probability_of(far, diagnose::ids::quadratic_drag);
+  };
+  CHECK(odds(1e5) / odds(1e4) == Approx(odds(1e4) / odds(1e3)).epsilon(0.03));
+}
+
+TEST_CASE("where a cause leaves nothing, a function without a name needs much more evidence than it") {
+  diagnose::Comparison comparison = comparison_of(30.0, 20.0, 0.0);
+  diagnose::weigh_by_share_left({10.0, 0.3, 8.0}, comparison);
+  CHECK(comparison.unknown < 0.4);
+  diagnose::Comparison far = comparison_of(3000.0, 20.0, 0.0);
+  diagnose::weigh_by_share_left({10.0, 3.0, 8.0}, far);
+  CHECK(far.unknown > 0.9);
+}
+
+TEST_CASE("a function without a name beside a cause counts for the cause") {
+  diagnose::Comparison comparison = comparison_of(0.0, 20.0, 0.0);
+  diagnose::Hypothesis with = comparison.all[2];
+  with.unnamed = true;
+  with.log_evidence = 40.0;
+  comparison.all.push_back(with);
+  diagnose::weigh_by_share_left({10.0, 0.5, 8.0}, comparison);
+  CHECK(comparison.unknown < 0.1);
+  CHECK(probability_of(comparison, diagnose::ids::quadratic_drag) > 0.8);
+}
+
+TEST_CASE("a hand that lets go late has the odds against it, since it follows each clip") {
+  const auto with_second = [](std::string_view id) {
+    diagnose::Comparison comparison = comparison_of(0.0, 20.0, 20.0);
+    comparison.all.back().effects = {diagnose::effect_index(id)};
+    diagnose::weigh_by_share_left({10.0, 1.0, 1.0}, comparison);
+    return probability_of(comparison, id) / probability_of(comparison, diagnose::ids::quadratic_drag);
+  };
+  CHECK(with_second(diagnose::ids::track_bow) == Approx(1.0).epsilon(1e-9));
+  CHECK(with_second(diagnose::ids::late_release) < 0.2);
+}

@@ -1,0 +1,101 @@
+#include "diagnose/causes/recovered.h"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/scan/effect_scan.h"
+#include "diagnose/tracks/track_set.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Twelve clips of one configuration.
+std::vector<tests::MadeLaunch> launches() {
+  std::vector<tests::MadeLaunch> made;
+  for (int c = 0; c < 12; ++c) made.push_back({0.4, 4.0, c % 2 == 0 ? 0.3 : -0.6, c % 2 == 0 ? -1.1 : 1.2});
+  return made;
+}
+
+diagnose::TrackSet set_of(unsigned seed, const tests::MadeEffect& effect) {
+  const tests::MadeExperiment made = tests::made_experiment(launches(), effect, seed, 1e-4, 60, 50.0);
+  return diagnose::track_set(made.results, made.setups, true);
+}
+
+/// A fit with one more effect, from a size that is small.
+diagnose::MotionFit with_effect_of(const diagnose::TrackSet& set, const diagnose::MotionFit& nominal,
+                                   std::string_view id, double size) {
+  const std::size_t effect = diagnose::effect_index(id);
+  const diagnose::MotionFit fit =
+      diagnose::fit_with_effect(set, nominal, effect, diagnose::with_effect(set, nominal, effect, {size}, {}));
+  return diagnose::linearise_again(set, fit);
+}
+
+}  // namespace
+
+TEST_CASE("K/m scatters from clip to clip, and its interval comes from how the clips differ") {
+  // A drag that differs by 10 % from clip to clip; the fit counts it as noise of positions, which would make K/m far
+  // better known than twelve clips make it.
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> more;
+  for (std::size_t c = 0; c < launches().size(); ++c) more.push_back(0.1 * normal(random));
+  std::size_t clip = 0;
+  double before = 1.0;
+  tests::MadeEffect scatter;
+  scatter.force = [&](double, double, double v, double t) {
+    if (t < before - 0.1) ++clip;
+    before = t;
+    return -0.93 * more[std::min(clip - 1, more.size() - 1)] * v;
+  };
+  const diagnose::TrackSet set = set_of(5, scatter);
+  const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  const auto found = diagnose::recovered_of(set, {{&fit, {}, 1.0}});
+  REQUIRE(found.size() == 1);
+  REQUIRE(found[0].k_over_m_1_s.estimate);
+  double square = 0.0;
+  for (const double one : more) square += one * one;
+  // The mean of twelve drags is known to their scatter over sqrt(12), if each clip tells K as well as another. Clips
+  // do not, and mu and K go together: within a factor of three.
+  const double mean_sd = 0.93 / 0.4 * std::sqrt(square / 12.0) / std::sqrt(12.0);
+  const double sd = found[0].k_over_m_1_s.estimate->sd;
+  CHECK(sd > mean_sd / 3.0);
+  CHECK(sd < mean_sd * 3.0);
+  // The noise alone knows it ten times better.
+  const diagnose::RemainderSpace space(set, fit);
+  const diagnose::RemainderSpace::Solution solution = space.solve({});
+  CHECK(std::sqrt(solution.covariance(0, 0)) / 0.4 < 0.1 * sd);
+  CHECK(std::sqrt(solution.between_clips(0, 0)) / 0.4 == Approx(sd).epsilon(1e-6));
+}
+
+TEST_CASE("without scatter the clips say of the parameters what the noise says") {
+  const diagnose::TrackSet set = set_of(6, {});
+  const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  const diagnose::RemainderSpace space(set, fit);
+  const diagnose::RemainderSpace::Solution solution = space.solve({});
+  // Twelve scores: their variance is known to sqrt(2/12), and so the sd to 20 %; three of these and a bit.
+  CHECK(std::sqrt(solution.between_clips(0, 0) / solution.covariance(0, 0)) == Approx(1.0).margin(0.7));
+}
+
+TEST_CASE("an explanation that is nearly as likely widens what is recovered by how far it differs") {
+  const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.1 * v * std::abs(v); }};
+  const diagnose::TrackSet set = set_of(7, drag);
+  const diagnose::MotionFit nominal = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  const diagnose::MotionFit quadratic = with_effect_of(set, nominal, diagnose::ids::quadratic_drag, 0.05);
+  REQUIRE(quadratic.cost < nominal.cost);
+  const auto one = diagnose::recovered_of(set, {{&quadratic, {}, 1.0}});
+  const auto other = diagnose::recovered_of(set, {{&nominal, {}, 1.0}});
+  const auto both = diagnose::recovered_of(set, {{&quadratic, {}, 0.6}, {&nominal, {}, 0.3}});
+  REQUIRE(both.size() == 1);
+  const core::Estimate a = *one[0].k_over_m_1_s.estimate, b = *other[0].k_over_m_1_s.estimate,
+                       mixed = *both[0].k_over_m_1_s.estimate;
+  CHECK(mixed.value == a.value);  // the reported explanation's
+  CHECK(mixed.sd == Approx(std::sqrt((0.6 * a.sd * a.sd + 0.3 * (b.sd * b.sd + std::pow(b.value - a.value, 2))) / 0.9))
+                        .epsilon(1e-12));
+  CHECK(mixed.sd > 2.0 * a.sd);  // or it would show nothing
+  CHECK(both[0].with == std::vector<std::string>{"quadratic_drag"});
+}
