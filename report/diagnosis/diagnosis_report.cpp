@@ -150,10 +150,10 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
       "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it is 1 ± "
       "{}. {} {}{}</p>\n",
       base::number_text(gap.standard_error, 2),
-      gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of what is above the floor."
+      gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of the excess over the floor."
                  : std::string("It is at the floor."),
       !over_clips.too_few
-          ? "The intervals tell how much these numbers would differ with other clips of the same kind (jackknife: each "
+          ? "The intervals show how much these numbers would differ with other clips of the same kind (jackknife: each "
             "clip left out of the mean in turn)."
           : too_few_words(over_clips) + ".",
       gap.acceleration_before ? " Accelerations are measured minus modelled, both smoothed as in the analysis, noise "
@@ -184,7 +184,7 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     if (effect.id != diagnose::ids::rolling_shutter && effect.id != diagnose::ids::camera_motion) continue;
     text +=
-        fmt::format("<p class=\"note\">{} acts only in the twin's images: here the data are off by what it does.</p>\n",
+        fmt::format("<p class=\"note\">{} acts only in the twin's images, so the comparison here differs by its effect.</p>\n",
                     effect_html(effect.id));
   }
   return text + figures(twin_plots(twin));
@@ -278,7 +278,7 @@ std::string wrapped(const std::string& text) {
 std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
   std::string text;
-  if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of what is above the floor\n";
+  if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of the excess over the floor\n";
   if (!over_clips.too_few) {
     text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
                         interval_text(over_clips.after));

@@ -170,14 +170,14 @@ std::string meaning(const Requirement& requirement) {
                     undecided.size());
   }
   if (!possible.empty()) {
-    text += fmt::format(" For {} the bound allows it, and nothing was run.", possible.size());
+    text += fmt::format(" For {} the bound allows it, but nothing was run.", possible.size());
   }
   if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
     const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
     text +=
         limit.gain < kLeastNamedGain
-            ? fmt::format(" No single limitation keeps {} from it.", numbered(requirement, missed.front()))
-            : fmt::format(" What most keeps {} from it: {}; without that its error would be {} times smaller.",
+            ? fmt::format(" No single limitation prevents {} from reaching it.", numbered(requirement, missed.front()))
+            : fmt::format(" What most limits {}: {}; without that its error would be {} times smaller.",
                           numbered(requirement, missed.front()), escape(limit.name), base::number_text(limit.gain, 2));
   }
   return meaning_section(text + "</p>\n");

@@ -326,9 +326,9 @@ std::string changes_of(const SweepSummary& summary, const Series& best) {
   if (!configurations.empty()) list += item(configurations);
   if (!unlike.empty()) {
     list +=
-        item(fmt::format("along {} it is not compared: some runs have no answer, and {}", unlike,
-                         drawn ? "with random values the runs that have one are not comparable between values of a key"
-                               : "no combination of all else has one at each value"));
+        item(fmt::format("not compared along {}: some runs have no result, and {}", unlike,
+                         drawn ? "with random values, the runs that have one cannot be compared between values of a key"
+                               : "no combination of the other keys has a result at every value"));
   }
   if (list.empty()) return {};
   return fmt::format("<p>The rms error of {} by {} is:</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),

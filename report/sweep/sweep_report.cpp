@@ -38,7 +38,7 @@ std::string answer_text(const FallAnswer& answer) {
   const MassRow& widest = answer.widest;
   const auto [from, to] = with_equal_decimals(answer.published.mu_lightest, answer.published.mu_heaviest);
   std::string text =
-      fmt::format("<p><b>{}{}:</b> {} has µ fall from {} to {}, by {}. ", escape(answer.published.configuration),
+      fmt::format("<p><b>{}{}:</b> In {}, µ falls from {} to {}, by {}. ", escape(answer.published.configuration),
                   answer.others.empty() ? "" : ", " + escape(answer.others), escape(answer.published.source), from, to,
                   base::digits_text(published, 2));
   if (answer.whole) {
