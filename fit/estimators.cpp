@@ -31,7 +31,8 @@ const std::vector<Estimator>& estimators() {
        .estimate = lines_themselves},
       {.name = core::name_of(core::LineMethod::generalised),
        .title = "generalised lines",
-       .method = "fits the same lines with the points' covariance and with errors in v and a, corrected for the smoothing bias",
+       .method =
+           "fits the same lines with the points' covariance and with errors in v and a, without bias from the kernel",
        .lines = core::LineMethod::generalised,
        .of_lines = true,
        .takes_robust = false,

@@ -135,42 +135,47 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   FindingBook book(findings, setup.name);
   const double a = look.acceleration_m_s2.value_or(0.0);
   if (look.oscillates) {
-    book.add(Severity::unusable,
-             fmt::format("the motion turns {} times, and its acceleration depends on position: this is an oscillation, not a "
-                         "run along an incline",
-                         look.turns),
-             "the law contains no spring; if one stretch between turns is a free run, select it with start_s and end_s");
+    book.add(
+        Severity::unusable,
+        fmt::format(
+            "the motion turns {} times, and its acceleration depends on position: this is an oscillation, not a "
+            "run along an incline",
+            look.turns),
+        "the law contains no spring; if one stretch between turns is a free run, select it with start_s and end_s");
   } else if (a > kAboveGravity * gravity_m_s2) {
     std::string units;
     if (a < 100.0 * gravity_m_s2) units = "centimetres";
     if (a > 20.0 * gravity_m_s2 && a < 1000.0 * gravity_m_s2)
       units += units.empty() ? "millimetres" : " or millimetres";
     if (units.empty()) units = "another unit";
-    book.add(Severity::unusable,
-             fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline can produce that", a,
-                         a / gravity_m_s2),
-             fmt::format("x may be in {} instead of metres, or an angle, or the times in another unit: convert the file, "
-                         "or state the scale",
-                         units));
+    book.add(
+        Severity::unusable,
+        fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline can produce that", a,
+                    a / gravity_m_s2),
+        fmt::format("x may be in {} instead of metres, or an angle, or the times in another unit: convert the file, "
+                    "or state the scale",
+                    units));
   } else if (a > kFreeFall * gravity_m_s2 && std::abs(setup.incline_rad) < kShallow_rad) {
-    book.add(Severity::unusable,
-             fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
-                         a / gravity_m_s2, setup.incline_rad * kDegrees),
-             "state incline_deg = 90 for a fall; otherwise check the unit of x");
+    book.add(
+        Severity::unusable,
+        fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
+                    a / gravity_m_s2, setup.incline_rad * kDegrees),
+        "state incline_deg = 90 for a fall; otherwise check the unit of x");
   } else if (look.way_m > kLongWay_m) {
     book.add(Severity::change, fmt::format("x covers {:.3g} m", look.way_m),
              "check the unit of x: it may be centimetres, millimetres, or an angle");
   }
   if (look.bend > kMostBend) {
     book.add(Severity::unusable,
-             fmt::format("the path in the image is curved (sagitta {} of its length): the track is not straight", percent(look.bend)),
+             fmt::format("the path in the image is curved (sagitta {} of its length): the track is not straight",
+                         percent(look.bend)),
              "the law of motion holds along a straight line: film a straight track, not a free flight or a swing");
   }
   if (look.smooth) {
     book.add(
         Severity::change,
-        fmt::format("the positions follow a smooth curve to {:.0e} of the distance covered: they were smoothed or integrated before "
- "export",
+        fmt::format("the positions follow a smooth curve to {:.0e} of the distance covered: they were smoothed or "
+                    "integrated before export",
                     kSmoothPart),
         "export the positions as measured: their noise is estimated from them, and every uncertainty depends on it");
   }

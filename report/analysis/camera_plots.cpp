@@ -50,7 +50,7 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
            fmt::format(
                "{}Residuals of the pattern's corners, averaged over all views in each part of the image (the largest "
                "is {} px). They are {} times what independent errors would leave; arrows that turn or grow smoothly "
-               "across the image point to a lens that the model does not follow, or to a pattern that is not flat",
+               "across the image indicate a lens that the model does not describe, or a pattern that is not flat",
                experiment.empty() ? "" : experiment + ": ", base::number_text(largest, 2),
                base::number_text(rests.excess, 2)),
            (experiment.empty() ? "" : experiment + ", ") + "Residuals of the calibration over the image"}};

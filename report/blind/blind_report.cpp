@@ -111,8 +111,9 @@ std::string blind_meaning(const validate::BlindScore& score) {
     if (!is_met(target)) missed += (missed.empty() ? "" : "; ") + escape(target.what);
   }
   if (weighed == 1) return text + " No case is relevant to the targets.</p>\n";
-  return text + (missed.empty() ? fmt::format(" All {} targets to which these cases are relevant are met.</p>\n", weighed)
-                                : fmt::format(" Missed: {}.</p>\n", missed));
+  return text + (missed.empty()
+                     ? fmt::format(" All {} targets to which these cases are relevant are met.</p>\n", weighed)
+                     : fmt::format(" Missed: {}.</p>\n", missed));
 }
 
 namespace {

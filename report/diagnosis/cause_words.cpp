@@ -63,7 +63,8 @@ std::string left_words(const diagnose::GapRemainder& remainder) {
   return fmt::format("{} remains, {}", share_text(remainder.share), over_noise_text(remainder.gap));
 }
 
-/// "Quadratic drag, c = …, explains 91 % (…) of the gap on clips that were held out; …"; with `gap_named`, the gap has been mentioned.
+/// "Quadratic drag, c = …, explains 91 % (…) of the gap on clips that were held out; …"; with `gap_named`, the gap has
+/// been mentioned.
 std::string causes_words(const diagnose::Diagnosis& diagnosis, bool gap_named = false) {
   std::string text;
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
@@ -86,8 +87,7 @@ std::string traces_words(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string unknown_sequence_words(const diagnose::Diagnosis& diagnosis) {
-  const std::string text =
-      "Something is missing, and no known effect explains half of the held-out gap";
+  const std::string text = "Something is missing, and no known effect explains half of the held-out gap";
   if (!diagnosis.explained.empty()) return text + ": " + causes_words(diagnosis, true);
   return text + ". None reduces it by more than its uncertainty" +
          (diagnosis.remainder ? fmt::format(": it is {}.", over_noise_text(diagnosis.remainder->gap)) : ".");
@@ -214,11 +214,13 @@ std::string levels_words(const diagnose::Diagnosis& diagnosis) {
   const diagnose::GapLevels& levels = *diagnosis.levels;
   std::string text = "Fitted to ";
   if (levels.clip) {
-    text += fmt::format("each clip separately, the nominal model has a gap of {}; to ", base::number_text(*levels.clip, 3));
+    text +=
+        fmt::format("each clip separately, the nominal model has a gap of {}; to ", base::number_text(*levels.clip, 3));
   }
   if (levels.configuration) {
-    text += fmt::format("each configuration{}, {}; to ", levels.clip ? "" : " separately, the nominal model has a gap of",
-                        base::number_text(*levels.configuration, 3));
+    text +=
+        fmt::format("each configuration{}, {}; to ", levels.clip ? "" : " separately, the nominal model has a gap of",
+                    base::number_text(*levels.configuration, 3));
   }
   return text + fmt::format("all clips, {} (1 is the noise).", base::number_text(levels.all, 3));
 }

@@ -109,20 +109,22 @@ struct Sentence {
         of.kept);
   }
   std::string operator()(const diagnose::HandLeftOut& of) const {
-    return fmt::format("{} frames in which a hand or an end stop seems to act are excluded; no known effect explains them.",
-                       of.frames);
+    return fmt::format(
+        "{} frames in which a hand or an end stop seems to act are excluded; no known effect explains them.",
+        of.frames);
   }
   std::string operator()(const diagnose::SetAside& of) const {
     return fmt::format(
-        "Of the {} positions of the motion, {:.0f} % are excluded: in them a hand or an end stop seems to act, or they are "
-        "outliers, and no known effect explains them. The verdict holds for the rest.",
+        "Of the {} positions of the motion, {:.0f} % are excluded: in them a hand or an end stop seems to act, or they "
+        "are outliers, and no known effect explains them. The verdict holds for the rest.",
         of.positions, 100.0 * of.part);
   }
   std::string operator()(const diagnose::PiecesHeldOut&) const {
     return "There is only one clip: each piece of its motion is held out in turn.";
   }
   std::string operator()(const diagnose::QuartersHeldOut&) const {
-    return "There is only one clip, and no other to predict it from: the gap is measured on held-out quarters of that clip.";
+    return "There is only one clip, and no other to predict it from: the gap is measured on held-out quarters of that "
+           "clip.";
   }
   std::string operator()(const diagnose::LastingErrors& of) const {
     return fmt::format(
@@ -144,8 +146,8 @@ struct Sentence {
         ups(of.groups), of.groups.size() > 1 ? "have" : "has");
   }
   std::string operator()(const diagnose::OnlyFalls&) const {
-    return "The motions are falls, with an inclination of 80 degrees or more: there is almost no normal force, and µ is "
-           "not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 degree.";
+    return "The motions are falls, with an inclination of 80 degrees or more: there is almost no normal force, and µ "
+           "is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 degree.";
   }
   std::string operator()(const diagnose::SplitSetUps& of) const {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",
@@ -158,8 +160,8 @@ struct Sentence {
   std::string operator()(const diagnose::NegativeLoss& of) const {
     const bool drag = of.of == diagnose::NegativeLoss::Of::drag;
     return fmt::format(
-        "The fitted {} is below zero ({}), which would drive the glider: either the missing effect makes it negative, or "
-        "the stated inclination, downhill direction or masses are wrong.",
+        "The fitted {} is below zero ({}), which would drive the glider: either the missing effect makes it negative, "
+        "or the stated inclination, downhill direction or masses are wrong.",
         drag ? "drag" : "friction", base::size_and_sd_text(of.value, of.sd, drag ? "N s/m" : ""));
   }
   std::string operator()(const diagnose::ContradictedIncline& of) const {
@@ -378,7 +380,8 @@ struct Words {
   std::string operator()(const diagnose::CoverRegion& of) const {
     const bool places = of.over == diagnose::CoverRegion::Over::places;
     const std::string launch = fmt::format(
-        "{}: of {} launches considered, it has the most positions ({} of {}) at {} from {} to {} {}, where the excess lies",
+        "{}: of {} launches considered, it has the most positions ({} of {}) at {} from {} to {} {}, where the excess "
+        "lies",
         change_words(of.launch), of.launches, of.inside, of.positions, places ? "positions" : "speeds",
         base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
     if (!places) return launch + ", and its dependence on the speed shows what it is.";
@@ -411,7 +414,7 @@ struct Words {
     const base::NamedUnit named =
         of.effect.empty() ? base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""} : base::name_and_unit(of.key);
     std::string text =
-        fmt::format("Nothing else is likely. The least certain parameter is {}{} ({}).", named.name,
+        fmt::format("Nothing else is likely. The least well known parameter is {}{} ({}).", named.name,
                     of.effect.empty() ? "" : " of " + of.effect, base::size_and_sd_text(of.value, of.sd, named.unit));
     if (of.by) {
       text += fmt::format(" {}: of {}, this one reduces its uncertainty most, to ± {}.", change_words(*of.by),
@@ -431,8 +434,8 @@ struct Words {
   std::string operator()(const diagnose::TellLinesApart& of) const {
     return fmt::format(
         "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its square; "
-        "a friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} shifts each "
-        "of its intercepts by {}, the smoothing bias by {}.",
+        "a friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} shifts "
+        "each of its intercepts by {}, the smoothing bias by {}.",
         1000.0 * of.mass_kg, base::size_text(of.force_n, 2, "N"), base::size_text(of.by_force_m_s2, 2, "m/s²"),
         base::size_text(of.by_bias_m_s2, 2, "m/s²"));
   }

@@ -59,14 +59,15 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
       "set key font ',12' noenhanced\nset xlabel '{}'\n"
       "set ylabel 'friction left  (mm/s²)'\nset xzeroaxis lw 1 lc rgb '{}'\nplot {}\n",
       over_mass ? "1 / mass  (1/kg)" : "(K/m)²  (1/s²)", kGrey, plots);
-  return {Drawing{script, std::move(data), {520, 470}},
-          fmt::format(
-              "What the nominal model leaves of the intercepts, as friction, against {}: {}. The error bars are the lines' "
-              "own scatter",
-              over_mass ? "1/m" : "(K/m)²",
-              over_mass ? "a load-independent force gives a straight line here"
-                        : "the bias from smoothing gives a straight line here"),
-          over_mass ? "Friction left over 1/m" : "Friction left over (K/m)²"};
+  return {
+      Drawing{script, std::move(data), {520, 470}},
+      fmt::format(
+          "What the nominal model leaves of the intercepts, as friction, against {}: {}. The error bars are the lines' "
+          "own scatter",
+          over_mass ? "1/m" : "(K/m)²",
+          over_mass ? "a load-independent force gives a straight line here"
+                    : "the bias from smoothing gives a straight line here"),
+      over_mass ? "Friction left over 1/m" : "Friction left over (K/m)²"};
 }
 
 }  // namespace
@@ -181,8 +182,7 @@ constexpr const char* kLineMethod =
     "direction competes with them, alone and alongside them, as “unknown”. A table states no errors: they are fitted "
     "with each explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and "
     "the gap are relative to the lines' own scatter, which involves no friction: that of the mean intercept over both "
-    "directions, "
-    "and of the slopes within each mass.</p>\n";
+    "directions, and of the slopes within each mass.</p>\n";
 
 }  // namespace
 

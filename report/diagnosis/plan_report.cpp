@@ -63,8 +63,7 @@ constexpr const char* kPlanMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
     "adjust (K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes "
     "that remain is below 18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven frame times and "
-    "outliers "
-    "have no single direction and are not in the table.";
+    "outliers have no single direction and are not in the table.";
 
 }  // namespace
 

@@ -53,11 +53,11 @@ std::string words_of(const diagnose::Diagnosis& diagnosis, const std::string& id
   return std::string(diagnose::effect_of(id).words);
 }
 
-/// "either of two things, and these lines cannot tell which: A (…), or B (…)".
+/// "either of two things (55 % together) that these lines cannot distinguish: A (…), or B (…)".
 std::string either(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   std::string text = lines.either_of.size() == 2 ? "either of two things" : "one of several things";
-  text += fmt::format(" ({} together), and these lines cannot tell which: ", percent(lines.either_probability));
+  text += fmt::format(" ({} together) that these lines cannot distinguish: ", percent(lines.either_probability));
   for (std::size_t i = 0; i < lines.either_of.size(); ++i) {
     const diagnose::LineCandidate& one = candidate(lines, only(lines.either_of[i]));
     text += fmt::format("{}{} ({}, {}; {})", i == 0 ? "" : ", or ", words_of(diagnosis, lines.either_of[i]),
@@ -76,7 +76,8 @@ std::string alike_words(const diagnose::Diagnosis& diagnosis) {
   }
   if (text.empty()) return text;
   return fmt::format(
-      " A drag that grows less than proportionally to the speed ({}) gives the same lines as such a friction force.", text);
+      " A drag that grows less than proportionally to the speed ({}) gives the same lines as such a friction force.",
+      text);
 }
 
 std::string chi2_words(const diagnose::Diagnosis& diagnosis, const diagnose::Explanation& named) {
@@ -112,8 +113,8 @@ std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
                                                             : "this effect");
   if (named && gap.after > 1.0 + 3.0 * gap.standard_error) {
     text += fmt::format(
-        " Even the best named explanation leaves {} times the lines' own scatter: something else is missing as well, or "
-        "errors within one set-up are correlated. The probability that something unnamed acts is {}.",
+        " Even the best named explanation leaves {} times the lines' own scatter: something else is missing as well, "
+        "or errors within one set-up are correlated. The probability that something unnamed acts is {}.",
         line_times(gap.after), percent(diagnosis.unknown));
   }
   return text;
@@ -150,12 +151,12 @@ std::string line_words(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   if (diagnosis.verdict == diagnose::Verdict::none) {
     const bool doubtful = !lines.candidates.front().explanation.is_nothing();
-    return (doubtful
-                ? fmt::format("These {} lines do not decide whether anything is missing: \"nothing missing\" ({}) cannot "
-                              "be excluded at odds of 3 to 1, so no effect is claimed.",
-                              lines.lines, percent(diagnosis.none))
-                : fmt::format("Nothing is missing that these {} lines could show ({}).", lines.lines,
-                              percent(diagnosis.none))) +
+    return (doubtful ? fmt::format(
+                           "These {} lines do not decide whether anything is missing: \"nothing missing\" ({}) cannot "
+                           "be excluded at odds of 3 to 1, so no effect is claimed.",
+                           lines.lines, percent(diagnosis.none))
+                     : fmt::format("Nothing is missing that these {} lines could show ({}).", lines.lines,
+                                   percent(diagnosis.none))) +
            line_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) return unknown_words(diagnosis) + line_gap_words(diagnosis);
@@ -342,8 +343,7 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
            clip_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {
-    return fmt::format("Something is missing, and it is none of the known effects ({}).",
-                       percent(diagnosis.unknown)) +
+    return fmt::format("Something is missing, and it is none of the known effects ({}).", percent(diagnosis.unknown)) +
            first_region_words(diagnosis) + clip_gap_words(diagnosis);
   }
   std::vector<std::string> words;
@@ -386,13 +386,13 @@ std::string consequence(const diagnose::Diagnosis& diagnosis) {
       return " An analysis of these data reports the losses that it finds, and corrects the times after them.";
     const char* const below = diagnosis.recovered.empty() ? "" : " The table below gives them with it in the model.";
     return std::string(
-               " An analysis of these data leaves this out: its K/m, µ and inclination belong to a law without it, and may be "
-               "off by more than their stated errors.") +
+               " An analysis of these data leaves this out: its K/m, µ and inclination belong to a law without it, and "
+               "may be off by more than their stated errors.") +
            below;
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {
-    return " Until the cause is found, K/m, µ and the inclination from an analysis of these data are fit parameters; they "
-           "need not be properties of the track or the glider.";
+    return " Until the cause is found, K/m, µ and the inclination from an analysis of these data are fit parameters; "
+           "they need not be properties of the track or the glider.";
   }
   return {};
 }
@@ -410,7 +410,7 @@ bool one_model(const diagnose::Diagnosis& diagnosis) {
 
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words) {
   std::string text = tile(probability_text(diagnosis.none), "nothing is missing") +
-                     tile(probability_text(diagnosis.unknown), "something without a name");
+                     tile(probability_text(diagnosis.unknown), "an unnamed cause");
   if (!diagnosis.gap) return text;
   const std::string before = base::number_text(diagnosis.gap->before, 3);
   return text +

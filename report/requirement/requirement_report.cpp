@@ -80,13 +80,13 @@ std::string next_step(const Requirement& requirement) {
   const bool forbidden = std::ranges::all_of(requirement.candidates, [](const Candidate& candidate) {
     return candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::refused;
   });
-  return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not in it.{}",
+  return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not included.{}",
                      ran ? "Judged by tracks, not by images" : "Judged by the bound alone, without a run",
                      forbidden ? "" : " With --confirm clips those that are near the target are rendered as well.");
 }
 
 std::string found_text(const validate::TargetResult& result, double scale) {
-  if (!result.found || !std::isfinite(*result.found)) return result.found ? "no answer" : "–";
+  if (!result.found || !std::isfinite(*result.found)) return result.found ? "no result" : "–";
   return base::value_and_sd_text(*result.found / scale, result.found_sd / scale);
 }
 
@@ -223,7 +223,7 @@ std::string how_judged(const Requirement& requirement) {
       "<p class=\"soft\">The bound is the Cramér-Rao bound for the motion at this frame rate and position noise; the "
       "noise itself is the bound on the marker's centre for the camera's light and noise. {} \"What limits "
       "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) would be without one "
-      "limitation. A lens, a codec, a rolling shutter and the calibration are in rendered runs only (--confirm "
+      "limitation. A lens, a codec, a rolling shutter and the calibration enter in rendered runs only (--confirm "
       "clips).</p>\n",
       requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
       : requirement.confirm == validate::Confirm::clips
