@@ -212,15 +212,12 @@ std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
 std::string levels_words(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.levels || (!diagnosis.levels->configuration && !diagnosis.levels->clip)) return {};
   const diagnose::GapLevels& levels = *diagnosis.levels;
+  const char* const gap = " separately, the nominal model has a gap of";
   std::string text = "Fitted to ";
-  if (levels.clip) {
-    text +=
-        fmt::format("each clip separately, the nominal model has a gap of {}; to ", base::number_text(*levels.clip, 3));
-  }
+  if (levels.clip) text += fmt::format("each clip{} {}; to ", gap, base::number_text(*levels.clip, 3));
   if (levels.configuration) {
-    text +=
-        fmt::format("each configuration{}, {}; to ", levels.clip ? "" : " separately, the nominal model has a gap of",
-                    base::number_text(*levels.configuration, 3));
+    text += fmt::format("each configuration{} {}; to ", levels.clip ? "," : gap,
+                        base::number_text(*levels.configuration, 3));
   }
   return text + fmt::format("all clips, {} (1 is the noise).", base::number_text(levels.all, 3));
 }

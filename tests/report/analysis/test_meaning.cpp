@@ -157,7 +157,7 @@ TEST_CASE(
                   {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
   CHECK(tells(report::plan_page("p", plan), "smaller ones may still act"));
   plan.effects.front().seen = false;
-  CHECK(tells(report::plan_page("p", plan), "would mean nothing"));
+  CHECK(tells(report::plan_page("p", plan), "would be meaningless"));
 }
 
 TEST_CASE("a check says at the top whether to analyse, to record again or to mend, and how well positions are known") {

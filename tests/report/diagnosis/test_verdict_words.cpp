@@ -62,7 +62,7 @@ TEST_CASE("effects that look the same are named as one set, an effect that stand
 TEST_CASE("a stated inclination that the motion contradicts is said first, with both angles") {
   const diagnose::Diagnosis at_floor = with_incline(1.02);
   CHECK(report::verdict_words(at_floor).starts_with(
-      "The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated, and the motion says 4.001 ± 0.004° by the "
+      "The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated, and the motion gives 4.001 ± 0.004° by the "
       "nominal model (199 standard deviations apart). The nominal model explains the motion to within its noise"));
   // Where the motion itself is not explained, that comes first and the statement last.
   const std::string off = report::verdict_words(with_incline(5.0));
@@ -89,7 +89,7 @@ TEST_CASE("a drag or friction below zero is told before the verdict that rests o
   diagnose::Diagnosis of = with_incline(1.0);
   of.limits = {};
   of.limits.driving = {{diagnose::NegativeLoss::Of::friction, -0.0114, 0.0003}};
-  CHECK(report::verdict_words(of).starts_with("The fit has a friction below zero (-0.01140 ± 0.00030)"));
+  CHECK(report::verdict_words(of).starts_with("The fitted friction is below zero (-0.01140 ± 0.00030)"));
 }
 
 TEST_CASE("where a fifth of the motion is set aside, the summary begins with it") {
@@ -134,8 +134,8 @@ TEST_CASE("a table of lines that does not tell two effects apart names both with
   of.gap->after = 4.0;
   of.gap->standard_error = 0.3;
   const std::string words = report::verdict_words(of);
-  CHECK(
-      words.starts_with("These 12 lines show either of two things (74 % together), and these lines cannot tell which"));
+  CHECK(words.starts_with(
+      "These 12 lines show either of two things (74 % together) that these lines cannot distinguish"));
   CHECK(contains(words, "24.0 ± 1.0 mN"));
   CHECK(contains(words, "Even the best named explanation leaves 4.0 times"));
 }
@@ -144,7 +144,7 @@ TEST_CASE("so few clips have no interval, and the reason counts them") {
   diagnose::GapIntervals intervals;
   CHECK(report::too_few_words(intervals).empty());
   intervals.too_few = 1;
-  CHECK(report::too_few_words(intervals).starts_with("1 clip cannot tell"));
+  CHECK(report::too_few_words(intervals).starts_with("1 clip cannot show"));
   intervals.too_few = 2;
-  CHECK(report::too_few_words(intervals).starts_with("2 clips cannot tell"));
+  CHECK(report::too_few_words(intervals).starts_with("2 clips cannot show"));
 }
