@@ -23,7 +23,7 @@ const std::vector<Estimator>& estimators() {
   static const std::vector<Estimator> all = {
       {.name = core::name_of(core::LineMethod::ordinary),
        .title = "lines of the phase diagram",
-       .method = "fits lines in a(v) as the paper does",
+       .method = "smooths x(t) by a local cubic and fits a line a(v) to each direction by ordinary least squares",
        .lines = core::LineMethod::ordinary,
        .of_lines = true,
        .takes_robust = false,
@@ -31,7 +31,8 @@ const std::vector<Estimator>& estimators() {
        .estimate = lines_themselves},
       {.name = core::name_of(core::LineMethod::generalised),
        .title = "generalised lines",
-       .method = "fits them with the points' covariance, errors in v and a, and no bias by the kernel",
+       .method =
+           "fits the same lines with the points' covariance and with errors in v and a, without bias from the kernel",
        .lines = core::LineMethod::generalised,
        .of_lines = true,
        .takes_robust = false,

@@ -164,7 +164,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->check(check_incline);
   add_allow_outside(*command, options->bare.outside);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
-                     "Accepted by every command; an analysis draws no random numbers");
+                     "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });
 }
 

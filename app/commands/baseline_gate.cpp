@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 std::string table(const validate::Baseline& baseline) {
   std::vector<std::vector<std::string>> rows = {
-      {"configuration", "estimator", "quantity", "answers", "mean error", "sd of errors", "covered", "efficiency"}};
+      {"configuration", "estimator", "quantity", "results", "mean error", "sd of errors", "covered", "efficiency"}};
   for (const validate::ErrorRecord& record : baseline.records) {
     rows.push_back({record.configuration, record.estimator, record.quantity,
                     fmt::format("{} / {}", record.answers, record.runs), base::number_text(record.mean, 3),

@@ -60,7 +60,7 @@ void add_characterize(CLI::App& app, Command& chosen) {
                    "A folder with characterize.toml, dark/ and flat-…/ (docs/reference/characterize.md is the recipe)")
       ->required();
   add_common_options(*command, options->common, "glidelab-out/characterize-<name of the folder>",
-                     "Accepted by every command; nothing here draws random numbers");
+                     "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { characterize(*options); }; });
 }
 

@@ -74,7 +74,7 @@ void add_check(CLI::App& app, Command& chosen) {
       ->required();
   add_allow_outside(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/check-<name of the folder>",
-                     "Accepted by every command; nothing here draws random numbers");
+                     "Accepted for consistency; has no effect here");
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/reference/check.md).");
   command->callback([options, &chosen] { chosen = [options] { check(*options); }; });
 }

@@ -31,8 +31,7 @@ void add_explore(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CommonOptions>();
   CLI::App* command = app.add_subcommand(
       "explore", "Make a page for class: sliders for the law, K/m, mu, alpha and v0; x(t), v(t) and a(v) together");
-  add_common_options(*command, *options, "glidelab-out/explore-page",
-                     "Accepted by every command; what is drawn has a fixed seed");
+  add_common_options(*command, *options, "glidelab-out/explore-page", "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { explore(*options); }; });
 }
 

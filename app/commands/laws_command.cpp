@@ -79,7 +79,7 @@ void add_laws(CLI::App& app, Command& chosen) {
       ->type_name("PATH")
       ->required();
   add_common_options(*command, options->common, "glidelab-out/laws-<name of the first>",
-                     "Accepted by every command; nothing here is random");
+                     "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { laws(*options); }; });
 }
 

@@ -111,7 +111,7 @@ void add_pattern(CLI::App& app, Command& chosen) {
       ->delimiter(',')
       ->default_str("8,12,16,24");
   add_common_options(*command, options->common, "glidelab-out/pattern-<paper>",
-                     "Accepted by every command; nothing here is random");
+                     "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { pattern(*options); }; });
 }
 

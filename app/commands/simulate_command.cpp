@@ -159,7 +159,7 @@ void add_simulate(CLI::App& app, Command& chosen) {
       ->type_name("HZ")
       ->check(check_rate);
   add_common_options(*command, options->common, "glidelab-out/simulate-<name of the scenario file>",
-                     "Accepted by every command; a motion draws no random numbers");
+                     "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { simulate_command(*options); }; });
 }
 

@@ -1,8 +1,8 @@
 /// The whole analysis: experiment folders in, K/m, mu, alpha and v_lim out.
 ///
-///     clips  ─ frame_source ─ marker ─ marker_track ─ restitution ─ motion_axis ─┐
-///     tracks ─ track_csv ───────────────────────────────────────────────────────┴─ local_cubic ─ free_motion ─
-///     line_fit ─ configuration
+///     clips  ─ frame_source ─ marker_track ─ restitution ─ motion_axis ─┐
+///     tracks ─ column_table ────────────────────────────────────────────┴─ track_data ─ free_motion ─
+///     local_polynomial ─ line_fit (or gls_line) ─ join_configurations
 #pragma once
 
 #include <filesystem>
@@ -25,12 +25,12 @@ struct AnalysisOptions {
   std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: choose_bandwidth()
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
-  bool pictures = false;       ///< keep what the clips' pictures show besides the motion (ClipResult::pictures)
+  bool pictures = false;       ///< keep what the clips' images show besides the motion (ClipResult::pictures)
   BareTrackOptions bare = {};  ///< for inputs that are a track's file
 };
 
 /// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, but not the camera.
-/// InputError for what is wrong with a folder; the progress tells frames.
+/// InputError for what is wrong with a folder; the progress counts frames.
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
                         const base::Progress& progress = base::no_progress);
 

@@ -151,7 +151,7 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
     if (well_seen(seen.marker) && static_cast<double>(seen.marker.sightings.size()) > kFarBetter * others) {
       seen.dark_marker = true;
       seen.notes.emplace_back(
-          "the marker is darker than its surroundings, as color = \"#101010\" in [marker] would say");
+          "the marker is darker than its surroundings; set color = \"#101010\" in [marker] to look for a dark one");
       return seen;
     }
   } catch (const base::InputError&) {

@@ -67,7 +67,7 @@ double harmonic_part(const std::vector<double>& x, const std::vector<double>& a)
 double bend_of(std::span<const MarkerSighting> sightings) {
   if (sightings.size() < kFewestPoints) return 0.0;
   const auto& first = sightings.front();
-  // Along the longest way from the first place, and across it.
+  // Along the line to the point farthest from the first, and across it.
   double along_u = 0.0, along_v = 0.0;
   for (const MarkerSighting& at : sightings) {
     const double du = at.u_px - first.u_px, dv = at.v_px - first.v_px;
@@ -135,43 +135,49 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   FindingBook book(findings, setup.name);
   const double a = look.acceleration_m_s2.value_or(0.0);
   if (look.oscillates) {
-    book.add(Severity::unusable,
-             fmt::format("the motion turns {} times, and its acceleration goes with the place: an oscillation, no run "
-                         "along an incline",
-                         look.turns),
-             "the law of motion has no spring in it; cut one run between two turns by start_s and end_s, if it is one");
+    book.add(
+        Severity::unusable,
+        fmt::format(
+            "the motion turns {} times, and its acceleration depends on position: this is an oscillation, not a "
+            "run along an incline",
+            look.turns),
+        "the law contains no spring; if one stretch between turns is a free run, select it with start_s and end_s");
   } else if (a > kAboveGravity * gravity_m_s2) {
     std::string units;
     if (a < 100.0 * gravity_m_s2) units = "centimetres";
     if (a > 20.0 * gravity_m_s2 && a < 1000.0 * gravity_m_s2)
       units += units.empty() ? "millimetres" : " or millimetres";
     if (units.empty()) units = "another unit";
-    book.add(Severity::unusable,
-             fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline makes that", a,
-                         a / gravity_m_s2),
-             fmt::format("x may be in {} in place of metres, an angle, or the times in another unit: convert the file, "
-                         "or state the scale",
-                         units));
+    book.add(
+        Severity::unusable,
+        fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline can produce that", a,
+                    a / gravity_m_s2),
+        fmt::format("x may be in {} instead of metres, or an angle, or the times in another unit: convert the file, "
+                    "or state the scale",
+                    units));
   } else if (a > kFreeFall * gravity_m_s2 && std::abs(setup.incline_rad) < kShallow_rad) {
-    book.add(Severity::unusable,
-             fmt::format("its accelerations are about {:.2g} times gravity: a free flight, and incline_deg is {:.3g}",
-                         a / gravity_m_s2, setup.incline_rad * kDegrees),
-             "state incline_deg = 90 for a fall; otherwise check the unit of x");
+    book.add(
+        Severity::unusable,
+        fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
+                    a / gravity_m_s2, setup.incline_rad * kDegrees),
+        "state incline_deg = 90 for a fall; otherwise check the unit of x");
   } else if (look.way_m > kLongWay_m) {
     book.add(Severity::change, fmt::format("x covers {:.3g} m", look.way_m),
              "check the unit of x: it may be centimetres, millimetres, or an angle");
   }
   if (look.bend > kMostBend) {
     book.add(Severity::unusable,
-             fmt::format("the path in the image bends by {} of its length: no straight track", percent(look.bend)),
-             "the law of motion holds along a straight line: film a straight track, and no free flight or swing");
+             fmt::format("the path in the image is curved (sagitta {} of its length): the track is not straight",
+                         percent(look.bend)),
+             "the law of motion holds along a straight line: film a straight track, not a free flight or a swing");
   }
   if (look.smooth) {
     book.add(
         Severity::change,
-        fmt::format("the positions lie on a smooth curve to {:.0e} of the way: smoothed or integrated, not measured",
+        fmt::format("the positions follow a smooth curve to {:.0e} of the distance covered: they were smoothed or "
+                    "integrated before export",
                     kSmoothPart),
-        "give the positions as they were measured: the noise is read off them, and all uncertainties rest on it");
+        "export the positions as measured: their noise is estimated from them, and every uncertainty depends on it");
   }
   return findings;
 }

@@ -181,8 +181,8 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
   if (worst == nullptr) return;
   const bool many = names.size() > 1;
   const std::string whose =
-      many ? fmt::format("{} of {} clips move freely against their launch; most of all {}: ", names.size(),
-                         clips.size(), worst->name)
+      many ? fmt::format("in {} of {} clips the glider moves opposite to the stated launch, most clearly in {}: ",
+                         names.size(), clips.size(), worst->name)
            : "";
   findings.push_back(
       {Severity::unusable, list_of(names),

@@ -144,7 +144,7 @@ void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput inp
       if (start != ordinary.end()) line->r2 = start->r2;  // of the diagram as it is shown
       clip.segments.push_back(std::move(*line));
     } else if (start != ordinary.end()) {
-      clip.notes.push_back(fmt::format("v {} 0: the generalised least squares did not settle; there is no line",
+      clip.notes.push_back(fmt::format("v {} 0: the generalised least squares did not converge; there is no line",
                                        direction > 0 ? ">" : "<"));
     }
   }

@@ -1,6 +1,6 @@
 /// The motion of one clip, from x(t) to the friction law: smoothing, the free parts of the motion, lines in a(v), and
-/// equation (13); and the clip frame by frame as it is reported, with the fate of each frame and the stretches that are
-/// used.
+/// mu and alpha from their intercepts; and the clip frame by frame as it is reported, with the fate of each frame and
+/// the stretches that are used.
 #pragma once
 
 #include <optional>
@@ -51,7 +51,7 @@ struct MotionOptions {
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
 };
 
-/// Smooths one clip's x(t) with the local cubic (10)-(12), decides which points count, and fits a line for v < 0 and v
+/// Smooths one clip's x(t) with the local cubic, decides which points count, and fits a line for v < 0 and v
 /// > 0. A given bandwidth is used as it is; otherwise the rule named, or choose_bandwidth(), decides.
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 

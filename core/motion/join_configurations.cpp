@@ -213,7 +213,7 @@ Quantity of_intercepts(double value, double by_minus, double by_plus, const Line
   return determined(estimate(value, std::sqrt(variance), degrees), std::sqrt(random));
 }
 
-/// Equation (13): (a0- + a0+)/2 = g sin(alpha), (a0- - a0+)/2 = mu g cos(alpha).
+/// From the intercepts (equation (13) of the paper): (a0- + a0+)/2 = g sin(alpha), (a0- - a0+)/2 = mu g cos(alpha).
 void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2, ConfigurationResult& result) {
   const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
   const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);

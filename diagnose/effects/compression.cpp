@@ -25,8 +25,8 @@ EffectInfo compression() {
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::codec, codec_twin),
       .next =
-          "Record the same launch again without loss (FFV1 or single images; at least MJPEG in place of H.264): edges "
-          "of blocks and errors that last over frames come from the codec and disappear with it.",
+          "Record the same launch again without loss (FFV1 or single images; at least MJPEG in place of H.264): block "
+          "edges and errors that persist over frames come from the codec and disappear with it.",
       .alike = {},
   };
 }

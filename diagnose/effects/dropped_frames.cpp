@@ -33,8 +33,7 @@ EffectInfo dropped_frames() {
       .twin = EffectTwin::as_camera(TwinPart::clock, dropped_twin),
       .next =
           "Record the same launch again at half the frame rate or with a smaller image, and keep the camera's own "
-          "time stamps: frames are lost when writing cannot keep up, and a time stamp shows the gap, which "
-          "no other launch does.",
+          "time stamps: frames are lost when writing cannot keep up, and only a time stamp shows the gap.",
       .alike = {},
   };
 }

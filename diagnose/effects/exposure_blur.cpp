@@ -21,7 +21,7 @@ EffectInfo exposure_blur() {
       .stage = Stage::sensor,
       .words = "an exposure that is longer than stated",
       .name = "exposure longer than stated",
-      .meaning = "exposure: as the marker's image is smeared",
+      .meaning = "exposure: inferred from the smear of the marker",
       .search = Search::pictures,
       .both_signs = false,
       .parameters = {},
@@ -31,7 +31,7 @@ EffectInfo exposure_blur() {
       .twin = EffectTwin::as_camera(TwinPart::exposure, blur_twin),
       .next =
           "Record the same launch again with half the exposure and twice the light: the marker's smear is the speed "
-          "times the exposure, and halves if the exposure is what makes it.",
+          "times the exposure, and halves if the exposure causes it.",
       .alike = {},
   };
 }

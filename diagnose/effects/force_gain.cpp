@@ -14,7 +14,7 @@ EffectInfo force_gain() {
   return {
       .id = ids::force_gain,
       .stage = Stage::dynamics,
-      .words = "a recorded force that is too small or too large by the same part",
+      .words = "a recorded force that is too small or too large by a constant factor",
       .name = "wrong scale of the force",
       .meaning = "the force is (1 + e) times the recorded one",
       .search = Search::amplitude,

@@ -15,7 +15,7 @@ EffectInfo friction_drift() {
   return {
       .id = ids::friction_drift,
       .stage = Stage::dynamics,
-      .words = "a dry friction that changes from clip to clip, steadily",
+      .words = "a dry friction that changes steadily from clip to clip",
       .name = "drifting friction",
       .meaning = "µ becomes µ (1 + r n) in the clip of number n, from 0",
       .search = Search::amplitude,

@@ -17,8 +17,8 @@ EffectInfo heavy_tailed_noise() {
       .lines = {},
       .twin = EffectTwin::none("a scenario has no outliers of its own"),
       .next =
-          "Record the same launch again with a larger marker of more contrast and nothing else that is round in the "
-          "image: single outlying positions come from frames in which something else was taken for part of it.",
+          "Record the same launch again with a larger, higher-contrast marker and no other round object in the image: "
+          "single outlying positions come from frames in which another object was mistaken for part of the marker.",
       .alike = {},
   };
 }

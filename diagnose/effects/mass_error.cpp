@@ -15,7 +15,7 @@ EffectInfo mass_error() {
   return {
       .id = ids::mass_error,
       .stage = Stage::dynamics,
-      .words = "a mass that is off, by the same part of each",
+      .words = "stated masses that are wrong by a common factor",
       .name = "wrong mass",
       .meaning = "the inertia is (1 + e) times the stated mass",
       .search = Search::amplitude,

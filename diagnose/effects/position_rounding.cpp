@@ -17,8 +17,8 @@ EffectInfo position_rounding() {
       .lines = {},
       .twin = EffectTwin::none("the positions of a scenario are not rounded"),
       .next =
-          "Export the positions again with more decimals, or with the sensor nearer to the glider: what a step hides "
-          "of single positions no repetition brings back.",
+          "Export the positions again with more decimals, or with the sensor nearer to the glider: repetition cannot "
+          "recover what rounding has removed.",
       .alike = {},
   };
 }

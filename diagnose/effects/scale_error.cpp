@@ -1,4 +1,4 @@
-/// A length scale that is off: x becomes (1 + e) x.
+/// A wrong length scale: x becomes (1 + e) x.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -23,7 +23,7 @@ EffectInfo scale_error() {
   return {
       .id = ids::scale_error,
       .stage = Stage::optics,
-      .words = "a length scale that is off",
+      .words = "a wrong length scale",
       .name = "wrong scale",
       .meaning = "x becomes (1 + e) x",
       .search = Search::amplitude,

@@ -372,7 +372,9 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
     best = fit_motions(set, {}, best.at, late);
   }
   if (!std::isfinite(best.cost)) {
-    throw base::NumericalError("the nominal model cannot be fitted to these positions: no start of three moves at all");
+    throw base::NumericalError(
+        "the nominal model cannot be fitted to these positions: the fit makes no progress from any of three starting "
+        "points");
   }
   return best;
 }

@@ -1,6 +1,6 @@
 /// A table of published lines in, a diagnosis out.
 ///
-///     lines ─ line_terms ─ line_solution (fit, evidence) ─ line_weighing ─ line_gap ─ Diagnosis
+///     lines ─ line_model (terms, fit, evidence) ─ line_findings (probabilities, gap, regions) ─ Diagnosis
 ///
 /// Predictions of each line by the others are the held-out gap, over the lines' own scatter.
 #pragma once

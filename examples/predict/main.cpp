@@ -1,5 +1,5 @@
-/// A motion by equation (8), measured 200 times a second without noise, and the lines that the analysis draws through
-/// its phase diagram: what a program of your own does with Glidelab's libraries.
+/// A motion with viscous drag, Coulomb friction and gravity, measured 200 times a second without noise, and the lines
+/// that the analysis draws through its phase diagram: what a program of your own does with Glidelab's libraries.
 #include <cstdio>
 #include <memory>
 #include <numbers>

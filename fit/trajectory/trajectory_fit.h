@@ -1,4 +1,5 @@
-/// The fit of the whole motion to the measured positions themselves: equation (8) with its reversals, no smoothing.
+/// The fit of the whole motion to the measured positions themselves: the nominal model (viscous drag, Coulomb friction,
+/// gravity; equation (8) of the paper) with its reversals, no smoothing.
 ///
 /// For all clips of one configuration at once, by least squares weighted with each clip's noise:
 ///

@@ -170,7 +170,7 @@ std::string meaning_of(const core::AnalysisResults& results) {
   }
   if (worst < kStraight) {
     text += fmt::format(
-        "<p>Not every a(v) is a straight line or stands clear of its noise: the lowest R² is {}. Where the residuals "
+        "<p>Not every a(v) is a straight line well above its noise: the lowest R² is {}. Where the residuals "
         "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
         base::r2_text(worst));
   }

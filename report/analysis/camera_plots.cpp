@@ -50,7 +50,7 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
            fmt::format(
                "{}Residuals of the pattern's corners, averaged over all views in each part of the image (the largest "
                "is {} px). They are {} times what independent errors would leave; arrows that turn or grow smoothly "
-               "across the image point to a lens that the model does not follow, or to a pattern that is not flat",
+               "across the image indicate a lens that the model does not describe, or a pattern that is not flat",
                experiment.empty() ? "" : experiment + ": ", base::number_text(largest, 2),
                base::number_text(rests.excess, 2)),
            (experiment.empty() ? "" : experiment + ", ") + "Residuals of the calibration over the image"}};
@@ -73,14 +73,14 @@ Plot noise_plot(const diagnose::PictureCurve& curve) {
   const std::string script =
       std::string(kFrame) +
       fmt::format(
-          "set xrange [0:*]\nset yrange [0:*]\nset xlabel 'brightness of a resting pixel  (codes)'\nset ylabel "
+          "set xrange [0:*]\nset yrange [0:*]\nset xlabel 'brightness of a static pixel  (codes)'\nset ylabel "
           "'variance of its noise  (codes²)'\nplot $noise using 1:2:3 with yerrorbars pt 7 ps 0.5 lc rgb '{0}' "
           "title 'seen', $noise using 1:4 with lines lw 2 lc rgb '{0}' title 'shot noise, linear sensor'\n",
           kColors[0]);
   return {Drawing{script, std::vector{data}},
-          fmt::format("How much resting pixels change from frame to frame, against their brightness. Shot noise gives "
-                      "a straight line; a tone curve, a codec or a camera that smooths bends it. The points lie off it "
-                      "by {} times their standard deviation",
+          fmt::format("Frame-to-frame variance of static pixels against their brightness. Shot noise gives a straight "
+                      "line; a tone curve, a codec or in-camera smoothing bends it. The points deviate from it by {} "
+                      "times their standard deviation",
                       base::number_text(curve_excess(curve), 2)),
           "Noise of pixels over their brightness"};
 }
@@ -250,8 +250,8 @@ std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool f
                                 -reach, reach, from_truth ? "measured − true" : "measured − smoothed", kGrey,
                                 harmonic.mean, harmonic.cosine, harmonic.sine, color(1), color(0));
   return {{Drawing{script, data},
-           fmt::format("Error of the marker's centre against its position within a pixel ({}), with means; a finder "
-                       "that is drawn towards whole pixels shows a wave. First harmonic: {} px",
+           fmt::format("Error of the marker's centre against its position within a pixel ({}), with means; a centre "
+                       "biased towards whole pixels shows a wave (pixel locking). First harmonic: {} px",
                        from_truth ? "against the truth" : "against the smoothed motion",
                        base::value_and_sd_text(locking->amplitude_px, locking->sd_px)),
            "Error of the centre over the sub-pixel phase"}};

@@ -37,8 +37,8 @@ std::vector<PixelPhase> phase_points(const core::AnalysisResults& results);
 std::vector<PixelPhase> phase_points(const core::AnalysisResults& results,
                                      const validate::RestitutionComparison& restitution);
 
-/// Does the error of a centre follow where in its pixel the centre lies? A finder that is drawn towards whole pixels
-/// shows a wave; its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
+/// Does the error of a centre follow where in its pixel the centre lies? A centre biased towards whole pixels shows a
+/// wave (pixel locking); its first harmonic is fitted, error = m + A cos(2 pi phase) + B sin(2 pi phase).
 struct PixelLocking {
   double amplitude_px = 0.0;  ///< of the first harmonic
   double sd_px = 0.0;         ///< of A and of B, the errors taken as independent

@@ -61,9 +61,9 @@ std::string pictures(const core::ClipResult& clip, const core::Preview& preview)
   std::string text;
   if (!preview.mp4.empty()) {
     const std::string caption =
-        preview.slow_motion > 1.05 ? fmt::format("The clip, {:.3g} times slower than it was", preview.slow_motion)
+        preview.slow_motion > 1.05 ? fmt::format("The clip, slowed down by a factor of {:.3g}", preview.slow_motion)
         : preview.slow_motion < 0.95
-            ? fmt::format("The clip, {:.3g} times faster than it was", 1.0 / preview.slow_motion)
+            ? fmt::format("The clip, speeded up by a factor of {:.3g}", 1.0 / preview.slow_motion)
             : std::string("The clip");
     text += fmt::format(
         "<figure><video controls muted loop playsinline preload=\"metadata\" src=\"{}\"></video>"
@@ -78,7 +78,7 @@ std::string pictures(const core::ClipResult& clip, const core::Preview& preview)
   }
   if (!text.empty()) text = fmt::format("<div class=\"figures\">\n{}</div>\n", text);
   if (!preview.why_no_video.empty()) {
-    text += fmt::format("<p class=\"soft\">There is no video here: {}.</p>\n", escape(preview.why_no_video));
+    text += fmt::format("<p class=\"soft\">No video: {}.</p>\n", escape(preview.why_no_video));
   }
   return text;
 }
@@ -225,10 +225,10 @@ std::string corrections_html(const core::AnalysisResults& results) {
     }
   }
   if (table.empty()) return {};
-  return "<details><summary>Bias of the smoothing, and what is subtracted for it</summary>\n" + table.str() +
-         "<p class=\"soft\">Smoothing biases the line that it is fitted to. The law that was found is put through the "
-         "same smoothing and the same fit without noise, and the excess is subtracted. The lines themselves, their "
-         "slopes and R² are not corrected.</p></details>\n";
+  return "<details><summary>Bias from smoothing, and its correction</summary>\n" + table.str() +
+         "<p class=\"soft\">Smoothing biases the fitted lines. The law that was found is put through the same "
+         "smoothing and the same fit without noise, and the excess is subtracted. The lines themselves, their slopes "
+         "and R² are not corrected.</p></details>\n";
 }
 
 }  // namespace

@@ -101,8 +101,8 @@ std::string blind_meaning(const validate::BlindScore& score) {
   text += fmt::format("<p>A stated probability is off by {} on average: it can{} be taken at face value{}.",
                       base::number_text(score.calibration_error, 2), calibrated ? "" : "not",
                       calibrated                 ? ""
-                      : over_stated(score) > 0.0 ? ", it is too sure of itself"
-                                                 : ", it is too modest");
+                      : over_stated(score) > 0.0 ? ": it is overconfident"
+                                                 : ": it is underconfident");
   std::string missed = calibrated ? "" : "the expected calibration error";
   std::size_t weighed = 1;  // with that of the calibration
   for (const BlindTarget& target : blind_targets(score)) {
@@ -110,9 +110,10 @@ std::string blind_meaning(const validate::BlindScore& score) {
     ++weighed;
     if (!is_met(target)) missed += (missed.empty() ? "" : "; ") + escape(target.what);
   }
-  if (weighed == 1) return text + " No case bears on the targets.</p>\n";
-  return text + (missed.empty() ? fmt::format(" All {} targets that these cases bear on are met.</p>\n", weighed)
-                                : fmt::format(" Missed: {}.</p>\n", missed));
+  if (weighed == 1) return text + " No case is relevant to the targets.</p>\n";
+  return text + (missed.empty()
+                     ? fmt::format(" All {} targets to which these cases are relevant are met.</p>\n", weighed)
+                     : fmt::format(" Missed: {}.</p>\n", missed));
 }
 
 namespace {

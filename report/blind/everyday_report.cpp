@@ -86,7 +86,7 @@ TextRows detail_rows(const EverydayScore& score) {
 TextRows number_rows(const EverydayScore& score) {
   TextRows rows;
   for (const auto& method : score.methods) {
-    rows.push_back({"share of a cause that is named, claimed less true: rms, mean", method.name,
+    rows.push_back({"share of a named cause, claimed minus true: rms, mean", method.name,
                     method.share_error.of == 0
                         ? "–"
                         : fmt::format("{}, {} (of {})", base::number_text(method.share_error.rms(), 2),
@@ -325,11 +325,11 @@ Page everyday_page(const BlindRun& run) {
   body += "<h2>Shares, intervals, probabilities</h2>\n" + numbers.str();
   body +=
       "<p class=\"soft\">The excess is g² - 1, g the gap of held-out clips without noise: 1.5 to 4 is moderate, "
-      "more is strong. A cause's share is the part of it that goes when the cause is added to the law after those "
-      "before it. "
-      "Forward selection takes the effect with the least held-out gap, then the one that lowers it most beside it, and "
-      "claims them where they take half of the excess; it states no probability, so that each of its names counts as "
-      "sure.</p>\n<h2>All cases</h2>\n" +
+      "more is strong. A cause's share is the part of it that is removed when the cause is added to the law after "
+      "those before it. Forward selection takes the effect with the least held-out gap, then the one that lowers it "
+      "most beside it, and claims them where they take half of the excess; it states no probability, so that each of "
+      "its names counts as "
+      "certain.</p>\n<h2>All cases</h2>\n" +
       everyday_cases_table(run);
   return page("Everyday blind cases", body);
 }

@@ -184,7 +184,7 @@ std::string numbers_table(const core::CameraMeasurement& camera) {
   return table.str() + (remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");
 }
 
-/// How finely a pixel tells light, in the numbers that are known.
+/// How finely a pixel resolves light, in the numbers that are known.
 std::string camera_meaning(const core::CameraMeasurement& camera) {
   std::string text;
   if (camera.gain_dn_per_e.value && camera.read_noise_e.value) {

@@ -177,8 +177,7 @@ std::string extent_words(const core::RecordingCheck& check) {
   std::string text = fmt::format("The marker is found in {} of {} frames of {} clip{}", seen, frames,
                                  check.clips.size(), check.clips.size() == 1 ? "" : "s");
   if (noise)
-    text +=
-        fmt::format("; one position is off by {} mm or less (standard deviation)", base::number_text(1e3 * *noise, 2));
+    text += fmt::format("; position noise: at most {} mm (one standard deviation)", base::number_text(1e3 * *noise, 2));
   return text + ".";
 }
 
@@ -186,10 +185,10 @@ std::string check_meaning(const core::RecordingCheck& check) {
   std::string text;
   if (!check.usable) {
     text =
-        "An analysis of this recording would fail, or give numbers that mislead: fix what “must change” below "
+        "An analysis of this recording would fail, or give misleading numbers: fix what “must change” below "
         "first.";
   } else if (wants_change(check)) {
-    text = "What is “better” below would make its numbers more precise if you record again.";
+    text = "The changes marked “better” below would make its numbers more precise if you record again.";
   } else {
     text = "Nothing needs to be recorded again.";
   }
@@ -277,9 +276,9 @@ const std::vector<ClipRow> kClipRows = {
      [](const core::ClipCheck& clip) {
        return clip.container_rate_hz ? base::number_text(*clip.container_rate_hz, 5) : std::string("–");
      }},
-    {"lost, twice",
+    {"lost / repeated",
      [](const core::ClipCheck& clip) {
-       return clip.pictures ? fmt::format("{}, {}", clip.jumps, std::max(clip.repeated, clip.stalls))
+       return clip.pictures ? fmt::format("{} / {}", clip.jumps, std::max(clip.repeated, clip.stalls))
                             : std::string("–");
      }},
     {"speed (m/s)", [](const core::ClipCheck& clip) { return base::digits_text(clip.top_speed_m_s, 3); }},
@@ -320,9 +319,9 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
   }
   std::string text = "<h2>Clips</h2>\n" + table.str() +
                      "<p class=\"soft\">Seen in: frames in which the marker was found. In the file: the rate that the "
-                     "file states. Lost, twice: frames that are missing or repeated, as far as the marker's motion and "
-                     "the images show. Speed: the highest, and the blur that the exposure makes of it. Marker: its "
-                     "diameter; contrast: how far it stands out from its "
+                     "file states. Lost / repeated: frames missing or repeated, as far as the marker's motion and the "
+                     "images show. Speed: the highest; blur: the smear at that speed. Marker: its "
+                     "diameter; contrast: its difference from the "
                      "surroundings, as a share of the camera's range, and over the noise of a pixel. White, black: "
                      "pixels at the ends of the range. Noise: of a position.</p>\n";
   std::string shown;

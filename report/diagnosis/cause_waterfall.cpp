@@ -99,8 +99,8 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
   if (!errors.rows.empty()) data.push_back(errors);
   return {
       {Drawing{script, std::move(data), {kWidth, kFramePoints + kRowPoints * static_cast<int>(rows.size())}},
-       "What each cause takes of the gap of held-out clips, added one after the other, and what is left. The excess "
-       "is the squared gap less 1, which noise alone makes; bars with whiskers have their 95 % interval over clips",
+       "What each cause explains of the gap of held-out clips, added one after the other, and what is left. The excess "
+       "is the squared gap minus 1, its value for noise alone; bars with whiskers have their 95 % interval over clips",
        "Waterfall of the gap: before, each cause, what is left"}};
 }
 

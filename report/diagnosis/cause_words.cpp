@@ -15,9 +15,9 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kPercent = 100.0;
-constexpr double kNearEnd = 0.01;      // of a share: within it a tenth of a percent tells something
+constexpr double kNearEnd = 0.01;      // of a share: this close to 0 or 1, a tenth of a percent matters
 constexpr double kNothing = 5e-4;      // a share that prints as 0.0 %
-constexpr std::size_t kSizesTold = 2;  // parameters of a cause in its sentence
+constexpr std::size_t kSizesTold = 2;  // parameters of a cause that its sentence states
 
 std::string capital(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
@@ -44,7 +44,7 @@ bool is_explained(const diagnose::Diagnosis& diagnosis, const std::string& id) {
                      [&](const diagnose::ExplainedCause& cause) { return cause.id == id; });
 }
 
-/// ", c = 0.0031 ± 0.0002 kg/m,": what was fitted, of the effect as a whole; empty where nothing was.
+/// ", c = 0.0031 ± 0.0002 kg/m,": the fitted parameters of the effect as a whole; empty where there are none.
 std::string sizes_aside(const diagnose::Diagnosis& diagnosis, const std::string& id) {
   const diagnose::DiagnosedEffect* const effect = effect_in(diagnosis, id);
   if (effect == nullptr) return {};
@@ -60,20 +60,21 @@ std::string sizes_aside(const diagnose::Diagnosis& diagnosis, const std::string&
 
 std::string left_words(const diagnose::GapRemainder& remainder) {
   if (remainder.share < kNothing) return "nothing is left above the noise";
-  return fmt::format("{} are left, {}", share_text(remainder.share), over_noise_text(remainder.gap));
+  return fmt::format("{} remains, {}", share_text(remainder.share), over_noise_text(remainder.gap));
 }
 
-/// "Quadratic drag, c = …, explains 91 % (…) of the gap on clips that were held out; …"; `of_what` is told already.
-std::string causes_words(const diagnose::Diagnosis& diagnosis, bool of_what = false) {
+/// "Quadratic drag, c = …, explains 91 % (…) of the gap on clips that were held out; …"; with `gap_named`, the gap has
+/// been mentioned.
+std::string causes_words(const diagnose::Diagnosis& diagnosis, bool gap_named = false) {
   std::string text;
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
     const std::string name = effect_name(cause.id);
     const std::string share = share_text(cause.share, cause.share_interval95);
     const bool first = text.empty();
     text +=
-        fmt::format("{}{}{} {} {}{}{}", first ? "" : "; ", first && !of_what ? capital(name) : name,
+        fmt::format("{}{}{} {} {}{}{}", first ? "" : "; ", first && !gap_named ? capital(name) : name,
                     sizes_aside(diagnosis, cause.id), is_plural(name) ? "explain" : "explains", first ? "" : "another ",
-                    share, first && !of_what ? " of the gap on clips that were held out" : "");
+                    share, first && !gap_named ? " of the gap on clips that were held out" : "");
   }
   if (diagnosis.remainder) text += "; " + left_words(*diagnosis.remainder);
   return text + ".";
@@ -82,15 +83,13 @@ std::string causes_words(const diagnose::Diagnosis& diagnosis, bool of_what = fa
 std::string traces_words(const diagnose::Diagnosis& diagnosis) {
   const std::vector<std::string> names = effect_names(diagnosis.traces);
   if (names.empty()) return {};
-  return fmt::format("Traces: {} {} seen, without consequence for K/m, µ and α.", list_of(names),
-                     names.size() > 1 || is_plural(names.front()) ? "are" : "is");
+  return fmt::format("Also detected, with no effect on K/m, µ and α: {}.", list_of(names));
 }
 
 std::string unknown_sequence_words(const diagnose::Diagnosis& diagnosis) {
-  const std::string text =
-      "Something is missing, and no cause that this program knows takes half of the gap on clips that were held out";
+  const std::string text = "Something is missing, and no known effect explains half of the held-out gap";
   if (!diagnosis.explained.empty()) return text + ": " + causes_words(diagnosis, true);
-  return text + ". None makes it smaller by more than its uncertainty" +
+  return text + ". None reduces it by more than its uncertainty" +
          (diagnosis.remainder ? fmt::format(": it is {}.", over_noise_text(diagnosis.remainder->gap)) : ".");
 }
 
@@ -204,8 +203,8 @@ std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
     if (!is_explained(diagnosis, effect.id)) besides.push_back(effect_name(effect.id));
   }
   if (!besides.empty() && besides.size() < diagnosis.effects.size()) {
-    text += fmt::format(" {} {} no share of this gap.", capital(list_of(besides)),
-                        besides.size() > 1 || is_plural(besides.front()) ? "have" : "has");
+    text += fmt::format(" {} {} nothing to this gap.", capital(list_of(besides)),
+                        besides.size() > 1 || is_plural(besides.front()) ? "contribute" : "contributes");
   }
   return text.empty() ? text : text.substr(1);
 }
@@ -213,13 +212,14 @@ std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
 std::string levels_words(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.levels || (!diagnosis.levels->configuration && !diagnosis.levels->clip)) return {};
   const diagnose::GapLevels& levels = *diagnosis.levels;
-  std::vector<std::string> of;
-  if (levels.clip) of.push_back(base::number_text(*levels.clip, 3) + " with parameters of each clip");
+  const char* const gap = " separately, the nominal model has a gap of";
+  std::string text = "Fitted to ";
+  if (levels.clip) text += fmt::format("each clip{} {}; to ", gap, base::number_text(*levels.clip, 3));
   if (levels.configuration) {
-    of.push_back(base::number_text(*levels.configuration, 3) + " with those of each configuration");
+    text += fmt::format("each configuration{} {}; to ", levels.clip ? "," : gap,
+                        base::number_text(*levels.configuration, 3));
   }
-  of.push_back(base::number_text(levels.all, 3) + " with those common to all");
-  return fmt::format("The nominal model's gap is {} (1 is the noise).", list_of(of));
+  return text + fmt::format("all clips, {} (1 is the noise).", base::number_text(levels.all, 3));
 }
 
 std::string remainder_words(const diagnose::GapRemainder& of) {
@@ -233,7 +233,7 @@ std::string remainder_words(const diagnose::GapRemainder& of) {
   }
   std::string text;
   if (of.acceleration_m_s2 > 0.0) {
-    text = fmt::format("What is left amounts to a random acceleration of {} (root mean square) along the way.",
+    text = fmt::format("The remainder corresponds to a random acceleration of {} (rms) along the track.",
                        base::size_text(of.acceleration_m_s2, 2, "m/s²"));
   }
   if (!scatter.empty()) text += fmt::format("{}From clip to clip, {}.", text.empty() ? "" : " ", list_of(scatter));
@@ -244,7 +244,7 @@ std::string clearest_words(const diagnose::GapRemainder& of, const std::string& 
   if (of.regions.empty()) return {};
   const diagnose::GapRegion& region = of.regions.front();
   const std::string where = fmt::format("{} is clearest {}: {}", subject, region_words(region), region.what);
-  if (region.lacking) return where + ". These data do not tell how large it is.";
+  if (region.lacking) return where + ". Its size cannot be determined from these data.";
   return fmt::format("{} of up to {}.", where, largest_words(region));
 }
 

@@ -42,7 +42,7 @@ std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
   std::string text = "<h2>K/m, µ, α and limit velocity</h2>\n";
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
     text += paragraph(fmt::format("Of each configuration, {}.{}", with_words(table.with),
-                                  diagnosis.remainder ? " The standard deviations count what is left as well." : ""));
+                                  diagnosis.remainder ? " The standard deviations include the remainder." : ""));
     text += html_of(table.rows);
     for (const std::string& why : table.why) text += paragraph(why + ".", " class=\"soft\"");
   }

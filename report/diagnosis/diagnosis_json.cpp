@@ -149,8 +149,8 @@ Json gap_json(const diagnose::GapSizes& gap) {
     one["quantity"] = parameter.quantity;
     one["against"] = parameter.against;
     one["group"] = parameter.group;
-    put(one, "z_before", parameter.z_before, "this part of the data says next to nothing of it");
-    put(one, "z_after", parameter.z_after, "no effect is named, or this part of the data says next to nothing of it");
+    put(one, "z_before", parameter.z_before, "this part of the data hardly constrains it");
+    put(one, "z_after", parameter.z_after, "no effect is named, or this part of the data hardly constrains it");
     for (const auto& [key, of] : {std::pair("alone", &parameter.alone), std::pair("together", &parameter.together)}) {
       if (!*of) continue;
       put(one[key], "value", (*of)->value);
@@ -165,7 +165,7 @@ Json gap_json(const diagnose::GapSizes& gap) {
     Json one;
     one["domain"] = of.domain;
     put(one, "before", of.before);
-    put(one, "after", of.after, "it cannot be said");
+    put(one, "after", of.after, "it cannot be determined");
     object["domains"].push_back(std::move(one));
   }
   return object;

@@ -53,7 +53,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
       "'{}'\n",
       kColors[0]);
   return {Drawing{script, std::vector{data}, {620, 90 + 38 * static_cast<int>(bars.size())}},
-          "Probability of each explanation, given these data: what is named acts, and nothing else",
+          "Probability of each explanation, given these data: the named effects act, and nothing else",
           "Bar chart of the probabilities of the explanations"};
 }
 
@@ -151,12 +151,11 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& vari
   script += "\n";
   return {
       Drawing{script, std::vector{never_empty(before), never_empty(after)}},
-      fmt::format(
-          "Residuals of all clips against {}{}",
-          variable == "x_m"     ? "position"
-          : variable == "v_m_s" ? "speed"
-                                : "time",
-          diagnosis.verdict == diagnose::Verdict::unknown ? "; after: with the likeliest curve without a name" : ""),
+      fmt::format("Residuals of all clips against {}{}",
+                  variable == "x_m"     ? "position"
+                  : variable == "v_m_s" ? "speed"
+                                        : "time",
+                  diagnosis.verdict == diagnose::Verdict::unknown ? "; after: with the likeliest free-form curve" : ""),
       one ? "Residuals" : "Residuals before and after"};
 }
 

@@ -150,10 +150,10 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
       "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it is 1 ± "
       "{}. {} {}{}</p>\n",
       base::number_text(gap.standard_error, 2),
-      gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of what is above the floor."
+      gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of the excess over the floor."
                  : std::string("It is at the floor."),
       !over_clips.too_few
-          ? "The intervals tell how much these numbers would differ with other clips of the same kind (jackknife: each "
+          ? "The intervals show how much these numbers would differ with other clips of the same kind (jackknife: each "
             "clip left out of the mean in turn)."
           : too_few_words(over_clips) + ".",
       gap.acceleration_before ? " Accelerations are measured minus modelled, both smoothed as in the analysis, noise "
@@ -183,9 +183,9 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     if (effect.id != diagnose::ids::rolling_shutter && effect.id != diagnose::ids::camera_motion) continue;
-    text +=
-        fmt::format("<p class=\"note\">{} acts only in the twin's images: here the data are off by what it does.</p>\n",
-                    effect_html(effect.id));
+    text += fmt::format(
+        "<p class=\"note\">{} acts only in the twin's images, so the comparison here differs by its effect.</p>\n",
+        effect_html(effect.id));
   }
   return text + figures(twin_plots(twin));
 }
@@ -193,14 +193,13 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
 constexpr const char* kMethod =
     "<p>The nominal model, m dv/dt = m g sin α − K v − sign(v) µ m g cos α, is fitted to all positions of all clips at "
     "once: one K and one µ, one inclination for each set-up, a start for each clip. The noise is estimated from "
-    "neighbouring positions alone. Every effect of the list is added to the model, alone and in pairs. The evidence "
-    "for "
-    "each is its likelihood averaged over the sizes that it may have (equal odds for each factor of ten above what can "
-    "be seen). Smooth forces and displacements without a name (over position, speed and time) and differences between "
-    "clips, masses and set-ups compete with the effects, and act alongside them: where one of those explains more, the "
-    "verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all clips, to first order: sizes "
-    "are learnt from the other clips. What was found by searching (which of several waves or positions, which frames "
-    "are lost, the shape of a curve without a name) comes from all clips.</p>\n";
+    "neighbouring positions alone. Every effect on the list is added to the model, alone and in pairs. The evidence "
+    "for each is its likelihood averaged over the sizes that it may have (equal odds for each factor of ten above "
+    "what can be seen). Smooth forces and displacements without a name (over position, speed and time) and "
+    "differences between clips, masses and set-ups compete with the effects, and act alongside them: where one of "
+    "those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all "
+    "clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
+    "waves or positions, which frames are lost, the shape of a curve without a name) comes from all clips.</p>\n";
 
 /// A part of the page that opens where its heading is clicked; nothing of an empty one.
 Html folded(const std::string& heading, const Html& part) {
@@ -278,7 +277,7 @@ std::string wrapped(const std::string& text) {
 std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
   std::string text;
-  if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of what is above the floor\n";
+  if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of the excess over the floor\n";
   if (!over_clips.too_few) {
     text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
                         interval_text(over_clips.after));
@@ -343,7 +342,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     }
   }
   for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
-    if (finding.seen) text += "pictures: " + wrapped(finding.words);
+    if (finding.seen) text += "images: " + wrapped(finding.words);
   }
   if (diagnosis.gap) {
     text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor 1)\n",

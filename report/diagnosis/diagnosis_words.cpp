@@ -79,47 +79,58 @@ std::string ups(const std::vector<std::string>& names) {
   return text;
 }
 
+/// "second", "third", "4th", … "21st".
+std::string ordinal(std::size_t n) {
+  if (n == 2) return "second";
+  if (n == 3) return "third";
+  const std::size_t last = n % 10, teens = n / 10 % 10;
+  const char* const ending = teens == 1 ? "th" : last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th";
+  return fmt::format("{}{}", n, ending);
+}
+
 /// A sentence for every kind; a kind without one does not compile.
 struct Sentence {
   std::string operator()(const diagnose::NoFreeMotion& of) const {
     return fmt::format("Clip {} holds no free motion of {} points or more.", of.clip, of.fewest);
   }
   std::string operator()(const diagnose::ThinnedPositions& of) const {
-    return fmt::format("Of {} positions{}, one in {} is used: the law needs no more, and more would slow the search.",
-                       of.points, of.driven ? " with a recorded force" : "", of.every);
+    return fmt::format("Of {} positions{}, every {} is used; more would slow the search without adding information.",
+                       of.points, of.driven ? " with a recorded force" : "", ordinal(of.every));
   }
   std::string operator()(const diagnose::CutAtTurns& of) const {
     return fmt::format(
-        "The recorded force turns the motion {} times. The motion is weighed in pieces of {} turns, each with a start "
+        "The recorded force turns the motion {} times. The motion is analysed in pieces of {} turns, each with a start "
         "of its own; anything that shows only over longer times, such as a slow drift, is not examined.",
         of.turns, of.turns_of_piece);
   }
   std::string operator()(const diagnose::SomePieces& of) const {
     return fmt::format(
-        "Of {} pieces of motion with a recorded force, {} are weighed, spread evenly over clips and time.", of.pieces,
+        "Of {} pieces of motion with a recorded force, {} are analysed, spread evenly over clips and time.", of.pieces,
         of.kept);
   }
   std::string operator()(const diagnose::HandLeftOut& of) const {
-    return fmt::format("{} frames that look like a hand or a stop are left out; no effect of the list explains them.",
-                       of.frames);
+    return fmt::format(
+        "{} frames in which a hand or an end stop seems to act are excluded; no known effect explains them.",
+        of.frames);
   }
   std::string operator()(const diagnose::SetAside& of) const {
     return fmt::format(
-        "Of the {} positions of the motion, {:.0f} % are set aside: they look like a hand or a stop, or lie far off, "
-        "and no effect of the list explains them. The verdict holds for the rest.",
+        "Of the {} positions of the motion, {:.0f} % are excluded: in them a hand or an end stop seems to act, or they "
+        "are outliers, and no known effect explains them. The verdict holds for the rest.",
         of.positions, 100.0 * of.part);
   }
   std::string operator()(const diagnose::PiecesHeldOut&) const {
     return "There is only one clip: each piece of its motion is held out in turn.";
   }
   std::string operator()(const diagnose::QuartersHeldOut&) const {
-    return "There is only one clip, and no other to predict it from: the gap is measured on held-out quarters of it.";
+    return "There is only one clip, and no other to predict it from: the gap is measured on held-out quarters of that "
+           "clip.";
   }
   std::string operator()(const diagnose::LastingErrors& of) const {
     return fmt::format(
         "Errors of successive positions are correlated ({:.2f} from one frame to the next, {:.2f} to the fourth), as "
-        "with a tracker that follows its own last image, or with positions that were smoothed: they tell less than "
-        "their number suggests.",
+        "with a tracker that follows its own last image, or with positions that were smoothed: they carry less "
+        "information than their number suggests.",
         of.next, of.fourth);
   }
   std::string operator()(const diagnose::StatementsDisagree& of) const {
@@ -135,12 +146,11 @@ struct Sentence {
         ups(of.groups), of.groups.size() > 1 ? "have" : "has");
   }
   std::string operator()(const diagnose::OnlyFalls&) const {
-    return "The motions are falls, with an inclination of 80 degrees or more: next to no force presses on a track, and "
-           "µ is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 "
-           "degree.";
+    return "The motions are falls, with an inclination of 80 degrees or more: there is almost no normal force, and µ "
+           "is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 degree.";
   }
   std::string operator()(const diagnose::SplitSetUps& of) const {
-    return fmt::format("Clips of set{} state different inclinations; each inclination counts as a set-up of its own.",
+    return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",
                        ups(of.groups));
   }
   std::string operator()(const diagnose::LaunchedOtherWay& of) const {
@@ -150,8 +160,8 @@ struct Sentence {
   std::string operator()(const diagnose::NegativeLoss& of) const {
     const bool drag = of.of == diagnose::NegativeLoss::Of::drag;
     return fmt::format(
-        "The fit has a {} below zero ({}), which would drive the glider: either the missing effect pushes it there, or "
-        "the stated inclination, downhill direction or masses are wrong.",
+        "The fitted {} is below zero ({}), which would drive the glider: either the missing effect makes it negative, "
+        "or the stated inclination, downhill direction or masses are wrong.",
         drag ? "drag" : "friction", base::size_and_sd_text(of.value, of.sd, drag ? "N s/m" : ""));
   }
   std::string operator()(const diagnose::ContradictedIncline& of) const {
@@ -159,7 +169,7 @@ struct Sentence {
       const double sd = kDegrees * sd_rad;
       return fmt::format("{:.{}f} ± {:.{}f}°", kDegrees * angle_rad, decimals_for(sd), sd, decimals_for(sd));
     };
-    const std::string stated = fmt::format("The inclination of set-up \"{}\" is {} {}, and the motion says ", of.group,
+    const std::string stated = fmt::format("The inclination of set-up \"{}\" is {} {}, and the motion gives ", of.group,
                                            with_sd(of.stated_rad, of.stated_sd_rad),
                                            of.against == "plumb" ? "by the plumb line" : "as " + of.against);
     if (!(of.motion_sd_rad > 0.0)) {
@@ -173,19 +183,19 @@ struct Sentence {
   std::string operator()(const diagnose::BeyondGravity& of) const {
     return fmt::format(
         "Lines stated at {} degrees have a mean intercept of {:.3g} m/s², more than gravity ({:.6g} m/s²): no "
-        "inclination has it.",
+        "inclination can give that.",
         of.stated_deg, of.intercept_m_s2, of.gravity_m_s2);
   }
   std::string operator()(const diagnose::MeanIncline& of) const {
     return fmt::format(
-        "Lines stated at {} degrees have the mean intercept of {:.3f} degrees. A table does not say how well the angle "
-        "was read; {} degrees are assumed.",
+        "The mean intercept of the lines stated at {}° corresponds to an inclination of {:.3f}°. A table does not say "
+        "how well the angle was read; ±{}° is assumed.",
         of.stated_deg, of.intercept_deg, of.read_deg);
   }
   std::string operator()(const diagnose::TableOfLines& of) const {
     return fmt::format(
-        "A table of {} lines states no errors: they are taken from the scatter of the lines. It states no speeds "
-        "either, so effects of the speed (quadratic_drag, power_law_drag, stribeck) cannot be weighed.",
+        "The table of {} lines states no errors: they are estimated from the scatter of the lines. It states no speeds "
+        "either, so effects that depend on the speed (quadratic_drag, power_law_drag, stribeck) cannot be examined.",
         of.lines);
   }
 };
@@ -223,9 +233,9 @@ using diagnose::Change;
 using diagnose::ChangeKind;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which its figure means no more
+constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which a larger figure means nothing more
 constexpr const char* kMoveCamera =
-    "what belongs to the track stays in place on it, what belongs to the image moves with the camera.";
+    "what belongs to the track stays in place on it; what belongs to the image moves with the camera.";
 
 const char* kind_words(ChangeKind kind) {
   switch (kind) {
@@ -249,11 +259,11 @@ const char* kind_words(ChangeKind kind) {
   return "";
 }
 
-/// "62 changes weighed (launches, masses, …)"
+/// "the 62 changes considered (launches, masses, …)"
 std::string weighed_words(const diagnose::ChangesWeighed& of) {
   std::string kinds;
   for (const ChangeKind kind : of.kinds) kinds += (kinds.empty() ? "" : ", ") + std::string(kind_words(kind));
-  return fmt::format("{} changes weighed ({})", of.count, kinds);
+  return fmt::format("the {} changes considered ({})", of.count, kinds);
 }
 
 /// An order: "Record a launch uphill at 1.2 m/s with 535 g".
@@ -321,17 +331,17 @@ std::string routine_words(diagnose::Routine routine) {
   using diagnose::Routine;
   switch (routine) {
     case Routine::repeat_each_kind:
-      return "Repeat one launch of each kind: more clips make the verdict surer.";
+      return "Repeat one launch of each kind: more clips make the verdict more certain.";
     case Routine::repeat_launch:
       return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
              "is not due to the law of motion.";
     case Routine::start_later:
       return "Repeat one of the launches three times, each one second later after the start of the camera: what "
-             "belongs to the clip's time (a clock, something that warms or settles) stays at that time, what acts on "
+             "belongs to the clip's time (a clock, something that warms or settles) stays at that time; what acts on "
              "the glider shifts with it.";
     case Routine::turn_glider:
       return "Turn the glider round on the track and record the same launches each way: what belongs to the glider "
-             "turns with it, what belongs to the track does not.";
+             "turns with it; what belongs to the track does not.";
     case Routine::set_up_again:
       return "Take the track down, set it up again at the same inclination, and record the same launches: what differs "
              "then comes from setting it up, not from the inclination.";
@@ -341,15 +351,15 @@ std::string routine_words(diagnose::Routine routine) {
              kMoveCamera;
     case Routine::other_speeds:
       return "Record launches at two further speeds, with one mass and at one inclination: the missing force depends "
-             "on the speed, and its shape tells what it is.";
+             "on the speed, and its shape shows what it is.";
     case Routine::measure_inclination:
       return "Measure the inclination again, with a level on the track or a plumb line in the image: the motion and "
-             "the statement cannot both be right.";
+             "the stated value cannot both be right.";
     case Routine::check_statements:
       return "Check the stated downhill direction, inclinations and masses, then launch one glider both ways: friction "
              "slows it in both directions, an inclination does not.";
     case Routine::second_mass:
-      return "Record a second mass: with one, a friction force is simply mu.";
+      return "Record a second mass: with one mass, load-independent friction cannot be told from mu.";
   }
   return {};
 }
@@ -362,40 +372,41 @@ struct Words {
 
   std::string operator()(const diagnose::RepeatClip& of) const {
     return fmt::format(
-        "Repeat clip {} three times without changing anything: what belongs to that clip alone does not recur; what "
-        "its launch, mass or set-up causes recurs each time.",
+        "Repeat clip {} three times without changing anything: what belongs to that clip alone does not recur; what is "
+        "caused by its launch, mass or set-up recurs each time.",
         of.clip);
   }
 
   std::string operator()(const diagnose::CoverRegion& of) const {
     const bool places = of.over == diagnose::CoverRegion::Over::places;
     const std::string launch = fmt::format(
-        "{}: of {} launches it has the most positions ({} of {}) at {} from {} to {} {}, where the excess lies",
-        change_words(of.launch), of.launches, of.inside, of.positions, places ? "places" : "speeds",
+        "{}: of {} launches considered, it has the most positions ({} of {}) at {} from {} to {} {}, where the excess "
+        "lies",
+        change_words(of.launch), of.launches, of.inside, of.positions, places ? "positions" : "speeds",
         base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
-    if (!places) return launch + ", and its shape over the speed tells what it is.";
+    if (!places) return launch + ", and its dependence on the speed shows what it is.";
     return fmt::format("Move the camera along the track by a third of the view. {}; {}", launch, kMoveCamera);
   }
 
   std::string operator()(const diagnose::AddMass& of) const {
     return fmt::format(
         "Record a further mass of {:.0f} g both ways, and the lightest one again: what depends on the mass then has a "
-        "third point on its curve, what differed by chance does not recur.",
+        "third point on its curve; what differed by chance does not recur.",
         1000.0 * of.mass_kg);
   }
 
   std::string operator()(const diagnose::RecordForEffect& of) const {
-    return of.doubt ? fmt::format("It is in doubt {}. {}", doubt_words({*of.doubt}), of.words) : of.words;
+    return of.doubt ? fmt::format("It is uncertain {}. {}", doubt_words({*of.doubt}), of.words) : of.words;
   }
 
   std::string operator()(const diagnose::SettleDoubt& of) const {
     if (!of.by) {
       return fmt::format(
-          "None of {} would settle {} (expected log likelihood {:.2g} at most): less noise (a longer lens, a larger "
+          "None of {} would decide {} (expected log likelihood {:.2g} at most): less noise (a longer lens, a larger "
           "marker) or many more clips would.",
           weighed_words(of.weighed), doubt_words(of.doubt), of.log_likelihood);
     }
-    return fmt::format("{}: of {} this one would best settle {} (expected log likelihood {}).", change_words(*of.by),
+    return fmt::format("{}: of {}, this one best decides {} (expected log likelihood {}).", change_words(*of.by),
                        weighed_words(of.weighed), doubt_words(of.doubt), likelihood_words(of.log_likelihood));
   }
 
@@ -406,25 +417,25 @@ struct Words {
         fmt::format("Nothing else is likely. The least well known parameter is {}{} ({}).", named.name,
                     of.effect.empty() ? "" : " of " + of.effect, base::size_and_sd_text(of.value, of.sd, named.unit));
     if (of.by) {
-      text += fmt::format(" {}: of {} this one sharpens it most, to ± {}.", change_words(*of.by),
+      text += fmt::format(" {}: of {}, this one reduces its uncertainty most, to ± {}.", change_words(*of.by),
                           weighed_words(of.weighed), base::size_text(of.sd_after, 2, named.unit));
     } else {
       text += fmt::format(
-          " None of {} would sharpen it by a twentieth: more clips of each kind would, by the square root of their "
-          "number.",
+          " None of {} would reduce its uncertainty by 5 %; n times as many clips of each kind would reduce it as "
+          "1/sqrt(n).",
           weighed_words(of.weighed));
     }
     if (of.one_mass) {
-      text += " With one mass, a friction that does not grow with the load counts as mu: a second mass would tell.";
+      text += " With one mass, load-independent friction cannot be told from mu; a second mass would separate them.";
     }
     return text;
   }
 
   std::string operator()(const diagnose::TellLinesApart& of) const {
     return fmt::format(
-        "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its square, "
-        "a friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} moves its "
-        "intercepts by {} each, the smoothing bias by {}.",
+        "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its square; "
+        "a friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} shifts "
+        "each of its intercepts by {}, the smoothing bias by {}.",
         1000.0 * of.mass_kg, base::size_text(of.force_n, 2, "N"), base::size_text(of.by_force_m_s2, 2, "m/s²"),
         base::size_text(of.by_bias_m_s2, 2, "m/s²"));
   }

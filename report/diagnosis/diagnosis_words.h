@@ -18,7 +18,7 @@ std::string verdict_id(diagnose::Verdict verdict);
 /// "none", "scale_error", "scale_error + tether", "unknown", "scale_error + unknown".
 std::string explanation_id(const diagnose::Explanation& explanation);
 
-/// The same in the short names of effects: "wrong scale + something without a name".
+/// The same in the short names of effects: "wrong scale + an unnamed cause".
 std::string explanation_name(const diagnose::Explanation& explanation);
 
 /// The name, and the id small beside it. HTML.

@@ -59,7 +59,7 @@ Plot phase_plot(const diagnose::PhaseGap& gap, bool one) {
   }
   script += "\n";
   return {Drawing{script, std::vector{data}},
-          "How much more the glider accelerates than the model at the same speed, both smoothed alike: the mean over "
+          "Acceleration of the glider minus that of the model at the same speed, both smoothed alike: the mean over "
           "intervals of speed, with the band in which noise alone would leave it 95 times in 100. A curve outside its "
           "band is a force that the model lacks",
           "Measured minus modelled acceleration against speed"};
@@ -83,10 +83,11 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps, bool one) {
   }
   script +=
       fmt::format("set xlabel '{}'\nset ylabel 'a measured − a modelled  (m/s²)'\nplot {}\n", axis_of("v_m_s"), curves);
-  return {Drawing{script, std::move(data)},
-          one ? "The same for each mass: where the masses differ, what is missing does not grow with the load"
-              : "The same for each mass, before: where the masses differ, what is missing does not grow with the load",
-          "Measured minus modelled acceleration against speed, by mass"};
+  return {
+      Drawing{script, std::move(data)},
+      one ? "The same for each mass: where the masses differ, what is missing is not proportional to the load"
+          : "The same for each mass, before: where the masses differ, what is missing is not proportional to the load",
+      "Measured minus modelled acceleration against speed, by mass"};
 }
 
 Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& cells, const std::string& variable,

@@ -59,14 +59,15 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
       "set key font ',12' noenhanced\nset xlabel '{}'\n"
       "set ylabel 'friction left  (mm/s²)'\nset xzeroaxis lw 1 lc rgb '{}'\nplot {}\n",
       over_mass ? "1 / mass  (1/kg)" : "(K/m)²  (1/s²)", kGrey, plots);
-  return {Drawing{script, std::move(data), {520, 470}},
-          fmt::format(
-              "What the nominal model leaves of the intercepts, as friction, against {}: {}. Bars are the lines' own "
-              "scatter",
-              over_mass ? "1/m" : "(K/m)²",
-              over_mass ? "a force that does not grow with the load is straight here"
-                        : "the smoothing's bias is straight here"),
-          over_mass ? "Friction left over 1/m" : "Friction left over (K/m)²"};
+  return {
+      Drawing{script, std::move(data), {520, 470}},
+      fmt::format(
+          "What the nominal model leaves of the intercepts, as friction, against {}: {}. The error bars are the lines' "
+          "own scatter",
+          over_mass ? "1/m" : "(K/m)²",
+          over_mass ? "a load-independent force gives a straight line here"
+                    : "the bias from smoothing gives a straight line here"),
+      over_mass ? "Friction left over 1/m" : "Friction left over (K/m)²"};
 }
 
 }  // namespace
@@ -134,11 +135,11 @@ std::string gap_table(const diagnose::GapSizes& gap) {
   table.row({"all", base::digits_text(gap.before, 3), base::digits_text(gap.after, 3)});
   std::string text = table.str();
   text += fmt::format(
-      "<p class=\"soft\">Each line predicted by the others: root mean square of what its intercept and its slope are "
-      "off, over the lines' own scatter. At the floor it is 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
+      "<p class=\"soft\">Each line predicted by the others: rms deviation of its intercept and slope, over the lines' "
+      "own scatter. At the floor it is 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
       base::number_text(gap.standard_error, 2), interval_text(gap.interval95.before),
       interval_text(gap.interval95.after),
-      gap.shrink ? fmt::format(" It shrinks by {} of what is above the floor.", shrink_text(gap)) : std::string());
+      gap.shrink ? fmt::format(" It shrinks by {} of the excess over the floor.", shrink_text(gap)) : std::string());
   return text;
 }
 
@@ -181,8 +182,7 @@ constexpr const char* kLineMethod =
     "direction competes with them, alone and alongside them, as “unknown”. A table states no errors: they are fitted "
     "with each explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and "
     "the gap are relative to the lines' own scatter, which involves no friction: that of the mean intercept over both "
-    "directions, "
-    "and of the slopes within each mass.</p>\n";
+    "directions, and of the slopes within each mass.</p>\n";
 
 }  // namespace
 

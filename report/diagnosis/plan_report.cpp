@@ -35,7 +35,7 @@ std::string lead(const diagnose::Plan& plan) {
   }
   return fmt::format(
       "{} clips, {} positions, with {} µm of noise found in them. Of {} effects with a single direction (a push or a "
-      "displacement), these motions can show {}, and tell {} of those from every other.",
+      "displacement), these motions can show {}, and distinguish {} of those from every other.",
       plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
 }
 
@@ -43,9 +43,9 @@ std::string lead(const diagnose::Plan& plan) {
 std::string what_follows(const diagnose::Plan& plan) {
   if (plan.effects.empty()) return {};
   const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
-  if (!any) return "Recorded like this, a diagnosis could find none of them: its “none” would mean nothing.";
-  return "Recorded like this, a diagnosis can find an effect from the size “seen from” on. If it finds none, smaller "
-         "ones may still act, and those that are not seen may have any size.";
+  if (!any) return "With these motions no effect could be detected; a verdict of “none” would be meaningless.";
+  return "With these motions a diagnosis can detect an effect of at least the size in “seen from”. If it finds none, "
+         "smaller ones may still act, and those that are not seen may have any size.";
 }
 
 /// What to do about effects that look alike; empty where none do.
@@ -63,8 +63,7 @@ constexpr const char* kPlanMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
     "adjust (K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes "
     "that remain is below 18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven frame times and "
-    "outliers "
-    "have no single direction and are not in the table.";
+    "outliers have no single direction and are not in the table.";
 
 }  // namespace
 

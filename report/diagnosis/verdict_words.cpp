@@ -15,7 +15,7 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kWorthSaying = 0.01;  // probability of what has a name beside something that has none
+constexpr double kWorthSaying = 0.01;  // probability of a named explanation that is stated beside an unnamed one
 
 std::string line_times(double gap) {
   return gap < 10.0 ? fmt::format("{:.1f}", gap) : fmt::format("{:.0f}", gap);
@@ -53,11 +53,11 @@ std::string words_of(const diagnose::Diagnosis& diagnosis, const std::string& id
   return std::string(diagnose::effect_of(id).words);
 }
 
-/// "either of two things, and these lines cannot tell which: A (…), or B (…)".
+/// "either of two things (55 % together) that these lines cannot distinguish: A (…), or B (…)".
 std::string either(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   std::string text = lines.either_of.size() == 2 ? "either of two things" : "one of several things";
-  text += fmt::format(" ({} together), and these lines cannot tell which: ", percent(lines.either_probability));
+  text += fmt::format(" ({} together) that these lines cannot distinguish: ", percent(lines.either_probability));
   for (std::size_t i = 0; i < lines.either_of.size(); ++i) {
     const diagnose::LineCandidate& one = candidate(lines, only(lines.either_of[i]));
     text += fmt::format("{}{} ({}, {}; {})", i == 0 ? "" : ", or ", words_of(diagnosis, lines.either_of[i]),
@@ -76,7 +76,8 @@ std::string alike_words(const diagnose::Diagnosis& diagnosis) {
   }
   if (text.empty()) return text;
   return fmt::format(
-      " A drag that grows less than proportionally to the speed ({}) has the same lines as such a friction.", text);
+      " A drag that grows less than proportionally to the speed ({}) gives the same lines as such a friction force.",
+      text);
 }
 
 std::string chi2_words(const diagnose::Diagnosis& diagnosis, const diagnose::Explanation& named) {
@@ -98,22 +99,22 @@ std::string chi2_words(const diagnose::Diagnosis& diagnosis, const diagnose::Exp
 }
 
 std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
-  if (!diagnosis.gap) return " This table does not tell how much one line scatters by itself: no set-up is repeated.";
+  if (!diagnosis.gap) return " No set-up is repeated, so the scatter of a single line is unknown.";
   const diagnose::GapSizes& gap = *diagnosis.gap;
   std::string text = fmt::format(
-      " Predicted by the others with the nominal model, each line is {} times as far off as that scatter explains",
+      " Predicted from the others with the nominal model, each line is {} times as far off as that scatter explains",
       line_times(gap.before));
   if (diagnosis.verdict == diagnose::Verdict::none) return text + " (1 is the floor).";
   const bool named = diagnosis.verdict == diagnose::Verdict::effect;
   text += fmt::format(", and {} times with {} (1 is the floor).", line_times(gap.after),
-                      !named                                ? "the likeliest difference that has no name"
+                      !named                                ? "the likeliest unnamed difference"
                       : !diagnosis.lines->either_of.empty() ? "the better of them"
                       : diagnosis.effects.size() > 1        ? "both"
                                                             : "this effect");
   if (named && gap.after > 1.0 + 3.0 * gap.standard_error) {
     text += fmt::format(
-        " So even the best explanation with a name leaves {} times the lines' own scatter: something else is missing "
-        "as well, or lines of one set-up err together. The probability that something without a name acts is {}.",
+        " Even the best named explanation leaves {} times the lines' own scatter: something else is missing as well, "
+        "or errors within one set-up are correlated. The probability that something unnamed acts is {}.",
         line_times(gap.after), percent(diagnosis.unknown));
   }
   return text;
@@ -123,7 +124,7 @@ std::string unknown_words(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   const auto unnamed = std::find_if(lines.candidates.begin(), lines.candidates.end(),
                                     [](const diagnose::LineCandidate& c) { return c.unnamed.has_value(); });
-  std::string text = fmt::format("Something is missing that no effect with a name explains ({}). The likeliest is {}",
+  std::string text = fmt::format("Something is missing that no known effect explains ({}). The likeliest is {}",
                                  percent(diagnosis.unknown), unnamed_words(*unnamed->unnamed));
   if (!unnamed->explanation.effects.empty()) {
     text += " beside " + explanation_id({unnamed->explanation.effects, false});
@@ -131,7 +132,7 @@ std::string unknown_words(const diagnose::Diagnosis& diagnosis) {
   text += ".";
   if (!diagnosis.regions.empty()) {
     const diagnose::GapRegion& most = diagnosis.regions.front();
-    text += fmt::format(" Farthest off the nominal model, by {} {}, is the {} of {}{}.",
+    text += fmt::format(" The largest deviation from the nominal model, {} {}, is in the {} of {}{}.",
                         base::value_and_sd_text(most.size, most.size_sd.value_or(0.0)), most.unit, most.what,
                         most.variable == "group" ? fmt::format("the set-up at {:.3g} degrees", most.from)
                                                  : fmt::format("{:.0f} g", 1e3 * most.from),
@@ -140,7 +141,7 @@ std::string unknown_words(const diagnose::Diagnosis& diagnosis) {
                                              : " where v < 0");
   }
   if (lines.either_of.size() > 1 && lines.either_probability >= kWorthSaying)
-    return text + " The best explanation with a name is " + either(diagnosis) + ".";
+    return text + " The best named explanation is " + either(diagnosis) + ".";
   return text;
 }
 
@@ -150,12 +151,12 @@ std::string line_words(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   if (diagnosis.verdict == diagnose::Verdict::none) {
     const bool doubtful = !lines.candidates.front().explanation.is_nothing();
-    return (doubtful
-                ? fmt::format("These {} lines leave it open whether anything is missing: nothing missing ({}) is not "
-                              "ruled out at three to one, so no effect is claimed.",
-                              lines.lines, percent(diagnosis.none))
-                : fmt::format("Nothing is missing that these {} lines could show ({}).", lines.lines,
-                              percent(diagnosis.none))) +
+    return (doubtful ? fmt::format(
+                           "These {} lines do not decide whether anything is missing: \"nothing missing\" ({}) cannot "
+                           "be excluded at odds of 3 to 1, so no effect is claimed.",
+                           lines.lines, percent(diagnosis.none))
+                     : fmt::format("Nothing is missing that these {} lines could show ({}).", lines.lines,
+                                   percent(diagnosis.none))) +
            line_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) return unknown_words(diagnosis) + line_gap_words(diagnosis);
@@ -232,7 +233,7 @@ std::string in_words(const std::string& variable) {
   return variable;
 }
 
-/// `sequence`: what is left with the causes in the model is told already.
+/// `sequence`: the remainder with the causes in the model has been stated.
 std::string clip_gap_words(const diagnose::Diagnosis& diagnosis, bool sequence = false) {
   if (!diagnosis.gap) return "";
   const diagnose::GapSizes& gap = *diagnosis.gap;
@@ -251,7 +252,7 @@ std::string clip_gap_words(const diagnose::Diagnosis& diagnosis, bool sequence =
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown && gap.shrink && gap.after < gap.before) {
     text += fmt::format(
-        "; with a free curve that all clips share, its size learnt from the other clips, {} times (1 is the floor)",
+        "; with a free-form curve common to all clips, fitted to the other clips, {} times (1 is the floor)",
         times(gap.after));
   }
   return text + ".";
@@ -269,12 +270,12 @@ std::string sentences(const Notes& notes) {
 std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
   const std::string sure = percent(diagnosis.unknown);
   if (!diagnosis.limits.driving.empty()) {
-    return fmt::format("{} Residuals no larger than the noise therefore do not show that nothing is missing ({}).",
+    return fmt::format("{} Small residuals therefore do not mean that the model is complete ({}).",
                        sentences(diagnosis.limits.driving), sure);
   }
   return fmt::format(
-      "{} The nominal model explains the motion to within its noise, and none of the effects that this program knows "
-      "shifts an inclination so far: a statement is wrong, or something acts as an inclination does ({}).",
+      "{} The nominal model explains the motion to within its noise, and no known effect shifts an inclination so "
+      "far: a statement is wrong, or something else acts like an inclination ({}).",
       sentences(diagnosis.limits.contradicted), sure);
 }
 
@@ -292,12 +293,12 @@ std::string contradicted_words(const diagnose::Diagnosis& diagnosis) {
 std::string first_region_words(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.regions.empty()) return "";
   const diagnose::GapRegion& region = diagnosis.regions.front();
-  std::string text = fmt::format(" What is left depends most on {}", in_words(region.variable));
+  std::string text = fmt::format(" The remainder depends most on {}", in_words(region.variable));
   if (!region.clip.empty()) text += " and is largest in clip " + region.clip;
   if (region.lacking) {
     return text + fmt::format(
-                      ": {}. These data do not tell how large it is: the estimate, {}, is far more than the nominal "
-                      "model lacks anywhere ({}).",
+                      ": {}. Its size cannot be determined from these data: the estimate, {}, far exceeds the largest "
+                      "residual of the nominal model ({}).",
                       region.what, base::size_text(region.size, 2, region.unit),
                       base::size_text(*region.lacking, 2, region.unit));
   }
@@ -328,8 +329,8 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == diagnose::Verdict::none && !diagnosis.ranking.empty() &&
       diagnosis.ranking.front().probability > diagnosis.none) {
     return fmt::format(
-               "These data leave it open whether anything is missing. The likeliest explanation is {} ({}), but "
-               "nothing missing ({}) is not ruled out at three to one, so no effect is claimed.",
+               "It is uncertain whether anything is missing. The likeliest explanation is {} ({}), but \"nothing "
+               "missing\" ({}) cannot be excluded at odds of 3 to 1, so no effect is claimed.",
                explanation_id(diagnosis.ranking.front().explanation), percent(diagnosis.ranking.front().probability),
                percent(diagnosis.none)) +
            clip_gap_words(diagnosis);
@@ -342,8 +343,7 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
            clip_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {
-    return fmt::format("Something is missing, and it is none of the effects that this program knows ({}).",
-                       percent(diagnosis.unknown)) +
+    return fmt::format("Something is missing, and it is none of the known effects ({}).", percent(diagnosis.unknown)) +
            first_region_words(diagnosis) + clip_gap_words(diagnosis);
   }
   std::vector<std::string> words;
@@ -369,7 +369,7 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
 
 std::string too_few_words(const diagnose::GapIntervals& intervals) {
   if (!intervals.too_few) return {};
-  return fmt::format("{} clip{} cannot tell how much clips differ: an interval needs three or more", *intervals.too_few,
+  return fmt::format("{} clip{} cannot show how much clips differ: an interval needs three or more", *intervals.too_few,
                      *intervals.too_few == 1 ? "" : "s");
 }
 
@@ -386,14 +386,13 @@ std::string consequence(const diagnose::Diagnosis& diagnosis) {
       return " An analysis of these data reports the losses that it finds, and corrects the times after them.";
     const char* const below = diagnosis.recovered.empty() ? "" : " The table below gives them with it in the model.";
     return std::string(
-               " An analysis of these data leaves this out: its K/m, µ and inclination are those of a law without it, "
-               "and may be off by more than their stated errors.") +
+               " An analysis of these data leaves this out: its K/m, µ and inclination belong to a law without it, and "
+               "may be off by more than their stated errors.") +
            below;
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {
-    return " Until the cause is found, K/m, µ and the inclination from an analysis of these data are numbers of a fit; "
-           "they "
-           "need not be properties of the track or the glider.";
+    return " Until the cause is found, K/m, µ and the inclination from an analysis of these data are fit parameters; "
+           "they need not be properties of the track or the glider.";
   }
   return {};
 }
@@ -411,7 +410,7 @@ bool one_model(const diagnose::Diagnosis& diagnosis) {
 
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words) {
   std::string text = tile(probability_text(diagnosis.none), "nothing is missing") +
-                     tile(probability_text(diagnosis.unknown), "something without a name");
+                     tile(probability_text(diagnosis.unknown), "an unnamed cause");
   if (!diagnosis.gap) return text;
   const std::string before = base::number_text(diagnosis.gap->before, 3);
   return text +

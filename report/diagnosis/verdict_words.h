@@ -33,7 +33,7 @@ std::string probability_text(double probability);
 bool one_model(const diagnose::Diagnosis& diagnosis);
 inline constexpr const char* kNominalModel = "nominal model";  ///< as plots then call it
 
-/// Tiles for nothing, for something without a name, and for the gap, which is called `gap_words`; HTML.
+/// Tiles for nothing, for an unnamed cause, and for the gap, which is called `gap_words`; HTML.
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words);
 
 /// "What this means": the summary, its answer in bold where it is a sequence of causes, and what follows for the

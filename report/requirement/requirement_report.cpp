@@ -80,13 +80,13 @@ std::string next_step(const Requirement& requirement) {
   const bool forbidden = std::ranges::all_of(requirement.candidates, [](const Candidate& candidate) {
     return candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::refused;
   });
-  return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not in it.{}",
+  return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not included.{}",
                      ran ? "Judged by tracks, not by images" : "Judged by the bound alone, without a run",
                      forbidden ? "" : " With --confirm clips those that are near the target are rendered as well.");
 }
 
 std::string found_text(const validate::TargetResult& result, double scale) {
-  if (!result.found || !std::isfinite(*result.found)) return result.found ? "no answer" : "–";
+  if (!result.found || !std::isfinite(*result.found)) return result.found ? "no result" : "–";
   return base::value_and_sd_text(*result.found / scale, result.found_sd / scale);
 }
 
@@ -170,14 +170,14 @@ std::string meaning(const Requirement& requirement) {
                     undecided.size());
   }
   if (!possible.empty()) {
-    text += fmt::format(" For {} the bound allows it, and nothing was run.", possible.size());
+    text += fmt::format(" For {} the bound allows it, but nothing was run.", possible.size());
   }
   if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
     const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
     text +=
         limit.gain < kLeastNamedGain
-            ? fmt::format(" No single limitation keeps {} from it.", numbered(requirement, missed.front()))
-            : fmt::format(" What most keeps {} from it: {}; without that its error would be {} times smaller.",
+            ? fmt::format(" No single limitation prevents {} from reaching it.", numbered(requirement, missed.front()))
+            : fmt::format(" What most limits {}: {}; without that its error would be {} times smaller.",
                           numbered(requirement, missed.front()), escape(limit.name), base::number_text(limit.gain, 2));
   }
   return meaning_section(text + "</p>\n");
@@ -223,7 +223,7 @@ std::string how_judged(const Requirement& requirement) {
       "<p class=\"soft\">The bound is the Cramér-Rao bound for the motion at this frame rate and position noise; the "
       "noise itself is the bound on the marker's centre for the camera's light and noise. {} \"What limits "
       "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) would be without one "
-      "limitation. A lens, a codec, a rolling shutter and the calibration are in rendered runs only (--confirm "
+      "limitation. A lens, a codec, a rolling shutter and the calibration enter in rendered runs only (--confirm "
       "clips).</p>\n",
       requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
       : requirement.confirm == validate::Confirm::clips

@@ -252,7 +252,7 @@ std::string bandwidths_of(const SweepSummary& summary) {
       summary, [](const std::string& estimator) { return !given_bandwidth(estimator).empty(); }, given_bandwidth);
   // Two standard errors of the ratio of two rms errors, of normal errors.
   return fmt::format(
-      "<p>Of the {} given bandwidths of the lines the least rms error is that of {}. Two whose errors differ by less "
+      "<p>Of the {} given bandwidths of the lines, the least rms error is that of {}. Two whose errors differ by less "
       "than {:.0f} % may be equivalent.</p>\n",
       given.size(), winners, 200.0 / std::sqrt(static_cast<double>(answered)));
 }
@@ -262,7 +262,7 @@ std::string at_text(const validate::AxisSummary& axis, const GroupStatistics& gr
   return fmt::format("{}{}{}", base::number_text(group.position, 4), axis.unit.empty() ? "" : " ", escape(axis.unit));
 }
 
-/// ", over 4 of 6 combinations of all else": where not all have an answer.
+/// ", over 4 of 6 combinations of the other keys": where not all have a result.
 std::string part_of(const validate::Likeness& of, std::string_view what) {
   if (of.whole || of.alike == of.combinations) return {};
   return fmt::format(", over those {} of {} {}", of.alike, of.combinations, what);
@@ -282,7 +282,7 @@ std::string span_of(const validate::AxisSummary& axis, const Series& series) {
   return fmt::format("{} at {} and {} at {}, {} times as much{}", error_of(rms(*least), series.quantity),
                      at_text(axis, *least), error_of(rms(*most), series.quantity), at_text(axis, *most),
                      base::number_text(rms(*most) / rms(*least), 2),
-                     part_of(series.likeness, "combinations of all else that have an answer at each value"));
+                     part_of(series.likeness, "combinations of the other keys that have a result at each value"));
 }
 
 bool answered_at_two(const Series& series) {
@@ -298,7 +298,7 @@ std::string configurations_of(const SweepSummary& summary, const Series& best) {
     if (series == nullptr) continue;
     const ErrorStatistics* const errors = validate::comparable(*series, series->groups.front());
     if (errors == nullptr || errors->answered == 0) continue;
-    part = part_of(series->likeness, "runs in which each configuration has an answer");
+    part = part_of(series->likeness, "runs in which each configuration has a result");
     text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", escape(of.name), error_of(errors->rms, best.quantity));
   }
   return text + part;
@@ -326,9 +326,9 @@ std::string changes_of(const SweepSummary& summary, const Series& best) {
   if (!configurations.empty()) list += item(configurations);
   if (!unlike.empty()) {
     list +=
-        item(fmt::format("along {} it is not compared: some runs have no answer, and {}", unlike,
-                         drawn ? "with random values the runs that have one are not comparable between values of a key"
-                               : "no combination of all else has one at each value"));
+        item(fmt::format("not compared along {}: some runs have no result, and {}", unlike,
+                         drawn ? "with random values, the runs that have one cannot be compared between values of a key"
+                               : "no combination of the other keys has a result at every value"));
   }
   if (list.empty()) return {};
   return fmt::format("<p>The rms error of {} by {} is:</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
@@ -422,7 +422,7 @@ std::string sweep_meaning(const SweepSummary& summary) {
   if (summary.runs < summary.planned) {
     text += fmt::format("{} of {} runs are done; the following covers only these. ", summary.runs, summary.planned);
   }
-  if (summary.failed > 0) text += fmt::format("{} runs failed and are not in it. ", summary.failed);
+  if (summary.failed > 0) text += fmt::format("{} runs failed and are not included. ", summary.failed);
   text += "The least rms error over all runs is that of " +
           winners_of(summary, honest, [](const std::string& estimator) { return estimator; }) + ".";
   const std::string sds = stated_sds(summary);

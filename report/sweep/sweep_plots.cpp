@@ -81,12 +81,12 @@ RunNotes notes_of(const std::vector<const Series*>& drawn) {
   if (of_alike) {
     const validate::Likeness& of = drawn.front()->likeness;
     notes.common +=
-        fmt::format("; {} combinations of all else that have an answer at every value",
+        fmt::format("; {} combinations of the other keys that have a result at every value",
                     one ? fmt::format("over those {} of {}", of.alike, of.combinations) : "n of m: over those");
   }
   if (of_unlike) {
-    notes.common += one ? "; some runs have no answer, so the runs at two values are not comparable"
-                        : "; unlike runs: some have no answer, so the runs at two values are not comparable";
+    notes.common += one ? "; some runs have no result, so the runs at two values are not comparable"
+                        : "; unlike runs: some have no result, so the runs at two values are not comparable";
   }
   for (std::size_t i = 0; i < drawn.size() && !one; ++i) {
     const validate::Likeness& of = drawn[i]->likeness;

@@ -38,7 +38,7 @@ std::string answer_text(const FallAnswer& answer) {
   const MassRow& widest = answer.widest;
   const auto [from, to] = with_equal_decimals(answer.published.mu_lightest, answer.published.mu_heaviest);
   std::string text =
-      fmt::format("<p><b>{}{}:</b> {} has µ fall from {} to {}, by {}. ", escape(answer.published.configuration),
+      fmt::format("<p><b>{}{}:</b> In {}, µ falls from {} to {}, by {}. ", escape(answer.published.configuration),
                   answer.others.empty() ? "" : ", " + escape(answer.others), escape(answer.published.source), from, to,
                   base::digits_text(published, 2));
   if (answer.whole) {
@@ -89,10 +89,10 @@ std::string mass_study_section(const validate::MassStudy& study) {
   }
   return html + table.str() +
          "<p class=\"soft\">Lines through every smoothed point, kernels over ends and reversals included. The fall is "
-         "µ of the lightest glider less that of the heaviest; ± is one standard error over the runs, and missing where "
-         "the positions are exact, because then nothing is random. R² is the least of a run's lines, the mean over its "
-         "runs. Between two bandwidths that were run the fall and the logarithm of 1 − R² are taken to lie on "
-         "straight lines.</p>\n";
+         "µ of the lightest glider minus that of the heaviest; ± is one standard error over the runs, and missing "
+         "where the positions are exact, because then nothing is random. R² is the least of a run's lines, the mean "
+         "over its runs. Between two bandwidths that were run, the fall and the logarithm of 1 − R² are interpolated "
+         "linearly.</p>\n";
 }
 
 namespace {
@@ -128,7 +128,7 @@ void add_rows(HtmlTable& table, const std::vector<validate::Series>& overall) {
   }
 }
 
-const std::vector<std::string> kHeader = {"quantity",  "estimator", "answers",  "mean error",
+const std::vector<std::string> kHeader = {"quantity",  "estimator", "results",  "mean error",
                                           "rms error", "stated sd", "least sd", "coverage"};
 
 std::string overall_table(const SweepSummary& summary) {
@@ -153,7 +153,7 @@ std::string acceleration_table(const SweepSummary& summary) {
   for (const validate::AccelerationError& of : summary.accelerations) compared = compared || of.regret;
   std::vector<std::string> header = {"estimator", "clips", "rms error of a(t), median (m/s²)"};
   if (compared) {
-    header.insert(header.end(), {"times that of the best possible bandwidth, median", "times that, in 90 % at most"});
+    header.insert(header.end(), {"ratio to the best possible bandwidth, median", "ratio, 90th percentile"});
   }
   HtmlTable table(header, 1);
   const auto ratio = [](const std::optional<double>& value) { return value ? base::digits_text(*value, 3) : "–"; };
@@ -219,9 +219,7 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
   body += "<h2>All runs</h2>\n" + overall_table(summary);
   body +=
       "<p class=\"soft\">Stated sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares "
-      "over "
-      "the "
-      "runs; coverage is the fraction of the stated 95 % intervals that hold the truth.</p>\n";
+      "over the runs; coverage is the fraction of the stated 95 % intervals that hold the truth.</p>\n";
   body += sweep_advice(summary) + configuration_table(summary);
   body += acceleration_table(summary);
   double done = 0.0;

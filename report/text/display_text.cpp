@@ -88,7 +88,7 @@ namespace {
 
 std::string_view name_of(std::string_view id) {
   if (id == "none") return "nothing is missing";
-  if (id == "unknown") return "something without a name";
+  if (id == "unknown") return "an unnamed cause";
   for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
     if (effect.id == id) return effect.name;
   }

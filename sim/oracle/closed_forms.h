@@ -24,13 +24,14 @@ struct Kinematics {
   double a_m_s2 = 0.0;
 };
 
-/// Equations (2) and (3), with v_lim given and k > 0: viscous drag and a constant force.
+/// Viscous drag and a constant force, v = v_lim + (v0 - v_lim) exp(-k t), with v_lim given and k > 0 (equations (2) and
+/// (3) of the paper).
 Kinematics viscous_motion(double k_1_s, double v_lim_m_s, double x0_m, double v0_m_s, double t_s);
 
-/// Equations (6) and (7), with a = g (sin alpha - mu cos alpha): constant acceleration.
+/// Constant acceleration, v = v0 + a t; on a dry incline a = g (sin alpha - mu cos alpha) (equations (6) and (7)).
 Kinematics uniform_motion(double a_m_s2, double x0_m, double v0_m_s, double t_s);
 
-/// dv/dt = a0 - k v for any k >= 0: (2), (3) with v_lim = a0 / k, and (6), (7) at k = 0.
+/// dv/dt = a0 - k v for any k >= 0: viscous_motion() with v_lim = a0 / k, and uniform_motion() at k = 0.
 Kinematics linear_motion(double a0_m_s2, double k_1_s, double x0_m, double v0_m_s, double t_s);
 
 /// When linear_motion() comes to v = 0; nothing where it does not (t = 0 where v0 = 0).
@@ -45,11 +46,12 @@ struct DryTrack {
 
 DryTrack dry_track(double incline_rad, double mu, double mu_static, double gravity_m_s2);
 
-/// Equation (8) piece by piece: exponentials up to v = 0; there it sticks where |drive| <= holding (equality within
-/// rounding), else slides on with the sign of the drive. It comes to v = 0 at most once, for after that v grows.
+/// dv/dt = drive - k v - sign(v) friction (equation (8)), piece by piece: exponentials up to v = 0; there it sticks
+/// where |drive| <= holding (equality within rounding), else slides on with the sign of the drive. It comes to v = 0 at
+/// most once, for after that v grows.
 State viscous_coulomb_motion(const DryTrack& track, double k_1_s, double x0_m, double v0_m_s, double t_s);
 
-/// When equation (8) first comes to v = 0; nothing where it does not, or v0 = 0.
+/// When viscous_coulomb_motion() first comes to v = 0; nothing where it does not, or v0 = 0.
 std::optional<double> viscous_coulomb_stop_time_s(const DryTrack& track, double k_1_s, double v0_m_s);
 
 /// dv/dt = drive -+ friction - q v |v|: tangent while it is slowed down to v = 0, hyperbolic tangent (or cotangent,

@@ -238,9 +238,9 @@ TEST_CASE("a downhill that turns every launch is said once, with the number of c
   const auto turned = of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}, -1);
   REQUIRE(turned.size() == 1);
   CHECK(turned[0].about == "up-0, down-1");
-  CHECK_THAT(turned[0].found,
-             Catch::Matchers::StartsWith("2 of 2 clips move freely against their launch; most of all down-1: it moves "
-                                         "towards -x only"));
+  CHECK_THAT(turned[0].found, Catch::Matchers::StartsWith(
+                                  "in 2 of 2 clips the glider moves opposite to the stated launch, most clearly in "
+                                  "down-1: it moves towards -x only"));
   CHECK_THAT(turned[0].advice, Catch::Matchers::Contains("launched of these clips, or downhill in [track]"));
 }
 

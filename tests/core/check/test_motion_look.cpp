@@ -76,7 +76,7 @@ TEST_CASE("a swing over many periods is an oscillation, and bounces of a cart ar
             .empty());
 }
 
-TEST_CASE("a path in the image that bends is no straight track") {
+TEST_CASE("a curved path in the image is not a straight track") {
   const Positions of = positions(run);
   const auto path = [&](double bend) {
     std::vector<core::MarkerSighting> sightings(of.x_m.size());
@@ -89,7 +89,7 @@ TEST_CASE("a path in the image that bends is no straight track") {
   };
   // From 0.14 to 0.6 m: s from -0.26 to 0.2, half of the unit length, and half of its sagitta over length.
   CHECK(findings(of, 4.0, path(0.05)).empty());
-  CHECK(unusable(findings(of, 4.0, path(0.5)), "bends"));
+  CHECK(unusable(findings(of, 4.0, path(0.5)), "curved"));
 }
 
 TEST_CASE("positions without any noise are smoothed or integrated, and such as were rounded are not") {
@@ -98,7 +98,7 @@ TEST_CASE("positions without any noise are smoothed or integrated, and such as w
       findings(positions([](double t) { return run(t) + 0.01 * std::exp(-t); }, 0.0));
   REQUIRE(exact.size() == 1);
   CHECK(exact[0].severity == core::Severity::change);
-  CHECK(exact[0].found.find("not measured") != std::string::npos);
+  CHECK(exact[0].found.find("before export") != std::string::npos);
   CHECK(findings(positions([](double t) { return 0.001 * std::round(1000.0 * run(t)); }, 0.0)).empty());
 }
 

@@ -121,9 +121,10 @@ TEST_CASE("a line that is missing because the motion went against the stated lau
   clip.against_launch = AgainstLaunch{1, 0.542, 0.4, true};
   const auto result = join({kUp}, {clip});
   for (const Quantity* quantity : {&result.mu, &result.alpha_deg, &result.v_lim_m_s}) {
-    CHECK_THAT(quantity->why, Catch::Matchers::Contains(
-                                  "clip: motion towards +x before 0.542 s is left out as the hand's: the launch was "
-                                  "towards -x (as launched and downhill"));
+    CHECK_THAT(quantity->why,
+               Catch::Matchers::Contains(
+                   "clip: motion towards +x before 0.542 s is attributed to the hand and excluded, since the "
+                   "launch was towards -x (as launched and downhill"));
   }
   clip.against_launch->direction = -1;  // of which there is a line: that is not why
   CHECK_THAT(join({kUp}, {clip}).mu.why, !Catch::Matchers::Contains("hand"));

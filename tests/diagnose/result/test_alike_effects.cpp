@@ -11,8 +11,7 @@ namespace {
 diagnose::Diagnosis named(const std::vector<std::string>& equivalent_to) {
   diagnose::Diagnosis diagnosis;
   diagnosis.verdict = diagnose::Verdict::effect;
-  diagnosis.effects.push_back(
-      {"scale_error", "optics", "a length scale that is off", 0.30, equivalent_to, {}, 0.0, {}});
+  diagnosis.effects.push_back({"scale_error", "optics", "a wrong length scale", 0.30, equivalent_to, {}, 0.0, {}});
   return diagnosis;
 }
 

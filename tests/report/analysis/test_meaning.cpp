@@ -103,9 +103,9 @@ TEST_CASE("what blind cases mean is told of what was there, with intervals, and 
   CHECK(has("All 3 targets"));  // one strong effect, nothing wrong, the calibration
   score.calibration_error = 0.2;
   score.reliability = {{0.8, 1.0, 0.9, {10, 7}}};
-  CHECK(has("too sure of itself"));
+  CHECK(has("overconfident"));
   score.reliability[0].stated = 0.5;
-  CHECK(has("too modest"));
+  CHECK(has("underconfident"));
   CHECK(has("Missed: the expected calibration error"));  // no other: 5 % of false alarms are allowed
 }
 
@@ -157,7 +157,7 @@ TEST_CASE(
                   {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
   CHECK(tells(report::plan_page("p", plan), "smaller ones may still act"));
   plan.effects.front().seen = false;
-  CHECK(tells(report::plan_page("p", plan), "would mean nothing"));
+  CHECK(tells(report::plan_page("p", plan), "would be meaningless"));
 }
 
 TEST_CASE("a check says at the top whether to analyse, to record again or to mend, and how well positions are known") {
@@ -171,7 +171,7 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   const auto page = [&] { return report::check_report(check, {}); };
   CHECK(tells(page(), "Usable as it is.</b> Nothing needs to be recorded again"));
   CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
-  CHECK(tells(page(), "off by 0.0036\u00a0mm or less"));
+  CHECK(tells(page(), "position noise: at most 0.0036\u00a0mm (one standard deviation)"));
   check.findings = {{core::Severity::change, "m1", "dark", "more light"}};
   CHECK(tells(page(), "if you record again"));
   check.findings = {{core::Severity::unusable, "m1", "black", "more light"}};

@@ -30,9 +30,8 @@ TEST_CASE("the answer says how much each cause explains, with its size, and what
   // The gap that is left: g² = 1 + 0.03 (5.3² - 1) = 1.8127, g = 1.346.
   const std::string answer =
       "Quadratic drag, c = 0.00310 ± 0.00020 kg/m, explains 91 % (86 to 95 %) of the gap on clips that were held out; "
-      "inertia without weight, mass = 0.0123 ± 0.0014 kg, explains another 6 % (2 to 10 %); 3 % are left, 1.35 times "
-      "the "
-      "noise.";
+      "inertia without weight, mass = 0.0123 ± 0.0014 kg, explains another 6 % (2 to 10 %); 3 % remains, 1.35 times "
+      "the noise.";
   CHECK(report::sequence_words(of) == answer);
   const std::string words = report::verdict_words(of);
   CHECK(words.starts_with(answer + " Probability: quadratic drag 97 %, inertia without weight 81 %."));
@@ -73,23 +72,21 @@ TEST_CASE("causes that look alike, and effects that have no share, are told behi
   of.effects.front().joint_probability = 0.98;
   of.effects.front().alike = {{"quadratic_drag", "", 0.68}, {"power_law_drag", "", 0.30}, {"eddy_rolloff", "", {}}};
   of.explained.pop_back();
-  CHECK(
-      report::sureness_words(of) ==
-      "Probability: inertia without weight 81 %. These data cannot tell quadratic drag (68 %), power-law drag (30 %) "
-      "and "
-      "magnetic drag that levels off apart; one of them acts with a probability of 98 %. Inertia without weight has no "
-      "share of this gap.");
+  CHECK(report::sureness_words(of) ==
+        "Probability: inertia without weight 81 %. These data cannot tell quadratic drag (68 %), power-law drag (30 %) "
+        "and magnetic drag that levels off apart; one of them acts with a probability of 98 %. Inertia without weight "
+        "contributes nothing to this gap.");
 }
 
 TEST_CASE("traces are no part of the verdict: nothing that matters is missing, whatever is likeliest") {
   const diagnose::Diagnosis of = tests::traces_alone();
   CHECK(report::sequence_words(of) ==
-        "Nothing that matters is missing. Traces: uneven frame times are seen, without consequence for K/m, µ and α.");
+        "Nothing that matters is missing. Also detected, with no effect on K/m, µ and α: uneven frame times.");
   CHECK(report::verdict_words(of).starts_with("Nothing that matters is missing."));
-  CHECK_FALSE(says(report::verdict_words(of), "leave it open"));
+  CHECK_FALSE(says(report::verdict_words(of), "It is uncertain"));
   diagnose::Diagnosis one = of;
   one.traces = {"rolling_shutter"};
-  CHECK(says(report::sequence_words(one), "Traces: rolling shutter is seen,"));
+  CHECK(says(report::sequence_words(one), "with no effect on K/m, µ and α: rolling shutter."));
   one.traces.clear();
   CHECK(report::sequence_words(one).empty());
 }
@@ -98,17 +95,16 @@ TEST_CASE("where no cause takes half, the answer says so, what helps, and where 
   diagnose::Diagnosis of = tests::no_half();
   // g² = 1 + 0.69 (5.3² - 1) = 19.69, g = 4.44.
   CHECK(report::verdict_words(of).starts_with(
-      "Something is missing, and no cause that this program knows takes half of the gap on clips that were held out: "
-      "uneven frame times explain 31 % (20 to 42 %); 69 % are left, 4.44 times the noise. What is left is clearest at "
-      "times from 0 to 0.1 s of clip m2-up: force of up to 1.20 ± 0.10 mN after 50 ms."));
+      "Something is missing, and no known effect explains half of the held-out gap: uneven frame times explain 31 % "
+      "(20 to 42 %); 69 % remains, 4.44 times the noise. What is left is clearest at times from 0 to 0.1 s of clip "
+      "m2-up: force of up to 1.20 ± 0.10 mN after 50 ms."));
   of.explained.clear();
   of.remainder->share = 1.0;
   of.remainder->gap = 5.3;
-  CHECK(
-      says(report::verdict_words(of),
-           "None makes it smaller by more than its uncertainty: it is 5.3 times the noise. What is left is clearest"));
+  CHECK(says(report::verdict_words(of),
+             "None reduces it by more than its uncertainty: it is 5.3 times the noise. What is left is clearest"));
   of.remainder->regions.front().lacking = 1e-5;  // far less than the size that was found
-  CHECK(says(report::verdict_words(of), "force. These data do not tell how large it is."));
+  CHECK(says(report::verdict_words(of), "force. Its size cannot be determined from these data."));
 }
 
 TEST_CASE("a law that holds within each configuration and not across them is told first, with what differs") {
@@ -126,11 +122,27 @@ TEST_CASE("a law that holds within each configuration and not across them is tol
   CHECK(says(page, "kg, 4°</td><td class=\"n\">0.00830\u00a0±\u00a00.00010</td>"));
 }
 
+TEST_CASE("the gap at each level is one sentence, whichever levels there are") {
+  diagnose::Diagnosis of;
+  CHECK(report::levels_words(of).empty());
+  of.levels = diagnose::GapLevels{};
+  of.levels->all = 5.3;
+  CHECK(report::levels_words(of).empty());
+  of.levels->configuration = 2.5;
+  CHECK(report::levels_words(of) ==
+        "Fitted to each configuration separately, the nominal model has a gap of 2.5; to all clips, 5.3 (1 is the "
+        "noise).");
+  of.levels->clip = 1.1;
+  CHECK(report::levels_words(of) ==
+        "Fitted to each clip separately, the nominal model has a gap of 1.1; to each configuration, 2.5; to all clips, "
+        "5.3 (1 is the noise).");
+}
+
 TEST_CASE("what is left is told as an acceleration and a scatter, with their units") {
   diagnose::GapRemainder of = *tests::two_causes().remainder;
   CHECK(report::remainder_words(of) ==
-        "What is left amounts to a random acceleration of 4.1 mm/s² (root mean square) along the way. From clip to "
-        "clip, friction and inclination scatter by 0.8 mm/s² and the drag by 2.1 %.");
+        "The remainder corresponds to a random acceleration of 4.1 mm/s² (rms) along the track. From clip to clip, "
+        "friction and inclination scatter by 0.8 mm/s² and the drag by 2.1 %.");
   of.clip_scatter_m_s2 = 0.0;
   CHECK(report::remainder_words(of).ends_with("From clip to clip, the drag scatters by 2.1 %."));
   of.acceleration_m_s2 = of.drag_scatter = 0.0;

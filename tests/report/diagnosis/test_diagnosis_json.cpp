@@ -75,7 +75,7 @@ TEST_CASE("what a sequence of causes has not is empty or null in the file, with 
   const nlohmann::json file = json_of(of);
   CHECK(file.at("explained").at(0).at("share_interval95").is_null());
   CHECK(file.at("explained").at(0).at("why").at("share_interval95") ==
-        "2 clips cannot tell how much clips differ: an interval needs three or more");
+        "2 clips cannot show how much clips differ: an interval needs three or more");
   CHECK(file.at("levels").at("clip").is_null());
   CHECK(file.at("levels").at("why").at("configuration") == "there is one configuration alone");
   CHECK(file.at("traces") == nlohmann::json({"timestamp_jitter"}));

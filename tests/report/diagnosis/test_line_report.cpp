@@ -35,7 +35,7 @@ TEST_CASE("an explanation of lines has its sizes in units, and its words once") 
   of.lines = lines;
   CHECK(report::line_rows(lines).at(1).at(1) == "force = 23.8 ± 1.1 mN");
   const std::string page = report::line_report("lines", of).html;
-  CHECK(has(page, "load-independent friction + something without a name"));
+  CHECK(has(page, "load-independent friction + an unnamed cause"));
   CHECK(has(page, "<code>load_independent_friction + unknown</code></small>: a separate drag for each direction<"));
   CHECK_FALSE(has(page, "unknown: a separate drag for each direction</code>"));
 }

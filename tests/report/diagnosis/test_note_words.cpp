@@ -30,8 +30,8 @@ std::string words_for(const diagnose::Change& change) {
 TEST_CASE("every kind of note is a sentence, and names what it is of") {
   const std::vector<std::pair<diagnose::Note, std::string>> notes = {
       {diagnose::NoFreeMotion{"up_1", 12}, "Clip up_1"},
-      {diagnose::ThinnedPositions{36000, 2, false}, "Of 36000 positions, one in 2"},
-      {diagnose::ThinnedPositions{36000, 3, true}, "36000 positions with a recorded force, one in 3"},
+      {diagnose::ThinnedPositions{36000, 2, false}, "Of 36000 positions, every second is used"},
+      {diagnose::ThinnedPositions{36000, 3, true}, "36000 positions with a recorded force, every third"},
       {diagnose::CutAtTurns{40, 2}, "turns the motion 40 times"},
       {diagnose::SomePieces{90, 60}, "Of 90 pieces"},
       {diagnose::HandLeftOut{17}, "17 frames"},
@@ -45,11 +45,11 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::SplitSetUps{{"flat"}}, "Clips of set-up \"flat\""},
       {diagnose::LaunchedOtherWay{"up_1", true}, "launched up"},
       {diagnose::NegativeLoss{diagnose::NegativeLoss::Of::drag, -0.279, 0.004},
-       "a drag below zero (-0.2790 ± 0.0040 N"},
+       "The fitted drag is below zero (-0.2790 ± 0.0040 N"},
       {diagnose::ContradictedIncline{"flat", "plumb", 0.1, 0.001, 0.2, 0.001, true, 70.0}, "by the plumb line"},
       {diagnose::BeyondGravity{4.0, 12.7, 9.81}, "12.7 m/s², more than gravity"},
-      {diagnose::MeanIncline{4.0, 3.9, 0.3}, "3.900 degrees"},
-      {diagnose::TableOfLines{12}, "A table of 12 lines"},
+      {diagnose::MeanIncline{4.0, 3.9, 0.3}, "stated at 4° corresponds to an inclination of 3.900°"},
+      {diagnose::TableOfLines{12}, "The table of 12 lines"},
       {diagnose::OnlyFalls{}, "not determined"}};
   std::vector<bool> seen(std::variant_size_v<diagnose::Note>, false);
   for (const auto& [note, part] : notes) {
@@ -68,7 +68,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
 TEST_CASE("a change is an order with its numbers in units that people use") {
   using diagnose::ChangeKind;
   CHECK(words_for(launch(ChangeKind::launch, -1.2, 0.535))
-            .starts_with("Record a launch uphill at 1.2 m/s with 535 g: of 62"));
+            .starts_with("Record a launch uphill at 1.2 m/s with 535 g: of the 62"));
   diagnose::Change other = launch(ChangeKind::mass, 2.16, 0.856);
   other.on = "flat";
   CHECK(words_for(other).starts_with(
@@ -103,10 +103,10 @@ TEST_CASE("a doubt is told as what each explanation has and the other lacks, eac
   step.weighed = {62, {diagnose::ChangeKind::launch, diagnose::ChangeKind::plumb}};
   step.log_likelihood = 1.234;
   CHECK(report::next_step_words(step).starts_with(
-      "None of 62 changes weighed (launches, a plumb view) would settle whether it is scale_error or "
+      "None of the 62 changes considered (launches, a plumb view) would decide whether it is scale_error or "
       "direction_asymmetry or frame_rate_error, and whether stribeck acts (expected log likelihood 1.2 at most)"));
   CHECK(report::next_step_words(diagnose::RecordForEffect{"Film it again.", step.doubt.back()}) ==
-        "It is in doubt whether stribeck acts. Film it again.");
+        "It is uncertain whether stribeck acts. Film it again.");
   CHECK(report::next_step_words(diagnose::RecordForEffect{"Film it again.", {}}) == "Film it again.");
 }
 
@@ -114,11 +114,11 @@ TEST_CASE("the least well known parameter is named with its size, of the nominal
   diagnose::SharpenParameter step{"c_kg_m", "quadratic_drag", 0.1, 0.01, {}, {62, {}}, 0.0};
   CHECK(
       report::next_step_words(step).starts_with("Nothing else is likely. The least well known parameter is c of "
-                                                "quadratic_drag (0.100 ± 0.010 kg/m). None of 62"));
+                                                "quadratic_drag (0.100 ± 0.010 kg/m). None of the 62"));
   step = {"K", "", 0.93, 0.01, launch(diagnose::ChangeKind::launch, 1.0, 0.3), {62, {}}, 0.005, true};
   const std::string words = report::next_step_words(step);
   CHECK(contains(words, "The least well known parameter is K (0.930 ± 0.010 N s/m). Record a launch"));
-  CHECK(contains(words, "a second mass would tell"));
+  CHECK(contains(words, "a second mass would separate them"));
 }
 
 TEST_CASE("a step without numbers has a sentence with its reason, and no step has none") {
@@ -139,7 +139,8 @@ TEST_CASE("a step without numbers has a sentence with its reason, and no step ha
   cover.launches = 12;
   cover.inside = 30;
   cover.positions = 80;
-  CHECK(contains(report::next_step_words(cover), "it has the most positions (30 of 80) at places from 1.5 to 2.1 m"));
+  CHECK(
+      contains(report::next_step_words(cover), "it has the most positions (30 of 80) at positions from 1.5 to 2.1 m"));
   cover.over = diagnose::CoverRegion::Over::speeds;
   CHECK(contains(report::next_step_words(cover), "at speeds from 1.5 to 2.1 m/s"));
   CHECK(contains(report::next_step_words(diagnose::AddMass{0.435}), " 435 g "));

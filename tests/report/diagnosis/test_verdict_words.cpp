@@ -35,7 +35,8 @@ TEST_CASE("what is not ruled out is neither claimed nor called explained") {
   open.none = 0.30;
   open.ranking.push_back({{{"late_release"}}, 0.46, 2.9, 4.0, 1, {}});
   const std::string words = report::verdict_words(open);
-  CHECK(contains(words, "leave it open"));
+  CHECK(contains(words, "It is uncertain whether anything is missing"));
+  CHECK(contains(words, "\"nothing missing\" (30 %) cannot be excluded"));
   CHECK(contains(words, "late_release (46 %)"));
   CHECK_FALSE(contains(words, "Nothing is missing"));
   open.none = 0.9;
@@ -46,27 +47,27 @@ TEST_CASE("what is not ruled out is neither claimed nor called explained") {
 TEST_CASE("effects that look the same are named as one set, an effect that stands alone by itself") {
   diagnose::Diagnosis of;
   of.verdict = diagnose::Verdict::effect;
-  of.effects = {{"scale_error", "optics", "a length scale that is off", 0.30, {}, {}, 0.30, {}}};
-  CHECK(report::verdict_words(of).starts_with("The data show a length scale that is off (scale_error, 30 %)."));
+  of.effects = {{"scale_error", "optics", "a wrong length scale", 0.30, {}, {}, 0.30, {}}};
+  CHECK(report::verdict_words(of).starts_with("The data show a wrong length scale (scale_error, 30 %)."));
   of.effects.front().joint_probability = 0.98;
   of.effects.front().alike = {{"direction_asymmetry", "an uneven friction", 0.49},
-                              {"scale_error", "a length scale that is off", 0.30},
+                              {"scale_error", "a wrong length scale", 0.30},
                               {"frame_rate_error", "a wrong frame rate", {}}};
   CHECK(report::verdict_words(of).starts_with(
       "The data show one of these three, 98 % together, and cannot tell which: an uneven friction "
-      "(direction_asymmetry, 49 %), a length scale that is off (scale_error, 30 %), or a wrong frame rate "
+      "(direction_asymmetry, 49 %), a wrong length scale (scale_error, 30 %), or a wrong frame rate "
       "(frame_rate_error)."));
 }
 
 TEST_CASE("a stated inclination that the motion contradicts is said first, with both angles") {
   const diagnose::Diagnosis at_floor = with_incline(1.02);
   CHECK(report::verdict_words(at_floor).starts_with(
-      "The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated, and the motion says 4.001 ± 0.004° by the "
+      "The inclination of set-up \"inclined\" is 14.00 ± 0.05° as stated, and the motion gives 4.001 ± 0.004° by the "
       "nominal model (199 standard deviations apart). The nominal model explains the motion to within its noise"));
   // Where the motion itself is not explained, that comes first and the statement last.
   const std::string off = report::verdict_words(with_incline(5.0));
   CHECK(off.starts_with("Something is missing"));
-  CHECK(contains(off, "as stated, and the motion says 4.00° by the nominal model, which leaves out what is missing."));
+  CHECK(contains(off, "as stated, and the motion gives 4.00° by the nominal model, which leaves out what is missing."));
 }
 
 TEST_CASE("an angle of the nominal model has no standard deviation where something is missing, in notes neither") {
@@ -88,14 +89,14 @@ TEST_CASE("a drag or friction below zero is told before the verdict that rests o
   diagnose::Diagnosis of = with_incline(1.0);
   of.limits = {};
   of.limits.driving = {{diagnose::NegativeLoss::Of::friction, -0.0114, 0.0003}};
-  CHECK(report::verdict_words(of).starts_with("The fit has a friction below zero (-0.01140 ± 0.00030)"));
+  CHECK(report::verdict_words(of).starts_with("The fitted friction is below zero (-0.01140 ± 0.00030)"));
 }
 
 TEST_CASE("where a fifth of the motion is set aside, the summary begins with it") {
   diagnose::Diagnosis of;
   of.none = 0.9;
   of.limits.set_aside = diagnose::SetAside{1000, 0.21};
-  CHECK(report::verdict_words(of).starts_with("Of the 1000 positions of the motion, 21 % are set aside"));
+  CHECK(report::verdict_words(of).starts_with("Of the 1000 positions of the motion, 21 % are excluded"));
   CHECK(contains(report::verdict_words(of), "Nothing is missing"));
 }
 
@@ -104,7 +105,7 @@ TEST_CASE("a size far beyond what the accelerations lack is not stated as one") 
   diagnosis.verdict = diagnose::Verdict::unknown;
   diagnosis.unknown = 0.99;
   diagnosis.regions.push_back({"v_m_s", 0.0, 0.2, 5.0, 190.0, "N", "force", "", 30.0});
-  CHECK(contains(report::verdict_words(diagnosis), "These data do not tell how large it is"));
+  CHECK(contains(report::verdict_words(diagnosis), "Its size cannot be determined from these data"));
   diagnosis.regions.front().lacking.reset();
   CHECK(contains(report::verdict_words(diagnosis), "force of up to 190 N."));
   diagnosis.regions.front().at = 0.15;
@@ -133,17 +134,17 @@ TEST_CASE("a table of lines that does not tell two effects apart names both with
   of.gap->after = 4.0;
   of.gap->standard_error = 0.3;
   const std::string words = report::verdict_words(of);
-  CHECK(
-      words.starts_with("These 12 lines show either of two things (74 % together), and these lines cannot tell which"));
+  CHECK(words.starts_with(
+      "These 12 lines show either of two things (74 % together) that these lines cannot distinguish"));
   CHECK(contains(words, "24.0 ± 1.0 mN"));
-  CHECK(contains(words, "even the best explanation with a name leaves 4.0 times"));
+  CHECK(contains(words, "Even the best named explanation leaves 4.0 times"));
 }
 
 TEST_CASE("so few clips have no interval, and the reason counts them") {
   diagnose::GapIntervals intervals;
   CHECK(report::too_few_words(intervals).empty());
   intervals.too_few = 1;
-  CHECK(report::too_few_words(intervals).starts_with("1 clip cannot tell"));
+  CHECK(report::too_few_words(intervals).starts_with("1 clip cannot show"));
   intervals.too_few = 2;
-  CHECK(report::too_few_words(intervals).starts_with("2 clips cannot tell"));
+  CHECK(report::too_few_words(intervals).starts_with("2 clips cannot show"));
 }

@@ -75,7 +75,7 @@ TEST_CASE("a sweep's page names the best of several given bandwidths, for each q
   add("alpha_deg", "phase-diagram h=0.04 s", 0.003);
   add("mu", "phase-diagram h=0.04 s", 4e-4);
   CHECK(has(report::sweep_meaning(of),
-            "Of the 2 given bandwidths of the lines the least rms error is that of h=0.04 s in K/m (0.001 1/s), µ "
+            "Of the 2 given bandwidths of the lines, the least rms error is that of h=0.04 s in K/m (0.001 1/s), µ "
             "(0.0004), α (0.003°). Two whose errors differ by less than 10 % may be equivalent."));  // 2 / sqrt(400)
   of.overall.back().groups.front().statistics.rms = 6e-4;
   CHECK(has(report::sweep_meaning(of), "h=0.04 s in K/m (0.001 1/s); h=0.02 s in µ (0.0005); h=0.04 s in α"));
@@ -103,21 +103,21 @@ TEST_CASE("where runs have no answer the page compares like runs, or says that i
   const std::string meaning = report::sweep_meaning(of);
   CHECK(has(meaning,
             "along rate_hz: 0.0001 at 200 Hz and 0.00015 at 50 Hz, 1.5 times as much, over those 4 of 6 "
-            "combinations of all else that have an answer at each value"));
+            "combinations of the other keys that have a result at each value"));
   of.axes[0].of_configurations.clear();
   std::vector<report::Plot> plots = report::sweep_plots(of.axes[0], "mu");
   CHECK(plots[0].drawing.data[1].rows[0][1] == 1.5e-4);
   CHECK(has(plots[0].drawing.script, "'trajectory, 4 of 6'"));
-  CHECK(has(plots[0].caption, "n of m: over those combinations of all else that have an answer at every value"));
+  CHECK(has(plots[0].caption, "n of m: over those combinations of the other keys that have a result at every value"));
   series.likeness = {false, 0, 0};  // with drawn values
   for (validate::GroupStatistics& group : series.groups) group.alike.reset();
   const std::string none = report::sweep_meaning(of);
   CHECK_FALSE(has(none, "times as much"));
-  CHECK(has(none, "along rate_hz it is not compared: some runs have no answer"));
+  CHECK(has(none, "not compared along rate_hz: some runs have no result"));
   CHECK(has(none, "random values"));
   plots = report::sweep_plots(of.axes[0], "mu");
   CHECK(has(plots[0].drawing.script, "'trajectory, unlike runs'"));
-  CHECK(has(plots[0].caption, "unlike runs: some have no answer"));
+  CHECK(has(plots[0].caption, "unlike runs: some have no result"));
 }
 
 TEST_CASE("a stated sd that is far from the rms error is named with its factor, where chance does not do that") {
@@ -214,7 +214,7 @@ TEST_CASE("the question of mu and mass is answered in words, with its standard e
   answer.widest = row;
   study.answers = {answer};
   std::string text = report::mass_study_section(study);
-  CHECK(has(text, "Table 2 has µ fall from 0.0075 to 0.0051, by 0.0024"));
+  CHECK(has(text, "In Table 2, µ falls from 0.0075 to 0.0051, by 0.0024"));
   CHECK(has(text, "h = 0.1 s gives 0.001530 ± 0.000050, with R² = 0.9986"));
   CHECK(has(text, "all of these lines are less straight"));
   study.answers[0].whole = validate::FallAt{0.126, 0.0024, 0.0, 0.9971};

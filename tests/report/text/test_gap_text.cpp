@@ -57,9 +57,9 @@ TEST_CASE("where there are too few clips for an interval, the file and the text 
   for (const char* key : {"before", "after", "shrink"}) {
     CHECK(gap.at("interval95").at(key).is_null());
     CHECK(gap.at("interval95").at("why").at(key) ==
-          "2 clips cannot tell how much clips differ: an interval needs three or more");
+          "2 clips cannot show how much clips differ: an interval needs three or more");
   }
-  CHECK(report::diagnosis_text(diagnosis).find("2 clips cannot tell how much clips differ") != std::string::npos);
+  CHECK(report::diagnosis_text(diagnosis).find("2 clips cannot show how much clips differ") != std::string::npos);
   CHECK(report::shrink_text(*diagnosis.gap) == "95.0 %");
 }
 

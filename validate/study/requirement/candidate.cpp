@@ -10,7 +10,7 @@ std::string describe(const Candidate& candidate) {
     case Verdict::reached:
       return fmt::format("reached, by {}", by);
     case Verdict::by_bound:
-      return "reached, the bound has room";
+      return "reached: the bound is well below the target";
     case Verdict::unconfirmed:
       return "possible, not run";
     case Verdict::undecided:
