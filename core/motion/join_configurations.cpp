@@ -213,8 +213,11 @@ Quantity of_intercepts(double value, double by_minus, double by_plus, const Line
   return determined(estimate(value, std::sqrt(variance), degrees), std::sqrt(random));
 }
 
-/// Equation (13): (a0- + a0+)/2 = g sin(alpha), (a0- - a0+)/2 = mu g cos(alpha).
-void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2, ConfigurationResult& result) {
+/// Friction and slope of the two lines' intercepts, equation (13):
+///
+///     (a0- + a0+)/2 = g sin(alpha),     (a0- - a0+)/2 = mu g cos(alpha)
+void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2,
+                                ConfigurationResult& result) {
   const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
   const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);
   if (std::abs(mean) >= gravity_m_s2) {
@@ -236,7 +239,7 @@ void recover(const std::vector<LineFit>& lines, double gravity_m_s2, Configurati
   result.k_over_m_1_s = mean_k(lines);
   result.v_lim_m_s = limit_velocity(lines);
   if (lines.size() == 2) {
-    split_intercepts(lines[0], lines[1], gravity_m_s2, result);
+    mu_and_alpha_of_intercepts(lines[0], lines[1], gravity_m_s2, result);
     return;
   }
   const std::string missing = lines.empty()                  ? "v < 0 and none for v > 0"
