@@ -25,7 +25,7 @@ struct AnalysisOptions {
   std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: choose_bandwidth()
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
-  bool pictures = false;       ///< keep what the clips' pictures show besides the motion (ClipResult::pictures)
+  bool pictures = false;       ///< keep what the clips' images show besides the motion (ClipResult::pictures)
   BareTrackOptions bare = {};  ///< for inputs that are a track's file
 };
 
