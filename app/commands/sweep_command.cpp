@@ -162,7 +162,7 @@ void merge(const SweepOptions& options, const validate::Sweep& sweep, const fs::
   const fs::path file = out / database_name({});
   const bool was_there = fs::exists(file);
   try {
-    validate::SweepDatabase(file, sweep, GLIDELAB_VERSION, {}).take(others);
+    validate::SweepDatabase(file, sweep, GLIDELAB_VERSION, {}).merge_runs_of(others);
   } catch (...) {
     std::error_code ignored;  // what is wrong with the merge is what is said
     if (!was_there) fs::remove(file, ignored);

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "base/errors.h"
 #include "base/long_work.h"
+#include "base/math/angles.h"
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
 #include "core/pictures/camera/restitution.h"
@@ -163,8 +163,8 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
 
 namespace {
 
-constexpr double kSlantedRad = 15.0 * std::numbers::pi / 180.0;  // "X lies along the track to within a few degrees"
-constexpr double kLeastPath = 0.5;                               // marker diameters from end to end
+constexpr double kSlantedRad = 15.0 * base::kRadPerDegree;  // "X lies along the track to within a few degrees"
+constexpr double kLeastPath = 0.5;                          // marker diameters from end to end
 
 int downhill_of(const Experiment& experiment, const std::string& name) {
   const GroupSetup* group = group_of(experiment, name);
@@ -214,7 +214,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
 void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string>& notes) {
   if (has_pattern && std::abs(axis.angle_to_x_rad()) > kSlantedRad) {
     notes.push_back(fmt::format("the line of motion makes {:.0f} degrees with the pattern's X axis",
-                                axis.angle_to_x_rad() * 180.0 / std::numbers::pi));
+                                axis.angle_to_x_rad() * base::kDegreesPerRad));
   }
 }
 

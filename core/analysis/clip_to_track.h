@@ -27,7 +27,7 @@ namespace glidelab::core {
 struct SeenClip {
   TrackedMarker marker;
   std::vector<double> frame_t_s;  ///< of all frames
-  cv::Size size;                  ///< of the pictures
+  cv::Size size;                  ///< of the images
   std::vector<std::string> notes;
   std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
   bool dark_marker = false;                 ///< seen as darker than its surroundings, without a colour that says so
@@ -48,13 +48,13 @@ class FrameCounter {
 
 /// Reads the clip once, or twice: a marker without a stated colour is looked for as a bright disc, and, where such a
 /// one is hardly seen and a dark one well, as a dark one. With `look_at_scene` there is a PictureRecord. InputError for
-/// pictures that cannot be used, NoMarker (marker_track.h) where there is none.
+/// images that cannot be used, NoMarker (marker_track.h) where there is none.
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter);
 
 struct SeenPattern;
 
-/// What the pictures of a folder say besides the motion.
+/// What the images of a folder say besides the motion.
 struct PictureResults {
   std::vector<TrackData> tracks;             ///< one for each clip, in the experiment's order
   std::vector<std::vector<MarkerFit>> fits;  ///< as many: the marker's image wherever it was seen, frames rise
@@ -66,7 +66,7 @@ struct PictureResults {
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of
 /// motion, x positive downhill. Clips that are tracks (CSV) are read with read_track_csv. Frames stream; `jobs` clips
 /// at a time. With `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is known of the pattern
-/// already (restitution.h); null: its pictures are read. InputError for pictures that cannot be used (no pattern,
+/// already (restitution.h); null: its images are read. InputError for images that cannot be used (no pattern,
 /// no marker, truncated, of another size, …).
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
                          const FrameOpener& open = open_frames, bool look_at_scene = false,

@@ -26,7 +26,7 @@ constexpr std::size_t kPathDots = 60;
 const cv::Scalar kMarkerColor(0, 140, 255);  // orange in BGR: seen on black, grey and white
 const cv::Scalar kPathColor(255, 170, 60);   // light blue
 
-/// Small pictures in colour, of even size as H.264's 4:2:0 needs.
+/// Small images in colour, of even size as H.264's 4:2:0 needs.
 class Shrinker {
  public:
   Shrinker(cv::Size size, int width_px, int bit_depth) : bit_depth_(bit_depth) {
@@ -44,7 +44,7 @@ class Shrinker {
     if (small.channels() == 1) cv::cvtColor(small, small, cv::COLOR_GRAY2BGR);
     return small;
   }
-  /// A place in the picture, in the small one's sixteenths of a pixel; centres of first pixels are (0, 0) in both.
+  /// A place in the image, in the small one's sixteenths of a pixel; centres of first pixels are (0, 0) in both.
   cv::Point place(double u_px, double v_px) const {
     const auto fixed = [this](double p) { return static_cast<int>(std::lround(((p + 0.5) * scale_ - 0.5) * 16.0)); };
     return {fixed(u_px), fixed(v_px)};

@@ -31,7 +31,7 @@ struct PreviewOptions {
   int width_px = 400;
 };
 
-/// Reads the clip of `setup` again. A clip that is a track has no pictures: an empty preview. An encoder that is
+/// Reads the clip of `setup` again. A clip that is a track has no images: an empty preview. An encoder that is
 /// missing is no error; `why_no_video` says so. InputError where the clip cannot be read (any more).
 Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const ClipResult& result,
                      const PreviewOptions& options = {});

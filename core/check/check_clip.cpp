@@ -19,15 +19,15 @@ std::optional<MarkerSmear> marker_smear(const std::vector<MarkerSighting>& sight
   constexpr double kClear = 5.0;  // standard deviations
   if (fits.size() != sightings.size()) return std::nullopt;
   std::vector<double> speed2, excess;  // px²/s², px²
-  double way_u = 0.0, way_v = 0.0;     // of the fastest step: the glider runs along one line
+  double step_u = 0.0, step_v = 0.0;   // of the fastest step: the glider runs along one line
   for (std::size_t i = 1; i + 1 < sightings.size(); ++i) {
     if (sightings[i + 1].frame - sightings[i - 1].frame != 2) continue;
     const double u = sightings[i + 1].u_px - sightings[i - 1].u_px, v = sightings[i + 1].v_px - sightings[i - 1].v_px;
-    if (std::hypot(u, v) > std::hypot(way_u, way_v)) way_u = u, way_v = v;
+    if (std::hypot(u, v) > std::hypot(step_u, step_v)) step_u = u, step_v = v;
   }
-  const double length = std::hypot(way_u, way_v);
+  const double length = std::hypot(step_u, step_v);
   if (!(length > 0.0)) return std::nullopt;
-  const double c = way_u / length, s = way_v / length;
+  const double c = step_u / length, s = step_v / length;
   for (std::size_t i = 1; i + 1 < sightings.size(); ++i) {
     if (sightings[i + 1].frame - sightings[i - 1].frame != 2) continue;
     const double u = sightings[i + 1].u_px - sightings[i - 1].u_px, v = sightings[i + 1].v_px - sightings[i - 1].v_px;
@@ -209,7 +209,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   if (track.x_m.size() >= kFewestTrackPoints) clip.position_noise_m = pilot_noise(track.t_s, track.x_m);
   if (!track.x_m.empty()) {
     const auto [least, most] = std::minmax_element(track.x_m.begin(), track.x_m.end());
-    clip.way_m = *most - *least;
+    clip.distance_m = *most - *least;
   }
   clip.motion = look_between(setup, track);
   const Speeds speeds = speeds_of(track);

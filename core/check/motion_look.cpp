@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/angles.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 
@@ -14,18 +15,18 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestPoints = 12;
-constexpr std::size_t kParts = 10;                    // parabolas go through a tenth of the points,
-constexpr std::size_t kFewestOfParabola = 7;          // and so many at least
-constexpr double kOverNoise = 5.0;                    // standard deviations of a parabola's a that a typical one has
-constexpr double kWayBack = 20.0, kPartOfWay = 0.05;  // standard deviations, part of the way: a turn comes back so far
+constexpr std::size_t kParts = 10;            // parabolas go through a tenth of the points,
+constexpr std::size_t kFewestOfParabola = 7;  // and so many at least
+constexpr double kOverNoise = 5.0;            // standard deviations of a parabola's a that a typical one has
+constexpr double kTurnOverNoise = 20.0;       // a turn comes back by so many standard deviations of a position,
+constexpr double kTurnOverRange = 0.05;       // and by such a part of the range of x
 constexpr std::size_t kManyTurns = 6;
 constexpr double kHarmonic = 0.8;                       // of the variance of a
-constexpr double kSmoothPart = 1e-7;                    // of the way
+constexpr double kSmoothPart = 1e-7;                    // of the range of x
 constexpr double kAboveGravity = 1.05;                  // of g: a fall has 1
 constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;  // of g, on an incline of less than 60 degrees
 constexpr double kMostBend = 0.08;                      // a wide lens bends a straight path by half of that
-constexpr double kLongWay_m = 20.0;
-constexpr double kDegrees = 180.0 / 3.14159265358979;
+constexpr double kLongRange_m = 20.0;
 
 /// x = x0 + v t + a t²/2 through some points.
 Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_m) {
@@ -40,15 +41,15 @@ Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_
 
 std::size_t turns_in(std::span<const double> x_m, double back_m) {
   double lowest = x_m[0], highest = x_m[0];
-  int way = 0;
+  int direction = 0;
   std::size_t turns = 0;
   for (const double x : x_m) {
     lowest = std::min(lowest, x);
     highest = std::max(highest, x);
-    const bool falls = way >= 0 && highest - x > back_m, rises = way <= 0 && x - lowest > back_m;
+    const bool falls = direction >= 0 && highest - x > back_m, rises = direction <= 0 && x - lowest > back_m;
     if (!falls && !rises) continue;
-    turns += way != 0;
-    way = falls ? -1 : 1;
+    turns += direction != 0;
+    direction = falls ? -1 : 1;
     lowest = highest = x;
   }
   return turns;
@@ -95,10 +96,10 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   MotionLook look;
   if (x_m.size() < kFewestPoints) return look;
   const auto [least, most] = std::minmax_element(x_m.begin(), x_m.end());
-  look.way_m = *most - *least;
+  look.distance_m = *most - *least;
   look.bend = bend_of(sightings);
   const double noise_m = pilot_noise(t_s, x_m);
-  look.smooth = noise_m < kSmoothPart * look.way_m && rounding_step(x_m) == 0.0;
+  look.smooth = noise_m < kSmoothPart * look.distance_m && rounding_step(x_m) == 0.0;
   if (forced) return look;
   const std::size_t size = std::max(kFewestOfParabola, x_m.size() / kParts);
   std::vector<double> places, accelerations, sizes;
@@ -114,7 +115,7 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   }
   const double typical = quantile(sizes, 0.5);
   if (typical > kOverNoise * sd_m_s2) look.acceleration_m_s2 = typical;
-  look.turns = turns_in(x_m, std::max(kWayBack * noise_m, kPartOfWay * look.way_m));
+  look.turns = turns_in(x_m, std::max(kTurnOverNoise * noise_m, kTurnOverRange * look.distance_m));
   // Fine enough for a swing: eight parabolas between turns.
   if (look.turns >= kManyTurns) {
     const std::size_t fine = std::max(kFewestOfParabola, x_m.size() / (8 * (look.turns + 1)));
@@ -159,16 +160,16 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
     book.add(
         Severity::unusable,
         fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
-                    a / gravity_m_s2, setup.incline_rad * kDegrees),
+                    a / gravity_m_s2, setup.incline_rad * base::kDegreesPerRad),
         "state incline_deg = 90 for a fall; otherwise check the unit of x");
-  } else if (look.way_m > kLongWay_m) {
-    book.add(Severity::change, fmt::format("x covers {:.3g} m", look.way_m),
+  } else if (look.distance_m > kLongRange_m) {
+    book.add(Severity::change, fmt::format("x covers {:.3g} m", look.distance_m),
              "check the unit of x: it may be centimetres, millimetres, or an angle");
   }
   if (look.bend > kMostBend) {
     book.add(Severity::unusable,
              fmt::format("the path in the image is curved (sagitta {} of its length): the track is not straight",
-                         percent(look.bend)),
+                         percent_text(look.bend)),
              "the law of motion holds along a straight line: film a straight track, not a free flight or a swing");
   }
   if (look.smooth) {

@@ -56,7 +56,7 @@ struct PatternCheck {
 
 /// Of the positions alone (motion_look.h).
 struct MotionLook {
-  double way_m = 0.0;
+  double distance_m = 0.0;
   std::optional<double> acceleration_m_s2;  ///< typical size; none where noise hides it, or a force was recorded
   std::size_t turns = 0;
   bool oscillates = false;
@@ -91,7 +91,7 @@ struct ClipCheck {
   std::optional<double> marker_level;  ///< its own brightness
   double pixel_noise = 0.0;            ///< of a pixel at rest from frame to frame; 0 if none is seen
   double centre_sd_px = 0.0;           ///< of one coordinate of the marker's centre, from its fit, median
-  double way_m = 0.0;                  ///< from the uppermost position to the lowest
+  double distance_m = 0.0;             ///< from the uppermost position to the lowest
   double top_speed_m_s = 0.0;
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, with the stated exposure
@@ -122,12 +122,12 @@ struct RecordingCheck {
   bool usable = true;             ///< no finding is Severity::unusable
 };
 
-inline std::string percent(double share) {
+inline std::string percent_text(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
 }
 
 /// At most six names, and how many more there are.
-inline std::string list_of(const std::vector<std::string>& names) {
+inline std::string first_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;
   const std::size_t shown = std::min(kMost, names.size());
   std::string text =

@@ -33,7 +33,7 @@ void judge_pattern(const PatternCheck& pattern, FindingBook book) {
     return;
   }
   if (!pattern.without.empty()) {
-    book.add(Severity::change, "no pattern is found in " + list_of(pattern.without),
+    book.add(Severity::change, "no pattern is found in " + first_names(pattern.without),
              "retake these with all inner corners in view and the board evenly lit, or remove them");
   }
   if (!pattern.calibration) return;
@@ -48,7 +48,7 @@ void judge_pattern(const PatternCheck& pattern, FindingBook book) {
              "glue the board to a flat plate, keep it still and sharp in every image, and leave zoom and focus alone");
   }
   if (pattern.covered < kLeastCovered) {
-    book.add(Severity::change, fmt::format("the views cover {} of the image", percent(pattern.covered)),
+    book.add(Severity::change, fmt::format("the views cover {} of the image", percent_text(pattern.covered)),
              "hold the board near the edges and corners of the image as well: the lens is known only where the board "
              "was seen");
   }
@@ -134,18 +134,18 @@ void judge_light(const ClipCheck& clip, FindingBook& book) {
              "shorten the exposure until it is grey: saturation displaces its edge");
   }
   if (clip.saturated > kMostSaturatedShare) {
-    book.add(Severity::change, fmt::format("{} of the pixels are saturated", percent(clip.saturated)),
+    book.add(Severity::change, fmt::format("{} of the pixels are saturated", percent_text(clip.saturated)),
              "shorten the exposure, or cover bright surfaces");
   }
   if (clip.bright_level < kLeastBrightLevel) {
     book.add(Severity::change,
-             fmt::format("the brightest parts reach only {} of the camera's range", percent(clip.bright_level)),
+             fmt::format("the brightest parts reach only {} of the camera's range", percent_text(clip.bright_level)),
              "use more light: dark images are noisy");
   }
   if (clip.contrast && *clip.contrast < kLeastContrast) {
     book.add(Severity::change,
              fmt::format("the marker differs from its surroundings by only {} of the camera's range",
-                         percent(*clip.contrast)),
+                         percent_text(*clip.contrast)),
              "put a darker (or brighter) sheet behind it, or use a retroreflective marker with a lamp at the camera");
   }
   if (clip.contrast && *clip.contrast < kLeastSignalToNoise * clip.pixel_noise) {
@@ -212,7 +212,7 @@ void judge_marker(const ClipCheck& clip, FindingBook& book) {
   if (clip.inside_pattern < kLeastPathInside) {
     book.add(Severity::change,
              fmt::format("{} of the marker's path lies outside the region in which the pattern was seen",
-                         percent(1.0 - clip.inside_pattern)),
+                         percent_text(1.0 - clip.inside_pattern)),
              "take views of the pattern that cover the region in which the glider runs");
   }
 }
@@ -254,7 +254,7 @@ std::vector<Finding> merged(std::vector<Finding> findings) {
     about.push_back({finding.about});
     once.push_back(std::move(finding));
   }
-  for (std::size_t i = 0; i < once.size(); ++i) once[i].about = list_of(about[i]);
+  for (std::size_t i = 0; i < once.size(); ++i) once[i].about = first_names(about[i]);
   return once;
 }
 

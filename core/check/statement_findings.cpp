@@ -49,8 +49,8 @@ void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) 
   }
   if (heavy.empty()) return;
   findings.push_back({Severity::unusable, "masses",
-                      fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", list_of(heavy), kMassRatio,
-                                  least->name, least->mass_kg),
+                      fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", first_names(heavy),
+                                  kMassRatio, least->name, least->mass_kg),
                       "state every mass in kilograms: one of them looks like grams"});
 }
 
@@ -69,7 +69,7 @@ void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clip
   if (worst == nullptr) return;
   const std::string length = experiment.scale ? "[scale]" : "square_m";
   findings.push_back(
-      {contradicts ? Severity::unusable : Severity::change, list_of(names),
+      {contradicts ? Severity::unusable : Severity::change, first_names(names),
        fmt::format("the marker is {:.3g} px wide; diameter_m and {} predict {:.3g} px: {:.0f} % off", worst->marker_px,
                    length, worst->marker_expected_px, 100.0 * std::expm1(size_off(*worst))),
        fmt::format(
@@ -84,12 +84,12 @@ void judge_distance(const Experiment& experiment, const std::vector<ClipCheck>& 
   std::vector<std::string> names;
   double distance_m = 0.0;
   for (const ClipCheck& clip : clips) {
-    if (clip.way_m <= kMostDistanceOverLength * *experiment.track.length_m) continue;
+    if (clip.distance_m <= kMostDistanceOverLength * *experiment.track.length_m) continue;
     names.push_back(clip.name);
-    distance_m = std::max(distance_m, clip.way_m);
+    distance_m = std::max(distance_m, clip.distance_m);
   }
   if (names.empty()) return;
-  findings.push_back({Severity::unusable, list_of(names),
+  findings.push_back({Severity::unusable, first_names(names),
                       fmt::format("the glider runs {:.3g} m, but length_m in [track] is {:.3g} m", distance_m,
                                   *experiment.track.length_m),
                       fmt::format("measure the track again, and check {}", lengths_of(experiment))});
@@ -130,7 +130,7 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
     for (const auto& [group, worst] : *worst_of) {
       if (worst_of == &by_plumb && by_key.contains(group)) continue;  // reported above
       findings.push_back({worst.contradiction.gross ? Severity::unusable : Severity::change,
-                          list_of(worst.configuration->clips), worst.contradiction.sentence,
+                          first_names(worst.configuration->clips), worst.contradiction.sentence,
                           fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}",
                                       worst_of == &by_key ? "incline_deg" : "the plumb line", lengths_of(experiment),
                                       experiment.camera ? ", frame_rate_hz (its square enters)" : "")});
@@ -185,9 +185,9 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
                          names.size(), clips.size(), worst->name)
            : "";
   findings.push_back(
-      {Severity::unusable, list_of(names),
+      {Severity::unusable, first_names(names),
        fmt::format("{}{}, as {} say; that is {} of its free motion", whose, sentence(*worst->against_launch),
-                   of_worst.sentence, percent(worst->against_launch->share)),
+                   of_worst.sentence, percent_text(worst->against_launch->share)),
        fmt::format("check which of the two is wrong: launched of {}, or downhill in {}; if neither is, "
                    "state with start_s when the hand lets go",
                    many ? "these clips" : "this clip",

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <string>
+
+#include "base/math/angles.h"
 
 namespace glidelab::core {
 namespace {
@@ -23,11 +24,9 @@ bool contradicts(const ClipSetup& one, const ClipSetup& other) {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
 std::string reading(const ClipSetup& clip) {
-  return fmt::format("{:.6g} \xC2\xB1 {:.3g}", clip.incline_rad * kDegrees + 0.0,  // + 0.0: no "-0"
-                     *clip.incline_sd_rad * kDegrees);
+  return fmt::format("{:.6g} \xC2\xB1 {:.3g}", clip.incline_rad * base::kDegreesPerRad + 0.0,  // + 0.0: no "-0"
+                     *clip.incline_sd_rad * base::kDegreesPerRad);
 }
 
 }  // namespace
@@ -46,7 +45,7 @@ void name_groups(std::vector<ClipSetup>& clips) {
     if (!clip.group.empty()) continue;
     clip.group = inclinations.size() == 1 && !some_named
                      ? "all"
-                     : fmt::format("{:.6g} deg", clip.incline_rad * kDegrees + 0.0);  // + 0.0: no "-0"
+                     : fmt::format("{:.6g} deg", clip.incline_rad * base::kDegreesPerRad + 0.0);  // + 0.0: no "-0"
   }
 }
 

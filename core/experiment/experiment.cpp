@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/errors.h"
+#include "base/math/angles.h"
 #include "base/toml/strict_toml.h"
 #include "core/experiment/clip_setup.h"
 #include "core/experiment/file_names.h"
@@ -17,7 +18,6 @@ using base::TomlTable;
 
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr long kLargestImagePx = 100000;  // larger than any sensor; keeps rectangles within int
 
 CameraSettings read_camera(const TomlTable& table) {
@@ -157,9 +157,9 @@ ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
   }
   clip.mass_kg = table.number("mass_kg", base::above(0.0));
   clip.mass_sd_kg = table.number_or("mass_sd_kg", 0.0, base::at_least(0.0));
-  clip.incline_rad = table.number("incline_deg", base::between(-90.0, 90.0)) * kRadiansPerDegree;
+  clip.incline_rad = table.number("incline_deg", base::between(-90.0, 90.0)) * base::kRadPerDegree;
   if (const auto sd_deg = table.maybe_number("incline_sd_deg", base::at_least(0.0))) {
-    clip.incline_sd_rad = *sd_deg * kRadiansPerDegree;
+    clip.incline_sd_rad = *sd_deg * base::kRadPerDegree;
   }
   clip.launched = read_launched(table);
   clip.start_s = table.maybe_number("start_s");

@@ -4,15 +4,16 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <system_error>
 
+#include "base/text/digit.h"
+
 namespace glidelab::core {
 
 bool natural_less(const std::string& a, const std::string& b) {
-  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  using base::is_digit;
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < a.size() && j < b.size()) {

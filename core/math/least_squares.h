@@ -54,6 +54,10 @@ class PairCorrelation {
     xy_ += dx * (y - mean_y_);
     yy_ += dy * (y - mean_y_);
   }
+  /// As many y as x.
+  void add(std::span<const double> x, std::span<const double> y) {
+    for (std::size_t i = 0; i < x.size(); ++i) add(x[i], y[i]);
+  }
   /// 0 where all x or all y are one.
   double squared() const { return xx_ > 0.0 && yy_ > 0.0 ? xy_ * xy_ / (xx_ * yy_) : 0.0; }
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "base/math/angles.h"
 #include "core/math/least_squares.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/motion/lines/line_law.h"
@@ -82,14 +82,6 @@ double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joi
   return chi2 > freedom * chi2_ratio_limit(freedom) ? chi2 / freedom : 1.0;
 }
 
-double squared_correlation(const std::vector<Part>& parts) {
-  PairCorrelation correlation;
-  for (const Part& part : parts) {
-    for (std::size_t i = 0; i < part.v.size(); ++i) correlation.add(part.v[i], part.a[i]);
-  }
-  return correlation.squared();
-}
-
 /// Least squares through the points of all parts; ordinary: every point with the same weight. The parts' noise is
 /// independent: cov = N^-1 (sum N_c cov_c N_c) N^-1 with the normal matrices N_c of the parts.
 LineFit join(const std::vector<Part>& parts, int direction) {
@@ -140,7 +132,9 @@ LineFit join(const std::vector<Part>& parts, int direction) {
     const Eigen::Vector2d shift = inverse * sum;
     joint.parts.calibration.push_back({shift[0], shift[1]});
   }
-  joint.r2 = squared_correlation(parts);
+  PairCorrelation correlation;
+  for (const Part& part : parts) correlation.add(part.v, part.a);
+  joint.r2 = correlation.squared();
   complete_line(joint);
   return joint;
 }
@@ -162,7 +156,7 @@ std::vector<LineFit> join_lines(const std::vector<MemberClip>& members, LineMeth
 namespace {
 
 double degrees_of(double rad) {
-  const double degrees = rad * 180.0 / std::numbers::pi;
+  const double degrees = rad * base::kDegreesPerRad;
   return std::round(degrees * 1e9) / 1e9 + 0.0;  // 4, not 4.000000000000001; + 0.0: no -0
 }
 
@@ -213,8 +207,11 @@ Quantity of_intercepts(double value, double by_minus, double by_plus, const Line
   return determined(estimate(value, std::sqrt(variance), degrees), std::sqrt(random));
 }
 
-/// From the intercepts (equation (13) of the paper): (a0- + a0+)/2 = g sin(alpha), (a0- - a0+)/2 = mu g cos(alpha).
-void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2, ConfigurationResult& result) {
+/// Friction and slope of the two lines' intercepts, equation (13) of the paper:
+///
+///     (a0- + a0+)/2 = g sin(alpha),     (a0- - a0+)/2 = mu g cos(alpha)
+void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2,
+                                ConfigurationResult& result) {
   const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
   const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);
   if (std::abs(mean) >= gravity_m_s2) {
@@ -224,9 +221,8 @@ void split_intercepts(const LineFit& minus, const LineFit& plus, double gravity_
   }
   const double alpha = std::asin(mean / gravity_m_s2);
   const double g_cos = gravity_m_s2 * std::cos(alpha);
-  const double degrees = 180.0 / std::numbers::pi;
-  const double by_mean = degrees / g_cos;
-  result.alpha_deg = of_intercepts(alpha * degrees, 0.5 * by_mean, 0.5 * by_mean, minus, plus);
+  const double by_mean = base::kDegreesPerRad / g_cos;
+  result.alpha_deg = of_intercepts(alpha * base::kDegreesPerRad, 0.5 * by_mean, 0.5 * by_mean, minus, plus);
   // mu = half_jump / sqrt(g^2 - mean^2)
   const double by_jump = 1.0 / g_cos, mu_by_mean = half_jump * mean / std::pow(g_cos, 3);
   result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus);
@@ -236,7 +232,7 @@ void recover(const std::vector<LineFit>& lines, double gravity_m_s2, Configurati
   result.k_over_m_1_s = mean_k(lines);
   result.v_lim_m_s = limit_velocity(lines);
   if (lines.size() == 2) {
-    split_intercepts(lines[0], lines[1], gravity_m_s2, result);
+    mu_and_alpha_of_intercepts(lines[0], lines[1], gravity_m_s2, result);
     return;
   }
   const std::string missing = lines.empty()                  ? "v < 0 and none for v > 0"

@@ -6,9 +6,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
+#include "base/math/angles.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
@@ -50,9 +50,18 @@ Quantity undetermined(std::string why) {
   return {std::nullopt, std::move(why)};
 }
 
+std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view k_is, const Estimate& a0_m_s2) {
+  if (k_over_m_1_s.value - kNormal95 * k_over_m_1_s.sd <= 0.0) {
+    return fmt::format("{} is not above zero by more than its uncertainty", k_is);
+  }
+  if (a0_m_s2.value - kNormal95 * a0_m_s2.sd <= 0.0) {
+    return "a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0";
+  }
+  return {};
+}
+
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kOffDeg = 0.5, kOffSds = 3.0;
 constexpr double kGrossDeg = 1.0, kGrossShare = 0.25, kGrossSds = 5.0;
 
@@ -77,8 +86,8 @@ std::optional<FoundIncline> found_incline(const ConfigurationResult& found, doub
   const LineFit& line = found.lines.front();
   const double sine = line.a0_m_s2.value / gravity_m_s2;
   if (std::abs(sine) >= 1.0) return std::nullopt;
-  const double sd_deg = kDegrees * line.a0_m_s2.sd / (gravity_m_s2 * std::sqrt(1.0 - sine * sine));
-  return FoundIncline{kDegrees * std::asin(sine), sd_deg, line.direction};
+  const double sd_deg = base::kDegreesPerRad * line.a0_m_s2.sd / (gravity_m_s2 * std::sqrt(1.0 - sine * sine));
+  return FoundIncline{base::kDegreesPerRad * std::asin(sine), sd_deg, line.direction};
 }
 
 /// The acceleration at v = 0 without friction, where that is gravity or more: no inclination has it. A line of one

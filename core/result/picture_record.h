@@ -24,13 +24,13 @@ struct MarkerLook {
   double slope_u = 0.0, slope_v = 0.0;       ///< of the background, codes/px
 };
 
-inline constexpr std::size_t kRowBands = 4;  ///< equal parts of the picture's height, from its top
+inline constexpr std::size_t kRowBands = 4;  ///< equal parts of the image's height, from its top
 
 /// The fixed scene in one frame, compared with the clip's first frames (scene_watch.h).
 struct SceneLook {
   std::size_t frame = 0;
   double t_s = 0.0;
-  double u_px = 0.0, v_px = 0.0;            ///< by how far it has moved in the picture
+  double u_px = 0.0, v_px = 0.0;            ///< by how far it has moved in the image
   double sd_u_px = 0.0, sd_v_px = 0.0;      ///< from the pixels' noise; 0: nothing there that a motion would show in
   std::array<double, kRowBands> gain{};     ///< brightness over that of the first frames, less 1
   std::array<double, kRowBands> gain_sd{};  ///< 0: no patch in that band

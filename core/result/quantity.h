@@ -26,6 +26,11 @@ inline constexpr std::array<QuantityName, 4> kQuantities = {{
     {Measurand::v_lim, "v_lim_m_s", "limit velocity", "m/s"},
 }};
 
+/// As options and files have it: "mu".
+constexpr std::string_view key_of(Measurand which) {
+  return kQuantities[static_cast<std::size_t>(which)].key;
+}
+
 /// The quantity's member of a struct that has all four: results, truths, bounds.
 template <typename Four>
 constexpr auto& value_of(Four& four, Measurand which) {

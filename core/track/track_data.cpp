@@ -41,7 +41,7 @@ bool is_time(const TableColumn& column) {
   return column.unit.empty() ? is_one_of(kTimeNames, column.name) : seconds_per(column.unit).has_value();
 }
 
-std::string list_of(const ColumnTable& table) {
+std::string columns_text(const ColumnTable& table) {
   std::vector<std::string> names;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
@@ -76,9 +76,9 @@ std::size_t place_column(const ColumnTable& table, const std::string& asked) {
   if (found.size() == 1) return found.front();
   if (!asked.empty()) {
     throw wrong_column(table, fmt::format("{} of the name or number \"{}\"", found.empty() ? "none" : "several", asked),
-                       "one of the " + list_of(table));
+                       "one of the " + columns_text(table));
   }
-  throw wrong_column(table, list_of(table),
+  throw wrong_column(table, columns_text(table),
                      fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
                                  "experiment.toml) by its header or its number",
                                  found.empty() ? "one" : "just one"));
@@ -94,10 +94,10 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
   const auto right = std::lower_bound(times.begin(), times.end(), place);
   if (right != times.begin()) return *std::prev(right);
   if (times.size() == 1) return times.front();
-  throw wrong_column(
-      table,
-      fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text, list_of(table)),
-      "one, called t or time or with a unit of time");
+  throw wrong_column(table,
+                     fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
+                                 columns_text(table)),
+                     "one, called t or time or with a unit of time");
 }
 
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),

@@ -99,9 +99,10 @@ TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
 }
 
 constexpr double kLeastFilmedWide = 10.0;
-constexpr double kLeastLost_px = 0.05, kUsual = 3.0;
-constexpr double kFewestRuns = 4.0;   // a frame or two beside another error is no pattern yet
-constexpr double kFewestFirst = 2.0;  // two errors in all, and both in first frames: that is one
+constexpr double kLeastLost_px = 0.05;     // a smaller error is no frame that is missing,
+constexpr double kMostOfSmallError = 3.0;  // and counts no more than this, in standard deviations
+constexpr double kFewestRuns = 4.0;        // a frame or two beside another error is no pattern yet
+constexpr double kFewestFirst = 2.0;       // two errors in all, and both in first frames: that is one
 constexpr double kPartInRuns = 0.25;
 constexpr double kFirstFrames = 3.0;  // of a clip
 
@@ -228,7 +229,7 @@ void spare_small(const TrackSet& set, std::vector<double>& e) {
   for (const TrackedMotion& motion : set.motions) {
     for (std::size_t p = 0; p < motion.t_s.size(); ++p, ++at) {
       if (motion.m_per_px > 0.0 && std::abs(e[at]) * motion.sd_of(p) < kLeastLost_px * motion.m_per_px) {
-        e[at] = std::clamp(e[at], -kUsual, kUsual);
+        e[at] = std::clamp(e[at], -kMostOfSmallError, kMostOfSmallError);
       }
     }
   }

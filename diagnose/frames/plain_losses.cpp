@@ -12,12 +12,12 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kAround = 5;  // points on each side that show a loss by themselves
-constexpr Eigen::Index kFewestAround = 7;
-constexpr double kPlainLossGain = 14.0;     // log likelihood that such a loss gains
-constexpr double kFits = 4.0, kMuch = 0.3;  // what it may leave: of the noise's squares, or of what was left before
-constexpr int kMostLostTogether = 5;        // frames lost at one place
-constexpr int kMostMissingInMotion = 60;    // in one motion
+constexpr std::size_t kPointsOnEachSide = 5;  // points on each side that show a loss by themselves
+constexpr Eigen::Index kFewestOfParabolaPoints = 7;
+constexpr double kPlainLossGain = 14.0;                                // log likelihood that such a loss gains
+constexpr double kMostRestOverNoise = 4.0, kMostRestOverBefore = 0.3;  // of the squares that a loss may leave
+constexpr int kMostLostTogether = 5;                                   // frames lost at one place
+constexpr int kMostMissingInMotion = 60;                               // in one motion
 
 struct ParabolaRest {
   double square_m2 = 0.0;
@@ -28,7 +28,7 @@ struct ParabolaRest {
 /// too few.
 ParabolaRest parabola_rest(const TrackedMotion& data, const std::vector<double>& late_s, std::size_t f,
                            double shift_s) {
-  const std::size_t from = f - std::min(f, kAround), to = std::min(data.x_m.size(), f + kAround);
+  const std::size_t from = f - std::min(f, kPointsOnEachSide), to = std::min(data.x_m.size(), f + kPointsOnEachSide);
   const double unit = data.t_s[to - 1] - data.t_s[from];
   Eigen::MatrixXd basis(static_cast<Eigen::Index>(to - from), 3);
   Eigen::VectorXd x(basis.rows());
@@ -40,7 +40,7 @@ ParabolaRest parabola_rest(const TrackedMotion& data, const std::vector<double>&
     x[row++] = data.x_m[p] - data.x_m[f];
   }
   const auto points = static_cast<double>(row);
-  if (row < kFewestAround) return {0.0, points};
+  if (row < kFewestOfParabolaPoints) return {0.0, points};
   const Eigen::MatrixXd used = basis.topRows(row);
   const Eigen::VectorXd y = x.head(row);
   const Eigen::VectorXd by =
@@ -66,7 +66,7 @@ LostBefore plain_losses(const TrackSet& set) {
         for (int k = 1; k <= kMostLostTogether; ++k) {
           const ParabolaRest rest = parabola_rest(motion, late_s, f, k * step_s);
           const double with = rest.square_m2 / square;
-          const bool fits = with < std::max(kFits * rest.points, kMuch * without);
+          const bool fits = with < std::max(kMostRestOverNoise * rest.points, kMostRestOverBefore * without);
           const double gain = 0.5 * (without - with);
           if (!fits || gain <= clearest) continue;
           clearest = gain;
@@ -99,19 +99,20 @@ LostBefore analysed_losses(const TrackSet& set) {
 
 namespace {
 
-constexpr std::size_t kFew = 3;                         // positions beyond a gap: of more, the gap shows by itself
-constexpr std::size_t kNodes = 5;                       // of the path, which continue it
-constexpr int kMostTogether = 5;                        // frames lost at one place
-constexpr double kOn = 4.0, kOff = 6.0, kMoves = 10.0;  // standard deviations
+constexpr std::size_t kMostBeyondGap = 3;     // positions beyond a gap: of more, the gap shows by itself
+constexpr std::size_t kNodesOfPath = 5;       // of the path, which continue it
+constexpr double kFarthestFromShifted = 4.0;  // standard deviations: of the path a frame or more away,
+constexpr double kNearestToPath = 6.0;        // of the path at the stated time,
+constexpr double kLeastStep = 10.0;           // and from one frame to the next
 
-/// A motion's path as fitted, for its points from `from` on (`way` +1) or back (-1), continued beyond the first of
-/// them.
+/// A motion's path as fitted, for its points from `from` on (`direction` +1) or back (-1), continued beyond the first
+/// of them.
 class Continued {
  public:
   Continued(const TrackedMotion& data, const MotionFit& fit, const std::vector<double>& path_m, std::size_t i,
-            std::size_t from, int way) {
-    for (std::size_t k = 0; k < kNodes; ++k) {
-      const std::size_t p = way > 0 ? from + k : from - k;
+            std::size_t from, int direction) {
+    for (std::size_t k = 0; k < kNodesOfPath; ++k) {
+      const std::size_t p = direction > 0 ? from + k : from - k;
       t_s_[k] = data.t_s[p] + (fit.late.empty() ? 0.0 : fit.late[i][p]);
       x_m_[k] = path_m[p];
     }
@@ -119,9 +120,9 @@ class Continued {
 
   double operator()(double t_s) const {  // Lagrange's formula
     double sum = 0.0;
-    for (std::size_t a = 0; a < kNodes; ++a) {
+    for (std::size_t a = 0; a < kNodesOfPath; ++a) {
       double weight = 1.0;
-      for (std::size_t b = 0; b < kNodes; ++b) {
+      for (std::size_t b = 0; b < kNodesOfPath; ++b) {
         if (b != a) weight *= (t_s - t_s_[b]) / (t_s_[a] - t_s_[b]);
       }
       sum += weight * x_m_[a];
@@ -130,18 +131,18 @@ class Continued {
   }
 
  private:
-  std::array<double, kNodes> t_s_{}, x_m_{};
+  std::array<double, kNodesOfPath> t_s_{}, x_m_{};
 };
 
 /// Those of one end: `outer` are its outliers, from the motion's end inwards.
 bool beyond_gap(const TrackedMotion& data, const Continued& path, const std::vector<std::size_t>& outer, double late_s,
-                double step_s, int way) {
-  for (int k = 1; k <= kMostTogether; ++k) {
+                double step_s, int direction) {
+  for (int k = 1; k <= kMostLostTogether; ++k) {
     const bool all = std::all_of(outer.begin(), outer.end(), [&](std::size_t p) {
-      const double t = data.t_s[p] + late_s, there = path(t - way * k * step_s), here = path(t);
-      const double moved = path(t - way * step_s) - here, sd = data.sd_of(p);
-      return std::abs(moved) > kMoves * sd && std::abs(data.x_m[p] - there) < kOn * sd &&
-             std::abs(data.x_m[p] - here) > kOff * sd;
+      const double t = data.t_s[p] + late_s, there = path(t - direction * k * step_s), here = path(t);
+      const double moved = path(t - direction * step_s) - here, sd = data.sd_of(p);
+      return std::abs(moved) > kLeastStep * sd && std::abs(data.x_m[p] - there) < kFarthestFromShifted * sd &&
+             std::abs(data.x_m[p] - here) > kNearestToPath * sd;
     });
     if (all) return true;
   }
@@ -155,25 +156,25 @@ std::vector<EdgePosition> positions_beyond_gaps(const TrackSet& set, const Motio
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const TrackedMotion& data = set.motions[i];
     const std::size_t n = data.t_s.size();
-    if (n < 2 * kFew + kNodes) continue;
+    if (n < 2 * kMostBeyondGap + kNodesOfPath) continue;
     const std::vector<double> late = fit.late.empty() ? std::vector<double>(n, 0.0) : fit.late[i];
     std::vector<double> path_m = move(model_of(set, *fit.layout, fit.at, i), data.t_s, late).x_m;
     const std::vector<double> shared = shared_errors(set, *fit.layout, fit.at, i, path_m);
     for (std::size_t p = 0; p < n; ++p) path_m[p] += shared[p];
     const double step_s = 1.0 / set.clips[data.clip].frame_rate_hz;
-    for (const int way : {1, -1}) {
+    for (const int direction : {1, -1}) {
       std::vector<std::size_t> outer;
       std::size_t inner = 0;  // how many of the end's positions lie beyond the gap
-      for (std::size_t k = 0; k < kFew; ++k) {
-        const std::size_t p = way > 0 ? k : n - 1 - k;
+      for (std::size_t k = 0; k < kMostBeyondGap; ++k) {
+        const std::size_t p = direction > 0 ? k : n - 1 - k;
         if (!data.outlier[p]) continue;
         outer.push_back(p);
         inner = k + 1;
       }
       if (outer.empty()) continue;
-      const std::size_t from = way > 0 ? inner : n - 1 - inner;
-      const Continued path(data, fit, path_m, i, from, way);
-      if (!beyond_gap(data, path, outer, late[from], step_s, way)) continue;
+      const std::size_t from = direction > 0 ? inner : n - 1 - inner;
+      const Continued path(data, fit, path_m, i, from, direction);
+      if (!beyond_gap(data, path, outer, late[from], step_s, direction)) continue;
       for (const std::size_t p : outer) found.push_back({i, p});
     }
   }

@@ -109,7 +109,7 @@ namespace {
 
 constexpr double kMostJitterScatter = 8.0;  // standard deviations
 constexpr int kJitterRounds = 3;            // the jitter is found against the noise of all speeds first
-constexpr double kOwn = 0.5;                // motions differ by so much, in the logarithm
+constexpr double kSpreadOfMotions = 0.5;    // standard deviation of the logarithm of a motion's noise
 constexpr double kLeastAtRest = 0.003;      // of the noise of all speeds
 constexpr double kIndependent = 0.38;       // squares of neighbouring fourth differences: 1 / (1 + 2 sum of rho²)
 
@@ -158,7 +158,7 @@ void set_noise_at_rest(std::vector<TrackedMotion>& motions, const std::vector<Sp
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const auto own = [&](double log_sd) {
       return cost(scatters[i], motions[i].sd_m, std::exp(log_sd), jitter_s) +
-             std::pow((log_sd - std::log(of_all)) / kOwn, 2);
+             std::pow((log_sd - std::log(of_all)) / kSpreadOfMotions, 2);
     };
     motions[i].sd_m = lowest(own, of_all / 10.0, of_all * 10.0);
   }

@@ -2,25 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/math/angles.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSlowest = 0.2;               // of the fastest launch so far: no slower one is suggested
-constexpr double kPlumb_rad = 0.05 * kDegree;  // standard deviation of a thread in the image, or a digital level
-constexpr double kRuler_m = 5e-4;              // half a division of a ruler in millimetres
-constexpr double kStopWatch_s = 10.0;          // for which a stopwatch is filmed: known to a frame
-constexpr double kLevel_rad = 0.5 * kDegree;   // a track that is less inclined counts as level
-constexpr double kTilt_rad = 4.0 * kDegree;    // that is suggested where there is a level track only
-constexpr double kSteeper = 1.5;               // times the steepest inclination so far
+constexpr double kSlowest = 0.2;  // of the fastest launch so far: no slower one is suggested
+constexpr double kPlumb_rad =
+    0.05 * base::kRadPerDegree;        // standard deviation of a thread in the image, or a digital level
+constexpr double kRuler_m = 5e-4;      // half a division of a ruler in millimetres
+constexpr double kStopWatch_s = 10.0;  // for which a stopwatch is filmed: known to a frame
+constexpr double kLevel_rad = 0.5 * base::kRadPerDegree;  // a track that is less inclined counts as level
+constexpr double kTilt_rad = 4.0 * base::kRadPerDegree;   // that is suggested where there is a level track only
+constexpr double kSteeper = 1.5;                          // times the steepest inclination so far
 
 /// What there is so far.
 struct SoFar {

@@ -105,13 +105,13 @@ std::vector<NoiseChunk> noise_chunks(const TrackSet& set, const MotionFit& fit, 
 
 namespace {
 
-constexpr double kOwn = 0.3;  // motions differ by so much, in the logarithm of s
+constexpr double kSpreadOfLogS = 0.3;  // standard deviation of ln(s_i) about ln(s), s_i of one motion
 
 // Of such a codec, measured on clips with nothing wrong whose truth is known (H.264 of crf 14 to 18, seeds 3000 to
 // 8000, tracked positions less the true ones): neighbours correlate by 0.15 to 0.35, every other frame by 0.3 to 0.4,
 // the fourth by 0.1 to 0.3, the eighth by 0 to 0.15. That is a part that lasts, 0.8 of s, for some five frames; clips
 // differ by a factor of about 1.6. The positions themselves have the last word.
-constexpr double kLasts = 0.8, kLastsFactor = 0.5;  // over s; in its logarithm
+constexpr double kLastingOverS = 0.8, kSpreadOfLogLasting = 0.5;  // what is expected, and how well
 
 }  // namespace
 
@@ -121,7 +121,7 @@ NoiseLikelihood::NoiseLikelihood(std::vector<NoiseChunk> chunks, std::size_t mot
 double NoiseLikelihood::known(const NoiseShape& shape) const {
   if (!handed_on_) return 0.0;
   constexpr double kAsGoodAsNone = 0.1;
-  return -0.5 * std::pow(std::log(std::max(shape.lasting, kAsGoodAsNone) / kLasts) / kLastsFactor, 2);
+  return -0.5 * std::pow(std::log(std::max(shape.lasting, kAsGoodAsNone) / kLastingOverS) / kSpreadOfLogLasting, 2);
 }
 
 Likelihood NoiseLikelihood::of(const NoiseShape& shape) const {
@@ -135,11 +135,11 @@ Likelihood NoiseLikelihood::of(const NoiseShape& shape) const {
     for (std::size_t i = 0; i < motions_; ++i) {
       own[i] = log_s;
       if (left[i].freedom <= 0.0) continue;
-      // Newton's steps for the largest of -freedom log s_i - square/(2 s_i²) - (log(s_i/s)/kOwn)²/2.
+      // Newton's steps for the largest of -freedom log s_i - square/(2 s_i²) - (log(s_i/s)/kSpreadOfLogS)²/2.
       for (int step = 0; step < 12; ++step) {
         const double over = left[i].square * std::exp(-2.0 * own[i]);
-        const double slope = -left[i].freedom + over - (own[i] - log_s) / (kOwn * kOwn);
-        own[i] += std::clamp(slope / (2.0 * over + 1.0 / (kOwn * kOwn)), -0.5, 0.5);
+        const double slope = -left[i].freedom + over - (own[i] - log_s) / (kSpreadOfLogS * kSpreadOfLogS);
+        own[i] += std::clamp(slope / (2.0 * over + 1.0 / (kSpreadOfLogS * kSpreadOfLogS)), -0.5, 0.5);
       }
       mean += own[i];
       many += 1.0;
@@ -149,7 +149,7 @@ Likelihood NoiseLikelihood::of(const NoiseShape& shape) const {
   found.value = known(shape);
   for (std::size_t i = 0; i < motions_; ++i) {
     found.value -= left[i].freedom * own[i] + 0.5 * left[i].square * std::exp(-2.0 * own[i]) + 0.5 * left[i].logs +
-                   0.5 * std::pow((own[i] - log_s) / kOwn, 2);
+                   0.5 * std::pow((own[i] - log_s) / kSpreadOfLogS, 2);
     found.own_px.push_back(std::exp(own[i]));
   }
   found.white_px = std::exp(log_s);
@@ -180,7 +180,7 @@ constexpr double kLeastNoiseGain = 1.0;     // log likelihood that one more part
 // It also codes anew what moves and leaves what rests as it was: its errors grow with the speed as those of uneven
 // times do. Measured on clips with nothing wrong by two renderers (H.264 of crf 14 to 23, 60 to 240 frames a second, 25
 // experiments): at top speed 0.4 to 1.5 of s, and twice 2 and 5, where a marker moves by two pixels a frame at most.
-constexpr double kCodecMoves = 1.0, kCodecMovesFactor = 0.8;  // over s; in its logarithm
+constexpr double kCodecMoves = 1.0, kCodecMovesFactor = 0.8;  // what is expected, and how well
 
 struct Dial {
   double NoiseShape::*member;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/math/angles.h"
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
@@ -228,8 +229,8 @@ void add_statements(const core::AnalysisResults& results, const std::vector<core
     for (const core::PlumbResult& plumb : results.plumbs) {
       if (plumb.group != setup.group || plumb.experiment != results.clips[motion.clip].experiment) continue;
       if (!plumb.plumb_deg.estimate) continue;
-      const double rad = std::numbers::pi / 180.0;
-      add(motion.group, {plumb.plumb_deg.estimate->value * rad, plumb.plumb_deg.estimate->sd * rad, "plumb"});
+      const core::Estimate& deg = *plumb.plumb_deg.estimate;
+      add(motion.group, {deg.value * base::kRadPerDegree, deg.sd * base::kRadPerDegree, "plumb"});
     }
   }
   for (const TrackedMotion& motion : set.motions) {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 
+#include "base/math/angles.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/pictures/picture_evidence.h"
 
@@ -117,7 +117,6 @@ TwinEffects effects_of_camera(const std::vector<DiagnosedEffect>& effects, const
 
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// The forces of a model with the effects that act in it.
 TwinForces forces_of(const TrackModel& model) {
   const std::vector<EffectInfo>& list = effect_list();
@@ -195,11 +194,11 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
       "\n[[configuration]]\nname = \"g{}-m{}\"\nmass_kg = {:.9g}\nincline_deg = {:.12g}\nstated_incline_deg = "
       "{:.9g}\n"
       "group = \"{}\"\n",
-      place.group + 1, place.mass + 1, model.mass_kg, model.alpha_rad * kDegrees, group.stated_rad * kDegrees,
-      twin_name(group.name));
+      place.group + 1, place.mass + 1, model.mass_kg, model.alpha_rad * base::kDegreesPerRad,
+      group.stated_rad * base::kDegreesPerRad, twin_name(group.name));
   for (const InclineStatement& statement : group.statements) {
     if (statement.against == "stated")
-      text += fmt::format("stated_incline_sd_deg = {:.9g}\n", statement.sd_rad * kDegrees);
+      text += fmt::format("stated_incline_sd_deg = {:.9g}\n", statement.sd_rad * base::kDegreesPerRad);
   }
   text += sections_of(forces_of(model));
   for (const std::size_t i : motions) {

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/math/angles.h"
 #include "base/text/number_text.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
 
 namespace glidelab::fit {
 namespace {
-
-constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 
 core::Quantity quantity_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient) {
   const double random = gradient.dot(fit.covariance * gradient);
@@ -26,12 +24,8 @@ core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k,
                               const Eigen::VectorXd& by_a0) {
   if (fit.direction < 0) return core::undetermined("no motion with v > 0");
   const core::Estimate intercept = *quantity_of(fit, a0, by_a0).estimate;
-  if (k.value - core::kNormal95 * k.sd <= 0.0) {
-    return core::undetermined("K/m is not above zero by more than its uncertainty");
-  }
-  if (a0 - core::kNormal95 * intercept.sd <= 0.0) {
-    return core::undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
-  }
+  const std::string why_not = core::why_no_limit_velocity(k, "K/m", intercept);
+  if (!why_not.empty()) return core::undetermined(why_not);
   Eigen::VectorXd gradient = by_a0 / k.value;
   gradient[0] = -a0 / (k.value * k.value);
   return quantity_of(fit, a0 / k.value, gradient);
@@ -63,8 +57,8 @@ void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResu
   }
   const double cosine = std::sqrt(1.0 - std::pow(drive / gravity_m_s2, 2));
   const double alpha_by_drive = 1.0 / (gravity_m_s2 * cosine);
-  result.alpha_deg = quantity_of(fit, std::asin(drive / gravity_m_s2) * kDegreesPerRad,
-                                 Eigen::Vector3d(0.0, alpha_by_drive * kDegreesPerRad, 0.0));
+  result.alpha_deg = quantity_of(fit, std::asin(drive / gravity_m_s2) * base::kDegreesPerRad,
+                                 Eigen::Vector3d(0.0, alpha_by_drive * base::kDegreesPerRad, 0.0));
   // mu = f / (g cos(alpha)); d mu / d alpha = mu tan(alpha)
   const double mu = friction / (gravity_m_s2 * cosine);
   const double mu_by_drive = mu * drive / gravity_m_s2 / cosine * alpha_by_drive;

@@ -19,7 +19,7 @@ struct Shutter {
   bool bottom_first = false;
   int rows = 1;  ///< of the image
 
-  /// How much later than the first row's a row's exposure starts; also between rows.
+  /// How much later than the first row's a row's exposure starts: clip_renderer.cpp draws each row at its own time.
   double delay_s(double row) const { return line_readout_s * (bottom_first ? rows - 1 - row : row); }
   /// From the start of the first row's exposure to the start of the last one's.
   double readout_s() const { return line_readout_s * (rows - 1); }

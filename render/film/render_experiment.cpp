@@ -6,11 +6,11 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/long_work.h"
+#include "base/math/angles.h"
 #include "base/text/csv.h"
 #include "render/film/clip_renderer.h"
 #include "render/film/truth_files.h"
@@ -21,8 +21,6 @@
 
 namespace glidelab::render {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// A pose as a person would take it: where in the image (parts of its half width and height off the middle), how
 /// large (part of the image's width), how tilted (degrees about the image's horizontal and vertical), how turned.
@@ -67,9 +65,9 @@ std::vector<Chessboard> calibration_boards(const Scenario& scenario, std::uint64
   for (int view = 0; view < pattern.views; ++view) {
     Pose pose = kPoses[static_cast<std::size_t>(view) % std::size(kPoses)];
     const auto random = [&](std::uint32_t number) { return jitter(seed, static_cast<std::uint32_t>(view), number); };
-    const double tilt_x = (pose.tilt_x_deg + 2.0 * random(0)) * kRadPerDeg;
-    const double tilt_y = (pose.tilt_y_deg + 2.0 * random(1)) * kRadPerDeg;
-    const double turn = (pose.turn_deg + 3.0 * random(2)) * kRadPerDeg;
+    const double tilt_x = (pose.tilt_x_deg + 2.0 * random(0)) * base::kRadPerDegree;
+    const double tilt_y = (pose.tilt_y_deg + 2.0 * random(1)) * base::kRadPerDegree;
+    const double turn = (pose.turn_deg + 3.0 * random(2)) * base::kRadPerDegree;
     const Eigen::Matrix3d R_CP =
         (Eigen::AngleAxisd(tilt_x, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(tilt_y, Eigen::Vector3d::UnitY()) *
          Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()))

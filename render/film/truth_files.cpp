@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/long_work.h"
+#include "base/math/angles.h"
 #include "base/text/csv.h"
 #include "base/toml/toml_set.h"
 #include "render/film/clip_renderer.h"
@@ -22,8 +22,6 @@
 
 namespace glidelab::render {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// A float of TOML, with a point; 12 digits hide what a conversion from degrees and back leaves.
 std::string number(double value) {
@@ -91,9 +89,9 @@ std::string experiment_toml(const Scenario& scenario) {
       line("name", base::toml_string(motion.name));
       line("file", base::toml_string("clips/" + file_name_of(scenario.codec, scenario.compression, motion.name)));
       line("mass_kg", number(configuration.body.mass_kg));
-      line("incline_deg", number(configuration.stated_incline_rad * kDegPerRad));
+      line("incline_deg", number(configuration.stated_incline_rad * base::kDegreesPerRad));
       if (configuration.stated_incline_sd_rad > 0.0) {
-        line("incline_sd_deg", number(configuration.stated_incline_sd_rad * kDegPerRad));
+        line("incline_sd_deg", number(configuration.stated_incline_sd_rad * base::kDegreesPerRad));
       }
       line("launched", base::toml_string(word_of(motion.launched)));
       line("group", base::toml_string(configuration.group));
@@ -127,11 +125,11 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed) {
     configurations.push_back(
         {{"name", configuration.name},
          {"mass_kg", configuration.body.mass_kg},
-         {"stated_incline_deg", configuration.stated_incline_rad * kDegPerRad},
+         {"stated_incline_deg", configuration.stated_incline_rad * base::kDegreesPerRad},
          {"group", configuration.group},
          {"k_over_m_1_s", law ? nlohmann::ordered_json(law->k_over_m_1_s) : nlohmann::ordered_json(nullptr)},
          {"mu", law ? nlohmann::ordered_json(law->mu) : nlohmann::ordered_json(nullptr)},
-         {"alpha_deg", configuration.body.incline_rad * kDegPerRad},
+         {"alpha_deg", configuration.body.incline_rad * base::kDegreesPerRad},
          {"v_lim_m_s", maybe(sim::limit_speed_m_s(configuration.body))},
          {"clips", names}});
   }

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -54,8 +53,6 @@ namespace sections {
 #define GLIDELAB_DECLARE_SECTION(name) extern const ScenarioSection name;
 GLIDELAB_SCENARIO_SECTIONS(GLIDELAB_DECLARE_SECTION)
 #undef GLIDELAB_DECLARE_SECTION
-
-inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// For a section that ideal frames show as it is, or do not look at.
 void keep(Scenario& scenario);

@@ -112,13 +112,15 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
     const auto below_zero = [](const core::Quantity& quantity) {
       return quantity.estimate && quantity.estimate->value < -kBelowZero * quantity.estimate->sd;
     };
-    const auto doubt = [&](const core::Quantity& quantity, const char* name, const char* reason) {
+    const auto doubt = [&](core::Measurand which, const char* reason) {
+      const core::Quantity& quantity = core::value_of(c, which);
       if (!below_zero(quantity)) return;
-      doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c), name,
+      doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c),
+                                   symbol_of(core::key_of(which)),
                                    base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), reason));
     };
-    doubt(c.k_over_m_1_s, "K/m", "no drag can cause");
-    doubt(c.mu, "µ", "no friction can cause");
+    doubt(core::Measurand::k_over_m, "no drag can cause");
+    doubt(core::Measurand::mu, "no friction can cause");
   }
   const core::ClipResult* farthest = nullptr;
   const core::LineFit* line = nullptr;

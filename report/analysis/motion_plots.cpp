@@ -309,7 +309,7 @@ Diagram diagram(const core::AnalysisResults& results, const PhaseGroup& group, c
         "${0} using 1:{2} with points pt 7 ps 0.3 lc rgb '{3}' notitle, ${1} using 1:(${2}-$4):(0):(2*$4) with vectors "
         "nohead lw 1.2 lc rgb '{3}' notitle, ",
         data_name("points", cloud.configuration), data_name("bars", cloud.configuration), residuals ? 3 : 2, own);
-    const std::string label = gnuplot_quoted(shortened(configuration_label(results, group, cloud.configuration)));
+    const std::string label = gnuplot_quoted(shortened(phase_label(results, group, cloud.configuration)));
     lines += (n > 1 ? ", " : "") +
              (residuals ? fmt::format("keyentry with points pt 7 ps 0.8 lc rgb '{}' title {}", own, label)
                         : fmt::format("${} using 1:2 with lines lw 1.6 lc rgb '{}' title {}", line, own, label));
@@ -378,8 +378,7 @@ std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results) {
   return groups;
 }
 
-std::string configuration_label(const core::AnalysisResults& results, const PhaseGroup& group,
-                                std::size_t configuration) {
+std::string phase_label(const core::AnalysisResults& results, const PhaseGroup& group, std::size_t configuration) {
   const core::ConfigurationResult& own = results.configurations[configuration];
   std::string label = own.mass_kg < 1.0 ? fmt::format("{:.6g} g", own.mass_kg * 1e3)  // as a person reads it
                                         : fmt::format("{:.6g} kg", own.mass_kg);

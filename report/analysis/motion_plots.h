@@ -37,8 +37,7 @@ struct PhaseGroup {
 std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results);
 
 /// "335 g", with the name of its group where another configuration of the diagram has the same mass.
-std::string configuration_label(const core::AnalysisResults& results, const PhaseGroup& group,
-                                std::size_t configuration);
+std::string phase_label(const core::AnalysisResults& results, const PhaseGroup& group, std::size_t configuration);
 
 /// Half of the 95 % interval of a line at v, in m/s²: t sqrt(var(a0) - 2 v cov(K/m, a0) + v² var(K/m)), with the t of
 /// the line's own intervals; 0 of a line without errors.

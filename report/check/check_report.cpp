@@ -50,7 +50,7 @@ Json clip_json(const core::ClipCheck& clip) {
   json["frames"] = clip.frames;
   json["seen"] = clip.seen;
   put(json, "frame_rate_hz", clip.frame_rate_hz);
-  put(json, "way_m", clip.way_m);
+  put(json, "way_m", clip.distance_m);
   put(json, "top_speed_m_s", clip.top_speed_m_s);
   put(json, "position_noise_m", clip.position_noise_m, "too few points");
   json["notes"] = clip.notes;
@@ -118,7 +118,7 @@ std::string check_json(const core::RecordingCheck& check) {
 
 namespace {
 
-std::string percent(double share) {
+std::string share_cell(double share) {
   return base::number_text(100.0 * share, 3) + " %";
 }
 
@@ -246,7 +246,7 @@ Html pattern_section(const core::RecordingCheck& check) {
         "The camera's model fits the corners to {} px (rms), those of the plane view to {} px. The views cover {} of "
         "the image.",
         base::number_text(pattern.calibration->rms_px, 2), base::number_text(pattern.calibration->plane_rms_px, 2),
-        percent(pattern.covered));
+        share_cell(pattern.covered));
   }
   text += "</p>\n";
   if (!pattern.views.empty()) text += figures({coverage_plot(check)});
@@ -292,7 +292,7 @@ const std::vector<ClipRow> kClipRows = {
        return clip.pictures ? base::digits_text(clip.marker_px, 3) : std::string("–");
      }},
     {"contrast",
-     [](const core::ClipCheck& clip) { return clip.contrast ? percent(*clip.contrast) : std::string("–"); }},
+     [](const core::ClipCheck& clip) { return clip.contrast ? share_cell(*clip.contrast) : std::string("–"); }},
     {"over noise",
      [](const core::ClipCheck& clip) {
        return clip.contrast && clip.pixel_noise > 0.0 ? base::number_text(*clip.contrast / clip.pixel_noise, 3)
@@ -300,7 +300,7 @@ const std::vector<ClipRow> kClipRows = {
      }},
     {"white, black",
      [](const core::ClipCheck& clip) {
-       return clip.pictures ? percent(clip.saturated) + ", " + percent(clip.dark) : std::string("–");
+       return clip.pictures ? share_cell(clip.saturated) + ", " + share_cell(clip.dark) : std::string("–");
      }},
     {"noise (mm)",
      [](const core::ClipCheck& clip) {

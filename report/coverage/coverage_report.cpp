@@ -160,7 +160,7 @@ std::string noise_text(const validate::Coverage& coverage) {
 }
 
 /// "µ of m1 by the generalised lines: 41.0 % at 50 %, 88.0 % at 95 %": an item for each row, its levels together.
-std::string list_of(const std::vector<validate::CoverageFailure>& failures) {
+std::string failures_html(const std::vector<validate::CoverageFailure>& failures) {
   std::string text;
   for (std::size_t i = 0; i < failures.size(); ++i) {
     const validate::CoverageRow& row = failures[i].row;
@@ -226,10 +226,10 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
         "replicates can tell.</p>\n";
   } else {
     text += "<p>These intervals hold the truth less often than they say (how often, at each stated level):</p>\n" +
-            list_of(narrow);
+            failures_html(narrow);
   }
   if (!wide.empty()) {
-    text += "<p>These are wider than they need to be, and hold the truth more often:</p>\n" + list_of(wide);
+    text += "<p>These are wider than they need to be, and hold the truth more often:</p>\n" + failures_html(wide);
   }
   const std::vector<validate::CoverageRow> astray = scattered(coverage);
   if (!astray.empty()) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "base/math/angles.h"
 #include "base/text/number_text.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
@@ -64,8 +64,6 @@ std::string list_of(const std::vector<std::string>& words, const std::string& la
 }
 
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Decimals of a value to the first digit of its standard deviation, two at least.
 int decimals_for(double sd) {
@@ -166,15 +164,16 @@ struct Sentence {
   }
   std::string operator()(const diagnose::ContradictedIncline& of) const {
     const auto with_sd = [](double angle_rad, double sd_rad) {
-      const double sd = kDegrees * sd_rad;
-      return fmt::format("{:.{}f} ± {:.{}f}°", kDegrees * angle_rad, decimals_for(sd), sd, decimals_for(sd));
+      const double sd = base::kDegreesPerRad * sd_rad;
+      return fmt::format("{:.{}f} ± {:.{}f}°", base::kDegreesPerRad * angle_rad, decimals_for(sd), sd,
+                         decimals_for(sd));
     };
     const std::string stated = fmt::format("The inclination of set-up \"{}\" is {} {}, and the motion gives ", of.group,
                                            with_sd(of.stated_rad, of.stated_sd_rad),
                                            of.against == "plumb" ? "by the plumb line" : "as " + of.against);
     if (!(of.motion_sd_rad > 0.0)) {
-      return stated +
-             fmt::format("{:.2f}° by the nominal model, which leaves out what is missing.", kDegrees * of.motion_rad);
+      return stated + fmt::format("{:.2f}° by the nominal model, which leaves out what is missing.",
+                                  base::kDegreesPerRad * of.motion_rad);
     }
     return stated + fmt::format("{} by the {} ({:.3g} standard deviations apart).",
                                 with_sd(of.motion_rad, of.motion_sd_rad),
@@ -232,7 +231,6 @@ namespace {
 using diagnose::Change;
 using diagnose::ChangeKind;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which a larger figure means nothing more
 constexpr const char* kMoveCamera =
     "what belongs to the track stays in place on it; what belongs to the image moves with the camera.";
@@ -284,7 +282,7 @@ std::string change_words(const Change& change) {
       return fmt::format("{} with {} on the track {}", launch, grams,
                          change.set_up->alpha_rad == 0.0
                              ? "made level"
-                             : fmt::format("tilted to {:.1f}°", change.set_up->alpha_rad / kDegree));
+                             : fmt::format("tilted to {:.1f}°", change.set_up->alpha_rad / base::kRadPerDegree));
     case ChangeKind::frame_rate:
       return fmt::format("{}{} with {} at {:.4g} frames per second instead of {:.4g}", launch, on, grams,
                          change.clip->rate_hz, change.rate_so_far_hz);
@@ -292,7 +290,7 @@ std::string change_words(const Change& change) {
       return fmt::format("{}{} with {} with half the exposure (it halves the blur)", launch, on, grams);
     case ChangeKind::plumb:
       return fmt::format("Film a plumb line{} (it states the inclination to {:.2g}°)", on,
-                         change.statements.front().sd / kDegree);
+                         change.statements.front().sd / base::kRadPerDegree);
     case ChangeKind::pattern:
       return fmt::format(
           "Lay the pattern (or a ruler) in the plane of motion on each half of the track, and compare its length there "

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "base/files/file_io.h"
+#include "base/text/digit.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::report {
@@ -21,10 +22,6 @@ constexpr std::array<std::string_view, 36> kUnits = {
     "%",     "°",     "m",   "mm",  "µm",   "nm",   "s",   "ms",    "µs",    "ns",  "kg",   "g",
     "N",     "mN",    "µN",  "Hz",  "px",   "px²",  "ppm", "EUR",   "DN",    "m/s", "mm/s", "m/s²",
     "mm/s²", "µm/s²", "1/s", "1/m", "1/m²", "kg/m", "N/m", "N s/m", "DN/e⁻", "e⁻",  "e⁻/s", "px/s"};
-
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 
 /// The character that ends before `at` (above 0) in UTF-8.
 char32_t character_before(std::string_view text, std::size_t at) {
@@ -87,8 +84,8 @@ std::string_view unit_behind(std::string_view html, std::size_t at) {
 /// How many bytes from the space at `at` on belong to the number before it; 0 where a line may begin there.
 std::size_t joined_behind(std::string_view html, std::size_t at) {
   if (html[at] != ' ' || at == 0) return 0;
-  if (is_digit(html[at - 1]) && html.substr(at).starts_with(kPlusMinus)) return kPlusMinus.size();
-  const std::string_view unit = is_digit(html[at - 1]) || html[at - 1] == ')' ? unit_behind(html, at) : "";
+  if (base::is_digit(html[at - 1]) && html.substr(at).starts_with(kPlusMinus)) return kPlusMinus.size();
+  const std::string_view unit = base::is_digit(html[at - 1]) || html[at - 1] == ')' ? unit_behind(html, at) : "";
   return unit.empty() ? 0 : 1 + unit.size();
 }
 
@@ -109,8 +106,8 @@ std::string typeset_numbers(std::string_view html) {
       i += joined;
       continue;
     }
-    const bool minus =
-        html[i] == '-' && i + 1 < html.size() && is_digit(html[i + 1]) && (i == 0 || !joins(character_before(html, i)));
+    const bool minus = html[i] == '-' && i + 1 < html.size() && base::is_digit(html[i + 1]) &&
+                       (i == 0 || !joins(character_before(html, i)));
     text += minus ? std::string_view("\u2212") : html.substr(i, 1);
     ++i;
   }

@@ -342,7 +342,7 @@ struct Listed {
 };
 
 /// "K/m, µ by trajectory (80 to 88 %)": of each estimator its quantities, of many estimators the first.
-std::string list_of(std::vector<Listed> all, int digits, const char* unit) {
+std::string series_text(std::vector<Listed> all, int digits, const char* unit) {
   std::stable_sort(all.begin(), all.end(),
                    [](const Listed& x, const Listed& y) { return x.series->estimator < y.series->estimator; });
   std::string text;
@@ -389,8 +389,8 @@ std::string intervals(const SweepSummary& summary) {
   if (narrow.empty() && wide.empty()) {
     return " All stated 95 % intervals hold the truth as often as they say, within three standard errors.";
   }
-  return two_lists("95 % intervals that hold the truth", list_of(narrow, 2, " %"), list_of(wide, 2, " %"), "less often",
-                   "more often");
+  return two_lists("95 % intervals that hold the truth", series_text(narrow, 2, " %"), series_text(wide, 2, " %"),
+                   "less often", "more often");
 }
 
 /// Stated standard deviations that are far from the errors: a few values that lie far off do not show in coverage.
@@ -405,7 +405,7 @@ std::string stated_sds(const SweepSummary& summary) {
     if (of.sd > clearly * of.rms) large.push_back({&series, of.sd / of.rms});
   }
   return two_lists(fmt::format("Stated standard deviations that are more than {} times", base::number_text(kAstray, 1)),
-                   list_of(small, 2, " times"), list_of(large, 2, " times"), "smaller than the rms error",
+                   series_text(small, 2, " times"), series_text(large, 2, " times"), "smaller than the rms error",
                    "larger than the rms error");
 }
 

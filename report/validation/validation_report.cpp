@@ -171,7 +171,8 @@ namespace {
 constexpr double kAgrees_sd = 2.0;  // standard deviations from the truth: 95 of 100 values lie within
 
 /// What a reader wants to know first.
-constexpr std::array<std::string_view, 3> kHeadline = {"k_over_m_1_s", "mu", "alpha_deg"};
+constexpr std::array<std::string_view, 3> kHeadline = {
+    core::key_of(core::Measurand::k_over_m), core::key_of(core::Measurand::mu), core::key_of(core::Measurand::alpha)};
 
 /// The fit of the whole motion where it has a value, as it is the more precise; else the first of the estimators.
 std::string headline_estimator(const validate::Comparison& comparison) {
@@ -286,7 +287,8 @@ std::string comparison_table(const validate::Comparison& comparison) {
       // Three standard deviations happen once in 370 times; a reader should look at more.
       in_sd = fmt::format("<span class=\"{}\">{:+.2f}</span>", std::abs(ratio) <= 3.0 ? "good" : "bad", ratio);
     }
-    const bool relative = q.error && q.truth && *q.truth != 0.0 && q.quantity != "alpha_deg" && q.quantity != "mu";
+    const bool relative = q.error && q.truth && *q.truth != 0.0 && q.quantity != core::key_of(core::Measurand::alpha) &&
+                          q.quantity != core::key_of(core::Measurand::mu);
     table.row({escape(heading_of(q.quantity)), cell(q.truth, base::value_text, sd),
                q.value ? base::value_text(*q.value, sd) : fmt::format("<span title=\"{}\">–</span>", escape(q.why)),
                q.sd ? base::sd_text(*q.sd) : "–", cell(q.error, base::error_text, sd), in_sd,

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <string>
 
+#include "base/math/angles.h"
 #include "sim/force/read_force.h"
 
 namespace glidelab::sim {
@@ -51,8 +51,6 @@ std::optional<double> limit_speed_m_s(const Body& body) {
 namespace {
 
 using base::TomlTable;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 std::string as_text(const std::string& text) {
   return "text \"" + text + "\"";
@@ -122,9 +120,10 @@ ConfigurationSetup read_configuration(const TomlTable& table, double gravity_m_s
   setup.body.gravity_m_s2 = gravity_m_s2;
   setup.body.mass_kg = table.number("mass_kg", {.low = 0.0, .high = 1000.0, .low_open = true});
   const double incline_deg = table.number("incline_deg", incline);
-  setup.body.incline_rad = incline_deg * kRadPerDeg;
-  setup.stated_incline_rad = table.number_or("stated_incline_deg", incline_deg, incline) * kRadPerDeg;
-  setup.stated_incline_sd_rad = table.number_or("stated_incline_sd_deg", 0.0, base::between(0.0, 90.0)) * kRadPerDeg;
+  setup.body.incline_rad = incline_deg * base::kRadPerDegree;
+  setup.stated_incline_rad = table.number_or("stated_incline_deg", incline_deg, incline) * base::kRadPerDegree;
+  setup.stated_incline_sd_rad =
+      table.number_or("stated_incline_sd_deg", 0.0, base::between(0.0, 90.0)) * base::kRadPerDegree;
   for (const TomlTable& force : table.tables_or_none("force")) {
     setup.body.forces.push_back(read_force(force, setup.body.mass_kg));
   }
@@ -141,9 +140,9 @@ void check_groups(const std::vector<TomlTable>& tables, const std::vector<Config
     const ConfigurationSetup& first = setups[first_index];
     const auto compare = [&](const char* key, double value, double first_value) {
       if (std::isnan(value) || std::isnan(first_value) || value == first_value) return;
-      tables[i].reject(key, fmt::format("{:.10g}", value / kRadPerDeg),
+      tables[i].reject(key, fmt::format("{:.10g}", value / base::kRadPerDegree),
                        fmt::format("{:.10g} as in line {}, for group \"{}\" is one set-up of the track",
-                                   first_value / kRadPerDeg, tables[first_index].line(key), first.group));
+                                   first_value / base::kRadPerDegree, tables[first_index].line(key), first.group));
     };
     compare("incline_deg", setups[i].body.incline_rad, first.body.incline_rad);
     compare("stated_incline_deg", setups[i].stated_incline_rad, first.stated_incline_rad);

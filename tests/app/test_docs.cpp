@@ -326,7 +326,7 @@ TEST_CASE("a file of the repository that is named and not there is found, a plac
   CHECK(missing("`core/a.h`, `core/a`, `sim/force`, `other/b.h`, core/c.h without backticks\n").empty());
   CHECK(missing("`core/c.h`\n") == std::vector<std::string>{"docs/b.md:1: core/c.h"});
   CHECK(missing("    tools/demo     # installs\n    tools/gone\n").size() == 1);
-  CHECK(missing("`diagnose/effects/<id>.cpp`, `scenarios/rehearsals/NAME.toml`, `core/*.h`\n").empty());
+  CHECK(missing("`diagnose/effects/force/<id>.cpp`, `scenarios/rehearsals/NAME.toml`, `core/*.h`\n").empty());
 }
 
 TEST_CASE("a seed, a commit or a date outside docs/evidence is found") {

@@ -25,11 +25,17 @@ namespace {
 const std::vector<std::string> kRooms = {"base",     "core",  "sim",    "render", "fit",
                                          "diagnose", "teach", "report", "app",    "validate"};
 constexpr int kMostLines = 500;
-constexpr int kMostSources = 25;  // of a folder, unless its files are items of a list, which nobody reads as a whole
+constexpr int kMostSources = 25;  // of a folder
 
 /// Where a file is one item of a list that a header elsewhere declares: it has no header of its own.
-const std::vector<std::string> kItems = {"app/commands/",   "app/shell/main.cpp",        "diagnose/effects/",
-                                         "sim/force/laws/", "render/scenario/sections/", "core/motion/bandwidth/rule_"};
+const std::vector<std::string> kItems = {"app/commands/",
+                                         "app/shell/main.cpp",
+                                         "diagnose/effects/force/",
+                                         "diagnose/effects/camera/",
+                                         "diagnose/effects/record/",
+                                         "sim/force/laws/",
+                                         "render/scenario/sections/",
+                                         "core/motion/bandwidth/rule_"};
 
 /// Sources without a header of their name that still stand elsewhere; the list only shrinks.
 const std::set<std::string> kStandingWithoutHeader = {};
@@ -48,11 +54,10 @@ bool is_item(const Source& source) {
   return std::any_of(kItems.begin(), kItems.end(), [&](const std::string& start) { return path.starts_with(start); });
 }
 
-/// Items of a list, which one finds by their names, are as many as the list is long.
 std::vector<std::string> too_full(const std::vector<Source>& sources) {
   std::map<std::string, int> count;
   for (const Source& source : sources) {
-    if (source.path.extension() == ".cpp" && !is_item(source)) ++count[source.path.parent_path().string()];
+    if (source.path.extension() == ".cpp") ++count[source.path.parent_path().string()];
   }
   std::vector<std::string> found;
   for (const auto& [folder, sources_in_it] : count) {
@@ -85,6 +90,32 @@ std::set<std::string> without_header(const std::vector<Source>& sources) {
   return found;
 }
 
+/// Tests that do not lie where their source lies: in a folder below tests/<room> that mirrors none, or, named after a
+/// source, in another folder than that which mirrors its own.
+std::vector<std::string> misplaced_tests(const std::vector<Source>& tests, const std::vector<Source>& sources) {
+  std::set<fs::path> folders;
+  std::map<std::string, fs::path> folder_of;  // by the source's name
+  for (const Source& source : sources) {
+    folder_of[source.path.stem().string()] = source.path.parent_path();
+    for (fs::path folder = source.path.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+      folders.insert(folder);
+    }
+  }
+  std::vector<std::string> found;
+  for (const Source& test : tests) {
+    const fs::path folder = test.path.parent_path().lexically_relative("tests");
+    if (std::find(kRooms.begin(), kRooms.end(), folder.begin()->string()) == kRooms.end()) continue;
+    if (!folders.contains(folder))
+      found.push_back(fmt::format("{}: there is no {}", test.path.string(), folder.string()));
+    const std::string stem = test.path.stem().string();
+    if (!stem.starts_with("test_")) continue;
+    const auto source = folder_of.find(stem.substr(5));
+    if (source == folder_of.end() || source->second == folder) continue;
+    found.push_back(fmt::format("{}: its source lies in {}", test.path.string(), source->second.string()));
+  }
+  return found;
+}
+
 /// Rooms and tests; the examples are programs of their own.
 std::vector<Source> all_sources() {
   std::vector<std::string> folders = kRooms;
@@ -106,12 +137,12 @@ TEST_CASE("no folder holds more sources than one takes in at a glance") {
   for (int i = 0; i < 25; ++i) many.push_back({fmt::format("core/a/x{}.cpp", i), ""});
   many.push_back({"core/a/x.h", ""});
   many.push_back({"core/a/b/x.cpp", ""});
-  for (int i = 0; i < 30; ++i) many.push_back({fmt::format("diagnose/effects/x{}.cpp", i), ""});
-  CHECK(too_full(many).empty());
-  for (int i = 0; i < 40; ++i) many.push_back({fmt::format("diagnose/effects/x{}.cpp", i), ""});
   CHECK(too_full(many).empty());
   many.push_back({"core/a/y.cpp", ""});
   CHECK(too_full(many) == std::vector<std::string>{"core/a: 26 sources"});
+  std::vector<Source> items;
+  for (int i = 0; i < 26; ++i) items.push_back({fmt::format("diagnose/effects/force/x{}.cpp", i), ""});
+  CHECK(too_full(items) == std::vector<std::string>{"diagnose/effects/force: 26 sources"});
 }
 
 TEST_CASE("no two files have one name") {
@@ -127,6 +158,22 @@ TEST_CASE("every source has the header of its name, unless it is an item of a li
   CHECK(without_header({{"core/a/x.h", ""}, {"core/b/x.cpp", ""}, {"core/a/x_more.cpp", ""}}) ==
         std::set<std::string>{"core/a/x_more.cpp", "core/b/x.cpp"});
   CHECK(without_header({{"app/commands/x_command.cpp", ""}, {"core/motion/bandwidth/rule_x.cpp", ""}}).empty());
+}
+
+TEST_CASE("a test lies in the folder that mirrors its source's") {
+  CHECK(misplaced_tests(tests::sources_below({"tests"}), tests::sources_below(kRooms)) == std::vector<std::string>{});
+  const std::vector<Source> sources = {{"core/a/b/x.cpp", ""}, {"core/c/y.h", ""}};
+  CHECK(misplaced_tests({{"tests/core/a/b/test_x.cpp", ""},
+                         {"tests/core/a/test_of_a.cpp", ""},
+                         {"tests/core/c/made_y.h", ""},
+                         {"tests/recipes/any/test_x.cpp", ""},
+                         {"tests/test_main.cpp", ""}},
+                        sources)
+            .empty());
+  CHECK(misplaced_tests({{"tests/core/c/test_x.cpp", ""}}, sources) ==
+        std::vector<std::string>{"tests/core/c/test_x.cpp: its source lies in core/a/b"});
+  CHECK(misplaced_tests({{"tests/core/d/test_z.cpp", ""}}, sources) ==
+        std::vector<std::string>{"tests/core/d/test_z.cpp: there is no core/d"});
 }
 
 TEST_CASE("no test's name holds a semicolon, at which CMake would cut it in two that match nothing") {

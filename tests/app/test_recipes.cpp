@@ -190,15 +190,15 @@ TEST_CASE("the recipe of an effect: all its steps make one, and each step that i
   Copy copy({"diagnose/effects", "diagnose/model", "tests/diagnose/effects/test_effect_library.cpp",
              "docs/reference/effects.md"},
             "glidelab_room(effects FOLDERS diagnose LINK glidelab::base)", "effects",
-            "diagnose/effects/toy_effect.cpp");
-  const std::string effect = "diagnose/effects/toy_effect.cpp", list = "diagnose/effects/effect_list.h";
+            "diagnose/effects/force/toy_effect.cpp");
+  const std::string effect = "diagnose/effects/force/toy_effect.cpp", list = "diagnose/effects/effect_list.h";
   const std::string next = "  EFFECT(smoothing_bias)", line = "  EFFECT(toy_effect) \\";
   const std::string page = "docs/reference/effects.md", next_row = "| `smoothing_bias` |";
   const std::string row = "| `toy_effect` | spring | a force -k x | `k_n_m` (0) | a range of x |";
   copy.take("tests/recipes/effect/toy_effect.cpp", effect);
   copy.add_line_before(list, next, line);
   copy.add_line_before(page, next_row, row);
-  copy.take("tests/recipes/effect/test_toy_effect.cpp", "tests/diagnose/effects/test_toy_effect.cpp");
+  copy.take("tests/recipes/effect/test_toy_effect.cpp", "tests/diagnose/effects/force/test_toy_effect.cpp");
   copy.check_passes();
 
   copy.remove_line(page, row);

@@ -2,20 +2,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/result/quantity.h"
+
 namespace glidelab::validate {
 namespace {
 
 using SequenceJson = nlohmann::json;
 
 /// The value of a key; null where it is missing.
-const SequenceJson& value_of(const SequenceJson& object, const char* key) {
+const SequenceJson& value_of(const SequenceJson& object, const std::string& key) {
   static const SequenceJson none;
   return object.contains(key) ? object.at(key) : none;
 }
 
 BlindRecovered recovered_of(const SequenceJson& object) {
   BlindRecovered one{object.at("group"), object.at("mass_kg"), object.at("incline_deg"), {}};
-  for (const char* key : {"k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"}) {
+  for (const std::string& key : core::quantity_keys()) {
     const SequenceJson& quantity = value_of(object, key);
     const SequenceJson& interval = quantity.is_object() ? value_of(quantity, "interval95") : quantity;
     if (interval.is_array()) one.interval95[key] = {interval.at(0), interval.at(1)};

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/errors.h"
+#include "core/result/quantity.h"
 
 namespace glidelab::validate {
 namespace {
@@ -138,13 +139,6 @@ EverydayCalibration calibration_of(const std::vector<std::pair<double, bool>>& s
   return of;
 }
 
-std::optional<double> true_value(const EverydayConfiguration& of, const std::string& key) {
-  if (key == "k_over_m_1_s") return of.k_over_m_1_s;
-  if (key == "mu") return of.mu;
-  if (key == "alpha_deg") return of.alpha_deg;
-  return of.v_lim_m_s;
-}
-
 void add_coverage(const BlindOutcome& outcome, EverydayScore& score) {
   constexpr double kSameMass = 1e-6, kSameIncline = 1e-3;  // kg, degrees: as a file states them
   for (const BlindRecovered& told : outcome.verdict.sequence.recovered) {
@@ -159,7 +153,7 @@ void add_coverage(const BlindOutcome& outcome, EverydayScore& score) {
                                          "a configuration of the case's experiment.toml"});
     }
     for (const auto& [key, interval] : told.interval95) {
-      const auto value = true_value(*truth, key);
+      const auto value = true_value(*truth, core::kQuantities.at(core::place_of(key)).which);
       add(score.covered[std::string(word(outcome.everyday->kind))][key],
           value && *value >= interval.low && *value <= interval.high);
     }

@@ -4,10 +4,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "base/long_work.h"
+#include "base/math/angles.h"
 #include "core/motion/analyze_motion.h"
 #include "core/motion/join_configurations.h"
 #include "core/pictures/marker/marker.h"
@@ -16,6 +16,7 @@
 #include "render/scenario/scene.h"
 #include "sim/motion/motion_scenario.h"
 #include "sim/motion/simulate.h"
+#include "validate/random_use.h"
 
 namespace glidelab::validate {
 namespace {
@@ -101,8 +102,6 @@ std::vector<double> predicted_noise_m(const render::Scenario& scenario, const Tr
 
 namespace {
 
-constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
-
 core::Launched launched_of(sim::Launched launched) {
   switch (launched) {
     case sim::Launched::up:
@@ -119,13 +118,13 @@ TrueConfiguration true_configuration(const sim::ConfigurationSetup& setup) {
   TrueConfiguration truth;
   truth.name = setup.name;
   truth.mass_kg = setup.body.mass_kg;
-  truth.stated_incline_deg = setup.stated_incline_rad * kDegreesPerRad;
+  truth.stated_incline_deg = setup.stated_incline_rad * base::kDegreesPerRad;
   truth.group = setup.group;
   if (const auto law = sim::linear_law(setup.body)) {
     truth.k_over_m_1_s = law->k_over_m_1_s;
     truth.mu = law->mu;
   }
-  truth.alpha_deg = setup.body.incline_rad * kDegreesPerRad;
+  truth.alpha_deg = setup.body.incline_rad * base::kDegreesPerRad;
   truth.v_lim_m_s = sim::limit_speed_m_s(setup.body);
   for (const sim::MotionSetup& motion : setup.motions) truth.clips.push_back(motion.name);
   return truth;
@@ -213,9 +212,7 @@ MadeTracks with_noise(const MadeTracks& clean, const std::vector<double>& noise_
   assert(noise_sd_m.size() == clean.tracks.size());
   MadeTracks noisy = clean;
   for (std::size_t c = 0; c < noisy.tracks.size(); ++c) {
-    std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                           static_cast<std::uint32_t>(c)};
-    std::mt19937_64 engine(sequence);
+    std::mt19937_64 engine = random_engine(RandomUse::by_number, seed, c);
     std::normal_distribution<double> deviate(0.0, std::max(noise_sd_m[c], 1e-300));
     const std::vector<double>& true_s = clean.truth.clips[c].t_s;
     std::vector<double>& x_m = noisy.tracks[c].x_m;

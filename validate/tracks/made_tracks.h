@@ -51,8 +51,8 @@ struct MadeTracks {
 /// Without noise. The seed is that of the clock. NumericalError if a motion cannot be moved.
 MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed);
 
-/// The same tracks with independent normal deviates added; a duplicated frame repeats its own. Clip c draws from
-/// mt19937_64 with the seed sequence {seed low, seed high, c}.
+/// The same tracks with independent normal deviates added; a duplicated frame repeats its own. Clip c draws by
+/// its number (random_use.h).
 MadeTracks with_noise(const MadeTracks& clean, double noise_sd_m, std::uint64_t seed);
 /// The same with a standard deviation for each track (as many as there are: asserted).
 MadeTracks with_noise(const MadeTracks& clean, const std::vector<double>& noise_sd_m, std::uint64_t seed);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "base/math/angles.h"
 #include "base/math/dense.h"
 #include "core/result/quantity.h"
 #include "sim/sensitivity/sensitivity.h"
@@ -12,7 +12,6 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 // Reciprocal condition of the scaled information below which rounding is all that tells the parameters apart.
 constexpr double kDetermined = 1e-11;
 
@@ -73,7 +72,7 @@ LeastSd least_sd(const TrueConfiguration& configuration, const std::vector<const
   least.configuration = configuration.name;
   if (!configuration.k_over_m_1_s || !configuration.mu || !configuration.alpha_deg) return least;
   const double k = *configuration.k_over_m_1_s;
-  const double alpha = *configuration.alpha_deg / kDegreesPerRad;
+  const double alpha = *configuration.alpha_deg / base::kDegreesPerRad;
   const double drive = gravity_m_s2 * std::sin(alpha);
   const double friction = *configuration.mu * gravity_m_s2 * std::cos(alpha);
   const sim::TrackLaw law(k, drive, friction);
@@ -92,7 +91,7 @@ LeastSd least_sd(const TrueConfiguration& configuration, const std::vector<const
   if (!covariance) return least;
   const double level = gravity_m_s2 * std::cos(alpha);
   least.k_over_m_1_s = std::sqrt((*covariance)(0, 0));
-  least.alpha_deg = std::sqrt((*covariance)(1, 1)) / level * kDegreesPerRad;
+  least.alpha_deg = std::sqrt((*covariance)(1, 1)) / level * base::kDegreesPerRad;
   least.mu = sd_of(*covariance, Eigen::Vector3d(0.0, *configuration.mu * std::tan(alpha) / level, 1.0 / level));
   least.v_lim_m_s = sd_of_limit(*covariance, k, drive - friction, Eigen::Vector3d(0.0, 1.0, -1.0));
   return least;

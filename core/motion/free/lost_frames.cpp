@@ -57,7 +57,7 @@ struct CubicFit {
   double freedom = 1.0;   ///< points more than parameters
   double off = 0.0;       ///< frames by which those behind lie later still, to first order
   double off_gain = 0.0;  ///< its variance in units of the noise's
-  double way = 0.0;       ///< in one frame, behind the pair
+  double distance = 0.0;  ///< in one frame, behind the pair
 };
 
 using Design = Eigen::Matrix<double, Eigen::Dynamic, 5, 0, kMostPoints, 5>;
@@ -132,7 +132,7 @@ int lost_between(const Window& window, double noise_m) {
     fit = tried;
   }
   const double scatter = std::max(variance, fit.squares / fit.freedom);
-  const double explained = std::max(kExplained * noise_m, kOfDistance * fit.way);
+  const double explained = std::max(kExplained * noise_m, kOfDistance * fit.distance);
   const bool explains = without - fit.squares > kEvidence * scatter && scatter < explained * explained;
   const bool whole = std::abs(fit.off) < kOfFrame && std::sqrt(scatter * fit.off_gain) < kOfFrame;
   return best > 0 && explains && whole ? best : 0;
@@ -206,7 +206,7 @@ std::optional<Beside> lost_beside(const Motion& motion, const std::vector<double
   const auto lost = static_cast<int>(best - fits.begin());
   if (lost == 0 || lost == all) return {};  // one loss with nothing between: found as such
   const double scatter = std::max(motion.noise_m * motion.noise_m, best->squares / best->freedom);
-  const double explained = std::max(kExplained * motion.noise_m, kOfDistance * best->way);
+  const double explained = std::max(kExplained * motion.noise_m, kOfDistance * best->distance);
   const double otherwise = std::min(fits.front().squares, fits.back().squares);
   if (scatter >= explained * explained || otherwise - best->squares < kEvidence * scatter) return {};
   return Beside{lost, all - lost};

@@ -7,15 +7,15 @@
 /// where for the best m > 0
 ///
 ///     S(0) - S(mT)  is above 50 variances of what is left about the cubic (7 standard deviations), or of the noise,
-///     S(mT)         is small: four standard deviations of the noise, or a tenth of a frame's way (no cubic is exact
-///                   where friction turns),
+///     S(mT)         is small: four standard deviations of the noise, or a tenth of the distance in a frame (no
+///                   cubic is exact where friction turns),
 ///     the tau of least S, to first order about mT, is mT within a seventh of T, and known to that.
 ///
-/// An impact, a push or a single wrong position makes no jump of a whole frame's way with the same smooth motion on
-/// both sides, and a reversal has no way to jump. Where the window holds a turn, the acceleration may step there, as
-/// dry friction makes it. A frame alone between two losses is placed by the cubic through those around it. Not found:
-/// what is lost before the second or behind the last but one frame, or where |v| T is below some 15 standard deviations
-/// of the noise (and there it matters little).
+/// An impact, a push or a single wrong position makes no jump of a whole frame's distance with the same smooth motion
+/// on both sides, and a reversal has no distance to jump. Where the window holds a turn, the acceleration may step
+/// there, as dry friction makes it. A frame alone between two losses is placed by the cubic through those around it.
+/// Not found: what is lost before the second or behind the last but one frame, or where |v| T is below some 15 standard
+/// deviations of the noise (and there it matters little).
 #pragma once
 
 #include <vector>

@@ -111,7 +111,7 @@ class RunFinder {
 
  private:
   double span_s(const PointRange& range) const { return motion_.t_s[range.to - 1] - motion_.t_s[range.from]; }
-  double least_way() const { return kLeastMotion * motion_.noise_m; }
+  double least_distance() const { return kLeastMotion * motion_.noise_m; }
 
   void assign_significant() {
     for (std::size_t i = 0; i < direction_.size(); ++i) {
@@ -122,7 +122,7 @@ class RunFinder {
       const auto begin = motion_.x_m.begin();
       const auto [low, high] = std::minmax_element(begin + static_cast<std::ptrdiff_t>(run.from),
                                                    begin + static_cast<std::ptrdiff_t>(run.to));
-      if (*high - *low < least_way()) fill_range(direction_, run, 0);
+      if (*high - *low < least_distance()) fill_range(direction_, run, 0);
     }
   }
 
@@ -142,8 +142,8 @@ class RunFinder {
       x[r] = motion_.x_m[i] - motion_.x_m[middle.from];
     }
     const Eigen::Vector3d fit = (design.transpose() * design).ldlt().solve(design.transpose() * x);
-    // fit[1] is the way over half the range, fit[2] how far its ends lie off: next to none is a fifth of the speed that
-    // counts as still, or what a position's noise covers.
+    // fit[1] is the distance over half the range, fit[2] how far its ends lie off: next to none is a fifth of the speed
+    // that counts as still, or what a position's noise covers.
     const double little = std::max(0.2 * kStillShare * pilot_.top_speed_m_s * half_s, kRestGrowth * motion_.noise_m);
     return std::abs(fit[1]) <= little && std::abs(fit[2]) <= little;
   }
@@ -193,9 +193,9 @@ class RunFinder {
   void settle(const PointRange& range, int before, int after) {
     if (before == after && before != 0) return fill_range(direction_, range, before);
     if (before == 0 && after == 0) {
-      const double way = pilot_.x_m[range.to - 1] - pilot_.x_m[range.from];
-      if (std::abs(way) < least_way()) return rest(range);
-      return fill_range(direction_, range, way > 0.0 ? 1 : -1);
+      const double distance = pilot_.x_m[range.to - 1] - pilot_.x_m[range.from];
+      if (std::abs(distance) < least_distance()) return rest(range);
+      return fill_range(direction_, range, distance > 0.0 ? 1 : -1);
     }
     // x is largest (smallest) where a motion towards +x (-x) turns, or where one towards -x (+x) begins.
     const int outward = before != 0 ? before : -after;
@@ -208,13 +208,14 @@ class RunFinder {
       fill_range(direction_, first, before);
       return fill_range(direction_, second, after);
     }
-    // On one side is an end of the data or a rest. What goes too little way there to be motion is rest, if it is long.
+    // On one side is an end of the data or a rest. What covers too little distance there to be motion is rest, if it is
+    // long.
     const int known = before != 0 ? before : after;
     const PointRange& outer = before != 0 ? first : second;
     const PointRange& inner = before != 0 ? second : first;
     fill_range(direction_, outer, known);
     if (inner.size() == 0) return;
-    if (std::abs(pilot_.x_m[inner.to - 1] - pilot_.x_m[inner.from]) >= least_way()) {
+    if (std::abs(pilot_.x_m[inner.to - 1] - pilot_.x_m[inner.from]) >= least_distance()) {
       return fill_range(direction_, inner, -known);
     }
     if (span_s(inner) < kRestBandwidths * pilot_.bandwidth_s) return fill_range(direction_, inner, known);

@@ -44,12 +44,6 @@ LineShift shift_by(const LineInput& input, const Eigen::Matrix2d& inverse, const
   return {change[0], change[1]};
 }
 
-double squared_correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  PairCorrelation correlation;
-  for (std::size_t j = 0; j < x.size(); ++j) correlation.add(x[j], y[j]);
-  return correlation.squared();
-}
-
 /// L Sigma L' for the rows L_k, L_a0 over all positions.
 void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, double k,
                      const std::vector<double>& autocovariance, LineUncertainty& parts) {
@@ -182,7 +176,9 @@ std::optional<LineFit> fit_line(int direction, const LineInput& input, const std
   fit.points = input.v_m_s.size();
   fit.k_over_m_1_s.value = line[0];
   fit.a0_m_s2.value = line[1];
-  fit.r2 = squared_correlation(input.v_m_s, input.a_m_s2);
+  PairCorrelation correlation;
+  correlation.add(input.v_m_s, input.a_m_s2);
+  fit.r2 = correlation.squared();
   const auto [low, high] = std::minmax_element(input.v_m_s.begin(), input.v_m_s.end());
   fit.from_v_m_s = *low;
   fit.to_v_m_s = *high;
@@ -235,13 +231,9 @@ void complete_line(LineFit& line) {
 Quantity limit_velocity(const std::vector<LineFit>& lines) {
   const auto found = std::find_if(lines.begin(), lines.end(), [](const LineFit& line) { return line.direction > 0; });
   if (found == lines.end()) return undetermined("no line for v > 0");
+  const std::string why_not = why_no_limit_velocity(found->k_over_m_1_s, "K/m for v > 0", found->a0_m_s2);
+  if (!why_not.empty()) return undetermined(why_not);
   const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
-  if (k - kNormal95 * found->k_over_m_1_s.sd <= 0.0) {
-    return undetermined("K/m for v > 0 is not above zero by more than its uncertainty");
-  }
-  if (a0 - kNormal95 * found->a0_m_s2.sd <= 0.0) {
-    return undetermined("a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0");
-  }
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
   const LineUncertainty& parts = found->parts;
   const double random = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "core/math/block_scatter.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
@@ -57,34 +58,26 @@ std::optional<PlaneLine> least_median_line(const std::vector<cv::Point2d>& point
   return best;
 }
 
-/// Variance of the direction by the scatter of ten blocks of points along the line, which holds also where the points'
-/// errors are correlated (an image's sampling, a track that is not straight): (sum of w l e over a block)^2 over the
-/// lever arms' square, as a multiple of what independent points give. 1 where it is not significantly above that.
+/// Variance of the direction by the scatter of blocks of points along the line, with the scores w l e, over what
+/// independent points give (block_scatter.h). 1 where it is not significantly above that.
 double excess_of_blocks(const PlaneLine& line, const std::vector<cv::Point2d>& points,
                         const std::vector<double>& weights) {
-  constexpr std::size_t kBlocks = 10, kFewest = 3;  // points in a block
+  constexpr std::size_t kFewestInBlock = 3;
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (weights[i] > 0.0) order.push_back(i);
   }
-  if (order.size() < kBlocks * kFewest) return 1.0;
+  if (order.size() < kScatterBlocks * kFewestInBlock) return 1.0;
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return line.along(points[a]) < line.along(points[b]); });
-  double scatter = 0.0, independent = 0.0;
-  for (std::size_t block = 0; block < kBlocks; ++block) {
-    double sum = 0.0;
-    for (std::size_t k = block * order.size() / kBlocks; k < (block + 1) * order.size() / kBlocks; ++k) {
-      const std::size_t i = order[k];
-      const double score = weights[i] * line.along(points[i]) * line.across(points[i]);
-      sum += score;
-      independent += score * score;
-    }
-    scatter += sum * sum;
-  }
-  if (!(independent > 0.0)) return 1.0;
-  // Two parameters are fitted; the ratio of independent points scatters by sqrt(2 / 10) about 1.
-  const double ratio = scatter / independent * kBlocks / (kBlocks - 2.0);
-  return ratio > 1.0 + 2.0 * std::sqrt(2.0 / kBlocks) ? ratio : 1.0;
+  double independent = 0.0;
+  const double scatter = scatter_of_blocks(order.size(), [&](std::size_t k) {
+    const std::size_t i = order[k];
+    const double score = weights[i] * line.along(points[i]) * line.across(points[i]);
+    independent += score * score;
+    return score;
+  });
+  return independent > 0.0 ? excess_over_independent(scatter, independent) : 1.0;
 }
 
 /// Through the points that lie near the start; through all where there is none.

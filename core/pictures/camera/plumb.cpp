@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/errors.h"
+#include "base/math/angles.h"
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/thread_fit.h"
 #include "core/pictures/frames/read_image.h"
@@ -280,8 +280,8 @@ Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, co
     const double moved = inclination(mode.axis, thread_line(displaced, first, last));
     variance += std::pow((moved - alpha) / mode.mode.sds, 2);
   }
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  return determined(estimate(alpha * kDegrees, std::sqrt(variance) * kDegrees, static_cast<double>(thread.rows) - 2.0));
+  return determined(estimate(alpha * base::kDegreesPerRad, std::sqrt(variance) * base::kDegreesPerRad,
+                             static_cast<double>(thread.rows) - 2.0));
 }
 
 }  // namespace glidelab::core

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/math/dense.h"
+#include "core/math/block_scatter.h"
 #include "core/math/least_squares.h"
 #include "core/math/quantile.h"
 #include "core/pictures/image/pixel_signal.h"
@@ -110,22 +111,15 @@ std::optional<LeastSquaresFit<kParameters>> fit_best(const std::vector<ThreadRow
   return best;
 }
 
-/// Variance of the turn by ten blocks of rows, over what independent pixels give; 1 where it is not significantly more.
+/// Variance of the turn by blocks of rows, over what independent pixels give (block_scatter.h).
 double excess_of_blocks(const std::vector<ThreadRow>& rows, const Setting& setting,
                         const LeastSquaresFit<kParameters>& found) {
-  constexpr std::size_t kBlocks = 10;
   const Vector gain = found.covariance.row(kTurn).transpose() / (found.rms * found.rms);
-  double scatter = 0.0;
-  for (std::size_t block = 0; block < kBlocks; ++block) {
-    double sum = 0.0;
-    for (std::size_t k = block * rows.size() / kBlocks; k < (block + 1) * rows.size() / kBlocks; ++k) {
-      const auto fit = fit_row(rows[k], setting, found.parameters);
-      if (fit) sum += gain.dot(Vector(base::transposed_product(fit->jacobian, fit->residual)));
-    }
-    scatter += sum * sum;
-  }
-  const double ratio = scatter / found.covariance(kTurn, kTurn) * kBlocks / (kBlocks - 2.0);
-  return ratio > 1.0 + 2.0 * std::sqrt(2.0 / kBlocks) ? ratio : 1.0;
+  const double scatter = scatter_of_blocks(rows.size(), [&](std::size_t k) {
+    const auto fit = fit_row(rows[k], setting, found.parameters);
+    return fit ? gain.dot(Vector(base::transposed_product(fit->jacobian, fit->residual))) : 0.0;
+  });
+  return excess_over_independent(scatter, found.covariance(kTurn, kTurn));
 }
 
 }  // namespace

@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "base/math/angles.h"
 #include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {
 
+using base::kRadPerDegree;
 using base::TomlTable;
-using sections::kRadPerDeg;
 
 /// The frame time, and a billionth for what the decimals of a rate and of a time round.
 double longest_exposure_s(double frame_rate_hz) {
@@ -77,7 +78,7 @@ void read_camera(const std::optional<TomlTable>& found, Scenario& scenario) {
     center = table.maybe_numbers("center_px", 2, base::between(-1e5, 1e5));
     pose.position = sections::vector_or(table, "position_m", pose.position);
     pose.target = sections::vector_or(table, "target_m", pose.target);
-    pose.roll_rad = table.number_or("roll_deg", 0.0, base::between(-180.0, 180.0)) * kRadPerDeg;
+    pose.roll_rad = table.number_or("roll_deg", 0.0, base::between(-180.0, 180.0)) * kRadPerDegree;
     read_lens(table, camera.lens);
     if (!(pose.position.z() > 0.05)) {
       table.reject("position_m", fmt::format("z = {}", pose.position.z()),

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "base/math/angles.h"
 #include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {
 
+using base::kRadPerDegree;
 using base::TomlTable;
-using sections::kRadPerDeg;
 
 void read_calibration(const std::optional<TomlTable>& table, Scenario& scenario) {
   if (!table) return;
@@ -36,8 +37,8 @@ void read_calibration(const std::optional<TomlTable>& table, Scenario& scenario)
   }
   pattern.plane_y_m = table->number_or("plane_y_m", pattern.plane_y_m, base::between(-1000.0, 1000.0));
   pattern.plane_rotation_rad =
-      table->number_or("plane_rotation_deg", pattern.plane_rotation_rad / kRadPerDeg, base::between(-10.0, 10.0)) *
-      kRadPerDeg;
+      table->number_or("plane_rotation_deg", pattern.plane_rotation_rad / kRadPerDegree, base::between(-10.0, 10.0)) *
+      kRadPerDegree;
 }
 
 void read_marker(const std::optional<TomlTable>& table, Scenario& scenario) {

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "base/math/angles.h"
 #include "render/scenario/scenario_sections.h"
 
 namespace glidelab::render {
 namespace {
 
+using base::kRadPerDegree;
 using base::TomlTable;
-using sections::kRadPerDeg;
 
 void read_vignetting(const std::optional<TomlTable>& table, Scenario& scenario) {
   if (!table) return;
@@ -90,7 +91,7 @@ void read_light(const std::optional<TomlTable>& table, Scenario& scenario) {
   }
   light.flicker_depth = table->number_or("flicker_depth", 0.0, base::between(0.0, 1.0));
   light.flicker_hz = table->number_or("flicker_hz", light.flicker_hz, {0.0, 1e6, true, false});
-  light.flicker_phase_rad = table->number_or("flicker_phase_deg", 0.0, base::between(-360.0, 360.0)) * kRadPerDeg;
+  light.flicker_phase_rad = table->number_or("flicker_phase_deg", 0.0, base::between(-360.0, 360.0)) * kRadPerDegree;
   light.ring_light = table->number_or("ring_light", 0.0, base::between(0.0, 1000.0));
   for (const TomlTable& one : table->tables_or_none("reflection")) {
     Reflection reflection;
@@ -130,13 +131,13 @@ void read_mount(const std::optional<TomlTable>& table, Scenario& scenario) {
     const auto number = std::find(axes.begin(), axes.end(), *axis) - axes.begin();
     motion.axis = static_cast<MountAxis>(number);
     const bool turns = number >= 3;
-    const double unit = turns ? kRadPerDeg : 1.0;
+    const double unit = turns ? kRadPerDegree : 1.0;
     const base::Range range = turns ? base::between(-30.0, 30.0) : base::between(-1.0, 1.0);
     motion.offset = unit * one.number_or(turns ? "offset_deg" : "offset_m", 0.0, range);
     motion.drift_per_s = unit * one.number_or(turns ? "drift_deg_s" : "drift_m_s", 0.0, range);
     motion.amplitude = unit * one.number_or(turns ? "amplitude_deg" : "amplitude_m", 0.0, range);
     motion.frequency_hz = one.number_or("frequency_hz", 0.0, base::between(0.0, 1e5));
-    motion.phase_rad = one.number_or("phase_deg", 0.0, base::between(-360.0, 360.0)) * kRadPerDeg;
+    motion.phase_rad = one.number_or("phase_deg", 0.0, base::between(-360.0, 360.0)) * kRadPerDegree;
     if (motion.amplitude != 0.0 && motion.frequency_hz == 0.0) {
       one.reject("frequency_hz", "nothing, or 0", "the frequency of an amplitude");
     }

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "base/math/angles.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_strength.h"
+#include "validate/random_use.h"
 
 namespace glidelab::validate {
 namespace {
@@ -102,9 +103,7 @@ std::string_view word(BlindKind kind) {
 }
 
 BlindCase make_blind_case(std::uint64_t seed, std::size_t index, const BlindDraw& draw) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         static_cast<std::uint32_t>(index)};
-  BlindRandom random(sequence);
+  BlindRandom random = random_engine(RandomUse::by_number, seed, index);
   const BlindKind kind = kind_of(random, draw);
   for (int attempt = 0; attempt < kMostDraws; ++attempt) {
     BlindCase one;
@@ -123,7 +122,6 @@ BlindCase make_blind_case(std::uint64_t seed, std::size_t index, const BlindDraw
 
 void write_blind_folder(const BlindCase& one, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder / "tracks");
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   std::string toml = fmt::format("format = 1\nname = \"case {}\"\ngravity_m_s2 = {}\n\n[track]\ndownhill = \"+X\"\n",
                                  one.index, one.design.gravity_m_s2);
   for (std::size_t c = 0; c < one.design.clips.size(); ++c) {
@@ -133,8 +131,10 @@ void write_blind_folder(const BlindCase& one, const std::filesystem::path& folde
     toml += fmt::format(
         "\n[[clip]]\nname = \"{0}\"\ntrack = \"tracks/{0}.csv\"\nmass_kg = {1:.6g}\nincline_deg = {2:.6g}\nlaunched = "
         "\"{3}\"\ngroup = \"{4}\"\n",
-        clip.name, mass.stated_kg, group.stated_rad * kDegrees, clip.v0_m_s < 0.0 ? "up" : "down", group.name);
-    if (group.stated_sd_rad) toml += fmt::format("incline_sd_deg = {:.6g}\n", *group.stated_sd_rad * kDegrees);
+        clip.name, mass.stated_kg, group.stated_rad * base::kDegreesPerRad, clip.v0_m_s < 0.0 ? "up" : "down",
+        group.name);
+    if (group.stated_sd_rad)
+      toml += fmt::format("incline_sd_deg = {:.6g}\n", *group.stated_sd_rad * base::kDegreesPerRad);
     if (mass.sd_kg > 0.0) toml += fmt::format("mass_sd_kg = {:.6g}\n", mass.sd_kg);
     std::string csv = "t_s,x_m\n";
     for (std::size_t k = 0; k < one.x_m[c].size(); ++k) {

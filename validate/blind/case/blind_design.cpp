@@ -10,6 +10,8 @@
 #include <limits>
 #include <numbers>
 
+#include "base/math/angles.h"
+
 namespace glidelab::validate {
 
 // The standard leaves its distributions to each library; the engine alone is the same everywhere.
@@ -140,10 +142,36 @@ std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v
 
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr std::size_t kMostFrames = 260;  // of a clip
 
 }  // namespace
+
+std::vector<BlindGroup> draw_groups(BlindRandom& random, int kind, double least_sd_deg, double most_sd_deg) {
+  constexpr int kLevel = 0, kInclined = 1;
+  const bool stated = uniform(random, 0.0, 1.0) < 0.85;
+  const double sd = log_uniform(random, least_sd_deg, most_sd_deg) * base::kRadPerDegree;
+  std::vector<BlindGroup> groups;
+  const auto add = [&](const char* name, double degrees) {
+    const double stated_rad = degrees * base::kRadPerDegree;
+    BlindGroup group{name, stated_rad, stated_rad + sd * normal(random), {}};
+    if (stated) group.stated_sd_rad = sd;
+    groups.push_back(group);
+  };
+  if (kind != kInclined) add("level", 0.0);
+  if (kind != kLevel) add("inclined", std::round(10.0 * uniform(random, 2.0, 7.0)) / 10.0);
+  return groups;
+}
+
+BlindClip draw_clip(BlindRandom& random, const BlindDesign& design, const BlindLaunches& launches, std::size_t group,
+                    std::size_t mass, std::size_t number) {
+  const bool up = number % 2 == 0;
+  BlindClip clip{"", group, mass, 0.0, 0.0, launches.rate_hz, 0};
+  clip.name = fmt::format("{}-m{}-{}{}", design.groups[group].name, mass + 1, up ? "up" : "down",
+                          launches.repeats > 1 ? std::to_string(number / 2 + 1) : std::string());
+  clip.v0_m_s = (up ? -1.0 : 1.0) * uniform(random, 0.4, 1.5);
+  clip.x0_m = launches.origin_m + (up ? 0.5 : -0.5) * uniform(random, 0.6, launches.longest_m);
+  return clip;
+}
 
 BlindDesign draw_design(BlindRandom& random) {
   BlindDesign design;
@@ -151,16 +179,8 @@ BlindDesign draw_design(BlindRandom& random) {
   design.mu = log_uniform(random, 0.0015, 0.02);
   design.noise_sd_m = log_uniform(random, 5e-6, 3e-4);
 
-  const int kind = one_of(random, {0, 1, 1, 2, 2, 2});  // level, inclined, both
-  const bool stated = uniform(random, 0.0, 1.0) < 0.85;
-  const double sd = log_uniform(random, 0.01, 0.3) * kRad;
-  const auto add_group = [&](const char* name, double degrees) {
-    BlindGroup group{name, degrees * kRad, degrees * kRad + sd * normal(random), {}};
-    if (stated) group.stated_sd_rad = sd;
-    design.groups.push_back(group);
-  };
-  if (kind != 1) add_group("level", 0.0);
-  if (kind != 0) add_group("inclined", std::round(10.0 * uniform(random, 2.0, 7.0)) / 10.0);
+  const int kind = one_of(random, {0, 1, 1, 2, 2, 2});
+  design.groups = draw_groups(random, kind, 0.01, 0.3);
 
   const int masses = one_of(random, {1, 2, 2, 3});
   const double mass_sd = uniform(random, 0.0, 1.0) < 0.3 ? 5e-4 : 0.0;
@@ -173,16 +193,13 @@ BlindDesign draw_design(BlindRandom& random) {
 
   const double rate = one_of(random, {60.0, 100.0, 120.0, 200.0, 240.0});
   const double duration = uniform(random, 0.8, 2.0), origin = uniform(random, -0.3, 0.5);
-  const int repeats = design.groups.size() * design.masses.size() <= 2 && uniform(random, 0.0, 1.0) < 0.5 ? 2 : 1;
+  const std::size_t repeats =
+      design.groups.size() * design.masses.size() <= 2 && uniform(random, 0.0, 1.0) < 0.5 ? 2 : 1;
+  const BlindLaunches launches{origin, 1.2, repeats, rate};
   for (std::size_t g = 0; g < design.groups.size(); ++g) {
     for (std::size_t m = 0; m < design.masses.size(); ++m) {
-      for (int r = 0; r < 2 * repeats; ++r) {
-        BlindClip clip{"", g, m, 0.0, 0.0, rate, 0};
-        const bool up = r % 2 == 0;
-        clip.name = fmt::format("{}-m{}-{}{}", design.groups[g].name, m + 1, up ? "up" : "down",
-                                repeats > 1 ? std::to_string(r / 2 + 1) : std::string());
-        clip.v0_m_s = (up ? -1.0 : 1.0) * uniform(random, 0.4, 1.5);
-        clip.x0_m = origin + (up ? 0.5 : -0.5) * uniform(random, 0.6, 1.2);
+      for (std::size_t r = 0; r < 2 * repeats; ++r) {
+        BlindClip clip = draw_clip(random, design, launches, g, m, r);
         clip.frames = std::min(kMostFrames, static_cast<std::size_t>(duration * rate));
         design.clips.push_back(clip);
       }

@@ -25,6 +25,8 @@ namespace glidelab::validate {
 
 inline constexpr double kTurn = 2.0 * std::numbers::pi;  ///< a whole one
 
+inline constexpr double kBlindGravity_m_s2 = 9.80665;  ///< standard gravity, as experiments state by default
+
 /// The engine of all random draws of blind cases.
 using BlindRandom = std::mt19937_64;
 
@@ -60,7 +62,7 @@ struct BlindLaw {
   double k_n_s_m = 0.0;
   double mu = 0.0;
   double alpha_rad = 0.0;
-  double gravity_m_s2 = 9.80665;
+  double gravity_m_s2 = kBlindGravity_m_s2;
   std::vector<BlindChange> changes;  ///< in this order
 };
 
@@ -111,12 +113,29 @@ struct BlindDesign {
   double mu = 0.0;
   double noise_sd_m = 0.0;
   BlindCalibration calibration;
-  double gravity_m_s2 = 9.80665;
+  double gravity_m_s2 = kBlindGravity_m_s2;
 };
 
 /// 2 to 12 clips of 0.8 to 2 s at 60 to 240 Hz, 1 to 3 masses, a level track, an inclined one or both; noise of 5 to
 /// 300 µm.
 BlindDesign draw_design(BlindRandom& random);
+
+/// The set-ups of an experiment: the level track (kind 0), an inclined one of 2 to 7 degrees in tenths (1), or both
+/// (2); inclinations are stated, with their standard deviation between these, in 85 of 100.
+std::vector<BlindGroup> draw_groups(BlindRandom& random, int kind, double least_sd_deg, double most_sd_deg);
+
+/// How the clips of an experiment are launched.
+struct BlindLaunches {
+  double origin_m = 0.0;    ///< the middle of the track
+  double longest_m = 0.0;   ///< of a run as far before it as behind it; the shortest is 0.6 m
+  std::size_t repeats = 1;  ///< of each pair up and down
+  double rate_hz = 0.0;
+};
+
+/// Clip `number` of a group and a mass, every other one uphill: with 0.4 to 1.5 m/s towards the middle. How long it is
+/// filmed stays open.
+BlindClip draw_clip(BlindRandom& random, const BlindDesign& design, const BlindLaunches& launches, std::size_t group,
+                    std::size_t mass, std::size_t number);
 
 /// What one clip goes through: effects alter it before it is moved.
 struct BlindFilm {

@@ -22,6 +22,7 @@
 #include "render/film/clip_renderer.h"
 #include "render/video/video_writer.h"
 #include "validate/blind/case/blind_filmed_effects.h"
+#include "validate/random_use.h"
 
 namespace glidelab::validate {
 namespace {
@@ -145,7 +146,6 @@ namespace fs = std::filesystem;
 constexpr double kFilmedNone = 0.25, kFilmedSingle = 0.82;
 constexpr double kFilmedLeastGain = 8.0, kFilmedMostGain = 1500.0;
 constexpr int kMostScenes = 400;
-constexpr std::uint32_t kFilmed = 0x66696c6d;  // so that filmed cases are no tracks' cases of the same seed
 
 bool outside(const std::string& id) {
   const auto& ids = filmed_outside_effects();
@@ -155,13 +155,11 @@ bool outside(const std::string& id) {
 }  // namespace
 
 std::string FilmedCase::scenario() const {
-  return scenario_text(scene, fmt::format("case {}", index), 1000003 * seed + index + 1);
+  return scenario_text(scene, fmt::format("case {}", index), derived_seed(seed, index + 1));
 }
 
 FilmedCase make_filmed_case(std::uint64_t seed, std::size_t index, const BlindDraw& draw) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         static_cast<std::uint32_t>(index), kFilmed};
-  BlindRandom random(sequence);
+  BlindRandom random = random_engine(RandomUse::filmed_case, seed, index);
   FilmedCase one;
   one.seed = seed;
   one.index = index;

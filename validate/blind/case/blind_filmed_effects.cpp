@@ -16,7 +16,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kNear = 0.8;  // of the wanted size, where the camera cannot do more
+constexpr double kLeastOfWanted = 0.8;  // part of the wanted size that is taken where the camera cannot do more
 
 double top_speed(const BlindScene& scene) {
   double top = 0.0;
@@ -30,7 +30,7 @@ double top_speed(const BlindScene& scene) {
 std::optional<BlindCause> by_pictures(const char* id, double size, double usual, double largest, double wanted,
                                       const char* parameter) {
   if (size > largest) {
-    if (kNear * size > largest) return std::nullopt;
+    if (kLeastOfWanted * size > largest) return std::nullopt;
     size = largest;
     wanted = 0.5 * std::pow(size / usual, 2);
   }
@@ -277,14 +277,14 @@ const std::vector<std::pair<std::string, Put>>& library() {
       {diagnose::ids::load_independent_friction,
        as_law(diagnose::ids::load_independent_friction,
               [](const Parameters& p, double mass_kg, double alpha_rad, BlindForces& forces) {
-                forces.mu += p.at("force_n") / (mass_kg * 9.80665 * std::cos(alpha_rad));
+                forces.mu += p.at("force_n") / (mass_kg * kBlindGravity_m_s2 * std::cos(alpha_rad));
               })},
       // -mu (1 + d sign(v)) N sign(v) is -mu N sign(v) and a constant force.
       {diagnose::ids::direction_asymmetry,
        as_law(diagnose::ids::direction_asymmetry,
               [](const Parameters& p, double mass_kg, double alpha_rad, BlindForces& forces) {
                 forces.more = fmt::format("[[configuration.force]]\nlaw = \"constant\"\nforce_n = {:.9g}\n",
-                                          -forces.mu * p.at("d") * mass_kg * 9.80665 * std::cos(alpha_rad));
+                                          -forces.mu * p.at("d") * mass_kg * kBlindGravity_m_s2 * std::cos(alpha_rad));
               })},
       // (m + w) a = F is m a = F m/(m + w).
       {diagnose::ids::rotational_inertia,
@@ -294,7 +294,7 @@ const std::vector<std::pair<std::string, Put>>& library() {
                 forces.k_n_s_m *= share;
                 forces.mu *= share;
                 forces.more = fmt::format("[[configuration.force]]\nlaw = \"constant\"\nforce_n = {:.9g}\n",
-                                          (share - 1.0) * mass_kg * 9.80665 * std::sin(alpha_rad));
+                                          (share - 1.0) * mass_kg * kBlindGravity_m_s2 * std::sin(alpha_rad));
               })},
       {diagnose::ids::frame_rate_error, as_in_tracks(diagnose::ids::frame_rate_error,
                                                      [](const BlindEffect& effect, double size, BlindScene& scene) {

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/math/angles.h"
 #include "core/pictures/marker/marker.h"
 
 namespace glidelab::validate {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMarker_m = 0.02, kReflectance = 1.1, kWhite = 0.75, kWall = 0.38;
 constexpr double kReach_m = 0.46;  // from the reference point: the marker is in the image
 constexpr std::size_t kFewestFrames = 40, kMostFilmedFrames = 150;
@@ -76,12 +75,12 @@ std::size_t frames_of(const BlindDesign& design, BlindClip clip) {
   return frames;
 }
 
-void draw_groups(BlindDesign& design, BlindRandom& random) {
+void draw_setups(BlindDesign& design, BlindRandom& random) {
   const int kind = one_of(random, {0, 1, 1, 2, 2});  // level, inclined, both
   const bool stated = uniform(random, 0.0, 1.0) < 0.85;
-  const double sd = log_uniform(random, 0.01, 0.3) / kDegrees;
+  const double sd = log_uniform(random, 0.01, 0.3) / base::kDegreesPerRad;
   const auto add = [&](const char* name, double degrees) {
-    BlindGroup group{name, degrees / kDegrees, degrees / kDegrees + sd * normal(random), {}};
+    BlindGroup group{name, degrees / base::kDegreesPerRad, degrees / base::kDegreesPerRad + sd * normal(random), {}};
     if (stated) group.stated_sd_rad = sd;
     design.groups.push_back(group);
   };
@@ -163,7 +162,7 @@ BlindScene draw_scene(BlindRandom& random, bool lossless) {
     design.calibration.scale_sd = 1.5e-4;
     design.calibration.bend_sd_1_m = 7e-4;
     design.calibration.cubic_sd_1_m2 = 4e-3;
-    draw_groups(design, random);
+    draw_setups(design, random);
     draw_clips(design, scene.camera, random);
     scene.forces.assign(design.clips.size(), {design.k_n_s_m, design.mu, "viscous", "", "coulomb", "", ""});
     const bool long_enough = std::all_of(design.clips.begin(), design.clips.end(),
@@ -182,9 +181,10 @@ std::string scenario_text(const BlindScene& scene, const std::string& name, std:
     const BlindClip& clip = design.clips[c];
     const BlindGroup& group = design.groups[clip.group];
     text += fmt::format("[[configuration]]\nname = \"{}\"\nmass_kg = {:.9g}\nincline_deg = {:.9g}\n", clip.name,
-                        design.masses[clip.mass].true_kg, group.true_rad * kDegrees);
+                        design.masses[clip.mass].true_kg, group.true_rad * base::kDegreesPerRad);
     text += fmt::format("stated_incline_deg = {:.9g}\nstated_incline_sd_deg = {:.9g}\ngroup = \"{}\"\n",
-                        group.stated_rad * kDegrees, group.stated_sd_rad.value_or(0.0) * kDegrees, group.name);
+                        group.stated_rad * base::kDegreesPerRad,
+                        group.stated_sd_rad.value_or(0.0) * base::kDegreesPerRad, group.name);
     text += force_text(scene.forces[c]);
     const double duration_s = (static_cast<double>(clip.frames + scene.spare_frames) - 0.5) / rate_hz +
                               scene.camera.exposure_s + scene.camera.line_s * (scene.camera.height_px - 1);

@@ -13,7 +13,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kReached = 0.9;  // of the wanted gain, where the largest size is too small for it
+constexpr double kLeastOfWantedGain = 0.9;  // part that is enough where the largest size is too small for it
 constexpr int kBisections = 24;
 
 using Seen = std::vector<std::vector<double>>;
@@ -119,9 +119,10 @@ class LawFit {
   /// Nothing where the fit does not settle: how strong the effect is cannot be told, and another is drawn.
   std::optional<SettledFit> fit(const Seen& seen, const std::optional<Eigen::VectorXd>& more = {}) const {
     constexpr int kMostFitSteps = 60;  // of which a glider that comes to rest elsewhere takes some ten
-    constexpr double kSettled = 0.01;  // of chi²: far less than the classes of strength are wide
-    constexpr double kNothing = 0.01;  // chi²: the nominal law takes up all of it
-    constexpr double kDown = 0.9;      // of what must stay positive, in one step
+    constexpr double kMostRelativeChange =
+        0.01;  // of chi² where it has settled: far less than the classes of strength are wide
+    constexpr double kMostChangeOfChi2 = 0.01;  // where the nominal law takes up all of it
+    constexpr double kMostDecrease = 0.9;       // part that one step may take of what must stay positive
     const Eigen::Index many = std::ssize(list_) + (more ? 1 : 0);
     FittedLaw fitted{design_, puts_};
     Eigen::VectorXd at = Eigen::VectorXd::Zero(many);
@@ -150,7 +151,7 @@ class LawFit {
       left -= base::product(columns, by);
       const double chi2 = left.squaredNorm();
       if (!std::isfinite(chi2)) return std::nullopt;
-      if (step > 0 && whole && std::abs(chi2 - last) <= std::max(kNothing, kSettled * chi2)) {
+      if (step > 0 && whole && std::abs(chi2 - last) <= std::max(kMostChangeOfChi2, kMostRelativeChange * chi2)) {
         return SettledFit{std::move(columns), std::move(left), chi2};
       }
       last = chi2;
@@ -160,7 +161,7 @@ class LawFit {
         const double by_one = change[static_cast<Eigen::Index>(n)];
         part = std::min(part, list_[n].most / std::max(1e-300, std::abs(by_one)));
         const auto& positive = list_[n].positive;
-        if (positive && by_one < 0.0) part = std::min(part, kDown * positive(fitted) / -by_one);
+        if (positive && by_one < 0.0) part = std::min(part, kMostDecrease * positive(fitted) / -by_one);
       }
       whole = part == 1.0;
       at += part * change;
@@ -335,12 +336,12 @@ double BlindDetection::first_order_excess(const std::vector<BlindPut>& acting,
 }
 
 std::optional<BlindStrength> size_for(const BlindDetection& detection, const BlindEffect& effect, double wanted) {
-  constexpr double kNear = 0.05;
+  constexpr double kToleranceOfGain = 0.05;  // relative to the wanted one
   double low = 0.0, high = effect.largest;
   BlindStrength at{high, detection.gain(effect, high)};
-  if (!(at.gain > kReached * wanted)) return std::nullopt;
+  if (!(at.gain > kLeastOfWantedGain * wanted)) return std::nullopt;
   BlindStrength best = at;
-  for (int i = 0; i < kBisections && std::abs(at.gain / wanted - 1.0) > kNear; ++i) {
+  for (int i = 0; i < kBisections && std::abs(at.gain / wanted - 1.0) > kToleranceOfGain; ++i) {
     double size = at.size * std::sqrt(wanted / std::max(at.gain, 1e-6 * wanted));
     if (!(size > low) || !(size < high) || i % 4 == 3) size = 0.5 * (low + high);
     at = {size, detection.gain(effect, size)};
@@ -351,7 +352,7 @@ std::optional<BlindStrength> size_for(const BlindDetection& detection, const Bli
       best = at;
     }
   }
-  return std::abs(at.gain / wanted - 1.0) <= kNear ? at : best;
+  return std::abs(at.gain / wanted - 1.0) <= kToleranceOfGain ? at : best;
 }
 
 }  // namespace glidelab::validate

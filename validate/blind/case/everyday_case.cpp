@@ -13,6 +13,7 @@
 #include "validate/blind/case/blind_strength.h"
 #include "validate/blind/case/everyday_causes.h"
 #include "validate/blind/case/everyday_law.h"
+#include "validate/random_use.h"
 
 namespace glidelab::validate {
 namespace {
@@ -209,10 +210,7 @@ void tell_truth(const Drawn& drawn, EverydayCase& one) {
 }
 
 BlindRandom random_of(std::uint64_t seed, std::size_t index) {
-  constexpr std::uint32_t kEveryday = 0x65767279;  // other draws than those of the clean cases of this seed
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         static_cast<std::uint32_t>(index), kEveryday};
-  return BlindRandom(sequence);
+  return random_engine(RandomUse::everyday_case, seed, index);
 }
 
 Wanted draw_wanted(BlindRandom& random, const EverydayDraw& draw) {
@@ -266,22 +264,13 @@ std::string_view word(EverydayClass kind) {
 }
 
 BlindDesign draw_everyday_design(BlindRandom& random) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr std::size_t kMostEverydayFrames = 300, kFewestFrames = 20;
   BlindDesign design;
   design.k_n_s_m = log_uniform(random, 0.1, 1.6);
   design.mu = log_uniform(random, 0.002, 0.03);
   design.noise_sd_m = log_uniform(random, 5e-5, 1.5e-3);
-  const int kind = one_of(random, {0, 1, 1, 1, 2, 2});  // level, inclined, both
-  const bool stated = uniform(random, 0.0, 1.0) < 0.85;
-  const double sd = log_uniform(random, 0.05, 0.5) * kDegree;
-  const auto add_group = [&](const char* name, double degrees) {
-    BlindGroup group{name, degrees * kDegree, degrees * kDegree + sd * normal(random), {}};
-    if (stated) group.stated_sd_rad = sd;
-    design.groups.push_back(group);
-  };
-  if (kind != 1) add_group("level", 0.0);
-  if (kind != 0) add_group("inclined", std::round(10.0 * uniform(random, 2.0, 7.0)) / 10.0);
+  const int kind = one_of(random, {0, 1, 1, 1, 2, 2});
+  design.groups = draw_groups(random, kind, 0.05, 0.5);
   const int masses = one_of(random, {1, 2, 2, 3});
   double mass = uniform(random, 0.2, 0.4);
   for (int m = 0; m < masses; ++m) {
@@ -294,16 +283,13 @@ BlindDesign draw_everyday_design(BlindRandom& random) {
   const std::size_t configurations = design.groups.size() * design.masses.size();
   const std::size_t most = 12 / (2 * configurations), least = configurations == 1 ? 2 : 1;
   const auto repeats = std::min(most, least + static_cast<std::size_t>(uniform(random, 0.0, 2.0)));
+  const BlindLaunches launches{origin, 1.4, repeats, rate};
   for (std::size_t g = 0; g < design.groups.size(); ++g) {
     for (std::size_t m = 0; m < design.masses.size(); ++m) {
       for (std::size_t r = 0; r < 2 * repeats; ++r) {
-        BlindClip clip{"", g, m, 0.0, 0.0, rate, 0};
-        const bool up = r % 2 == 0;
-        clip.name = fmt::format("{}-m{}-{}{}", design.groups[g].name, m + 1, up ? "up" : "down",
-                                repeats > 1 ? std::to_string(r / 2 + 1) : std::string());
+        BlindClip clip;
         do {
-          clip.v0_m_s = (up ? -1.0 : 1.0) * uniform(random, 0.4, 1.5);
-          clip.x0_m = origin + (up ? 0.5 : -0.5) * uniform(random, 0.6, 1.4);
+          clip = draw_clip(random, design, launches, g, m, r);
           clip.frames = std::min(kMostEverydayFrames, static_cast<std::size_t>(duration * rate));
           clip.frames = frames_on_track(design, clip, origin);
         } while (clip.frames < kFewestFrames);
@@ -381,13 +367,11 @@ std::string everyday_truth_json(const EverydayCase& one) {
   truth["mu"] = one.design.mu;
   truth["configurations"] = Ordered::array();
   for (const EverydayConfiguration& of : one.truth.configurations) {
-    Ordered object{{"group", of.group},
-                   {"mass_kg", of.mass_kg},
-                   {"incline_deg", of.incline_deg},
-                   {"k_over_m_1_s", of.k_over_m_1_s},
-                   {"mu", of.mu},
-                   {"alpha_deg", of.alpha_deg}};
-    object["v_lim_m_s"] = of.v_lim_m_s ? Ordered(*of.v_lim_m_s) : Ordered();
+    Ordered object{{"group", of.group}, {"mass_kg", of.mass_kg}, {"incline_deg", of.incline_deg}};
+    for (const core::QuantityName& name : core::kQuantities) {
+      const std::optional<double> value = true_value(of, name.which);
+      object[std::string(name.key)] = value ? Ordered(*value) : Ordered();
+    }
     truth["configurations"].push_back(std::move(object));
   }
   return truth.dump(2) + "\n";

@@ -12,13 +12,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "validate/blind/case/blind_case.h"
 #include "validate/blind/case/everyday_dirt.h"
+#include "validate/blind/case/everyday_law.h"
 
 namespace glidelab::validate {
 
@@ -32,14 +32,6 @@ std::string_view word(EverydayClass kind);
 inline constexpr double kLeastDirt = 0.02, kMostDirt = 0.30;         ///< share of the excess
 inline constexpr double kLeastSecond = 0.25;                         ///< share of the second of two causes
 inline constexpr double kModerateExcess = 1.5, kStrongExcess = 4.0;  ///< of a position's squared gap
-
-/// K/m, mu, alpha and terminal velocity of clips of one mass and one group, with the causes in the law.
-struct EverydayConfiguration {
-  std::string group;
-  double mass_kg = 0.0, incline_deg = 0.0;  ///< as stated
-  double k_over_m_1_s = 0.0, mu = 0.0, alpha_deg = 0.0;
-  std::optional<double> v_lim_m_s;  ///< none where it comes to rest, or has none
-};
 
 struct ActingDirt {
   std::string id;

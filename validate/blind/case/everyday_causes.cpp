@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/blind_effects.h"
 
 namespace glidelab::validate {
@@ -157,13 +158,13 @@ BlindEffect bumper(const BlindDesign& design, BlindRandom& random) {
 
 const std::vector<DrawnEffect>& rig_library() {
   static const std::vector<DrawnEffect> list = {
-      {"direction_dependent_drag", drag_of_direction},
-      {"place_friction", friction_of_place},
-      {"friction_drift", drifting_friction},
-      {"configuration_friction", friction_of_configuration},
-      {"configuration_drag", drag_of_configuration},
-      {"clip_scatter", scatter_of_clips},
-      {"end_stop", bumper},
+      {diagnose::ids::direction_dependent_drag, drag_of_direction},
+      {diagnose::ids::place_friction, friction_of_place},
+      {diagnose::ids::friction_drift, drifting_friction},
+      {diagnose::ids::configuration_friction, friction_of_configuration},
+      {diagnose::ids::configuration_drag, drag_of_configuration},
+      {diagnose::ids::clip_scatter, scatter_of_clips},
+      {diagnose::ids::end_stop, bumper},
   };
   return list;
 }
@@ -180,7 +181,8 @@ std::vector<std::string> less(const std::vector<std::string>& ids, const std::se
 
 const std::vector<std::string>& everyday_effects() {
   static const std::vector<std::string> ids = [] {
-    std::vector<std::string> all = less(library_effects(), {"timestamp_jitter", "heavy_tailed_noise"});
+    std::vector<std::string> all =
+        less(library_effects(), {diagnose::ids::timestamp_jitter, diagnose::ids::heavy_tailed_noise});
     for (const auto& [id, draw] : rig_library()) {
       if (std::find(all.begin(), all.end(), id) == all.end()) all.push_back(id);
     }
@@ -215,12 +217,12 @@ std::vector<std::string> equals_of(const std::string& id, const BlindDesign& des
     if (id == one) equal.emplace_back(other);
     if (id == other) equal.emplace_back(one);
   };
-  add("scale_error", "frame_rate_error");
-  add("camera_motion", "base_vibration");
-  if (id == "tether" || down) add("tether", "end_stop");
+  add(diagnose::ids::scale_error, diagnose::ids::frame_rate_error);
+  add(diagnose::ids::camera_motion, diagnose::ids::base_vibration);
+  if (id == diagnose::ids::tether || down) add(diagnose::ids::tether, diagnose::ids::end_stop);
   // Two frictions of two configurations on one slope: mu_j m_j g cos(alpha) is mu m_j g cos(alpha) + F_0.
   if (design.groups.size() == 1 && design.masses.size() == 2)
-    add("load_independent_friction", "configuration_friction");
+    add(diagnose::ids::load_independent_friction, diagnose::ids::configuration_friction);
   return equal;
 }
 

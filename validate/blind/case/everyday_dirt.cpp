@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/everyday_causes.h"
 
 namespace glidelab::validate {
@@ -35,7 +36,7 @@ void add_force(BlindFilm& film, BlindChange change) {
 EverydayDirt scattered_friction(const BlindDesign& design, BlindRandom& random) {
   const auto z = of_each_clip(design, random);
   return dirt_of(
-      "scattered_friction", 0.15, "1", {"clip_scatter"},
+      "scattered_friction", 0.15, "1", {diagnose::ids::clip_scatter},
       [=](double a, std::size_t clip, BlindFilm& film) {
         const double factor = 1.0 + a * z[clip];
         add_force(film, [=](double, double, double, BlindTerms& f) { f.friction_n *= factor; });
@@ -47,7 +48,7 @@ EverydayDirt wavy_track(const BlindDesign& design, BlindRandom& random) {
   const auto waves = random_waves(0.15, 1.2, random);
   const double g = design.gravity_m_s2;
   return dirt_of(
-      "wavy_track", 4e-3, "rad", {"track_bow"},
+      "wavy_track", 4e-3, "rad", {diagnose::ids::track_bow},
       [=](double a, std::size_t, BlindFilm& film) {
         add_force(film, [=](double x, double, double, BlindTerms& f) { f.drive_n += a * g * f.mass_kg * waves(x); });
       },
@@ -108,7 +109,7 @@ EverydayDirt unfree_start(const BlindDesign& design, BlindRandom& random) {
   const auto z = of_each_clip(design, random);
   const double until = uniform(random, 0.02, 0.08);
   return dirt_of(
-      "unfree_start", 3.0, "m/s²", {"late_release"},
+      "unfree_start", 3.0, "m/s²", {diagnose::ids::late_release},
       [=](double a, std::size_t clip, BlindFilm& film) {
         const double push = 0.6 * a * z[clip];
         add_force(film,
@@ -136,7 +137,7 @@ EverydayDirt bad_clip(const BlindDesign& design, BlindRandom& random) {
         random);
   }
   return dirt_of(
-      "bad_clip", 1.5, "1", {"clip_scatter"},
+      "bad_clip", 1.5, "1", {diagnose::ids::clip_scatter},
       [=](double a, std::size_t clip, BlindFilm& film) {
         if (clip != bad) return;
         add_force(film, [=](double, double, double, BlindTerms& f) { f.friction_n *= 1.0 + a; });

@@ -3,17 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 
+#include "base/math/angles.h"
+#include "diagnose/effects/effect_list.h"
 #include "validate/blind/case/everyday_causes.h"
 
 namespace glidelab::validate {
 namespace {
 
-const std::set<std::string> kLawsOfSpeed = {
-    "quadratic_drag",           "eddy_rolloff",       "power_law_drag",        "stribeck", "load_independent_friction",
-    "direction_dependent_drag", "configuration_drag", "configuration_friction"};
+namespace ids = diagnose::ids;
+
+const std::set<std::string> kLawsOfSpeed = {ids::quadratic_drag,
+                                            ids::eddy_rolloff,
+                                            ids::power_law_drag,
+                                            ids::stribeck,
+                                            ids::load_independent_friction,
+                                            ids::direction_dependent_drag,
+                                            ids::configuration_drag,
+                                            ids::configuration_friction};
 
 /// Middle of the range of x over all clips of a group.
 double middle_of(const BlindDesign& design, const std::vector<std::vector<double>>& x_m, std::size_t group) {
@@ -64,10 +72,23 @@ std::optional<double> first_balance(const std::function<double(double)>& net) {
 
 }  // namespace
 
+std::optional<double> true_value(const EverydayConfiguration& of, core::Measurand which) {
+  switch (which) {
+    case core::Measurand::k_over_m:
+      return of.k_over_m_1_s;
+    case core::Measurand::mu:
+      return of.mu;
+    case core::Measurand::alpha:
+      return of.alpha_deg;
+    default:
+      return of.v_lim_m_s;
+  }
+}
+
 std::vector<EverydayConfiguration> everyday_configurations(const BlindDesign& design,
                                                            const std::vector<BlindPut>& causes,
                                                            const std::vector<std::vector<double>>& x_m) {
-  constexpr double kDegree = std::numbers::pi / 180.0, kAnySpeed = 1.0;
+  constexpr double kAnySpeed = 1.0;
   std::vector<EverydayConfiguration> list;
   std::set<std::size_t> seen;
   for (std::size_t c = 0; c < design.clips.size(); ++c) {
@@ -82,13 +103,13 @@ std::vector<EverydayConfiguration> everyday_configurations(const BlindDesign& de
     EverydayConfiguration one;
     one.group = group.name;
     one.mass_kg = design.masses[clip.mass].stated_kg;
-    one.incline_deg = group.stated_rad / kDegree;
-    one.k_over_m_1_s = terms({"configuration_drag", "damping_gradient"}, kAnySpeed).drag_n / kAnySpeed / mass;
-    one.mu = terms({"configuration_friction"}, kAnySpeed).friction_n / (weight * std::cos(group.true_rad));
-    const double drive = terms({"track_bow"}, kAnySpeed).drive_n;
-    one.alpha_deg = std::asin(std::clamp(drive / weight, -1.0, 1.0)) / kDegree;
+    one.incline_deg = group.stated_rad / base::kRadPerDegree;
+    one.k_over_m_1_s = terms({ids::configuration_drag, ids::damping_gradient}, kAnySpeed).drag_n / kAnySpeed / mass;
+    one.mu = terms({ids::configuration_friction}, kAnySpeed).friction_n / (weight * std::cos(group.true_rad));
+    const double drive = terms({ids::track_bow}, kAnySpeed).drive_n;
+    one.alpha_deg = std::asin(std::clamp(drive / weight, -1.0, 1.0)) / base::kRadPerDegree;
     std::set<std::string> of = kLawsOfSpeed;
-    of.insert({"track_bow", "damping_gradient", "direction_asymmetry"});
+    of.insert({ids::track_bow, ids::damping_gradient, ids::direction_asymmetry});
     one.v_lim_m_s = first_balance([&](double v) {
       const BlindTerms at = terms(of, v);
       return at.drive_n - at.drag_n - std::max(0.0, at.friction_n);

@@ -6,12 +6,25 @@
 /// balance with the causes that are laws of speed or configuration.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "core/result/quantity.h"
 #include "validate/blind/case/blind_strength.h"
-#include "validate/blind/case/everyday_case.h"
 
 namespace glidelab::validate {
+
+/// K/m, mu, alpha and terminal velocity of clips of one mass and one group, with the causes in the law.
+struct EverydayConfiguration {
+  std::string group;
+  double mass_kg = 0.0, incline_deg = 0.0;  ///< as stated
+  double k_over_m_1_s = 0.0, mu = 0.0, alpha_deg = 0.0;
+  std::optional<double> v_lim_m_s;  ///< none where it comes to rest, or has none
+};
+
+/// Nothing where there is none.
+std::optional<double> true_value(const EverydayConfiguration& of, core::Measurand which);
 
 /// Of every configuration that has a clip, in the order of the clips. `x_m`: positions of each clip.
 std::vector<EverydayConfiguration> everyday_configurations(const BlindDesign& design,

@@ -14,6 +14,7 @@
 #include "base/long_work.h"
 #include "core/math/quantile.h"
 #include "fit/estimators.h"
+#include "validate/random_use.h"
 #include "validate/tracks/oracle_bandwidth.h"
 #include "validate/truth/comparison.h"
 #include "validate/truth/cramer_rao.h"
@@ -116,7 +117,7 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
   std::vector<std::vector<std::optional<Smoothed>>> smoothed(options.runs);
   std::atomic<std::uint64_t> done = 0;
   base::for_each_parallel(options.runs, options.jobs, [&](std::size_t run) {
-    const MadeTracks made = with_noise(clean, options.noise_m, options.seed * 1000003u + run);
+    const MadeTracks made = with_noise(clean, options.noise_m, derived_seed(options.seed, run));
     const std::vector<core::AnalysisResults> all = analyze(made);
     smoothed[run] = smoothed_clips(all.front(), made.truth);
     for (const core::AnalysisResults& results : all) {

@@ -7,16 +7,17 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "base/errors.h"
 #include "base/long_work.h"
+#include "base/math/angles.h"
 #include "core/math/quantile.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
 #include "fit/estimators.h"
+#include "validate/random_use.h"
 #include "validate/tracks/made_tracks.h"
 #include "validate/truth/binomial.h"
 #include "validate/truth/cramer_rao.h"
@@ -32,8 +33,7 @@ using Outcome = std::optional<core::Estimate>;
 /// The same scenario filmed with another clock of its kind: its rate is off by a normal deviate of the standard
 /// deviation that the estimators assume of clocks. Frames are lost as the scenario says.
 render::Scenario with_other_clock(render::Scenario scenario, std::uint64_t seed) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0xC10Cu};
-  std::mt19937_64 engine(sequence);
+  std::mt19937_64 engine = random_engine(RandomUse::clock_rate, seed);
   std::normal_distribution<double> deviate(0.0, core::kClockSdRelative);
   scenario.recording.clock.rate_error_ppm = 1e6 * deviate(engine);
   return scenario;
@@ -41,13 +41,12 @@ render::Scenario with_other_clock(render::Scenario scenario, std::uint64_t seed)
 
 /// The bound with what the clock adds: K/m goes with its rate, accelerations with the square.
 LeastSd with_clock(LeastSd least, const TrueConfiguration& truth) {
-  constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
   const double rate = core::kClockSdRelative;
   if (least.k_over_m_1_s) least.k_over_m_1_s = std::hypot(*least.k_over_m_1_s, rate * truth.k_over_m_1_s.value_or(0.0));
   if (least.mu) least.mu = std::hypot(*least.mu, 2.0 * rate * truth.mu.value_or(0.0));
   if (least.v_lim_m_s) least.v_lim_m_s = std::hypot(*least.v_lim_m_s, rate * truth.v_lim_m_s.value_or(0.0));
   if (least.alpha_deg && truth.alpha_deg) {
-    const double by_rate = 2.0 * rate * std::tan(*truth.alpha_deg / kDegreesPerRad) * kDegreesPerRad;
+    const double by_rate = 2.0 * rate * std::tan(*truth.alpha_deg / base::kDegreesPerRad) * base::kDegreesPerRad;
     least.alpha_deg = std::hypot(*least.alpha_deg, by_rate);
   }
   return least;

@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/errors.h"
+#include "base/math/angles.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::validate {
 namespace {
-
-constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 
 struct Line {
   double k = 0.0, a0 = 0.0;
@@ -97,7 +95,7 @@ core::AnalysisResults with_naive_lines(core::AnalysisResults results) {
     if (!(std::abs(drive) < g)) continue;
     const double level = std::sqrt(g * g - drive * drive);
     configuration.alpha_deg =
-        interval(std::asin(drive / g) * kDegreesPerRad, variance * std::pow(kDegreesPerRad / level, 2));
+        interval(std::asin(drive / g) * base::kDegreesPerRad, variance * std::pow(base::kDegreesPerRad / level, 2));
     configuration.mu = interval(friction / level, variance / (level * level));
   }
   return results;

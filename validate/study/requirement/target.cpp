@@ -14,6 +14,7 @@
 #include "base/errors.h"
 #include "base/text/nearest_word.h"
 #include "core/result/quantity.h"
+#include "validate/random_use.h"
 
 namespace glidelab::validate {
 namespace {
@@ -48,8 +49,7 @@ double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
 }
 
 double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
-  constexpr std::uint64_t kSeed = 0xb007;
-  std::mt19937_64 random(kSeed);
+  std::mt19937_64 random(static_cast<std::uint64_t>(RandomUse::bootstrap));
   std::vector<double> resample(sizes.size()), found(kResamples);
   for (double& value : found) {
     for (double& size : resample) size = sizes[random() % sizes.size()];

@@ -265,7 +265,7 @@ void copy_rows(Database& into, Database& there, const TableOfRuns& table, const 
 
 }  // namespace
 
-void take_over(Database& into, const Sweep& sweep, const SweepEntries& expected, const std::vector<fs::path>& others) {
+void merge_runs(Database& into, const Sweep& sweep, const SweepEntries& expected, const std::vector<fs::path>& others) {
   for (const fs::path& other : others) check_file(other, sweep, expected);
   const std::vector<TableOfRuns> tables = {
       {"run", 6 + static_cast<int>(sweep.axes.size())}, {"result", 12}, {"clip", 10}};
@@ -375,10 +375,10 @@ void SweepDatabase::add(const RunRecord& record, double wall_s) {
   transaction.commit();
 }
 
-void SweepDatabase::take(const std::vector<fs::path>& others) {
+void SweepDatabase::merge_runs_of(const std::vector<fs::path>& others) {
   SweepEntries of_any_shard = entries_;
   of_any_shard.pop_back();  // the shard
-  take_over(database_, sweep_, of_any_shard, others);
+  merge_runs(database_, sweep_, of_any_shard, others);
 }
 
 double bytes_of(const RunRecord& record) {

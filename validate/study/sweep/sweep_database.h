@@ -46,16 +46,16 @@ void check_entries(Database& database, const SweepEntries& expected);
 /// InputError if a row is of no run of the sweep, or of one that has another seed there.
 void check_runs(Database& database, const Sweep& sweep);
 
-/// Takes over all runs of the other files, which several processes may have made, into a database of the sweep.
-/// `expected`: the entries that each of them must have. InputError for a file that is not there, is damaged, is another
-/// sweep's, has rows of a run that the sweep has not or that is not in it with its seed, or has other rows of a run
-/// than another file, which is named.
+/// Merges all runs of the other files, which several processes (the jobs of a Slurm array) may have made, into a
+/// database of the sweep. `expected`: the entries that each of them must have. InputError for a file that is not there,
+/// is damaged, is another sweep's, has rows of a run that the sweep has not or that is not in it with its seed, or has
+/// other rows of a run than another file, which is named.
 ///
 /// All runs of all files are taken, or none: one transaction. A run that several files have counts once where all its
 /// rows but its time are the same to the last bit. What differs is refused, so that the result does not depend on the
 /// files' order.
-void take_over(Database& into, const Sweep& sweep, const SweepEntries& expected,
-               const std::vector<std::filesystem::path>& others);
+void merge_runs(Database& into, const Sweep& sweep, const SweepEntries& expected,
+                const std::vector<std::filesystem::path>& others);
 
 /// Part `index` (from 1) of `count`: the runs r with r mod count = index - 1.
 struct Shard {
@@ -89,8 +89,8 @@ class SweepDatabase {
   /// All rows of a run that is not there yet, in one transaction.
   void add(const RunRecord& record, double wall_s);
 
-  /// take_over() of other databases of the same sweep and version (any shard).
-  void take(const std::vector<std::filesystem::path>& others);
+  /// merge_runs() of other databases of the same sweep and version (any shard).
+  void merge_runs_of(const std::vector<std::filesystem::path>& others);
 
   Database& database() { return database_; }
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "base/text/digit.h"
 #include "base/text/number_text.h"
 #include "fit/estimators.h"
 #include "validate/study/sweep/design/sweep.h"
@@ -18,23 +19,23 @@ namespace {
 constexpr int kAsTheyAre = 6;  // significant digits that a person still reads
 constexpr int kShownDigits = 4;
 
-bool is_digit(std::string_view text, std::size_t at) {
-  return at < text.size() && text[at] >= '0' && text[at] <= '9';
+bool digit_at(std::string_view text, std::size_t at) {
+  return at < text.size() && base::is_digit(text[at]);
 }
 
 std::size_t behind_digits(std::string_view text, std::size_t at) {
-  while (is_digit(text, at)) ++at;
+  while (digit_at(text, at)) ++at;
   return at;
 }
 
 /// Behind the number that begins with a digit at `from`.
 std::size_t behind_number(std::string_view text, std::size_t from) {
   std::size_t at = behind_digits(text, from);
-  if (at < text.size() && text[at] == '.' && is_digit(text, at + 1)) at = behind_digits(text, at + 1);
+  if (at < text.size() && text[at] == '.' && digit_at(text, at + 1)) at = behind_digits(text, at + 1);
   if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
     const bool sign = at + 1 < text.size() && (text[at + 1] == '-' || text[at + 1] == '+');
     const std::size_t power = at + (sign ? 2 : 1);
-    if (is_digit(text, power)) at = behind_digits(text, power);
+    if (digit_at(text, power)) at = behind_digits(text, power);
   }
   return at;
 }
@@ -43,9 +44,9 @@ std::size_t behind_number(std::string_view text, std::size_t from) {
 std::string rewritten(std::string_view text, const std::function<std::string(std::string_view)>& written) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
-    const bool minus = text[at] == '-' && is_digit(text, at + 1) &&
+    const bool minus = text[at] == '-' && digit_at(text, at + 1) &&
                        (at == 0 || std::isalnum(static_cast<unsigned char>(text[at - 1])) == 0);
-    if (!minus && !is_digit(text, at)) {
+    if (!minus && !digit_at(text, at)) {
       result += text[at++];
       continue;
     }

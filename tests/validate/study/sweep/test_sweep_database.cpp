@@ -67,21 +67,21 @@ TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and a
   }
   validate::SweepDatabase merged(dir / "c.sqlite", sweep, "1", {});
   // Half of a merge is none: what is missing, or differs, leaves nothing behind.
-  CHECK_THROWS_AS(merged.take({dir / "c3.sqlite", dir / "none.sqlite", dir / "c1.sqlite"}), base::InputError);
+  CHECK_THROWS_AS(merged.merge_runs_of({dir / "c3.sqlite", dir / "none.sqlite", dir / "c1.sqlite"}), base::InputError);
   CHECK(merged.runs() == 0);
   std::filesystem::copy_file(dir / "c3.sqlite", dir / "changed.sqlite");
   validate::Database(dir / "changed.sqlite", validate::Database::Mode::write)
       .run("UPDATE result SET value = value * (1 + 1e-15) WHERE run = (SELECT max(run) FROM run)");
-  CHECK_THROWS_WITH(merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "changed.sqlite"}),
+  CHECK_THROWS_WITH(merged.merge_runs_of({dir / "c3.sqlite", dir / "c1.sqlite", dir / "changed.sqlite"}),
                     Contains("changed.sqlite: run 11: found other results than " + (dir / "c3.sqlite").string()));
   CHECK(merged.runs() == 0);
   // What several have alike is taken once, in one merge or in two.
-  merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c3.sqlite"});
+  merged.merge_runs_of({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c3.sqlite"});
   CHECK(merged.runs() == 8);
-  CHECK_THROWS_WITH(merged.take({dir / "c2.sqlite", dir / "changed.sqlite"}),
+  CHECK_THROWS_WITH(merged.merge_runs_of({dir / "c2.sqlite", dir / "changed.sqlite"}),
                     Contains("changed.sqlite: run 11: found other results than " + (dir / "c.sqlite").string()));
   CHECK(merged.runs() == 8);
-  merged.take({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c2.sqlite"});
+  merged.merge_runs_of({dir / "c3.sqlite", dir / "c1.sqlite", dir / "c2.sqlite"});
   CHECK(merged.runs() == 12);
   const std::string all = contents(dir / "a.sqlite");
   // 12 runs; 1 configuration x 2 estimators x 4 quantities; 1 clip
@@ -151,7 +151,7 @@ TEST_CASE("A part whose runs are not those of the sweep by number or seed is ref
     validate::SweepDatabase whole(dir / "whole.sqlite", sweep, "1", {});
     std::string said = "taken";
     try {
-      whole.take({dir / "part.sqlite"});
+      whole.merge_runs_of({dir / "part.sqlite"});
     } catch (const base::InputError& error) {
       said = error.what();
       CHECK(whole.runs() == 0);

@@ -2,6 +2,7 @@
 ///
 /// A turning camera moves what is at the sides of the image by more: A (1 + slope (x - x_mid) + bend (x - x_mid)²). Of
 /// tracks nobody knows the camera: one size everywhere.
+#include "base/math/angles.h"
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>
@@ -11,8 +12,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr double kDegreesOfSway = 180.0 / std::numbers::pi;
-constexpr double kMostSway_rad = 30.0 / kDegreesOfSway;  // that a scenario allows
+constexpr double kMostSway_rad = 30.0 / base::kDegreesPerRad;  // that a scenario allows
 
 double sway_seen(const double* p, const GliderConstants& glider, double x_m, double t_s, double seen_m) {
   const double off = x_m - glider.x_mid_all_m;
@@ -31,7 +31,7 @@ void sway_twin(const TwinSizes& sizes, TwinCamera& camera) {
   }
   camera.notes.emplace_back("the camera's motion is a pan, with one phase for all clips: it shows in images only");
   camera.motions += fmt::format("\n[[mount.motion]]\naxis = \"pan\"\namplitude_deg = {:.9g}\nfrequency_hz = {:.9g}\n",
-                                pan * kDegreesOfSway, *f_hz);
+                                pan * base::kDegreesPerRad, *f_hz);
 }
 
 }  // namespace

@@ -2,17 +2,16 @@
 ///
 /// Its twin is a camera that was turned by atan(downhill p' Z), p' = p/(1 + p x_f), x_f the place before which the
 /// camera stands, Z how far off.
+#include "base/math/angles.h"
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>
 #include <cmath>
-#include <numbers>
 
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr double kDegreesOfPan = 180.0 / std::numbers::pi;
-constexpr double kMostTurn_rad = 30.0 / kDegreesOfPan;  // that a scenario allows
+constexpr double kMostTurn_rad = 30.0 / base::kDegreesPerRad;  // that a scenario allows
 
 double perspective_seen(const double* p, const GliderConstants&, double, double, double seen_m) {
   return seen_m / (1.0 + p[0] * seen_m);
@@ -28,8 +27,8 @@ void perspective_twin(const TwinSizes& sizes, TwinCamera& camera) {
   }
   camera.focal_factor /= before_m * before_m * (1.0 + tangent * tangent);
   if (camera.focal_by.empty()) camera.focal_by = ids::perspective_error;
-  camera.motions +=
-      fmt::format("\n[[mount.motion]]\naxis = \"pan\"\noffset_deg = {:.9g}\n", std::atan(tangent) * kDegreesOfPan);
+  camera.motions += fmt::format("\n[[mount.motion]]\naxis = \"pan\"\noffset_deg = {:.9g}\n",
+                                std::atan(tangent) * base::kDegreesPerRad);
   camera.notes.emplace_back(
       "the perspective is a camera that was turned after the calibration: it shows in images only");
 }

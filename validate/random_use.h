@@ -1,0 +1,46 @@
+/// What validate/ draws random numbers for: the words that keep one use's numbers apart from another's of the same
+/// seed.
+///
+/// Every engine is std::mt19937_64. It is seeded by a seed sequence of the seed's two halves and, where there are such,
+/// a number (which track, which case) and the use's word; what is drawn of a seed therefore stays as it is for as long
+/// as these stay.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace glidelab::validate {
+
+enum class RandomUse : std::uint32_t {
+  by_number = 0,               ///< no word: the noise of a track (made_tracks.h) and a clean blind case (blind_case.h)
+  clock_rate = 0xC10C,         ///< no number: the clock of one replicate (interval_coverage.h)
+  bootstrap = 0xB007,          ///< no seed of a user's: resampled errors of a requirement (target.h)
+  everyday_case = 0x65767279,  ///< "evry" (everyday_case.h)
+  filmed_case = 0x66696C6D,    ///< "film" (blind_filmed_case.h)
+};
+
+/// {seed low, seed high, number}, and the use's word behind it where it has one.
+inline std::mt19937_64 random_engine(RandomUse use, std::uint64_t seed, std::uint64_t number) {
+  const auto low = static_cast<std::uint32_t>(seed), high = static_cast<std::uint32_t>(seed >> 32);
+  const auto which = static_cast<std::uint32_t>(number), word = static_cast<std::uint32_t>(use);
+  if (use == RandomUse::by_number) {
+    std::seed_seq sequence{low, high, which};
+    return std::mt19937_64(sequence);
+  }
+  std::seed_seq sequence{low, high, which, word};
+  return std::mt19937_64(sequence);
+}
+
+/// {seed low, seed high, the use's word}.
+inline std::mt19937_64 random_engine(RandomUse use, std::uint64_t seed) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         static_cast<std::uint32_t>(use)};
+  return std::mt19937_64(sequence);
+}
+
+/// The seed of replicate or film `number` of a seed: those of neighbouring seeds meet after a million numbers only.
+constexpr std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t number) {
+  return 1000003 * seed + number;
+}
+
+}  // namespace glidelab::validate
