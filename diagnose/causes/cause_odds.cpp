@@ -12,7 +12,8 @@ namespace {
 constexpr double kTail = 5.0, kPower = 2.45;                   // s and n
 constexpr double kNamed = 1.1, kLeft = 12.5, kLarger = 0.8;    // a, b and c
 constexpr double kLate = 3.2, kScatter = 1.8, kUnnamed = 1.4;  // log odds against
-constexpr double kFurther = 2.0;                               // log odds against a further cause, without noise
+constexpr double kAnything = 1.0;                         // log odds against a function without a name, of anything
+constexpr double kFurther = 2.0;                          // log odds against a further cause, without noise
 constexpr double kNotMeasured = -0.5;                     // held-out clips are never so much better than their noise
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // between which a larger excess speaks for a cause
 
@@ -35,16 +36,14 @@ bool is_scatter(const Hypothesis& hypothesis) {
                      [](std::size_t e) { return effect_list()[e].search == Search::noise; });
 }
 
-double part_left(const std::vector<double>& excess, int fit) {
-  if (fit <= 0 || !(excess.front() > kLeastExcess)) return 1.0;
-  const double left = excess[static_cast<std::size_t>(fit)];
-  if (!(left > kNotMeasured)) return 1.0;
-  return std::clamp(left / excess.front(), 0.0, 1.0);
+double part_left(double left, double before) {
+  if (!(before > kLeastExcess) || !(left > kNotMeasured)) return 1.0;
+  return std::clamp(left / before, 0.0, 1.0);
 }
 
 }  // namespace
 
-void weigh_by_share_left(const std::vector<double>& excess, Comparison& comparison) {
+void weigh_by_share_left(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison) {
   double best = comparison.all.front().log_evidence;
   for (const Hypothesis& one : comparison.all) best = std::max(best, one.log_evidence);
   const double named = kNamed + kLarger * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
@@ -53,7 +52,14 @@ void weigh_by_share_left(const std::vector<double>& excess, Comparison& comparis
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = -kPower * std::log1p((best - evidence) / kTail);
     if (excess.front() > kLargestExcess) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
-    if (makes_a_gap(one)) log += named - kLeft * part_left(excess, one.fit);
+    if (makes_a_gap(one) && one.fit > 0) {
+      log += named - kLeft * part_left(excess[static_cast<std::size_t>(one.fit)], excess.front());
+    } else if (makes_a_gap(one)) {
+      log += named - kLeft;
+    }
+    if (one.unnamed && one.effects.empty()) {
+      log = std::max(log, log + named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
+    }
     if (names(one, effect_index(ids::late_release))) log -= kLate;
     if (names(one, effect_index(ids::clip_scatter))) log -= kScatter;
     if (names(one, effect_index(ids::power_law_drag))) log += std::log(kAnyPower);

@@ -26,9 +26,9 @@ namespace glidelab::diagnose {
 inline constexpr double kLargestExcess = 1e6;
 
 /// Sets probabilities, `none`, `unknown` and those of the effects; hypotheses then stand by falling probability.
-/// `excess` is of each of the comparison's fits, g² - 1, the nominal one first; NaN where it was not measured. A
-/// function without a name beside named causes counts for their name, scatter of single positions alone for nothing, as
-/// it makes no gap.
-void weigh_by_share_left(const std::vector<double>& excess, Comparison& comparison);
+/// `excess` is of each of the comparison's fits, g² - 1, the nominal one first; NaN where it was not measured;
+/// `unnamed_excess` is that of the likeliest function without a name beside nothing. A function without a name beside
+/// named causes counts for their name, scatter of single positions alone for nothing, as it makes no gap.
+void weigh_by_share_left(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

@@ -17,7 +17,6 @@ constexpr std::size_t kMostCauses = 4;
 constexpr std::size_t kTried = 3;     // further effects that are fitted in full at each step
 constexpr double kWorthTrying = 5.0;  // log evidence, beside the remainder, from which on an effect may help
 constexpr double kClear = 3.0;        // standard errors
-constexpr double kLeastShare = 0.02;  // of the excess: less is no cause that a person would look for
 
 struct Step {
   MotionFit fit;
@@ -137,7 +136,7 @@ double held_out_excess(const TrackSet& set, const MotionFit& nominal, const Moti
 }
 
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
-                          const std::set<std::size_t>& without) {
+                          const std::set<std::size_t>& without, double least_named) {
   CauseSequence sequence;
   const Step first = step_of(set, nominal, nominal);
   sequence.gap_before = sequence.gap_after = first.gap;
@@ -167,7 +166,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     if (!best) break;
     ExplainedCause cause = cause_of(left[which], first, here, *best, set.pieces);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
-    if (!(cause.share > kLeastShare)) break;
+    if (!(cause.share > (sequence.causes.empty() ? kLeastShare : least_named))) break;
     sequence.causes.push_back(std::move(cause));
     here = std::move(*best);
   }

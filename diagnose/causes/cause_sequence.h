@@ -31,12 +31,15 @@ struct CauseSequence {
 };
 
 /// `set` has the noise alone and `nominal` is its fit; `with` counts a remainder as noise (or is the same), and `named`
-/// is a fit to it with the causes that a verdict would name (none: the nominal one).
+/// is a fit to it with the causes that a verdict would name (none: the nominal one). One that takes less than
+/// `least_named` of the excess beside those before it is not among the named.
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
-                          const std::set<std::size_t>& without);
+                          const std::set<std::size_t>& without, double least_named);
 
 /// Whether a fit's gap is above its floor by more than three standard errors.
 bool has_gap(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);
+
+inline constexpr double kLeastShare = 0.02;  ///< of the excess: less is no cause that a person would look for
 
 /// g² - 1 of a fit to `set`, g the gap of held-out clips, or of the quarters of a single one.
 double held_out_excess(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);

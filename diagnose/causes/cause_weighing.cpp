@@ -248,6 +248,14 @@ std::vector<Hypothesis> beside(const Comparison& comparison) {
   return result;
 }
 
+/// What the likeliest function without a name leaves of the gap beside nothing; NaN: there is none.
+double unnamed_excess(const TrackSet& set, const Comparison& by_noise) {
+  const UnnamedFamily* family = likeliest_shared(by_noise.unnamed);
+  if (family == nullptr || set.clips.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  const MotionFit& nominal = by_noise.fits.front();
+  return held_out_excess(set, nominal, with_unnamed(set, nominal, *family));
+}
+
 }  // namespace
 
 WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
@@ -352,7 +360,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       comparison.unnamed_left = families;
     }
   }
-  weigh_by_share_left(excess, comparison);
+  weigh_by_share_left(excess, unnamed_excess(set, first), comparison);
   weighed.fits.resize(comparison.fits.size());
   for (const std::size_t f : worth) {
     if (std::isfinite(profiles[f].log_evidence)) {

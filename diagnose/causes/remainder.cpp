@@ -151,7 +151,11 @@ RemainderSpace::Sums RemainderSpace::sums_of(std::size_t i, const RemainderSizes
   const Eigen::MatrixXd z = motion.z_z - base::transposed_product(half, half);  // Z' V^-1 Z
   const Eigen::Index many = 1 + common_ + extra_;
   Eigen::MatrixXd own = z.bottomRightCorner(motion.own, motion.own);
-  own.diagonal().array() += kUnseen;
+  for (Eigen::Index o = 0; o < motion.own; ++o) {
+    // What does not act on this motion at all (a push before it begins) costs nothing and brings nothing.
+    const Eigen::Index at = motion.z_z.rows() - motion.own + o;
+    own(o, o) += motion.z_z(at, at) > 0.0 ? kUnseen : 1.0;
+  }
   const Eigen::MatrixXd own_lower = base::cholesky_lower(own);
   sums.log_determinant += 2.0 * own_lower.diagonal().array().log().sum();
   const Eigen::MatrixXd own_half = base::solve_lower(own_lower, z.bottomLeftCorner(motion.own, many));

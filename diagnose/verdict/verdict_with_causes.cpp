@@ -1,0 +1,222 @@
+#include "diagnose/verdict/verdict_with_causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "diagnose/causes/cause_odds.h"
+#include "diagnose/causes/cause_sequence.h"
+#include "diagnose/causes/cause_weighing.h"
+#include "diagnose/causes/gap_levels.h"
+#include "diagnose/causes/recovered.h"
+#include "diagnose/causes/remainder.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/tracks/rounded_positions.h"
+#include "diagnose/unnamed/unnamed.h"
+#include "diagnose/verdict/verdict.h"
+#include "diagnose/verdict/verdict_details.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kLeft = 0.5;    // probability of something without a name from which on a remainder is weighed
+constexpr double kDoubt = 0.05;  // of names by the noise alone
+constexpr double kHalf = 0.5;    // of the excess: what a verdict's causes take at least
+constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
+
+constexpr double kLeastNamed = 0.1;  // of the excess: beside a remainder less is part of it
+constexpr double kMost = 0.75;       // of the excess
+constexpr double kTrusted = 0.8;     // the probability of a name by its share alone
+
+/// Whether some of an explanation takes part of the gap.
+bool shows_in_gap(const Hypothesis& best) {
+  return std::any_of(best.effects.begin(), best.effects.end(),
+                     [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
+}
+
+bool shows_in_images(const Hypothesis& best) {
+  return std::any_of(best.effects.begin(), best.effects.end(),
+                     [](std::size_t e) { return effect_list()[e].search == Search::pictures; });
+}
+
+/// The rest is shared as before among what has a name, or nothing.
+void set_unknown(double unknown, Comparison& comparison) {
+  const double before = 1.0 - comparison.unknown;
+  const double factor = before > 0.0 ? (1.0 - unknown) / before : 0.0;
+  for (Hypothesis& one : comparison.all) {
+    if (!one.unnamed) one.probability *= factor;
+  }
+  for (double& probability : comparison.effect_probability) probability *= factor;
+  comparison.none *= factor;
+  comparison.unknown = unknown;
+}
+
+/// Probabilities of a comparison as a verdict on a gap above its floor. What the remainder makes is unknown, and so is
+/// all of it where the named causes take less than half.
+void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& comparison) {
+  const bool half = sequence.named_share >= kHalf || !shows_in_gap(best);
+  const bool most = sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id));
+  comparison.unknown += std::exchange(comparison.none, 0.0);
+  if (!half) set_unknown(1.0, comparison);
+  // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
+  if (!most || sequence.gap_before * sequence.gap_before - 1.0 < kLargestExcess || comparison.unknown < 1.0 - kTrusted)
+    return;
+  for (Hypothesis& one : comparison.all) {
+    one.probability = !one.unnamed && one.effects == best.effects ? kTrusted : one.probability * (1.0 - kTrusted);
+  }
+  for (double& probability : comparison.effect_probability) probability *= 1.0 - kTrusted;
+  for (const std::size_t e : best.effects) comparison.effect_probability[e] = kTrusted;
+  comparison.unknown = 1.0 - kTrusted;
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
+GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& sizes, double part_s) {
+  GapRemainder remainder;
+  for (const ExplainedCause& cause : sequence.causes) remainder.share -= cause.share;
+  remainder.gap = sequence.gap_after;
+  if (part_s > 0.0) remainder.acceleration_m_s2 = std::sqrt(sizes.q_m2_s3 / part_s);
+  remainder.clip_scatter_m_s2 = sizes.force_m_s2;
+  remainder.drag_scatter = sizes.drag;
+  return remainder;
+}
+
+/// Where the rest lies, beside the named causes; nowhere where nothing is left.
+std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence) {
+  if (!(sequence.gap_after > 1.0 + 3.0 * sequence.standard_error)) return {};
+  Diagnosis rest;
+  rest.verdict = Verdict::unknown;
+  add_regions(set, sequence.named, unnamed_families(ScoreSpace(set, sequence.named)), rest);
+  return rest.regions;
+}
+
+/// Effects that a verdict names as they stand in `explained`, then those that no motion shows.
+void order_by_share(Diagnosis& diagnosis) {
+  const auto place = [&](const DiagnosedEffect& effect) {
+    return std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
+                        [&](const ExplainedCause& cause) { return cause.id == effect.id; });
+  };
+  std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
+                   [&](const DiagnosedEffect& a, const DiagnosedEffect& b) { return place(a) < place(b); });
+  if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
+}
+
+constexpr double kLikely = 0.02;  // probability from which on an explanation widens what is recovered
+constexpr std::size_t kMostLikely = 6;
+
+/// Explanations beside the reported one, whose probability is added to it; the nominal model for all that is unknown.
+void add_others(const WeighedCauses& weighed, const std::vector<Hypothesis>& all, double unknown,
+                const std::vector<std::size_t>& reported, Explanations& explanations) {
+  const auto add = [&](std::size_t fit, double probability) {
+    if (probability < kLikely || explanations.size() > kMostLikely || !weighed.fits[fit]) return;
+    explanations.push_back({&weighed.fits[fit]->noise_alone, weighed.fits[fit]->sizes, probability});
+  };
+  if (!reported.empty()) add(0, unknown);
+  for (const Hypothesis& one : all) {
+    if (one.unnamed || one.effects.empty()) continue;
+    if (one.effects == reported) {
+      explanations.front().probability += one.probability;
+    } else if (one.fit > 0) {
+      add(static_cast<std::size_t>(one.fit), one.probability);
+    }
+  }
+}
+
+/// Whether the nominal model has a gap, and the likeliest explanation by the noise alone leaves one, or a doubt where
+/// it has sizes of each clip or a second cause to follow it with.
+bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
+  const MotionFit& nominal = by_noise.fits.front();
+  if (!has_gap(set, nominal, nominal)) return false;
+  const Hypothesis* best = best_named(set, by_noise);
+  if (best == nullptr || best->fit <= 0) return true;
+  const bool is_law = best->effects.size() == 1 && !follows_each_clip(best->effects.front());
+  if (!is_law && by_noise.none + by_noise.unknown > kDoubt) return true;
+  return has_gap(set, nominal, by_noise.fits[static_cast<std::size_t>(best->fit)]);
+}
+
+}  // namespace
+
+Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pictures,
+                      const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress) {
+  const std::set<std::size_t> without(left_out.begin(), left_out.end());
+  const MotionFit& nominal = first.fits.front();
+  std::optional<WeighedCauses> weighed;
+  if (first.unknown > kLeft || leaves_a_gap(set, first)) {
+    weighed = weigh_causes(set, first, without, jobs, &pictures,
+                           [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
+  }
+  progress("measuring the gap", 0.9);
+  const Comparison& by = weighed ? weighed->comparison : first;
+  const TrackSet& with = weighed ? weighed->set : set;
+  const Hypothesis* found = best_named(with, by);
+  const bool names =
+      found != nullptr && found->fit > 0 && (weighed || verdict_by(by.none, by.unknown) == Verdict::effect);
+  const Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
+  const MotionFit& fit = names ? by.fits[static_cast<std::size_t>(best.fit)] : nominal;
+  const CauseSequence sequence = sequence_of(set, nominal, with, fit, without, weighed ? kLeastNamed : kLeastShare);
+  Diagnosis diagnosis;
+  std::vector<std::string> traces;
+  // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
+  const std::vector<Hypothesis> weighed_all = weighed ? by.all : std::vector<Hypothesis>();  // before the share counts
+  const double unknown = by.none + by.unknown;
+  const bool settled = weighed && sequence.is_gap && names;
+  if (settled) settle(sequence, best, weighed->comparison);
+  if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
+    const NoiseAlone noise_alone{set, nominal, sequence.named};
+    diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
+  } else {
+    // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding.
+    if (noise_is_rounding(set) && !sequence.is_gap) first.none += std::exchange(first.unknown, 0.0);
+    // A name that takes next to nothing of a gap explains something else.
+    const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalf;
+    if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
+    if (weighed && sequence.is_gap && !(found != nullptr && shows_in_images(*found))) {
+      // Nothing that moves the glider explains the gap.
+      first.unknown += std::exchange(first.none, 0.0);
+      set_unknown(names ? std::max(first.unknown, by.none + by.unknown) : 1.0, first);
+    }
+    // Without a gap a name must do more than small imperfections would.
+    if (!weighed && !sequence.is_gap && names && shows_in_gap(best)) {
+      allow_for_remainders(set, without, jobs, first);
+      if (verdict_by(first.none, first.unknown) == Verdict::none) {
+        for (const std::size_t e : best.effects) traces.emplace_back(effect_list()[e].id);
+      }
+    }
+    diagnosis = verdict_of(set, first, std::move(pictures));
+  }
+  if (noise_is_rounding(set)) traces.emplace_back(ids::position_rounding);
+  diagnosis.traces = std::move(traces);
+  diagnosis.explained = sequence.causes;
+  order_by_share(diagnosis);
+  // Without a gap there is no sequence, and the explanation's own fit has the effect.
+  const MotionFit& with_effect = sequence.is_gap ? sequence.named : fit;
+  const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;
+  const RemainderSpace space(set, reported);
+  const RemainderSizes sizes = space.likeliest().sizes;
+  if (sequence.is_gap) {
+    diagnosis.remainder = remainder_of(sequence, sizes, space.part_s());
+    diagnosis.remainder->regions =
+        diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence) : diagnosis.regions;
+  }
+  diagnosis.levels = levels_of(set, nominal, jobs);
+  Explanations explanations{{&reported, sizes, 1.0}};
+  if (weighed) {
+    const bool with_names = diagnosis.verdict == Verdict::effect;
+    explanations.front().probability = with_names ? 0.0 : unknown;
+    add_others(*weighed, weighed_all, unknown, with_names ? best.effects : std::vector<std::size_t>(), explanations);
+    explanations.front().probability = std::max(explanations.front().probability, kLikely);
+  }
+  diagnosis.recovered = recovered_of(set, explanations);
+  if (set.clips.size() < 2) {
+    for (DiagnosedEffect& effect : diagnosis.effects) {
+      effect.probability = std::min(effect.probability, kMostOfOneClip);
+      effect.joint_probability = std::min(effect.joint_probability, kMostOfOneClip);
+    }
+  }
+  return diagnosis;
+}
+
+}  // namespace glidelab::diagnose
