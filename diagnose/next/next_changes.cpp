@@ -70,6 +70,17 @@ Change clip_of(ChangeKind kind, const TrackSet& set, const SoFar& so, const Next
   return change;
 }
 
+/// What falls is dropped: other masses, from where the slowest of them began.
+void add_drops(const TrackSet& set, const SoFar& so, std::vector<Change>& changes) {
+  for (const std::size_t group : so.groups) {
+    for (const double mass : distinct({so.light_kg, so.heavy_kg, 1.6 * so.heavy_kg, 0.6 * so.light_kg})) {
+      const bool is_new = mass != so.light_kg && mass != so.heavy_kg;
+      changes.push_back(clip_of(is_new ? ChangeKind::mass : ChangeKind::launch, set, so,
+                                {group, mass, std::max(0.5 * so.slow_m_s, kSlowest * so.fast_m_s), so.rate_hz}));
+    }
+  }
+}
+
 void add_launches(const TrackSet& set, const SoFar& so, std::vector<Change>& changes) {
   // Where a motion was released, half of the slowest launch is no launch.
   const double slow = std::max(0.5 * so.slow_m_s, kSlowest * so.fast_m_s);
@@ -152,8 +163,12 @@ void add_statements(const TrackSet& set, const SoFar& so, std::vector<Change>& c
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal) {
   const SoFar so = so_far(set, nominal);
   std::vector<Change> changes;
-  add_launches(set, so, changes);
-  add_inclinations(set, so, changes);
+  if (only_falls(set)) {
+    add_drops(set, so, changes);
+  } else {
+    add_launches(set, so, changes);
+    add_inclinations(set, so, changes);
+  }
   add_settings(set, so, changes);
   add_statements(set, so, changes);
   return changes;

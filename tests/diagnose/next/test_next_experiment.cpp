@@ -8,7 +8,7 @@
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/expected_evidence.h"
 #include "diagnose/next/next_changes.h"
-
+#include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -94,6 +94,23 @@ TEST_CASE("after a plumb view the variance of an inclination is that of the two 
     const double after = diagnose::expected_covariance(set, fit, before, change)(2, 2);
     CHECK(after == Approx(1.0 / (1.0 / before(2, 2) + 1.0 / (plumb * plumb))).epsilon(1e-6));
   }
+}
+
+TEST_CASE("what falls is dropped again, not thrown up nor laid on another slope") {
+  const auto made = tests::made_experiment({{0.3, 90.0, 0.0, 0.2}, {0.5, 90.0, 0.0, 0.2}}, {}, 5, 1e-4, 40, 60.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(diagnose::only_falls(set));
+  const auto changes = diagnose::feasible_changes(set, diagnose::fit_nominal(set));
+  std::size_t drops = 0;
+  for (const Change& change : changes) {
+    CHECK(change.kind != ChangeKind::inclination);
+    if (change.kind != ChangeKind::launch && change.kind != ChangeKind::mass) continue;
+    ++drops;
+    REQUIRE(change.clip);
+    CHECK(change.clip->v0_m_s > 0.0);
+    CHECK(change.clip->v0_m_s < 2.0);
+  }
+  CHECK(drops == 4);  // both masses, a lighter one and a heavier one
 }
 
 TEST_CASE("no clip splits a wrong scale from a wrong clock: a measured length or a stopwatch does") {
