@@ -56,7 +56,7 @@ TEST_CASE("a release is after four frames and within two fifths and half a secon
     return diagnose::range_of(set, diagnose::effect_list()[diagnose::effect_index(id)].parameters[parameter]);
   };
   CHECK(range("late_release", 0).low == Approx(4.0 / 100.0).epsilon(1e-12));  // four frames at 100 Hz
-  CHECK(range("late_release", 0).high == 0.5);  // two fifths of 1.49 s are more
+  CHECK(range("late_release", 0).high == 0.5);                                // two fifths of 1.49 s are more
   const diagnose::ParameterRange x = diagnose::range_of_places(set);
   CHECK(range("lens_distortion", 1).low == x.low);
   CHECK(range("lens_distortion", 1).high == x.high);
