@@ -74,10 +74,21 @@ void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& c
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
-GapRemainder remainder_of(const CauseSequence& sequence, const RemainderSizes& sizes, double part_s) {
+/// Of an unknown cause what helps, less than half of the excess together: a cause that would take more is not likely
+/// enough for its name, and is not said to explain anything.
+std::vector<ExplainedCause> helpful(std::vector<ExplainedCause> causes) {
+  double sum = 0.0;
+  const auto first_too_many = std::find_if(causes.begin(), causes.end(),
+                                           [&](const ExplainedCause& cause) { return (sum += cause.share) >= kHalf; });
+  causes.erase(first_too_many, causes.end());
+  return causes;
+}
+
+GapRemainder remainder_of(double gap_before, const std::vector<ExplainedCause>& causes, const RemainderSizes& sizes,
+                          double part_s) {
   GapRemainder remainder;
-  for (const ExplainedCause& cause : sequence.causes) remainder.share -= cause.share;
-  remainder.gap = sequence.gap_after;
+  for (const ExplainedCause& cause : causes) remainder.share -= cause.share;
+  remainder.gap = causes.empty() ? gap_before : causes.back().gap_after;
   if (part_s > 0.0) remainder.acceleration_m_s2 = std::sqrt(sizes.q_m2_s3 / part_s);
   remainder.clip_scatter_m_s2 = sizes.force_m_s2;
   remainder.drag_scatter = sizes.drag;
@@ -189,7 +200,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   }
   if (noise_is_rounding(set)) traces.emplace_back(ids::position_rounding);
   diagnosis.traces = std::move(traces);
-  diagnosis.explained = sequence.causes;
+  diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence.causes) : sequence.causes;
   order_by_share(diagnosis);
   // Without a gap there is no sequence, and the explanation's own fit has the effect.
   const MotionFit& with_effect = sequence.is_gap ? sequence.named : fit;
@@ -197,7 +208,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   const RemainderSpace space(set, reported);
   const RemainderSizes sizes = space.likeliest().sizes;
   if (sequence.is_gap) {
-    diagnosis.remainder = remainder_of(sequence, sizes, space.part_s());
+    diagnosis.remainder = remainder_of(sequence.gap_before, diagnosis.explained, sizes, space.part_s());
     diagnosis.remainder->regions =
         diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence) : diagnosis.regions;
   }

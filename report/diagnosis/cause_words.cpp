@@ -87,7 +87,7 @@ std::string traces_words(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string unknown_sequence_words(const diagnose::Diagnosis& diagnosis) {
-  const std::string text = "Something is missing, and no known effect explains half of the held-out gap";
+  const std::string text = "Something is missing, and no known effect is likely to explain half of the held-out gap";
   if (!diagnosis.explained.empty()) return text + ": " + causes_words(diagnosis, true);
   return text + ". None reduces it by more than its uncertainty" +
          (diagnosis.remainder ? fmt::format(": it is {}.", over_noise_text(diagnosis.remainder->gap)) : ".");

@@ -96,6 +96,9 @@ TEST_CASE("imperfections by themselves seldom get a name, and none that is sure"
     REQUIRE(found.verdict != diagnose::Verdict::none);
     if (found.verdict == diagnose::Verdict::unknown) {
       CHECK(found.effects.empty());
+      CHECK(sum_of_shares(found) < 0.5);  // or it would be the cause
+      REQUIRE(found.remainder);
+      CHECK(found.remainder->share == Approx(1.0 - sum_of_shares(found)).margin(1e-12));
       continue;
     }
     if (found.effects.front().id == "clip_scatter") continue;
