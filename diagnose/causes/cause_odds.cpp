@@ -52,13 +52,12 @@ void weigh_by_share_left(const std::vector<double>& excess, double unnamed_exces
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = -kPower * std::log1p((best - evidence) / kTail);
     if (excess.front() > kLargestExcess) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
-    if (makes_a_gap(one) && one.fit > 0) {
-      log += named - kLeft * part_left(excess[static_cast<std::size_t>(one.fit)], excess.front());
-    } else if (makes_a_gap(one)) {
-      log += named - kLeft;
+    if (makes_a_gap(one)) {
+      const double left = one.fit > 0 ? excess[static_cast<std::size_t>(one.fit)] : excess.front();
+      log += named - kLeft * part_left(left, excess.front());
     }
     if (one.unnamed && one.effects.empty()) {
-      log = std::max(log, log + named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
+      log += std::max(0.0, named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
     }
     if (names(one, effect_index(ids::late_release))) log -= kLate;
     if (names(one, effect_index(ids::clip_scatter))) log -= kScatter;

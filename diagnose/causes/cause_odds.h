@@ -9,7 +9,9 @@
 ///
 /// E the excess before, between 0.1 and 10; less a constant for a function without a name beside it, for a hand that
 /// lets go late and for clips that scatter, since these follow each clip. Scatter by itself has at least the evidence
-/// of nothing, whose remainder has the same scatter. Small imperfections seldom make more than three tenths of an
+/// of nothing, whose remainder has the same scatter. A function without a name beside nothing stands like a cause by
+/// what it leaves, less a constant of its own, as it can be almost anything; if it leaves nearly all, only its evidence
+/// counts. Small imperfections seldom make more than three tenths of an
 /// excess, a wrong cause seldom leaves so little as the right one, and a large excess is seldom dirt alone. The
 /// constants make the true causes of made experiments likeliest (blind --everyday); docs/evidence/blind-everyday.md
 /// tells how, and how far they hold on others.

@@ -22,11 +22,11 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFirst = 6;       // explanations among which the first remainder is sought
-constexpr double kDecades = 9.2;        // ln of 10^4: over which sizes are uniform in their logarithm
-constexpr double kLeastSeen = 2.0;      // standard deviations: a smaller size is not told from none
-constexpr double kFamilies = 3.0;       // ln of some twenty functions without a name, of which the likeliest is taken
-constexpr std::size_t kProfiled = 14;   // explanations with a remainder of their own
+constexpr std::size_t kFirst = 6;      // likeliest by the noise alone: one has the first remainder, and all are weighed
+constexpr double kDecades = 9.2;       // ln of 10^4: over which sizes are uniform in their logarithm
+constexpr double kLeastSeen = 2.0;     // standard deviations: a smaller size is not told from none
+constexpr double kFamilies = 3.0;      // ln of some twenty functions without a name, of which the likeliest is taken
+constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their own
 constexpr double kRemainderCost = 3.0;  // log evidence that a remainder has against it, its sizes being unknown
 constexpr double kNotWeighed = 1e3;     // log evidence that what was not fitted is behind
 

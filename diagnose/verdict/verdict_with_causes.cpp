@@ -28,7 +28,7 @@ constexpr double kHalf = 0.5;    // of the excess: what a verdict's causes take 
 constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 
 constexpr double kLeastNamed = 0.1;  // of the excess: beside a remainder less is part of it
-constexpr double kMost = 0.75;       // of the excess
+constexpr double kMost = 0.75;       // of the excess: what a law takes that has its name by its share alone
 constexpr double kTrusted = 0.8;     // the probability of a name by its share alone
 
 /// Whether some of an explanation takes part of the gap.
@@ -168,11 +168,12 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   const Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
   const MotionFit& fit = names ? by.fits[static_cast<std::size_t>(best.fit)] : nominal;
   const CauseSequence sequence = sequence_of(set, nominal, with, fit, without, weighed ? kLeastNamed : kLeastShare);
+  const bool in_images = found != nullptr && shows_in_images(*found);
   Diagnosis diagnosis;
   std::vector<std::string> traces;
-  // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
   const std::vector<Hypothesis> weighed_all = weighed ? by.all : std::vector<Hypothesis>();  // before the share counts
   const double unknown = by.none + by.unknown;
+  // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
   const bool settled = weighed && sequence.is_gap && names;
   if (settled) settle(sequence, best, weighed->comparison);
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
@@ -184,7 +185,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     // A name that takes next to nothing of a gap explains something else.
     const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalf;
     if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
-    if (weighed && sequence.is_gap && !(found != nullptr && shows_in_images(*found))) {
+    if (weighed && sequence.is_gap && !in_images) {
       // Nothing that moves the glider explains the gap.
       first.unknown += std::exchange(first.none, 0.0);
       set_unknown(names ? std::max(first.unknown, by.none + by.unknown) : 1.0, first);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/tracks/track_set.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -134,4 +135,31 @@ TEST_CASE("what a cause in the model gives of K/m, mu and the inclination holds 
     CHECK(std::abs(one.v_lim_m_s.estimate->value - v) < 4.0 * one.v_lim_m_s.estimate->sd);
     CHECK(one.v_lim_m_s.estimate->sd < 0.1 * v);
   }
+}
+
+TEST_CASE("without a gap nothing stands as well as a cause, where small imperfections would do as much") {
+  // Log evidence of nothing, which is 0 by the noise alone; friction scatters by a third, or does not.
+  const auto evidence_of_nothing = [](double part) {
+    std::size_t clip = 0;
+    double before = 1.0;
+    tests::MadeEffect scatter;
+    scatter.force = [&](double m, double, double v, double t) {
+      if (t < before - 0.1) ++clip;
+      before = t;
+      return (v > 0.0 ? -1.0 : 1.0) * (clip % 2 == 0 ? part : -part) * 0.006 * m * 9.80665;
+    };
+    const auto made = tests::made_experiment(tests::made_launches(), scatter, 3, 1e-4, 100, 60.0);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    diagnose::Comparison comparison = diagnose::compare_hypotheses(set);
+    std::erase_if(comparison.all,
+                  [](const diagnose::Hypothesis& one) { return one.unnamed || one.effects.size() > 1; });
+    double nothing = 0.0;
+    diagnose::allow_for_remainders(set, {}, 1, comparison);
+    for (const diagnose::Hypothesis& one : comparison.all) {
+      if (one.effects.empty()) nothing = one.log_evidence;
+    }
+    return nothing;
+  };
+  CHECK(evidence_of_nothing(0.0) < 3.0);  // there is nothing that a remainder would take up
+  CHECK(evidence_of_nothing(0.33) > 10.0);
 }
