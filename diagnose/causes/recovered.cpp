@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "base/math/angles.h"
 #include "base/math/dense.h"
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
@@ -15,7 +15,6 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kUnknownAngle_rad = 0.1, kUnknownMu = 0.3, kUnknownRate = 1.0;  // sd (relative of a rate): not known
 constexpr double kNoLoad = 0.02;        // cos(alpha): less than that and no friction is felt
 constexpr double kInstant_s = 1e-4;     // over which a speed changes by an acceleration
@@ -145,7 +144,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
 }
 
 /// What is said of a quantity under one explanation and `others`, as far as they are likely: its own value, and
-/// sd² = sum of p (sd² + (value - own value)²).
+/// sd² = sum of p (sd² + (value - own value)²) / sum of p.
 core::Quantity mixed(const Recovered& own, double probability, const std::vector<std::pair<Recovered, double>>& others,
                      double unit) {
   if (!own.known) return core::undetermined(own.why);
@@ -178,11 +177,11 @@ std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const Expl
     RecoveredConfiguration one;
     one.group = set.groups[group].name;
     one.mass_kg = set.masses[mass].mass_kg;
-    one.incline_deg = set.groups[group].stated_rad / kDegree;
+    one.incline_deg = set.groups[group].stated_rad / base::kRadPerDegree;
     for (const std::size_t e : reported.fit->effects) one.with.emplace_back(effect_list()[e].id);
     one.k_over_m_1_s = mixture(c, &RecoveredSet::k_over_m_1_s, 1.0);
     one.mu = mixture(c, &RecoveredSet::mu, 1.0);
-    one.alpha_deg = mixture(c, &RecoveredSet::alpha_rad, kDegree);
+    one.alpha_deg = mixture(c, &RecoveredSet::alpha_rad, base::kRadPerDegree);
     one.v_lim_m_s = mixture(c, &RecoveredSet::v_lim_m_s, 1.0);
     recovered.push_back(std::move(one));
   }

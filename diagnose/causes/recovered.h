@@ -6,11 +6,11 @@
 ///
 ///     C = H⁻¹,      C_clips = H⁻¹ (n/(n - 1) sum over clips of s s' + statements) H⁻¹
 ///
-/// Explanations that are nearly as likely as the reported one widen it, sd² = sum of p (sd² + (value - reported)²), so
-/// that intervals hold the truth also where the cause is in doubt. The terminal velocity is where the force vanishes,
-/// m g sin(alpha) = drag(v) + friction(v) with all causes in it, in the middle of the set-up's track; its standard
-/// deviation follows from the parameters' covariance by finite differences. Causes that act for a while only (a hand, a
-/// shaking) are left out of it.
+/// Explanations that are nearly as likely as the reported one widen it, sd² = sum of p (sd² + (value - reported)²) /
+/// sum of p, so that intervals hold the truth also where the cause is in doubt. The terminal velocity is where the
+/// force vanishes, m g sin(alpha) = drag(v) + friction(v) with all causes in it, in the middle of the set-up's track;
+/// its standard deviation follows from the parameters' covariance by finite differences. Causes that act for a while
+/// only (a hand, a shaking) are left out of it.
 #pragma once
 
 #include <vector>

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "base/math/angles.h"
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
 #include "base/text/csv.h"
@@ -171,7 +172,6 @@ std::vector<std::string> alike_friction_force(const std::vector<std::string>& wi
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kLeastLeft = 1e-6;                     // of lines with very many digits: log of K/m, and m/s²
 constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
 constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
@@ -225,7 +225,7 @@ LineData line_data(const std::vector<TableLine>& lines, double g) {
     data.a0[i] = line.a0_m_s2;
     const auto at = std::find(inclines.begin(), inclines.end(), line.incline_deg) - inclines.begin();
     data.base_a0(i, at) = 1.0;
-    data.base_a0(i, data.base_a0.cols() - 1) = -line.direction * g * std::cos(line.incline_deg * kDegree);
+    data.base_a0(i, data.base_a0.cols() - 1) = -line.direction * g * std::cos(line.incline_deg * base::kRadPerDegree);
   }
   double of_k = 0.0, of_a = 0.0;  // squares of errors, relative ones of K/m
   for (const TableLine& line : lines) {
