@@ -260,12 +260,13 @@ Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
   check_names(experiment.clips, clip_tables, experiment.groups, group_tables);
   check_readings(experiment.clips, clip_tables);
 
-  // A group may have its own downhill; [track] is needed where one has not.
+  // A group may have its own downhill; [track] is needed where one that has images has not. A file of positions says by
+  // itself which way is which.
   const auto track = root.maybe_table("track");
   if (track) experiment.track.length_m = track->maybe_number("length_m", base::above(0.0));
   if (track && track->has("downhill")) {
     experiment.track.downhill = read_downhill(*track);
-  } else if (!stated_by_all_groups(experiment, false,
+  } else if (!stated_by_all_groups(experiment, true,
                                    [](const GroupSetup& group) { return group.downhill.has_value(); })) {
     if (track) {
       read_downhill(*track);

@@ -144,6 +144,15 @@ TEST_CASE("a folder of tracks needs neither camera, calibration nor marker") {
   CHECK(experiment.clips[0].track == folder.dir / "track.csv");
 }
 
+TEST_CASE("a folder of tracks needs no table of the track: x is then positive downhill") {
+  const Folder folder;
+  const std::string track = with(kClip, "file = \"clips/a.mkv\"", "track = \"track.csv\"");
+  CHECK(folder.read(kHead + track).track.downhill == 1);
+  CHECK(folder.read(kHead + track + "[[group]]\nname = \"all\"\n").track.downhill == 1);
+  CHECK(folder.read(kHead + track + "[track]\nlength_m = 2.0\n").track.downhill == 1);
+  CHECK(contains(folder.message(kHead + kCamera + kCalibration + kMarker + kClip), "track: found nothing"));
+}
+
 TEST_CASE("a table of lines needs no clips") {
   const Folder folder;
   CHECK(folder.read(kHead + "lines = \"lines.csv\"\n").lines == folder.dir / "lines.csv");
