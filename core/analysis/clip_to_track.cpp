@@ -12,8 +12,8 @@
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
 #include "core/pictures/camera/restitution.h"
-#include "core/pictures/frames/even_times.h"
 #include "core/pictures/scene/scene_watch.h"
+#include "core/track/even_times.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::core {

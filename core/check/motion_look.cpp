@@ -5,7 +5,9 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/math/angles.h"
 #include "core/math/quantile.h"
@@ -15,18 +17,20 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestPoints = 12;
-constexpr std::size_t kParts = 10;            // parabolas go through a tenth of the points,
+// Parabolas go through a tenth of the points, or through more where these tell no acceleration from the noise,
+constexpr std::array<std::size_t, 3> kParts = {10, 4, 1};
 constexpr std::size_t kFewestOfParabola = 7;  // and so many at least
 constexpr double kOverNoise = 5.0;            // standard deviations of a parabola's a that a typical one has
 constexpr double kTurnOverNoise = 20.0;       // a turn comes back by so many standard deviations of a position,
 constexpr double kTurnOverRange = 0.05;       // and by such a part of the range of x
 constexpr std::size_t kManyTurns = 6;
-constexpr double kHarmonic = 0.8;                       // of the variance of a
-constexpr double kSmoothPart = 1e-7;                    // of the range of x
-constexpr double kAboveGravity = 1.05;                  // of g: a fall has 1
-constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;  // of g, on an incline of less than 60 degrees
-constexpr double kMostBend = 0.08;                      // a wide lens bends a straight path by half of that
-constexpr double kLongRange_m = 20.0;
+constexpr double kHarmonic = 0.8;                         // of the variance of a
+constexpr double kSmoothPart = 1e-7;                      // of the range of x
+constexpr double kAboveGravity = 1.05;                    // of g: a fall has 1
+constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;    // of g, on an incline of less than 60 degrees
+constexpr double kMostBend = 0.08;                        // a wide lens bends a straight path by half of that
+constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0;  // on an incline of less than 60 degrees, and of more
+constexpr double kSlowFrames_s = 1.0;                     // from one to the next
 
 /// x = x0 + v t + a t²/2 through some points.
 Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_m) {
@@ -37,6 +41,22 @@ Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_
     design.row(i) << 1.0, t, 0.5 * t * t;
   }
   return design.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(x_m.data(), design.rows()));
+}
+
+/// The median of |a| of parabolas through `size` points each; none where it is not above their noise.
+std::optional<double> typical_acceleration(std::span<const double> t_s, std::span<const double> x_m, std::size_t size,
+                                           double noise_m) {
+  std::vector<double> sizes;
+  double sd_m_s2 = 0.0;
+  for (std::size_t from = 0; from + size <= x_m.size(); from += std::max<std::size_t>(1, size / 2)) {
+    const Eigen::Vector3d fit = parabola(t_s.subspan(from, size), x_m.subspan(from, size));
+    sizes.push_back(std::abs(fit[2]));
+    const double span = t_s[from + size - 1] - t_s[from];
+    // Variance of a by n even points over a time T: 720 s²/(n T⁴).
+    sd_m_s2 = std::max(sd_m_s2, noise_m * std::sqrt(720.0 / static_cast<double>(size)) / (span * span));
+  }
+  const double typical = quantile(sizes, 0.5);
+  return typical > kOverNoise * sd_m_s2 ? std::optional(typical) : std::nullopt;
 }
 
 std::size_t turns_in(std::span<const double> x_m, double back_m) {
@@ -97,30 +117,20 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   if (x_m.size() < kFewestPoints) return look;
   const auto [least, most] = std::minmax_element(x_m.begin(), x_m.end());
   look.distance_m = *most - *least;
+  look.frame_s = (t_s.back() - t_s.front()) / static_cast<double>(t_s.size() - 1);
   look.bend = bend_of(sightings);
   const double noise_m = pilot_noise(t_s, x_m);
-  look.smooth = noise_m < kSmoothPart * look.distance_m && rounding_step(x_m) == 0.0;
+  look.smooth = noise_m < kSmoothPart * look.distance_m;
   if (forced) return look;
-  const std::size_t size = std::max(kFewestOfParabola, x_m.size() / kParts);
-  std::vector<double> places, accelerations, sizes;
-  double sd_m_s2 = 0.0;
-  for (std::size_t from = 0; from + size <= x_m.size(); from += std::max<std::size_t>(1, size / 2)) {
-    const Eigen::Vector3d fit = parabola(t_s.subspan(from, size), x_m.subspan(from, size));
-    places.push_back(fit[0]);
-    accelerations.push_back(fit[2]);
-    sizes.push_back(std::abs(fit[2]));
-    const double span = t_s[from + size - 1] - t_s[from];
-    // Variance of a by n even points over a time T: 720 s²/(n T⁴).
-    sd_m_s2 = std::max(sd_m_s2, noise_m * std::sqrt(720.0 / static_cast<double>(size)) / (span * span));
+  for (const std::size_t parts : kParts) {
+    look.acceleration_m_s2 = typical_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / parts), noise_m);
+    if (look.acceleration_m_s2) break;
   }
-  const double typical = quantile(sizes, 0.5);
-  if (typical > kOverNoise * sd_m_s2) look.acceleration_m_s2 = typical;
   look.turns = turns_in(x_m, std::max(kTurnOverNoise * noise_m, kTurnOverRange * look.distance_m));
   // Fine enough for a swing: eight parabolas between turns.
   if (look.turns >= kManyTurns) {
     const std::size_t fine = std::max(kFewestOfParabola, x_m.size() / (8 * (look.turns + 1)));
-    places.clear();
-    accelerations.clear();
+    std::vector<double> places, accelerations;
     for (std::size_t from = 0; from + fine <= x_m.size(); from += fine) {
       const Eigen::Vector3d fit = parabola(t_s.subspan(from, fine), x_m.subspan(from, fine));
       places.push_back(fit[0]);
@@ -162,9 +172,13 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
         fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
                     a / gravity_m_s2, setup.incline_rad * base::kDegreesPerRad),
         "state incline_deg = 90 for a fall; otherwise check the unit of x");
-  } else if (look.distance_m > kLongRange_m) {
+  } else if (look.distance_m > (std::abs(setup.incline_rad) < kShallow_rad ? kLongRange_m : kLongFall_m)) {
     book.add(Severity::change, fmt::format("x covers {:.3g} m", look.distance_m),
              "check the unit of x: it may be centimetres, millimetres, or an angle");
+  }
+  if (look.frame_s > kSlowFrames_s) {
+    book.add(Severity::change, fmt::format("its positions are {:.3g} s apart", look.frame_s),
+             "check the unit of the times: they may be milliseconds, or numbers of frames");
   }
   if (look.bend > kMostBend) {
     book.add(Severity::unusable,

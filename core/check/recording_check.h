@@ -57,6 +57,7 @@ struct PatternCheck {
 /// Of the positions alone (motion_look.h).
 struct MotionLook {
   double distance_m = 0.0;
+  double frame_s = 0.0;                     ///< mean time from one position to the next
   std::optional<double> acceleration_m_s2;  ///< typical size; none where noise hides it, or a force was recorded
   std::size_t turns = 0;
   bool oscillates = false;

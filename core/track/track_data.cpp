@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <string_view>
 
 #include "base/errors.h"
@@ -15,10 +16,32 @@
 #include "core/experiment/file_names.h"
 #include "core/math/quantile.h"
 #include "core/track/column_table.h"
+#include "core/track/even_times.h"
 
 namespace glidelab::core {
 
+namespace {
+
+constexpr double kNotableTick = 1e-3;  // of a frame: a coarser last digit is told
+
+/// Times of an even camera in place of those that a table rounds.
+void put_even(TrackData& track) {
+  const std::optional<EvenTimes> even = even_times(track.t_s, StampSource::table);
+  if (!even) return;
+  if (even->tick_s > kNotableTick * even->step_s) {
+    track.notes.push_back(fmt::format("the times are whole multiples of {:.2g} s and taken as even, {:.6g} s apart",
+                                      even->tick_s, even->step_s));
+  }
+  double start_s = 0.0;
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) start_s += track.t_s[i] - even->t_s[i];
+  start_s /= static_cast<double>(track.t_s.size());
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) track.t_s[i] = start_s + even->t_s[i];
+}
+
+}  // namespace
+
 void take_rows_as_frames(TrackData& track) {
+  put_even(track);
   track.frame.resize(track.t_s.size());
   std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
   track.frame_t_s = track.t_s;

@@ -38,7 +38,8 @@ struct TrackData {
 };
 
 /// Every point of a track from a file is a frame in which the object was seen; the frame rate is one over the median
-/// time step.
+/// time step. Times that are even but for the digits they are written with are put back on their even places
+/// (written_times.h), and a note says so where a digit is more than a thousandth of a frame.
 void take_rows_as_frames(TrackData& track);
 
 /// A track from a table that another program exported (column_table.h): which column is x, which is its time.
@@ -56,8 +57,8 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
 
 /// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or what another
 /// program exported. x and the force are multiplied by `downhill` (+1 or -1), so that both are positive downhill. Times
-/// stay those of the file. InputError, up to ten issues named by line: no number, a time that does not rise, too few
-/// points.
+/// stay those of the file but for take_rows_as_frames(). InputError, up to ten issues named by line: no number, a time
+/// that does not rise, too few points.
 ///
 /// A file whose header has no `t_s`, or of which a column is asked for, goes to import_track().
 TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column = {});

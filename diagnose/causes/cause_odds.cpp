@@ -31,11 +31,6 @@ bool is_clip_scatter(const Hypothesis& hypothesis) {
   return hypothesis.effects == std::vector<std::size_t>{effect_index(ids::clip_scatter)};
 }
 
-bool is_scatter(const Hypothesis& hypothesis) {
-  return std::all_of(hypothesis.effects.begin(), hypothesis.effects.end(),
-                     [](std::size_t e) { return effect_list()[e].search == Search::noise; });
-}
-
 double part_left(double left, double before) {
   if (!(before > kLeastExcess) || !(left > kNotMeasured)) return 1.0;
   return std::clamp(left / before, 0.0, 1.0);
@@ -71,7 +66,7 @@ void weigh_by_share_left(const std::vector<double>& excess, double unnamed_exces
   for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
   // What is beside a cause counts for the cause, and scatter of single positions alone for nothing: it makes no gap.
   for (Hypothesis& from : comparison.all) {
-    const bool scatter_alone = !from.unnamed && !from.effects.empty() && is_scatter(from);
+    const bool scatter_alone = is_scatter_alone(from);
     if (!scatter_alone && (!from.unnamed || from.effects.empty())) continue;
     for (Hypothesis& pure : comparison.all) {
       if (pure.unnamed || (scatter_alone ? !pure.effects.empty() : pure.effects != from.effects)) continue;

@@ -14,14 +14,14 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLongestStep = 0.0126;  // s: 80 frames a second need one step a frame
+constexpr double kLongestStep = 0.0126;  // s: 80 frames a second need one step a frame,
+constexpr double kStepsOfFrame = 8.0;    // and a frame never more than these, unless something is stiff
 constexpr double kLongestTurn = 0.3;     // of its inverse rate: of k h, and of what effects ask for
 constexpr int kMostTurns = 20;           // reversals within one step; more is chatter about rest
 constexpr double kNoSpeed_m_s = 1e-300;  // has a direction, and moves nothing
 constexpr int kMostLeaving = 40;         // steps to the instant at which friction gives way,
 constexpr double kSameTime_s = 1e-13;    // to within this
-constexpr double kStiffStep = 0.1;       // of the longest step: a motion with shorter ones takes at most
-constexpr double kMostSteps = 1e5;       // of them
+constexpr double kMostSteps = 2500.0, kMostOfFrame = 24.0;  // steps of a motion: so many, and so many a frame
 
 // What the integrator itself has to know of effects of the time: where a wave stands, and where a hand lets go.
 constexpr EffectSlot kShake = slot_of(ids::base_vibration, 0), kShakeHz = slot_of(ids::base_vibration, 1),
@@ -93,7 +93,7 @@ GliderConstants constants_of(const TrackModel& model) {
 
 class Mover {
  public:
-  Mover(const TrackModel& model, const ActingLaws& laws, const GliderConstants& glider)
+  Mover(const TrackModel& model, const ActingLaws& laws, const GliderConstants& glider, double frame_s)
       : m_(model),
         laws_(laws),
         glider_(glider),
@@ -105,7 +105,8 @@ class Mover {
     for (const Acting& effect : laws.rates.all()) {
       rate = std::max(rate, effect.law->rate_1_s(effect.p, model.mass_kg));
     }
-    step_ = rate > 0.0 ? std::min(kLongestStep, kLongestTurn / rate) : kLongestStep;
+    step_ = std::max(kLongestStep, frame_s / kStepsOfFrame);
+    if (rate > 0.0) step_ = std::min(step_, kLongestTurn / rate);
   }
 
   /// What acts whichever way it moves.
@@ -307,7 +308,9 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   if (times_s.empty()) return moved;
   const GliderConstants glider = constants_of(model);
   const ActingLaws laws(model.effects, glider);
-  Mover mover(model, laws, glider);
+  const double frame_s =
+      (times_s.back() - times_s.front()) / static_cast<double>(std::max<std::size_t>(1, times_s.size() - 1));
+  Mover mover(model, laws, glider, frame_s);
   PlaceAndSpeed s{model.x0_m, model.v0_m_s};
   mover.start(s.v);
   const double stretch = laws.stretch;
@@ -322,7 +325,8 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     moved.x_m.push_back(seen(laws, glider, state.x, times_s[moved.x_m.size()]));
     moved.v_m_s.push_back(state.v);
   };
-  if (mover.longest_step() < kStiffStep * kLongestStep && !(at.back() - t <= kMostSteps * mover.longest_step())) {
+  const double most_steps = kMostSteps + kMostOfFrame * static_cast<double>(at.size());
+  if (!(at.back() - t <= most_steps * mover.longest_step())) {
     // A fit that diverges asks for millions of steps; nothing that was filmed is as stiff as that.
     moved.x_m.assign(at.size(), std::numeric_limits<double>::quiet_NaN());
     moved.v_m_s = moved.x_m;

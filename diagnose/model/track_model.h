@@ -4,9 +4,9 @@
 ///
 /// sliding, changed by the laws of the effects that act (diagnose/effects/effect.h); at v = 0 the glider stays while
 /// friction of up to its limit, whichever way, can hold it. Runge and Kutta's fourth order in equal parts of every
-/// frame interval, or over several frames, with a polynomial of fifth order between (steps of at most 12.6 ms; k h at
-/// most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and at t_r: a smooth function of all
-/// parameters, so that its derivatives follow by finite differences. SI units.
+/// frame interval, or over several frames, with a polynomial of fifth order between (steps of at most 12.6 ms
+/// or an eighth of the frame interval; k h at most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and
+/// at t_r: a smooth function of all parameters, so that its derivatives follow by finite differences. SI units.
 #pragma once
 
 #include <cstddef>
@@ -52,8 +52,8 @@ struct Moved {
 };
 
 /// At the stated times (rising, from the clip's first frame). `late_s`, where not empty, is what the true time of each
-/// frame is later than stated. Not finite where the motion runs away, or would need more than 1e5 steps, each under
-/// 1.26 ms (a motion of 1 s with K/m above 3e4 1/s).
+/// frame is later than stated. Not finite where the motion runs away, or would need more than 2500 steps and 24 a
+/// frame (200 frames in 2 s: K/m above 1100 1/s).
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
 }  // namespace glidelab::diagnose

@@ -96,7 +96,7 @@ constexpr std::size_t kFewestPoints = 6, kFewestOfPiece = 12;
 constexpr std::size_t kFewestForNoise = 8;  // residuals off the neighbours
 constexpr double kOutlier = 5.0;            // standard deviations off the neighbours
 constexpr double kLongestBridge = 0.08;     // s of disputed frames within a motion that are bridged
-constexpr double kLeastNoise_m = 1e-9;
+constexpr double kLeastNoise = 1e-7;        // of the longest distance covered: no camera or sensor measures better
 
 enum class Kind { no, free, disputed };
 
@@ -313,6 +313,11 @@ std::vector<double> neighbour_residuals(const std::vector<double>& t_s, const st
 }  // namespace
 
 void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s) {
+  double least_m = 0.0;
+  for (const TrackedMotion& motion : motions) {
+    const auto [low, high] = std::minmax_element(motion.x_m.begin(), motion.x_m.end());
+    least_m = std::max(least_m, kLeastNoise * (*high - *low));
+  }
   const auto measure = [&](const std::vector<std::vector<double>>& x_m) {
     std::vector<std::size_t> of_short;
     std::vector<double> together;
@@ -321,7 +326,7 @@ void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::v
       std::vector<double> t_s = motion.t_s;
       for (std::size_t p = 0; p < t_s.size() && !late_s.empty(); ++p) t_s[p] += late_s[i][p];
       const std::vector<double>& x = x_m.empty() ? motion.x_m : x_m[i];
-      motion.sd_m = std::max(neighbour_noise(t_s, x, motion.outlier), kLeastNoise_m);
+      motion.sd_m = std::max(neighbour_noise(t_s, x, motion.outlier), least_m);
       motion.wider.clear();
       const std::vector<double> own = neighbour_residuals(t_s, x, motion.outlier);
       if (own.size() >= kFewestForNoise) continue;
@@ -330,7 +335,7 @@ void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::v
     }
     // Of short motions all together tell it.
     if (together.size() < kFewestForNoise) return;
-    const double sd_m = std::max(core::kSdOverMedian * core::median_of(std::move(together)), kLeastNoise_m);
+    const double sd_m = std::max(core::kSdOverMedian * core::median_of(std::move(together)), least_m);
     for (const std::size_t i : of_short) motions[i].sd_m = sd_m;
   };
   measure({});

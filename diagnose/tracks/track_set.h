@@ -45,6 +45,7 @@ double neighbour_residual(const std::vector<double>& t_s, const std::vector<doub
 
 /// The noise of each motion from its neighbouring positions (`late_s`, where not empty, is what each is later than its
 /// time says), and one level for all where theirs differ by no more than their own errors; else half way between.
+/// At least 1e-7 of the longest distance covered, which no camera or sensor undercuts.
 void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s = {});
 
 /// Noise of one position, from how far each lies off the cubic through its four nearest neighbours, outliers spared;

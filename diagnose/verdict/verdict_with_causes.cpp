@@ -27,14 +27,32 @@ constexpr double kDoubt = 0.05;  // of names by the noise alone
 constexpr double kHalf = 0.5;    // of the excess: what a verdict's causes take at least
 constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 
-constexpr double kLeastNamed = 0.1;  // of the excess: beside a remainder less is part of it
-constexpr double kMost = 0.75;       // of the excess: what a law takes that has its name by its share alone
-constexpr double kTrusted = 0.8;     // the probability of a name by its share alone
+constexpr double kLeastNamed = 0.1;   // of the excess: beside a remainder less is part of it
+constexpr double kMost = 0.75;        // of the excess: what a law takes that has its name by its share alone
+constexpr double kTrusted = 0.8;      // the probability of a name by its share alone
+constexpr double kNotMeasured = 0.5;  // a gap below which the noise is not that of the positions
+constexpr double kSureScatter = 0.9;  // the probability of scatter without a gap from which on it is the verdict
 
 /// Whether some of an explanation takes part of the gap.
 bool shows_in_gap(const Hypothesis& best) {
   return std::any_of(best.effects.begin(), best.effects.end(),
                      [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
+}
+
+/// What these explanations would explain needs no cause.
+void set_none_of(bool (*of)(const Hypothesis&), Comparison& comparison) {
+  for (Hypothesis& one : comparison.all) {
+    if (one.unnamed || one.effects.empty() || !of(one)) continue;
+    comparison.none += one.probability;
+    for (const std::size_t e : one.effects) comparison.effect_probability[e] -= one.probability;
+    one.probability = 0.0;
+  }
+}
+
+double probability_of_scatter(const Comparison& comparison) {
+  double sum = 0.0;
+  for (const Hypothesis& one : comparison.all) sum += is_scatter_alone(one) ? one.probability : 0.0;
+  return sum;
 }
 
 bool shows_in_images(const Hypothesis& best) {
@@ -180,8 +198,14 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
   } else {
-    // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding.
-    if (noise_is_rounding(set) && !sequence.is_gap) first.none += std::exchange(first.unknown, 0.0);
+    // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding. Nor is
+    // anything where positions follow the model far better than any sensor could, and their noise is only assumed.
+    const bool not_measured = noise_is_rounding(set) || sequence.gap_before < kNotMeasured;
+    const bool below_noise = not_measured && !sequence.is_gap && !in_images;
+    if (below_noise) {
+      set_none_of([](const Hypothesis&) { return true; }, first);
+      first.none += std::exchange(first.unknown, 0.0);
+    }
     // A name that takes next to nothing of a gap explains something else.
     const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalf;
     if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
@@ -190,10 +214,13 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
       first.unknown += std::exchange(first.none, 0.0);
       set_unknown(names ? std::max(first.unknown, by.none + by.unknown) : 1.0, first);
     }
-    // Without a gap a name must do more than small imperfections would.
-    if (!weighed && !sequence.is_gap && names && shows_in_gap(best)) {
-      allow_for_remainders(set, without, jobs, first);
-      if (verdict_by(first.none, first.unknown) == Verdict::none) {
+    // Without a gap a name must do more than small imperfections would. Scatter of single positions shifts no
+    // parameter either: unless it is all but certain, it is a trace.
+    if (!weighed && !sequence.is_gap && !below_noise && names) {
+      const bool scatter = is_scatter_alone(best);
+      if (shows_in_gap(best)) allow_for_remainders(set, without, jobs, first);
+      if (scatter && probability_of_scatter(first) < kSureScatter) set_none_of(is_scatter_alone, first);
+      if ((scatter || shows_in_gap(best)) && verdict_by(first.none, first.unknown) == Verdict::none) {
         for (const std::size_t e : best.effects) traces.emplace_back(effect_list()[e].id);
       }
     }

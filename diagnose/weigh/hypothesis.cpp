@@ -97,6 +97,12 @@ void set_probabilities(Comparison& comparison) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
+bool is_scatter_alone(const Hypothesis& hypothesis) {
+  return !hypothesis.unnamed && !hypothesis.effects.empty() &&
+         std::all_of(hypothesis.effects.begin(), hypothesis.effects.end(),
+                     [](std::size_t e) { return effect_list()[e].search == Search::noise; });
+}
+
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
   std::map<std::multiset<std::size_t>, double> sums;
   const auto causes = [&](const Hypothesis& hypothesis) {

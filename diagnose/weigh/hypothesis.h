@@ -81,6 +81,9 @@ inline constexpr double kAnyPower = 0.4;
 /// One explanation among those fitted; null: none.
 const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects);
 
+/// Whether an explanation is nothing but scatter of single positions or times (Search::noise), which makes no gap.
+bool is_scatter_alone(const Hypothesis& hypothesis);
+
 /// The likeliest hypothesis that names something, or null; causes that no experiment of tracks tells apart count
 /// together (first_alike()), so that two names for one cause are not beaten by a less likely one with a single name.
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);

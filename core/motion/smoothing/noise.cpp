@@ -126,6 +126,12 @@ double rounding_step(std::span<const double> x_m) {
   for (int parts = 1; parts <= most; ++parts) {
     if (fits(least / parts)) return least / parts;
   }
+  // Of a motion that is never slow the last decimal place is seen in the numbers themselves.
+  constexpr int kMostPlaces = 9;
+  double step = 1.0;
+  for (int places = 0; places <= kMostPlaces; ++places, step = std::pow(10.0, -places)) {
+    if (least > step && fits(step)) return step;
+  }
   return 0.0;
 }
 

@@ -59,6 +59,20 @@ TEST_CASE("x in centimetres or millimetres makes accelerations that no incline h
   CHECK(unusable(findings(positions([](double t) { return 1000.0 * run(t); }, 0.1)), "millimetres"));
 }
 
+TEST_CASE("where short stretches hide the acceleration in their noise the whole motion tells the unit") {
+  CHECK(unusable(findings(positions([](double t) { return 100.0 * run(t); }, 0.3)), "centimetres"));
+  CHECK(findings(positions(run, 3e-3)).empty());
+}
+
+TEST_CASE("positions seconds apart have their times in another unit") {
+  Positions of = positions(run);
+  for (double& t : of.t_s) t *= 1000.0;
+  const std::vector<core::Finding> found = findings(of);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].severity == core::Severity::change);
+  CHECK(found[0].found.find("10 s apart") != std::string::npos);
+}
+
 TEST_CASE("a free fall on a stated slope of 4 degrees is none") {
   CHECK(unusable(findings(positions([](double t) { return 0.5 * kGravity_m_s2 * t * t; })), "incline_deg = 90"));
 }

@@ -106,3 +106,22 @@ TEST_CASE("a drag as no fit should ask for is not followed, where it would take 
   const double v_lim = model.mass_kg * model.gravity_m_s2 * std::sin(model.alpha_rad) / model.k_n_s_m;
   CHECK(std::abs(slow.v_m_s.back() - v_lim) < 1e-9);
 }
+
+TEST_CASE("frames that are far apart cost a few steps each, and the motion stays exact") {
+  diagnose::TrackModel model = glider();
+  model.mu = 0.0;
+  model.v0_m_s = 0.1;
+  model.k_n_s_m = 1e-3 * model.mass_kg;  // dies away over a thousand seconds
+  std::vector<double> t;
+  for (int i = 0; i < 100; ++i) t.push_back(20.0 * i);
+  int evaluations = 0;
+  const diagnose::UnnamedForce counts = [&](double, double, double) { return ++evaluations, 0.0; };
+  model.unnamed = &counts;
+  const diagnose::Moved moved = diagnose::move(model, t);
+  const double k = 1e-3, a = model.gravity_m_s2 * std::sin(model.alpha_rad);
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double gone = std::exp(-k * t[i]);
+    CHECK(moved.v_m_s[i] == Approx(a / k + (model.v0_m_s - a / k) * gone).epsilon(1e-9));
+  }
+  CHECK(evaluations < 100 * 8 * 4 + 100);  // 8 steps of a frame, each of four stages
+}

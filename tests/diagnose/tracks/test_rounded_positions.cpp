@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/motion/smoothing/noise.h"
+#include "core/track/even_times.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
@@ -85,5 +86,28 @@ TEST_CASE("an ideal cart whose positions are rounded to a centimetre has no effe
         diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
     CHECK(diagnosis.verdict == diagnose::Verdict::none);
     CHECK(diagnosis.traces == std::vector<std::string>{"position_rounding"});
+  }
+}
+
+TEST_CASE("an ideal motion that is written with six digits lacks nothing: a step of the times is no cause") {
+  constexpr double kDigit = 1e-6;
+  for (const unsigned clips : {1u, 2u, 4u}) {
+    CAPTURE(clips);
+    std::vector<tests::MadeLaunch> launches;
+    for (unsigned clip = 0; clip < clips; ++clip) launches.push_back({0.3 + 0.1 * clip, 2.0, 0.1, 0.05 * clip});
+    tests::MadeEffect written;
+    written.seen = [](double x, double) { return kDigit * std::round(x / kDigit); };
+    tests::MadeExperiment made =
+        tests::made_experiment(launches, written, 1, 0.0, 120, 60.0, 0.1, 0.0, {.k_n_s_m = 1e-4, .mu = 1e-3});
+    for (core::ClipResult& clip : made.results.clips) {
+      std::vector<double> t_s;
+      for (const core::MotionPoint& point : clip.motion) t_s.push_back(kDigit * std::round(point.t_s / kDigit));
+      const std::optional<core::EvenTimes> even = core::even_times(t_s, core::StampSource::table);  // as a file is read
+      REQUIRE(even);
+      for (std::size_t i = 0; i < t_s.size(); ++i) clip.motion[i].t_s = even->t_s[i];
+    }
+    const diagnose::Diagnosis diagnosis =
+        diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+    CHECK(diagnosis.verdict == diagnose::Verdict::none);
   }
 }

@@ -1,4 +1,4 @@
-#include "core/pictures/frames/even_times.h"
+#include "core/track/even_times.h"
 
 #include <cmath>
 #include <random>
@@ -81,4 +81,65 @@ TEST_CASE(
   CHECK_FALSE(even_times(stamp({240.0, 1e-3, 0.0003, 0.0, 0.01}).stamps_s));
   CHECK_FALSE(even_times(stamp({200.0, 1e-3}).stamps_s));  // 5 ms: steps of one length
   CHECK_FALSE(even_times(stamp({240.0, 1.0 / 600.0, 0.0, 0.0, 0.0, 19}).stamps_s));
+}
+
+namespace {
+
+/// n frames `interval` apart, as a table with so many places after the point has them.
+std::vector<double> written(std::size_t n, double interval, int places, double start = 0.0) {
+  std::vector<double> t;
+  const double per_digit = std::pow(10.0, places);
+  for (std::size_t i = 0; i < n; ++i) {
+    t.push_back(std::round((start + interval * static_cast<double>(i)) * per_digit) / per_digit);
+  }
+  return t;
+}
+
+/// With so many significant digits.
+double significant(double t, int digits) {
+  if (t == 0.0) return 0.0;
+  const double digit = std::pow(10.0, std::floor(std::log10(t)) - digits + 1);
+  return std::round(t / digit) * digit;
+}
+
+}  // namespace
+
+TEST_CASE("times that a table writes with few places are even to a fraction of the last one") {
+  for (const double rate : {24.0, 29.97, 60.0, 119.88, 240.0}) {
+    for (const int places : {4, 6}) {
+      CAPTURE(rate, places);
+      const std::vector<double> t = written(150, 1.0 / rate, places, 0.2);
+      const std::optional<EvenTimes> even = even_times(t, StampSource::table);
+      std::vector<double> exact;
+      for (int i = 0; i < 150; ++i) exact.push_back(0.2 + i / rate);
+      CHECK(largest_error(even ? even->t_s : t, exact) < 0.35 * std::pow(10.0, -places));
+    }
+  }
+}
+
+TEST_CASE("significant digits are understood, which are coarser from one second on") {
+  std::vector<double> t, exact;
+  for (int i = 0; i < 90; ++i) {
+    exact.push_back(i / 30.0);
+    t.push_back(significant(exact.back(), 4));
+  }
+  CHECK(largest_error(t, exact) > 2.5e-4);
+  const std::optional<EvenTimes> even = even_times(t, StampSource::table);
+  REQUIRE(even);
+  CHECK(even->tick_s == Approx(1e-3));
+  CHECK(largest_error(even->t_s, exact) < 1.5e-4);
+}
+
+TEST_CASE("uneven times, exact ones and whole frame numbers of a table stay as they are") {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<double> uneven = written(100, 0.02, 4), exact, numbers;
+  for (double& t : uneven) t = std::round((t + 3e-4 * normal(random)) * 1e4) / 1e4;  // by three digits
+  for (int i = 0; i < 100; ++i) {
+    exact.push_back(i / 60.0);
+    numbers.push_back(i);
+  }
+  for (const std::vector<double>& t : {uneven, exact, numbers, written(100, 0.02, 3), written(100, 1.0 / 240.0, 2)}) {
+    CHECK_FALSE(even_times(t, StampSource::table));
+  }
 }

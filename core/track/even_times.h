@@ -1,7 +1,8 @@
 /// The even times of a camera behind rounded time stamps.
 ///
-/// A phone writes whole ticks of 1/600 s, Matroska whole milliseconds, while the sensor exposes evenly: stamps are then
-/// off by up to half a tick q (q / sqrt(12) on average), which at a speed v looks like noise of v q / sqrt(12).
+/// A phone writes whole ticks of 1/600 s, Matroska whole milliseconds, a table three or four places after the point,
+/// while the sensor exposes evenly: stamps are then off by up to half a tick q (q / sqrt(12) on average), which at a
+/// speed v looks like noise of v q / sqrt(12), or like a shaking camera where the pattern repeats.
 ///
 ///     stamp_k = a + T n_k + rounding,    n_k the frame's slot (frames may be missing between two)
 ///
@@ -25,7 +26,11 @@ struct EvenTimes {
   double tick_s = 0.0;        ///< q
 };
 
+/// Where stamps come from: a container stores them to a microsecond or better; a table writes them in decimal places,
+/// all of its times with one last place, or with one number of significant digits (3 to 6; q is then the coarsest).
+enum class StampSource { container, table };
+
 /// `stamps_s` rise. Nothing where they are fewer than 20, are even already, or are not as above.
-std::optional<EvenTimes> even_times(std::span<const double> stamps_s);
+std::optional<EvenTimes> even_times(std::span<const double> stamps_s, StampSource source = StampSource::container);
 
 }  // namespace glidelab::core

@@ -1,4 +1,4 @@
-#include "core/pictures/frames/even_times.h"
+#include "core/track/even_times.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,20 +9,37 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestStamps = 20;
-constexpr double kStampResolution_s = 2e-6;     // stamps are stored to a microsecond or better
+constexpr double kContainer_s = 2e-6;  // stamps are stored to a microsecond or better,
+constexpr double kTable_s = 2e-9;      // and decimal fractions of up to eight places exactly
+constexpr int kFewestDigits = 3, kMostDigits = 6;
 constexpr double kMostSpreadOverTick = 1.05;    // than a tick, for exposures that jitter a little
 constexpr double kLongestStepOverMedian = 1.5;  // of the median step: a longer one may hold a frame that is missing
 constexpr double kLeastTicks = 1.5;             // in a step: with fewer a tick more or less could be a frame
 constexpr int kHalvings = 60;                   // of an interval: to the last bit
 
-/// The longest step of which both are whole multiples, to kStampResolution_s.
-double common_step(double a, double b) {
-  while (b > kStampResolution_s) {
+/// The longest step of which both are whole multiples, to `resolution`.
+double common_step(double a, double b, double resolution) {
+  while (b > resolution) {
     const double rest = std::abs(a - b * std::round(a / b));
     a = b;
     b = rest;
   }
   return a;
+}
+
+/// The last digit of the largest of times that all have the same number of significant digits; 0: they have not.
+double last_significant_digit(std::span<const double> stamps_s) {
+  const auto digit_of = [](double t, int digits) {
+    return std::pow(10.0, std::floor(std::log10(std::abs(t)) + 1e-12) - digits + 1);
+  };
+  for (int digits = kFewestDigits; digits <= kMostDigits; ++digits) {
+    const bool all = std::all_of(stamps_s.begin(), stamps_s.end(), [&](double t) {
+      const double in_digits = t == 0.0 ? 0.0 : t / digit_of(t, digits);
+      return std::abs(in_digits - std::round(in_digits)) < 1e-6;
+    });
+    if (all) return digit_of(stamps_s.back(), digits);
+  }
+  return 0.0;
 }
 
 /// The slots that the stamps' steps pass, for a step of about the mean of the single ones.
@@ -66,19 +83,12 @@ double edge(const Spread& spread, double limit, double inside, double outside) {
   return inside;
 }
 
-}  // namespace
-
-std::optional<EvenTimes> even_times(std::span<const double> stamps_s) {
-  if (stamps_s.size() < kFewestStamps) return std::nullopt;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < stamps_s.size(); ++i) steps.push_back(stamps_s[i] - stamps_s[i - 1]);
-  const auto [shortest, longest] = std::minmax_element(steps.begin(), steps.end());
-  if (*longest - *shortest < kStampResolution_s) return std::nullopt;
-  EvenTimes even;
-  even.tick_s = *shortest;
-  for (const double step : steps) even.tick_s = common_step(even.tick_s, step);
-  const std::vector<double> slots = slots_of(steps, even.tick_s);
+std::optional<EvenTimes> even_by_ticks(std::span<const double> stamps_s, const std::vector<double>& steps,
+                                       double tick_s) {
+  const std::vector<double> slots = slots_of(steps, tick_s);
   if (slots.empty()) return std::nullopt;
+  EvenTimes even;
+  even.tick_s = tick_s;
 
   // The least spread lies where the ends are off by no more than two ticks.
   const Spread spread{stamps_s, slots};
@@ -102,6 +112,23 @@ std::optional<EvenTimes> even_times(std::span<const double> stamps_s) {
   even.half_width_s = 0.5 * (to_s - from_s);
   for (const double slot : slots) even.t_s.push_back(even.step_s * slot);
   return even;
+}
+
+}  // namespace
+
+std::optional<EvenTimes> even_times(std::span<const double> stamps_s, StampSource source) {
+  if (stamps_s.size() < kFewestStamps) return std::nullopt;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps_s.size(); ++i) steps.push_back(stamps_s[i] - stamps_s[i - 1]);
+  const auto [shortest, longest] = std::minmax_element(steps.begin(), steps.end());
+  const double resolution = source == StampSource::table ? kTable_s : kContainer_s;
+  if (*longest - *shortest < resolution) return std::nullopt;
+  double tick_s = *shortest;
+  for (const double step : steps) tick_s = common_step(tick_s, step, resolution);
+  std::optional<EvenTimes> even = even_by_ticks(stamps_s, steps, tick_s);
+  if (even || source == StampSource::container) return even;
+  const double coarsest = last_significant_digit(stamps_s);
+  return coarsest > tick_s ? even_by_ticks(stamps_s, steps, coarsest) : std::nullopt;
 }
 
 }  // namespace glidelab::core
