@@ -95,6 +95,12 @@ struct ContradictedIncline {
   double z = 0.0;
 };
 
+/// A stated inclination without its uncertainty, which holds no fit, and which the accelerations contradict grossly.
+struct ContradictedReading {
+  double mass_kg = 0.0;
+  std::string sentence;  ///< core::InclineContradiction's
+};
+
 // Of a table of lines.
 
 /// Lines whose mean intercept is larger than gravity.
@@ -113,9 +119,9 @@ struct TableOfLines {
   std::size_t lines = 0;
 };
 
-using Note =
-    std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
-                 QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps, LaunchedOtherWay,
-                 NegativeLoss, ContradictedIncline, BeyondGravity, MeanIncline, TableOfLines, OnlyFalls>;
+using Note = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
+                          QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps,
+                          LaunchedOtherWay, NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity,
+                          MeanIncline, TableOfLines, OnlyFalls>;
 
 }  // namespace glidelab::diagnose

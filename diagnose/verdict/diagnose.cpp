@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "core/analysis/analyze.h"
+#include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/frame_effects.h"
 #include "diagnose/frames/missing_frames.h"
@@ -111,6 +112,16 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
     if (way * stated < -kOtherWay * motion.sd_m) {
       set.notes.emplace_back(LaunchedOtherWay{setup.name, stated < 0.0});
     }
+  }
+}
+
+/// A reading without its uncertainty holds no fit: what the accelerations say against it must be said all the same.
+void note_readings(const core::AnalysisResults& results, TrackSet& set) {
+  for (const core::ConfigurationResult& found : results.configurations) {
+    if (found.incline_sd_deg) continue;
+    auto contradiction = core::incline_contradiction(found, results.gravity_m_s2, core::stated_incline(found));
+    if (!contradiction || !contradiction->gross) continue;
+    set.notes.emplace_back(ContradictedReading{found.mass_kg, std::move(contradiction->sentence)});
   }
 }
 
@@ -240,6 +251,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   TrackSet set = track_set(results, setups, true);
   check(setups, set);
   note_limits(setups, set);
+  note_readings(results, set);
   cut_driven_motions(set, kFewestPoints);
   progress("weighing explanations", 0.1);
   PictureEvidence pictures;
@@ -259,6 +271,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     if (points >= kFewestPositions) {
       set = std::move(trimmed);
       note_limits(setups, set);
+      note_readings(results, set);
       cut_driven_motions(set, kFewestPoints);
       set.notes.emplace_back(HandLeftOut{set.disputed});
       progress("weighing explanations", 0.5);

@@ -155,6 +155,10 @@ struct Sentence {
     return fmt::format("Clip {} is stated as launched {}, but starts in the opposite direction.", of.clip,
                        of.stated_up ? "up" : "down");
   }
+  std::string operator()(const diagnose::ContradictedReading& of) const {
+    return fmt::format("With {:.6g} kg {}: an angle, a length, the frame rate or gravity_m_s2 is wrong.", of.mass_kg,
+                       of.sentence);
+  }
   std::string operator()(const diagnose::NegativeLoss& of) const {
     const bool drag = of.of == diagnose::NegativeLoss::Of::drag;
     return fmt::format(

@@ -107,6 +107,27 @@ TEST_CASE("a stated inclination that the motion contradicts is said first, with 
   CHECK(std::get<diagnose::Routine>(diagnosis.next) == diagnose::Routine::measure_inclination);
 }
 
+TEST_CASE("an inclination without its uncertainty that the accelerations contradict is told, whatever the verdict") {
+  const auto readings = [](const diagnose::Diagnosis& of) {
+    return std::count_if(of.notes.begin(), of.notes.end(), [](const diagnose::Note& note) {
+      return std::holds_alternative<diagnose::ContradictedReading>(note);
+    });
+  };
+  tests::MadeExperiment made = tests::made_experiment(
+      {{0.335, 4.0, -0.6, 1.2}, {0.335, 4.0, 0.5, -1.1}, {0.335, 4.0, -0.6, 1.0}, {0.335, 4.0, 0.4, -1.0}}, {}, 4);
+  for (core::ClipSetup& setup : made.setups) setup.incline_sd_rad.reset();
+  core::ConfigurationResult found;  // as the lines would have it
+  found.mass_kg = 0.335;
+  found.incline_deg = 4.0;
+  found.alpha_deg.estimate = core::Estimate{4.01, 0.03};
+  made.results.configurations = {found};
+  CHECK(readings(diagnosed(made)) == 0);
+  made.results.configurations[0].incline_deg = 1.0;
+  const diagnose::Diagnosis diagnosis = diagnosed(made);
+  CHECK(readings(diagnosis) == 1);
+  CHECK(diagnosis.verdict == diagnose::Verdict::none);
+}
+
 TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
   // Downhill only: what is stated too small of the inclination is taken for friction that drives,
   // mu' = (mu cos 4 - sin 4 + sin 3)/cos 3 = -0.0114.

@@ -47,6 +47,8 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::NegativeLoss{diagnose::NegativeLoss::Of::drag, -0.279, 0.004},
        "The fitted drag is below zero (-0.2790 ± 0.0040 N"},
       {diagnose::ContradictedIncline{"flat", "plumb", 0.1, 0.001, 0.2, 0.001, true, 70.0}, "by the plumb line"},
+      {diagnose::ContradictedReading{0.3, "the acceleration makes the inclination 2°, incline_deg says 0°"},
+       "With 0.3 kg the acceleration makes the inclination 2°"},
       {diagnose::BeyondGravity{4.0, 12.7, 9.81}, "12.7 m/s², more than gravity"},
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "stated at 4° corresponds to an inclination of 3.900°"},
       {diagnose::TableOfLines{12}, "The table of 12 lines"},
