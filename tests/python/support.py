@@ -1,7 +1,9 @@
 """What the tests share: where program and sources are, made motions, folders with them."""
 
+import importlib.util
 import json
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -11,6 +13,17 @@ import numpy as np
 
 SOURCE = Path(os.environ["GLIDELAB_SOURCE"])
 PROGRAM = os.environ["GLIDELAB_PROGRAM"]
+
+
+def needs(*wanted: str):
+    """Skips a test where an optional package, or a program ("mypy program"), is missing, and says so on a line of its own."""
+    missing = [name for name in wanted if not (shutil.which(name.split()[0]) if name.endswith(" program") else
+                                               importlib.util.find_spec(name))]
+    if not missing:
+        return lambda test: test
+    reason = f"skipped: no {', '.join(missing)}" + ("" if missing[0].endswith(" program") else " for Python")
+    print(reason, flush=True)
+    return unittest.skip(reason)
 
 
 def run(*arguments: object, status: int = 0) -> str:

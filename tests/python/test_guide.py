@@ -1,18 +1,15 @@
 """docs/guide/python.md: its blocks run, in order."""
 
 import contextlib
-import importlib.util
 import io
 import os
 import re
-import unittest
 
-from tests.python.support import SOURCE, InFolder
+from tests.python.support import SOURCE, InFolder, needs
 
 
 class Guide(InFolder):
-    @unittest.skipUnless(importlib.util.find_spec("pandas") and importlib.util.find_spec("matplotlib"),
-                         "skipped: no Python packages pandas and matplotlib")
+    @needs("pandas", "matplotlib")
     def test_every_block_runs(self):
         import matplotlib
         matplotlib.use("Agg")

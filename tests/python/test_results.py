@@ -1,18 +1,12 @@
 """Results: numbers against closed forms, tables, plots, pickling."""
 
-import importlib.util
 import pickle
 import unittest
 
 import numpy as np
 
 import glidelab
-from tests.python.support import InFolder, damped
-
-
-def needs(module: str):
-    """Skips a test where an optional package is missing."""
-    return unittest.skipUnless(importlib.util.find_spec(module), f"skipped: no Python package {module}")
+from tests.python.support import InFolder, damped, needs
 
 
 class AnalysisOfArrays(InFolder):

@@ -1,15 +1,13 @@
 """The package and its stubs are clean under mypy --strict."""
 
-import shutil
 import subprocess
 import sys
-import unittest
 
-from tests.python.support import SOURCE, InFolder
+from tests.python.support import SOURCE, InFolder, needs
 
 
 class Types(InFolder):
-    @unittest.skipUnless(shutil.which("mypy"), "skipped: no mypy")
+    @needs("mypy program")
     def test_mypy_strict_finds_nothing(self):
         done = subprocess.run(["mypy", "--strict", "--python-executable", sys.executable, "--cache-dir",
                                str(self.folder), str(SOURCE / "python" / "glidelab")],
