@@ -13,5 +13,6 @@ void bind_smoothing(pybind11::module_& module);
 void bind_studies(pybind11::module_& module);
 void bind_film(pybind11::module_& module);
 void bind_camera(pybind11::module_& module);
+void bind_tracks(pybind11::module_& module);
 
 }  // namespace glidelab::python

@@ -21,4 +21,5 @@ PYBIND11_MODULE(_glidelab, module) {
   bind_studies(module);
   bind_film(module);
   bind_camera(module);
+  bind_tracks(module);
 }

@@ -15,6 +15,7 @@ from . import _glidelab
 from ._analysis import Analysis, Clip, Configuration, Line, Motion, analyze
 from ._camera import Camera, Marker, calibrate, fit_marker
 from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Recovered, Residuals, diagnose, plan
+from ._estimator import Judged, Judgement, estimator, judge
 from ._errors import Error, InputError, Issue, NotMet, NumericalError, SystemFailure
 from ._film import FilmedClip, Frame, Rendered, render, render_folder
 from ._inputs import Track, load_scenario
@@ -35,10 +36,10 @@ def explain(result: Result) -> str:
 
 __all__ = [
     "Analysis", "Bandwidth", "BandwidthRule", "Camera", "Candidate", "Cause", "Clip", "Configuration", "Coverage",
-    "CoverageRow", "Diagnosis", "Effect", "Error", "FilmedClip", "Finding", "Frame", "InputError", "Issue", "Line",
+    "CoverageRow", "Diagnosis", "Effect", "Error", "FilmedClip", "Finding", "Frame", "InputError", "Issue", "Judged", "Judgement", "Line",
     "Marker", "ModeChange", "Motion", "NotMet", "NumericalError", "Plan", "PlannedEffect", "Quantity",
     "RecordingCheck", "Recovered", "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip",
     "Simulation", "Smoothed", "Sweep", "SystemFailure", "Track", "Validation", "analyze", "bandwidth_rules",
-    "calibrate", "check", "choose_bandwidth", "coverage", "diagnose", "explain", "fit_marker", "load_scenario",
+    "calibrate", "check", "choose_bandwidth", "coverage", "diagnose", "estimator", "explain", "fit_marker", "judge", "load_scenario",
     "plan", "position_noise", "render", "render_folder", "require", "simulate", "smooth", "sweep", "validate",
 ]
