@@ -120,14 +120,15 @@ validate::Confirm confirm_of(const std::string& word) {
 
 Outcome find_requirement(const std::string& file, const std::vector<std::string>& targets, const std::string& confirm,
                          std::uint64_t runs, std::uint64_t track_runs, Seed seed, int jobs, const py::object& told) {
-  const auto requirement = WatchedWork(told).run([&](const base::Progress& progress) {
+  WatchedWork watched(told);
+  const auto requirement = watched.run([&](const base::Progress& progress) {
     validate::RequirementOptions how;
     for (const std::string& target : targets) how.targets.push_back(validate::parse_target(target));
     how.confirm = confirm_of(confirm);
     how.runs = runs;
     how.track_runs = track_runs;
     how.jobs = jobs;
-    how.watch = [&progress] { progress("judging", 0.0); };
+    how.watch = [&watched] { watched.throw_if_stopped(); };
     validate::Sweep sweep = validate::read_sweep(file);
     if (seed) sweep.seed = *seed;
     return std::make_shared<const validate::Requirement>(validate::find_requirement(sweep, how, progress));

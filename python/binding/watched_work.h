@@ -43,6 +43,11 @@ class WatchedWork {
     return done.get();
   }
 
+  /// For work that looks more often whether it is to stop than it reports: throws Interrupted.
+  void throw_if_stopped() const {
+    if (stop_) throw base::Interrupted();
+  }
+
  private:
   static constexpr std::chrono::milliseconds kInterval{20};  // a person who presses Ctrl-C notices no less
 
