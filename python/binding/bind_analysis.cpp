@@ -56,8 +56,9 @@ std::string rule_of(const AnalysisChoices& choices) {
   return choices.bandwidth_rule == core::kLinesRule ? std::string() : choices.bandwidth_rule;
 }
 
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 py::dict motion_arrays(const core::ClipResult& clip) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto column = [&](const auto& value) {
     std::vector<double> values;
     values.reserve(clip.motion.size());
