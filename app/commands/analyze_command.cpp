@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 
-#include "app/commands/analysis_files.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
@@ -15,6 +14,7 @@
 #include "base/files/file_io.h"
 #include "base/text/nearest_word.h"
 #include "core/analysis/analyze.h"
+#include "core/analysis/preview.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "fit/estimators.h"
@@ -89,8 +89,8 @@ void analyze(const AnalyzeOptions& options) {
   how.lines = estimator.lines;
   const core::AnalysisResults results =
       estimator.estimate(core::analyze(folders, how, progress), {.robust = options.robust});
-  write_analysis_files(results, staged.dir());
-  const std::vector<core::Preview> previews = previews_of(folders, results, progress, options.bare);
+  report::write_analysis_files(results, staged.dir());
+  const std::vector<core::Preview> previews = core::previews_of(folders, results, progress, options.bare);
   report::write_page(staged.dir(), "report.html", report::analysis_report(title, results, previews, progress));
   throw_if_interrupted();
   staged.publish_files();

@@ -9,7 +9,6 @@
 #include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
-#include "core/analysis/preview.h"
 #include "core/check/check_recording.h"
 #include "report/check/check_report.h"
 #include "report/html/gnuplot.h"
@@ -25,21 +24,6 @@ struct CheckOptions {
   core::OutsideFiles outside = core::OutsideFiles::refused;
 };
 
-/// One frame of every clip in which the marker was seen.
-std::vector<core::Preview> previews_of_check(const core::Experiment& experiment, const core::RecordingCheck& check) {
-  std::vector<core::Preview> previews;
-  for (std::size_t i = 0; i < check.clips.size(); ++i) {
-    core::ClipResult seen;
-    seen.frames = check.clips[i].frames;
-    seen.sightings = check.clips[i].sightings;
-    core::PreviewOptions one;
-    one.frames = 1;
-    one.video = false;
-    previews.push_back(core::make_preview(experiment, experiment.clips[i], seen, one));
-  }
-  return previews;
-}
-
 void check(const CheckOptions& options) {
   const fs::path out = output_folder(options.common, "check", options.folder);
   refuse_scenarios({options.folder});
@@ -51,7 +35,8 @@ void check(const CheckOptions& options) {
   const core::RecordingCheck found = core::check_recording(experiment, options.common.jobs, display.callback());
   const std::string json = report::check_json(found);
   base::write_file(staged.dir() / "check.json", json);
-  report::write_page(staged.dir(), "report.html", report::check_report(found, previews_of_check(experiment, found)));
+  report::write_page(staged.dir(), "report.html",
+                     report::check_report(found, core::previews_of_check(experiment, found)));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();

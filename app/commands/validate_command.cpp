@@ -4,13 +4,15 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "app/commands/analysis_files.h"
 #include "app/commands/baseline_gate.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
 #include "base/files/file_io.h"
+#include "core/analysis/preview.h"
+#include "core/experiment/experiment.h"
 #include "render/scenario/scenario.h"
+#include "report/analysis/result_files.h"
 #include "report/html/gnuplot.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
@@ -54,11 +56,11 @@ void validate_command(const ValidateOptions& options) {
   run.analysis.jobs = options.common.jobs;
   const validate::ValidationResult result = validate::run_validation(scenario, experiment, truth, run, progress);
 
-  write_analysis_files(result.results, staged.dir());
+  report::write_analysis_files(result.results, staged.dir());
   copy_trajectories(truth, staged.dir());
   const std::string comparison = report::comparison_json(result.comparison);
   base::write_file(staged.dir() / "comparison.json", comparison);
-  const std::vector<core::Preview> previews = previews_of({experiment}, result.results, progress);
+  const std::vector<core::Preview> previews = core::previews_of({experiment}, result.results, progress, {});
   report::write_page(
       staged.dir(), "report.html",
       report::validation_report(scenario.motion.name, result.results, result.comparison, previews, progress));

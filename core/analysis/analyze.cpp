@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cmath>
 #include <set>
 
 #include "base/errors.h"
-#include "base/long_work.h"
 #include "core/analysis/clip_to_track.h"
-#include "core/motion/analyze_motion.h"
+#include "core/motion/analyze_tracks.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/join_configurations.h"
 
 namespace glidelab::core {
 namespace {
@@ -59,16 +56,10 @@ void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipS
 
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
                         const base::Progress& progress) {
-  if (options.bandwidth_s && !(std::isfinite(*options.bandwidth_s) && *options.bandwidth_s > 0.0)) {
-    throw base::InputError(
-        base::Issue{"", 0, "bandwidth", fmt::format("{}", *options.bandwidth_s), "a time in seconds above 0"});
-  }
-  if (!options.bandwidth_rule.empty() && !find_bandwidth_rule(options.bandwidth_rule)) {
-    throw base::InputError(base::Issue{"", 0, "bandwidth", options.bandwidth_rule,
-                                       fmt::format("{}", fmt::join(bandwidth_choices(), ", "))});
-  }
+  check_bandwidth(options.bandwidth_s, options.bandwidth_rule);
   const std::vector<Experiment> experiments = read_all(folders, options.bare);
-  AnalysisResults results;
+  std::vector<CalibrationResult> calibrations;
+  std::vector<PlumbResult> plumbs;
   std::vector<ClipSetup> setups;
   std::vector<TrackData> tracks;
   std::size_t modes = 0;  // of the cameras so far: folders share none
@@ -80,31 +71,24 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
       if (is_bare_track(experiment.file) && !options.bare.mass_kg) {
-        tracks.back().notes.emplace_back(
-            "no mass is stated: 1 kg is assumed (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)");
+        tracks.back().notes.emplace_back(kMassAssumed);
       }
       experiment_of.push_back(&experiment);
     }
     modes += seen.modes;
-    if (seen.calibration) results.calibrations.push_back(std::move(*seen.calibration));
+    if (seen.calibration) calibrations.push_back(std::move(*seen.calibration));
     for (PlumbResult& plumb : seen.plumbs) {
       plumb.experiment = experiment.name;
-      results.plumbs.push_back(std::move(plumb));
+      plumbs.push_back(std::move(plumb));
     }
   }
   name_uniquely(experiments, setups);
-  results.clips.resize(setups.size());
-  std::atomic<std::size_t> done = 0;
-  base::for_each_parallel(setups.size(), options.jobs, [&](std::size_t i) {
-    results.clips[i] = analyze_motion(
-        setups[i], tracks[i], {options.bandwidth_s, options.bandwidth_rule, options.lines, options.lost_frames});
-    results.clips[i].experiment = experiment_of[i]->name;
-    results.clips[i].pictures = tracks[i].pictures;
-    progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
-  });
-  results.gravity_m_s2 = experiments.front().gravity_m_s2;
-  results.configurations = join_configurations(setups, results.clips, experiments.front().gravity_m_s2, options.lines);
-  results.estimator = name_of(options.lines);
+  AnalysisResults results = analyze_tracks(
+      setups, tracks, experiments.front().gravity_m_s2,
+      {options.bandwidth_s, options.bandwidth_rule, options.lines, options.lost_frames}, options.jobs, progress);
+  for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = experiment_of[i]->name;
+  results.calibrations = std::move(calibrations);
+  results.plumbs = std::move(plumbs);
   return results;
 }
 

@@ -162,4 +162,29 @@ Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const
   return preview;
 }
 
+namespace {
+
+constexpr int kVideos = 2;  // more would make the page heavy
+
+}  // namespace
+
+std::vector<Preview> previews_of(const std::vector<std::filesystem::path>& folders, const AnalysisResults& results,
+                                 const base::Progress& progress, const BareTrackOptions& bare) {
+  std::vector<Preview> previews;
+  int videos = 0;
+  for (const std::filesystem::path& folder : folders) {
+    const Experiment experiment = read_input(folder, bare);
+    for (const ClipSetup& setup : experiment.clips) {
+      if (!setup.file.empty())
+        progress("preparing images", static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));
+      PreviewOptions options;
+      options.video = !setup.file.empty() && videos < kVideos;
+      if (options.video) ++videos;
+      if (!options.video) options.frames = 1;
+      previews.push_back(make_preview(experiment, setup, results.clips.at(previews.size()), options));
+    }
+  }
+  return previews;
+}
+
 }  // namespace glidelab::core

@@ -3,11 +3,16 @@
 /// The clip is read again, frame by frame, after the analysis; nothing of it enters a result.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/long_work.h"
+
 namespace glidelab::core {
 
+struct AnalysisResults;
+struct BareTrackOptions;
 struct Experiment;
 struct ClipSetup;
 struct ClipResult;
@@ -35,5 +40,10 @@ struct PreviewOptions {
 /// missing is no error; `why_no_video` says so. InputError where the clip cannot be read (any more).
 Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const ClipResult& result,
                      const PreviewOptions& options = {});
+
+/// One preview for each clip of the results, which come from these folders in this order. The first two clips with
+/// images get a video, the others one frame.
+std::vector<Preview> previews_of(const std::vector<std::filesystem::path>& folders, const AnalysisResults& results,
+                                 const base::Progress& progress, const BareTrackOptions& bare);
 
 }  // namespace glidelab::core

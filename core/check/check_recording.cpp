@@ -212,4 +212,18 @@ RecordingCheck check_recording(const Experiment& experiment, int jobs, const bas
   return check;
 }
 
+std::vector<Preview> previews_of_check(const Experiment& experiment, const RecordingCheck& check) {
+  std::vector<Preview> previews;
+  for (std::size_t i = 0; i < check.clips.size(); ++i) {
+    ClipResult seen;
+    seen.frames = check.clips[i].frames;
+    seen.sightings = check.clips[i].sightings;
+    PreviewOptions one;
+    one.frames = 1;
+    one.video = false;
+    previews.push_back(make_preview(experiment, experiment.clips[i], seen, one));
+  }
+  return previews;
+}
+
 }  // namespace glidelab::core

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/long_work.h"
+#include "core/analysis/preview.h"
 #include "core/check/recording_check.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/restitution.h"
@@ -35,5 +36,8 @@ std::optional<double> share_inside(const PatternCheck& pattern, const std::vecto
 RecordingCheck check_recording(const Experiment& experiment, int jobs,
                                const base::Progress& progress = base::no_progress,
                                const FrameOpener& open = open_frames);
+
+/// One frame of every clip in which the marker was seen, for a page.
+std::vector<Preview> previews_of_check(const Experiment& experiment, const RecordingCheck& check);
 
 }  // namespace glidelab::core

@@ -304,7 +304,7 @@ Experiment read_input(const std::filesystem::path& path, const BareTrackOptions&
   clip.track = path;
   clip.column = options.column;
   clip.mass_kg = options.mass_kg.value_or(1.0);
-  clip.incline_rad = options.incline_deg.value_or(0.0) * std::numbers::pi / 180.0;
+  clip.incline_rad = options.incline_deg.value_or(0.0) * base::kRadPerDegree;
   clip.launched = Launched::unknown;
   clip.group = "all";
   experiment.clips.push_back(clip);

@@ -92,6 +92,10 @@ struct BareTrackOptions {
   OutsideFiles outside = OutsideFiles::refused;  ///< of a folder: whether it may name files outside (file_names.h)
 };
 
+/// The note on a track without a stated mass.
+inline constexpr const char* kMassAssumed =
+    "no mass is stated: 1 kg is assumed (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)";
+
 /// A regular file that is not experiment.toml.
 bool is_bare_track(const std::filesystem::path& path);
 

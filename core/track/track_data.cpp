@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
@@ -51,6 +53,39 @@ void take_rows_as_frames(TrackData& track) {
 namespace {
 
 constexpr std::size_t kMostRowIssues = 10;
+
+/// One of the series of a track that is given as numbers.
+struct GivenSeries {
+  const char* name;
+  const std::vector<double>& values;
+};
+
+std::vector<base::Issue> issues_of_numbers(const std::vector<GivenSeries>& series, const std::string& what) {
+  const std::vector<double>& t_s = series.front().values;
+  std::vector<base::Issue> issues;
+  for (const GivenSeries& one : series) {
+    if (one.values.size() != t_s.size()) {
+      issues.push_back({what, 0, one.name, fmt::format("{} numbers", one.values.size()),
+                        fmt::format("as many as times, {}", t_s.size())});
+    }
+    for (std::size_t i = 0; i < one.values.size() && issues.size() < kMostRowIssues; ++i) {
+      if (std::isfinite(one.values[i])) continue;
+      issues.push_back({what, 0, fmt::format("{}[{}]", one.name, i), fmt::format("{}", one.values[i]),
+                        "a finite number; leave out what was not measured"});
+    }
+  }
+  for (std::size_t i = 1; i < t_s.size() && issues.size() < kMostRowIssues; ++i) {
+    if (!(t_s[i] <= t_s[i - 1])) continue;
+    issues.push_back({what, 0, fmt::format("t_s[{}]", i),
+                      fmt::format("{}{}", t_s[i], t_s[i] == t_s[i - 1] ? " twice" : ""),
+                      fmt::format("a time above {}", t_s[i - 1])});
+  }
+  if (issues.empty() && t_s.size() < kFewestTrackPoints) {
+    issues.push_back(
+        {what, 0, "t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", kFewestTrackPoints)});
+  }
+  return issues;
+}
 
 const std::vector<std::string> kPlaces{"x",   "position", "pos",        "distance",     "displacement",    "position x",
                                        "weg", "ort",      "x-position", "position (x)", "posici\xC3\xB3n", "distancia"};
@@ -135,6 +170,20 @@ double factor_of(const ColumnTable& table, const TableColumn& column, std::optio
 }
 
 }  // namespace
+
+TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n,
+                           const std::string& what) {
+  std::vector<GivenSeries> series = {{"t_s", t_s}, {"x_m", x_m}};
+  if (!force_n.empty()) series.push_back({"force_n", force_n});
+  std::vector<base::Issue> issues = issues_of_numbers(series, what);
+  if (!issues.empty()) throw base::InputError(std::move(issues));
+  TrackData track;
+  track.t_s = std::move(t_s);
+  track.x_m = std::move(x_m);
+  track.force_n = std::move(force_n);
+  take_rows_as_frames(track);
+  return track;
+}
 
 TrackData import_track(const std::filesystem::path& file, const std::string& column, int downhill) {
   assert(downhill == 1 || downhill == -1);

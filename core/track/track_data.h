@@ -42,6 +42,13 @@ struct TrackData {
 /// (written_times.h), and a note says so where a digit is more than a thousandth of a frame.
 void take_rows_as_frames(TrackData& track);
 
+/// A motion that is given as numbers: times in seconds that rise, positions in metres, and the known force in newtons
+/// (empty where there is none), all positive downhill. `what` names it in messages: "clip \"up\"". InputError, up to
+/// ten issues named by place: not as many of each, a number that is not finite, a time that does not rise, too few
+/// points.
+TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n,
+                           const std::string& what);
+
 /// A track from a table that another program exported (column_table.h): which column is x, which is its time.
 ///
 /// x is the column that is asked for, by its header, its name or its number from 1 on; otherwise the one that is called

@@ -14,6 +14,20 @@ std::size_t frame_count(const Recording& recording, const sim::MotionSetup& moti
   return last_start <= 0.0 ? 1 : static_cast<std::size_t>(std::floor(last_start * rate_hz + 1e-9)) + 1;
 }
 
+sim::Trajectory recorded_motion(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording) {
+  const double first_middle_s = 0.5 * recording.exposure_s;
+  std::vector<double> times_s(frame_count(recording, motion));
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    times_s[k] = static_cast<double>(k) / recording.frame_rate_hz + first_middle_s;
+  }
+  sim::Trajectory trajectory = sim::simulate(body, motion.x0_m, motion.v0_m_s, times_s);
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    trajectory.states[k].t_s = static_cast<double>(k) / recording.frame_rate_hz;
+  }
+  for (sim::ModeChange& change : trajectory.changes) change.t_s -= first_middle_s;
+  return trajectory;
+}
+
 std::size_t exposure_instants(double length_m, double longest_step_m) {
   constexpr double kStill = 0.002;  // of a step: a thousandth of a pixel where a step is half of one
   if (length_m < kStill * longest_step_m) return 1;

@@ -20,6 +20,10 @@ namespace glidelab::render {
 /// Slots of the clock whose last row's exposure ends within the motion's duration; at least one.
 std::size_t frame_count(const Recording& recording, const sim::MotionSetup& motion);
 
+/// The motion at the middle of each exposure of the first row, on the recording's clock: the first frame's middle is t
+/// = 0. A clock that errs is not in it.
+sim::Trajectory recorded_motion(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording);
+
 /// The motion while a frame is read, for any instant: cubic Hermite between states of equal distance. With knots h = 1
 /// ms apart the error is h^4/384 times the fourth derivative of x, below 1e-13 m on a track; where a reversal changes a
 /// by 0.2 m/s², 1e-8 m.

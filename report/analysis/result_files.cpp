@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/errors.h"
+#include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "core/result/quantity.h"
 #include "core/result/results.h"
@@ -236,6 +237,16 @@ std::string results_json(const core::AnalysisResults& results) {
   }
   document["inclination"] = inclination_json(results);
   return json_text(document);
+}
+
+void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir) {
+  base::write_file(dir / "results.json", results_json(results));
+  const std::vector<std::string> names = phase_file_names(results);
+  const std::vector<std::string> motions = motion_file_names(results);
+  for (std::size_t c = 0; c < results.clips.size(); ++c) {
+    base::write_file(dir / names[c], phase_csv(results.clips[c]));
+    base::write_file(dir / motions[c], motion_csv(results.clips[c]));
+  }
 }
 
 }  // namespace glidelab::report

@@ -1,6 +1,7 @@
 /// Result files of an analysis, as other programs read them: results.json, and tables of each clip's smoothed motion.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ std::string phase_csv(const core::ClipResult& clip);
 /// asks for, clips hold their stretches, what was left out, notes and the name of their CSV; configurations their group
 /// and lines; every folder's calibration stands in "calibrations" where there are several.
 std::string results_json(const core::AnalysisResults& results);
+
+/// results.json, `phase-<clip>.csv` and `motion-<clip>.csv` into the folder.
+void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir);
 
 /// "fisheye" or "brown-conrady": a fisheye's distortion has four terms, k1 to k4, the other five.
 std::string lens_of(const core::CalibrationResult& calibration);

@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Folders of the repository, which a path in a page begins with.
-constexpr std::array kTopFolders = {"app",  "base",     "bench", "cmake",  "core",    "diagnose",
-                                    "docs", "examples", "fit",   "render", "report",  "scenarios",
-                                    "sim",  "teach",    "tests", "tools",  "validate"};
+constexpr std::array kTopFolders = {"app",       "base",     "bench", "cmake",  "core",   "diagnose",
+                                    "docs",      "examples", "fit",   "python", "render", "report",
+                                    "scenarios", "sim",      "teach", "tests",  "tools",  "validate"};
 
 struct Line {
   std::size_t number = 0;

@@ -22,13 +22,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> kRooms = {"base",     "core",  "sim",    "render", "fit",
-                                         "diagnose", "teach", "report", "app",    "validate"};
+const std::vector<std::string> kRooms = {"base",  "core",   "sim", "render",   "fit",   "diagnose",
+                                         "teach", "report", "app", "validate", "python"};
 constexpr int kMostLines = 500;
 constexpr int kMostSources = 25;  // of a folder
 
 /// Where a file is one item of a list that a header elsewhere declares: it has no header of its own.
 const std::vector<std::string> kItems = {"app/commands/",
+                                         "python/binding/bind_",
+                                         "python/binding/module.cpp",
                                          "app/shell/main.cpp",
                                          "diagnose/effects/force/",
                                          "diagnose/effects/camera/",

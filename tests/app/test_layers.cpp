@@ -54,8 +54,10 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "diagnose/effects/effect_library.h",
       "diagnose/effects/effect_list.h",
       "validate/film/twin_motions.h",
+      "sim/motion/simulate.h",
       "diagnose/next/plan.h"}},  // the result types, and what effects are called
     {"app", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
+    {"python", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
 };
 
 /// C libraries that live behind one file (a header and its source) each, by how their headers start.

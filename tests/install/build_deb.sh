@@ -15,8 +15,8 @@ trap 'rm -rf "$work"' EXIT
 fail() { echo "$*"; exit 1; }
 
 cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/packed" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-packages=("$work"/packed/*.deb)
-[ "${#packages[@]}" -eq 1 ] || fail "not one package: ${packages[*]}"
+packages=("$work"/packed/glidelab_*.deb)
+[ "${#packages[@]}" -eq 1 ] || fail "not one package of the program: $(ls "$work/packed")"
 deb=${packages[0]}
 
 # What apt reads: the build's own version, this machine's architecture, what the program is linked to and what it runs.
@@ -64,3 +64,21 @@ gunzip -c "$usr/share/man/man1/glidelab.1.gz" | grep -q '^\.TH GLIDELAB 1' || fa
 completed=$(bash -c 'source "$1"; COMP_WORDS=(glidelab simul) COMP_CWORD=1; _glidelab; echo "${COMPREPLY[*]}"' - \
             "$usr/share/bash-completion/completions/glidelab")
 [ "$completed" = simulate ] || fail "bash completes simul to $completed"
+
+# The Python module is a package of its own, where it was built: it is imported from where it was unpacked, and nothing of it is
+# in the program's.
+module=("$build"/python/glidelab/_glidelab*.so)
+[ -e "${module[0]}" ] || exit 0
+! grep -q dist-packages contents || fail "the program's package holds the module"
+deb=$work/packed/python3-glidelab_${version}_$architecture.deb
+[ -e "$deb" ] || fail "no package of the module: $(ls "$work/packed")"
+for needed in python3 python3-numpy libopencv-core libsundials libosmesa libc6; do
+  field Depends | grep -q "$needed" || fail "the module does not depend on $needed: $(field Depends)"
+done
+dpkg-deb --extract "$deb" "$work/module"
+cd /
+said=$(PYTHONPATH=$work/module/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c "
+import glidelab
+print(glidelab.__file__, len(glidelab.simulate('$usr/share/glidelab/scenarios/tutorial.toml').clips))")
+[ "$said" = "$work/module/usr/lib/python3/dist-packages/glidelab/__init__.py 4" ] || fail "the module says $said"
+[ -e "$work/module/usr/lib/python3/dist-packages/glidelab/py.typed" ] || fail "the module has no py.typed"

@@ -6,10 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "base/long_work.h"
 #include "base/math/angles.h"
-#include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/analyze_tracks.h"
 #include "core/pictures/marker/marker.h"
 #include "render/camera/exposure_times.h"
 #include "render/scenario/clip_motion.h"
@@ -229,15 +227,8 @@ core::AnalysisResults analyze_tracks(const MadeTracks& made, std::optional<doubl
 }
 
 core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionOptions& how, int jobs) {
-  core::AnalysisResults results;
-  results.estimator = core::name_of(how.lines);
-  results.gravity_m_s2 = made.gravity_m_s2;
-  results.clips.resize(made.tracks.size());
-  base::for_each_parallel(made.tracks.size(), jobs, [&](std::size_t c) {
-    results.clips[c] = core::analyze_motion(made.setups[c], made.tracks[c], how);
-    results.clips[c].experiment = made.truth.name;
-  });
-  results.configurations = core::join_configurations(made.setups, results.clips, made.gravity_m_s2, how.lines);
+  core::AnalysisResults results = core::analyze_tracks(made.setups, made.tracks, made.gravity_m_s2, how, jobs);
+  for (core::ClipResult& clip : results.clips) clip.experiment = made.truth.name;
   return results;
 }
 

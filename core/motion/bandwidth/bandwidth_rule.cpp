@@ -1,7 +1,12 @@
 #include "core/motion/bandwidth/bandwidth_rule.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "base/errors.h"
 
 // Each rule, by the constant that its rule_*.cpp defines.
 #define GLIDELAB_BANDWIDTH_RULES(RULE) \
@@ -36,6 +41,17 @@ std::vector<std::string> bandwidth_choices() {
   std::vector<std::string> names = {std::string(kLinesRule)};
   for (const BandwidthRule& rule : bandwidth_rules()) names.emplace_back(rule.name);
   return names;
+}
+
+void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string& rule) {
+  if (bandwidth_s && !(std::isfinite(*bandwidth_s) && *bandwidth_s > 0.0)) {
+    throw base::InputError(
+        base::Issue{"", 0, "bandwidth", fmt::format("{}", *bandwidth_s), "a time in seconds above 0"});
+  }
+  if (!rule.empty() && !find_bandwidth_rule(rule)) {
+    throw base::InputError(
+        base::Issue{"", 0, "bandwidth", rule, fmt::format("{}", fmt::join(bandwidth_choices(), ", "))});
+  }
 }
 
 namespace {

@@ -65,6 +65,9 @@ inline constexpr std::string_view kLinesRule = "lines";
 /// What a person may ask for: kLinesRule, then the table's names.
 std::vector<std::string> bandwidth_choices();
 
+/// InputError for a bandwidth that is no time above 0, and for a rule's name that is neither empty nor in the table.
+void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string& rule);
+
 inline constexpr double kLeastBandwidthSteps = 1.2;  ///< time steps; a narrower kernel holds fewer than five points
 inline constexpr double kBandwidthRatio = 1.1;       ///< from one bandwidth that is tried to the next
 

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""What the Python module costs beside the program: a diagnosis of 12 clips from arrays, and one call of the smoother.
+
+usage: PYTHONPATH=build/release/python bench/python_overhead.py build/release/app/glidelab [REPEATS]
+
+Times are processor time of all threads, the least of the repeats: on a machine that does other things as well, that is
+what repeats best. The program's contains its start and its file; the module's the conversion of arrays and results.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+import glidelab
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def processor_s(work) -> float:
+    """Of this process and its children, while `work` runs."""
+    before = os.times()
+    work()
+    after = os.times()
+    return sum(after[:4]) - sum(before[:4])
+
+
+def twelve_tracks():
+    """The paper's twelve clips with white noise."""
+    tracks = []
+    for scenario in ("level", "inclined"):
+        for clip in glidelab.simulate(ROOT / "scenarios" / "paper" / f"{scenario}.toml").clips:
+            tracks.append(clip.track(noise_m=2e-5, seed=len(tracks), mass_kg=0.335 + 0.1 * (len(tracks) // 2 % 3),
+                                     incline_deg=0.0 if scenario == "level" else 4.0,
+                                     name=f"{scenario}-{clip.name}"))
+    return tracks
+
+
+def write(folder: Path, tracks) -> None:
+    """As an experiment folder."""
+    lines = ["format = 1", 'name = "made"', "[track]", 'downhill = "+X"']
+    for track in tracks:
+        rows = [f"{t!r},{x!r}" for t, x in zip(map(float, track.t_s), map(float, track.x_m))]
+        (folder / f"{track.name}.csv").write_text("t_s,x_m\n" + "\n".join(rows) + "\n")
+        lines += ["[[clip]]", f'name = "{track.name}"', f'track = "{track.name}.csv"', f"mass_kg = {track.mass_kg!r}",
+                  f"incline_deg = {track.incline_deg!r}", 'launched = "released"']
+    (folder / "experiment.toml").write_text("\n".join(lines) + "\n")
+
+
+def main() -> None:
+    """Prints both."""
+    program, repeats = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    tracks = [glidelab.Track(**{**vars(track), "launched": "released"}) for track in twelve_tracks()]
+    with tempfile.TemporaryDirectory() as temp:
+        folder = Path(temp) / "made"
+        folder.mkdir()
+        write(folder, tracks)
+        command = [program, "diagnose", str(folder), "-q", "--no-page", "--jobs", "1", "-o", str(Path(temp) / "out")]
+        by_command = min(processor_s(lambda: subprocess.run(command, check=True, stdout=subprocess.DEVNULL))
+                         for _ in range(repeats))
+        by_module = min(processor_s(lambda: glidelab.diagnose(tracks, name="made", jobs=1)) for _ in range(repeats))
+        same = glidelab.diagnose(tracks, name="made").to_json() == (Path(temp) / "out" / "diagnosis.json").read_text()
+    print(f"diagnose, {len(tracks)} clips, {sum(len(track.t_s) for track in tracks)} positions: command {by_command:.2f} s, "
+          f"module {by_module:.2f} s ({100.0 * (by_module / by_command - 1.0):+.1f} %), the same bits: {same}")
+
+    t = np.arange(1000) / 200.0
+    x = np.sin(t)
+    calls = []
+    for _ in range(2000):
+        begin = time.perf_counter()
+        glidelab.smooth(t, x, 0.04)
+        calls.append(time.perf_counter() - begin)
+    print(f"smooth, 1000 points, h of 8 steps: {1e6 * min(calls):.0f} µs at least, {1e6 * np.median(calls):.0f} µs in the median")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,164 @@
+/// analyze: of folders and files as the command does it, and of tracks that are given as arrays.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "base/errors.h"
+#include "core/analysis/analyze.h"
+#include "core/analysis/preview.h"
+#include "core/motion/analyze_tracks.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
+#include "fit/estimators.h"
+#include "python/binding/bindings.h"
+#include "python/binding/given_tracks.h"
+#include "python/binding/outcome.h"
+#include "python/binding/watched_work.h"
+#include "report/analysis/analysis_report.h"
+#include "report/analysis/result_files.h"
+
+namespace glidelab::python {
+
+namespace py = pybind11;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What of an analysis is chosen, whatever it is of.
+struct AnalysisChoices {
+  std::optional<double> bandwidth_s;
+  std::string bandwidth_rule;  ///< empty: the default
+  std::string estimator;
+  bool robust = false;
+  int jobs = 1;
+};
+
+const fit::Estimator& estimator_of(const AnalysisChoices& choices) {
+  const fit::Estimator* estimator = fit::find_estimator(choices.estimator);
+  if (estimator == nullptr) {
+    throw base::InputError(base::Issue{"", 0, "estimator", fmt::format("\"{}\"", choices.estimator),
+                                       fmt::format("one of {}", fmt::join(fit::estimator_names(), ", "))});
+  }
+  if (choices.robust && !estimator->takes_robust) {
+    throw base::InputError(base::Issue{"", 0, "robust", choices.estimator,
+                                       "the estimator trajectory (lines leave positions off the motion out anyway)"});
+  }
+  return *estimator;
+}
+
+std::string rule_of(const AnalysisChoices& choices) {
+  return choices.bandwidth_rule == core::kLinesRule ? std::string() : choices.bandwidth_rule;
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+py::dict motion_arrays(const core::ClipResult& clip) {
+  const auto column = [&](const auto& value) {
+    std::vector<double> values;
+    values.reserve(clip.motion.size());
+    for (const core::MotionPoint& point : clip.motion) values.push_back(value(point));
+    return vector_of(values);
+  };
+  const auto smoothed = [&](double core::MotionPoint::*member) {
+    return column([&](const core::MotionPoint& point) { return point.smoothed ? point.*member : kNone; });
+  };
+  py::dict arrays;
+  arrays["t_s"] = column([](const core::MotionPoint& point) { return point.t_s; });
+  arrays["measured_x_m"] = column([](const core::MotionPoint& point) { return point.measured_m.value_or(kNone); });
+  arrays["x_m"] = smoothed(&core::MotionPoint::x_m);
+  arrays["sd_x_m"] = smoothed(&core::MotionPoint::sd_x_m);
+  arrays["v_m_s"] = smoothed(&core::MotionPoint::v_m_s);
+  arrays["sd_v_m_s"] = smoothed(&core::MotionPoint::sd_v_m_s);
+  arrays["a_m_s2"] = smoothed(&core::MotionPoint::a_m_s2);
+  arrays["sd_a_m_s2"] = smoothed(&core::MotionPoint::sd_a_m_s2);
+  py::list reasons;
+  for (const core::MotionPoint& point : clip.motion) reasons.append(core::describe(point.left_out));
+  arrays["reason"] = std::move(reasons);
+  return arrays;
+}
+
+/// The outcome, and the arrays of each clip. `previews` are made when the page is.
+py::tuple told(
+    core::AnalysisResults found, std::string title,
+    std::function<std::vector<core::Preview>(const core::AnalysisResults&, const base::Progress&)> previews) {
+  const auto results = std::make_shared<const core::AnalysisResults>(std::move(found));
+  Outcome outcome;
+  outcome.json = report::results_json(*results);
+  outcome.text = report::analysis_text(*results);
+  outcome.write = [results, title = std::move(title), previews = std::move(previews)](const fs::path& folder,
+                                                                                      const base::Progress& progress) {
+    report::write_analysis_files(*results, folder);
+    report::write_page(folder, "report.html",
+                       report::analysis_report(title, *results, previews(*results, progress), progress));
+  };
+  py::list motions;
+  for (const core::ClipResult& clip : results->clips) motions.append(motion_arrays(clip));
+  return py::make_tuple(std::move(outcome), std::move(motions));
+}
+
+py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisChoices& choices,
+                        const core::BareTrackOptions& bare, const py::object& progress_told) {
+  const std::vector<fs::path> folders(inputs.begin(), inputs.end());
+  const fit::Estimator& estimator = estimator_of(choices);
+  std::string title;
+  core::AnalysisResults results = WatchedWork(progress_told).run([&](const base::Progress& progress) {
+    core::AnalysisOptions how;
+    how.bandwidth_s = choices.bandwidth_s;
+    how.bandwidth_rule = rule_of(choices);
+    how.jobs = choices.jobs;
+    how.lines = estimator.lines;
+    how.bare = bare;
+    core::AnalysisResults of_lines = core::analyze(folders, how, progress);
+    title = core::read_input(folders.front(), bare).name;
+    if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+    return estimator.estimate(std::move(of_lines), {.robust = choices.robust});
+  });
+  return told(std::move(results), title, [folders, bare](const auto& of, const base::Progress& progress) {
+    return core::previews_of(folders, of, progress, bare);
+  });
+}
+
+py::tuple analyze_arrays(std::vector<GivenTrack> given, double gravity_m_s2, const std::string& name,
+                         const AnalysisChoices& choices, const py::object& progress_told) {
+  const fit::Estimator& estimator = estimator_of(choices);
+  core::check_bandwidth(choices.bandwidth_s, rule_of(choices));
+  check_gravity(gravity_m_s2);
+  core::AnalysisResults results = WatchedWork(progress_told).run([&](const base::Progress& progress) {
+    const GivenTracks tracks = read_given(std::move(given));
+    core::AnalysisResults of_lines = core::analyze_tracks(
+        tracks.setups, tracks.tracks, gravity_m_s2,
+        {.bandwidth_s = choices.bandwidth_s, .bandwidth_rule = rule_of(choices), .lines = estimator.lines},
+        choices.jobs, progress);
+    for (core::ClipResult& clip : of_lines.clips) clip.experiment = name;
+    return estimator.estimate(std::move(of_lines), {.robust = choices.robust});
+  });
+  return told(std::move(results), name, [](const auto&, const auto&) { return std::vector<core::Preview>{}; });
+}
+
+}  // namespace
+
+void bind_analysis(py::module_& module) {
+  py::class_<AnalysisChoices>(module, "AnalysisChoices")
+      .def(py::init(
+          [](std::optional<double> bandwidth_s, std::string rule, std::string estimator, bool robust, int jobs) {
+            return AnalysisChoices{bandwidth_s, std::move(rule), std::move(estimator), robust, jobs};
+          }));
+  module.def("analyze_files", [](const std::vector<std::string>& inputs, const AnalysisChoices& choices,
+                                 std::string column, std::optional<double> mass_kg, std::optional<double> incline_deg,
+                                 bool allow_outside, const py::object& progress) {
+    const core::BareTrackOptions bare{std::move(column), mass_kg, incline_deg,
+                                      allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused};
+    return analyze_files(inputs, choices, bare, progress);
+  });
+  module.def("analyze_arrays", &analyze_arrays);
+  module.def("bandwidth_choices", &core::bandwidth_choices);
+  module.def("estimator_names", &fit::estimator_names);
+}
+
+}  // namespace glidelab::python

@@ -1,0 +1,201 @@
+/// The smoother and the bandwidth rules on their own. Times and values are read where numpy has them.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/errors.h"
+#include "core/math/quantile.h"
+#include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/motion/smoothing/local_polynomial.h"
+#include "core/motion/smoothing/noise.h"
+#include "python/binding/bindings.h"
+#include "python/binding/given_tracks.h"
+
+namespace glidelab::python {
+
+namespace py = pybind11;
+
+namespace {
+
+constexpr std::array<std::pair<const char*, core::Kernel>, 5> kKernels = {{{"gaussian", core::Kernel::gaussian},
+                                                                           {"epanechnikov", core::Kernel::epanechnikov},
+                                                                           {"tricube", core::Kernel::tricube},
+                                                                           {"uniform", core::Kernel::uniform},
+                                                                           {"bimodal", core::Kernel::bimodal}}};
+constexpr int kLeastOrder = 1, kMostOrder = 5;  // of core::PolynomialOptions
+
+[[noreturn]] void refuse(std::string key, std::string found, std::string expected) {
+  throw base::InputError(base::Issue{"", 0, std::move(key), std::move(found), std::move(expected)});
+}
+
+core::Kernel kernel_of(const std::string& name) {
+  for (const auto& [known, kernel] : kKernels) {
+    if (name == known) return kernel;
+  }
+  std::vector<std::string> names;
+  for (const auto& [known, kernel] : kKernels) names.emplace_back(known);
+  refuse("kernel", fmt::format("\"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
+}
+
+/// What the smoother asserts of the times, and of the values that go with them.
+void check_series(std::span<const double> t_s, std::span<const double> values) {
+  if (values.size() != t_s.size()) {
+    refuse("x_m", fmt::format("{} numbers", values.size()), fmt::format("as many as times, {}", t_s.size()));
+  }
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    if (!std::isfinite(t_s[i])) refuse(fmt::format("t_s[{}]", i), fmt::format("{}", t_s[i]), "a finite number");
+    if (!std::isfinite(values[i])) refuse(fmt::format("x_m[{}]", i), fmt::format("{}", values[i]), "a finite number");
+    if (i > 0 && t_s[i] <= t_s[i - 1]) {
+      refuse(fmt::format("t_s[{}]", i), fmt::format("{}", t_s[i]), fmt::format("a time above {}", t_s[i - 1]));
+    }
+  }
+}
+
+core::PolynomialOptions options_of(double bandwidth_s, int order, const std::string& kernel) {
+  if (!(std::isfinite(bandwidth_s) && bandwidth_s > 0.0)) {
+    refuse("bandwidth_s", fmt::format("{}", bandwidth_s), "a time in seconds above 0");
+  }
+  if (order < kLeastOrder || order > kMostOrder) {
+    refuse("order", fmt::format("{}", order), fmt::format("{} to {}", kLeastOrder, kMostOrder));
+  }
+  core::PolynomialOptions options;
+  options.order = order;
+  options.kernel = kernel_of(kernel);
+  options.bandwidth_s = bandwidth_s;
+  return options;
+}
+
+void check_noise(const std::optional<double>& noise_m) {
+  if (noise_m && !(std::isfinite(*noise_m) && *noise_m >= 0.0)) {
+    refuse("noise_m", fmt::format("{}", *noise_m), "a number of metres of 0 or more");
+  }
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// An array of `count` rows x, v, a, each of n numbers.
+py::array_t<double> rows(std::size_t count, std::size_t n) {
+  return py::array_t<double>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(n)});
+}
+
+void put(const std::optional<core::SmoothedPoint>& point, std::size_t i, std::size_t n, double* out) {
+  out[i] = point ? point->x_m : kNone;
+  out[n + i] = point ? point->v_m_s : kNone;
+  out[2 * n + i] = point ? point->a_m_s2 : kNone;
+}
+
+/// x, v and a at the times of the points, and below these their standard deviations where the noise is stated.
+py::array_t<double> smooth(const Vector& times, const Vector& positions, double bandwidth_s, int order,
+                           const std::string& kernel, std::optional<double> noise_m) {
+  const std::span<const double> t_s = span_of(times), x_m = span_of(positions);
+  check_series(t_s, x_m);
+  const core::PolynomialOptions options = options_of(bandwidth_s, order, kernel);
+  check_noise(noise_m);
+  const std::size_t n = t_s.size();
+  py::array_t<double> result = rows(noise_m ? 6 : 3, n);
+  double* const out = result.mutable_data();
+  const py::gil_scoped_release without_lock;
+  const core::LocalPolynomial smoother(t_s, options);
+  const std::vector<std::optional<core::SmoothedPoint>> points = smoother.smooth(x_m);
+  for (std::size_t i = 0; i < n; ++i) put(points[i], i, n, out);
+  if (!noise_m) return result;
+  core::RowVariance variance({*noise_m * *noise_m});
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::optional<core::KernelRow> row = smoother.row_of_point(i);
+    out[3 * n + i] = row ? std::sqrt(variance.of_x(*row)) : kNone;
+    out[4 * n + i] = row ? std::sqrt(variance.of_v(*row)) : kNone;
+    out[5 * n + i] = row && order > 1 ? std::sqrt(variance.of_a(*row)) : kNone;
+  }
+  return result;
+}
+
+/// x, v and a at any times.
+py::array_t<double> smooth_at(const Vector& times, const Vector& positions, const Vector& at, double bandwidth_s,
+                              int order, const std::string& kernel) {
+  const std::span<const double> t_s = span_of(times), x_m = span_of(positions), at_s = span_of(at);
+  check_series(t_s, x_m);
+  const core::PolynomialOptions options = options_of(bandwidth_s, order, kernel);
+  for (std::size_t i = 0; i < at_s.size(); ++i) {
+    if (!std::isfinite(at_s[i])) refuse(fmt::format("at_s[{}]", i), fmt::format("{}", at_s[i]), "a finite number");
+  }
+  py::array_t<double> result = rows(3, at_s.size());
+  double* const out = result.mutable_data();
+  const py::gil_scoped_release without_lock;
+  const core::LocalPolynomial smoother(t_s, options);
+  for (std::size_t i = 0; i < at_s.size(); ++i) {
+    const std::optional<core::KernelRow> row = smoother.row(at_s[i]);
+    put(row ? std::optional(core::weighted_sums(*row, x_m)) : std::nullopt, i, at_s.size(), out);
+  }
+  return result;
+}
+
+/// The rule's choice for one stretch of motion: (bandwidth, method, times and bandwidths of a local rule), or None
+/// where the motion is too short.
+py::object choose_bandwidth(const Vector& times, const Vector& positions, const std::string& name,
+                            std::optional<double> noise_m) {
+  const std::span<const double> t_s = span_of(times), x_m = span_of(positions);
+  check_series(t_s, x_m);
+  check_noise(noise_m);
+  const core::BandwidthRule* rule = core::find_bandwidth_rule(name);
+  if (rule == nullptr) {
+    std::vector<std::string_view> names;
+    for (const core::BandwidthRule& known : core::bandwidth_rules()) names.push_back(known.name);
+    refuse("rule", fmt::format("\"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
+  }
+  if (t_s.size() < core::kFewestTrackPoints) {
+    refuse("t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", core::kFewestTrackPoints));
+  }
+  std::optional<core::BandwidthPick> pick;
+  {
+    const py::gil_scoped_release without_lock;
+    core::BandwidthProblem problem;
+    problem.parts = {{t_s, x_m}};
+    problem.noise.sd_m = noise_m ? *noise_m : core::pilot_noise(t_s, x_m);
+    problem.noise.autocovariance = {problem.noise.sd_m * problem.noise.sd_m};
+    problem.step_s = core::median_step(t_s);
+    pick = rule->choose(problem);
+  }
+  if (!pick) return py::none();
+  std::vector<double> at_s, local_s;
+  for (const core::LocalBandwidth& one : pick->local) {
+    at_s.push_back(one.t_s);
+    local_s.push_back(one.bandwidth_s);
+  }
+  return py::make_tuple(pick->bandwidth_s, pick->method, vector_of(at_s), vector_of(local_s));
+}
+
+py::list rules() {
+  py::list list;
+  for (const core::BandwidthRule& rule : core::bandwidth_rules()) {
+    list.append(py::make_tuple(std::string(rule.name), std::string(rule.words), std::string(rule.assumes)));
+  }
+  return list;
+}
+
+double position_noise(const Vector& times, const Vector& positions) {
+  const std::span<const double> t_s = span_of(times), x_m = span_of(positions);
+  check_series(t_s, x_m);
+  if (t_s.size() < core::kFewestTrackPoints) {
+    refuse("t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", core::kFewestTrackPoints));
+  }
+  return core::pilot_noise(t_s, x_m);
+}
+
+}  // namespace
+
+void bind_smoothing(py::module_& module) {
+  module.def("smooth", &smooth);
+  module.def("smooth_at", &smooth_at);
+  module.def("choose_bandwidth", &choose_bandwidth);
+  module.def("bandwidth_rules", &rules);
+  module.def("position_noise", &position_noise);
+}
+
+}  // namespace glidelab::python

@@ -1,0 +1,170 @@
+/// validate, coverage, require and sweep: what meets a truth. A sweep goes on where it stopped, in the folder it is
+/// given.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <utility>
+
+#include "base/errors.h"
+#include "base/files/file_io.h"
+#include "core/analysis/preview.h"
+#include "core/experiment/experiment.h"
+#include "python/binding/bindings.h"
+#include "python/binding/given_scenario.h"
+#include "python/binding/outcome.h"
+#include "python/binding/watched_work.h"
+#include "report/analysis/analysis_report.h"
+#include "report/analysis/result_files.h"
+#include "report/coverage/coverage_report.h"
+#include "report/requirement/requirement_report.h"
+#include "report/sweep/sweep_report.h"
+#include "report/validation/validation_report.h"
+#include "validate/film/run_validation.h"
+#include "validate/study/coverage/interval_coverage.h"
+#include "validate/study/requirement/requirement.h"
+#include "validate/study/sweep/design/read_sweep.h"
+#include "validate/study/sweep/run_sweep.h"
+#include "validate/study/sweep/sweep_database.h"
+#include "validate/study/sweep/sweep_summary.h"
+#include "version_of_build.h"
+
+namespace glidelab::python {
+
+namespace py = pybind11;
+
+namespace {
+
+namespace fs = std::filesystem;
+using Seed = std::optional<std::uint64_t>;
+
+/// A closed loop, with its folders, which are gone when nobody holds it any more.
+struct Validated {
+  base::TemporaryFolder folder{"validate"};
+  fs::path experiment() const { return folder / "experiment"; }
+  fs::path truth() const { return folder / "experiment.truth"; }
+  std::string name;
+  validate::ValidationResult result;
+};
+
+void write_validation(const Validated& done, const fs::path& out, const base::Progress& progress) {
+  for (const fs::path& from : {done.experiment(), done.truth()}) {
+    fs::copy(from, out / from.filename(), fs::copy_options::recursive);
+    base::list_made_files(out / from.filename());
+  }
+  report::write_analysis_files(done.result.results, out);
+  for (const fs::directory_entry& entry : fs::directory_iterator(done.truth())) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("trajectory-")) base::write_file(out / name, base::read_file(entry.path()));
+  }
+  base::write_file(out / "comparison.json", report::comparison_json(done.result.comparison));
+  const std::vector<core::Preview> previews = core::previews_of({done.experiment()}, done.result.results, progress, {});
+  report::write_page(
+      out, "report.html",
+      report::validation_report(done.name, done.result.results, done.result.comparison, previews, progress));
+}
+
+/// The comparison, and the JSON and the text of the analysis.
+py::tuple run_validation(const GivenScenario& given, Seed seed, int jobs, const py::object& told) {
+  const auto done = WatchedWork(told).run([&](const base::Progress& progress) {
+    const render::Scenario scenario = read_scenario(given);
+    auto loop = std::make_shared<Validated>();
+    fs::create_directory(loop->experiment());
+    fs::create_directory(loop->truth());
+    loop->name = scenario.motion.name;
+    validate::ValidationOptions run;
+    run.render = {.seed = seed.value_or(scenario.seed), .jobs = jobs};
+    run.analysis.jobs = jobs;
+    loop->result = validate::run_validation(scenario, loop->experiment(), loop->truth(), run, progress);
+    return std::shared_ptr<const Validated>(std::move(loop));
+  });
+  Outcome outcome{
+      report::comparison_json(done->result.comparison), report::comparison_text(done->result.comparison),
+      [done](const fs::path& out, const base::Progress& progress) { write_validation(*done, out, progress); }};
+  return py::make_tuple(std::move(outcome), report::results_json(done->result.results));
+}
+
+Outcome measure_coverage(const GivenScenario& given, std::optional<double> noise_m, std::size_t replicates,
+                         std::vector<double> levels, std::optional<double> bandwidth_s, Seed seed, int jobs,
+                         const py::object& told) {
+  std::string name;
+  const auto coverage = WatchedWork(told).run([&](const base::Progress& progress) {
+    // With a noise that is given no camera looks on: it need not see the motions.
+    const render::Scenario scenario =
+        read_scenario(given, noise_m ? render::ScenarioChecks::values : render::ScenarioChecks::all);
+    name = scenario.motion.name;
+    validate::CoverageOptions wanted;
+    wanted.replicates = replicates;
+    wanted.noise_sd_m = noise_m;
+    wanted.bandwidth_s = bandwidth_s;
+    if (!levels.empty()) wanted.levels = std::move(levels);
+    wanted.seed = seed.value_or(scenario.seed);
+    wanted.jobs = jobs;
+    return std::make_shared<const validate::Coverage>(validate::measure_coverage(scenario, wanted, progress));
+  });
+  return {report::coverage_json(*coverage), report::coverage_text(*coverage),
+          [coverage, name](const fs::path& out, const base::Progress&) {
+            base::write_file(out / "coverage.json", report::coverage_json(*coverage));
+            report::write_page(out, "report.html", report::coverage_page(fmt::format("Coverage: {}", name), *coverage));
+          }};
+}
+
+validate::Confirm confirm_of(const std::string& word) {
+  if (word == "none") return validate::Confirm::none;
+  if (word == "tracks") return validate::Confirm::tracks;
+  if (word == "clips") return validate::Confirm::clips;
+  throw base::InputError(base::Issue{"", 0, "confirm", fmt::format("\"{}\"", word), "none, tracks or clips"});
+}
+
+Outcome find_requirement(const std::string& file, const std::vector<std::string>& targets, const std::string& confirm,
+                         std::uint64_t runs, std::uint64_t track_runs, Seed seed, int jobs, const py::object& told) {
+  WatchedWork watched(told);
+  const auto requirement = watched.run([&](const base::Progress& progress) {
+    validate::RequirementOptions how;
+    for (const std::string& target : targets) how.targets.push_back(validate::parse_target(target));
+    how.confirm = confirm_of(confirm);
+    how.runs = runs;
+    how.track_runs = track_runs;
+    how.jobs = jobs;
+    how.watch = [&watched] { watched.throw_if_stopped(); };
+    validate::Sweep sweep = validate::read_sweep(file);
+    if (seed) sweep.seed = *seed;
+    return std::make_shared<const validate::Requirement>(validate::find_requirement(sweep, how, progress));
+  });
+  return {report::requirement_json(*requirement), report::requirement_text(*requirement),
+          [requirement](const fs::path& out, const base::Progress&) {
+            base::write_file(out / "require.json", report::requirement_json(*requirement));
+            report::write_page(out, "report.html", report::requirement_report(*requirement));
+          }};
+}
+
+Outcome run_sweep(const std::string& file, const std::string& folder, Seed seed, int jobs, const py::object& told) {
+  const auto summary = WatchedWork(told).run([&](const base::Progress& progress) {
+    validate::Sweep sweep = validate::read_sweep(file);
+    if (seed) sweep.seed = *seed;
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) base::throw_system_error(folder, "cannot be made", error.value());
+    validate::SweepDatabase database(fs::path(folder) / "sweep.sqlite", sweep, GLIDELAB_VERSION, {});
+    validate::run_sweep(sweep, database, {}, jobs, progress);
+    return std::make_shared<const validate::SweepSummary>(validate::summarize(sweep, database.database()));
+  });
+  return {report::sweep_json(*summary), report::sweep_text(*summary),
+          [summary](const fs::path& out, const base::Progress& progress) {
+            base::write_file(out / "sweep.json", report::sweep_json(*summary));
+            report::write_page(out, "report.html", report::sweep_report(*summary, progress));
+          }};
+}
+
+}  // namespace
+
+void bind_studies(py::module_& module) {
+  module.def("validate", &run_validation);
+  module.def("coverage", &measure_coverage);
+  module.def("require", &find_requirement);
+  module.def("sweep", &run_sweep);
+}
+
+}  // namespace glidelab::python

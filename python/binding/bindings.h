@@ -1,0 +1,18 @@
+/// The functions of the module, one file bind_<topic>.cpp for each of these; glidelab/*.py makes the results of them.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace glidelab::python {
+
+void bind_analysis(pybind11::module_& module);
+void bind_simulation(pybind11::module_& module);
+void bind_diagnosis(pybind11::module_& module);
+void bind_recording(pybind11::module_& module);
+void bind_smoothing(pybind11::module_& module);
+void bind_studies(pybind11::module_& module);
+void bind_film(pybind11::module_& module);
+void bind_camera(pybind11::module_& module);
+void bind_tracks(pybind11::module_& module);
+
+}  // namespace glidelab::python

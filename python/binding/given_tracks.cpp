@@ -1,0 +1,124 @@
+#include "python/binding/given_tracks.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "base/errors.h"
+#include "base/math/angles.h"
+#include "core/experiment/experiment.h"
+
+namespace glidelab::python {
+
+namespace py = pybind11;
+
+Vector vector_of(std::span<const double> values) {
+  return Vector(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+namespace {
+
+constexpr double kSteepest_deg = 90.0;  // as experiment.toml has it
+
+constexpr std::array<std::pair<const char*, core::Launched>, 4> kLaunches = {{{"up", core::Launched::up},
+                                                                              {"down", core::Launched::down},
+                                                                              {"released", core::Launched::released},
+                                                                              {"unknown", core::Launched::unknown}}};
+
+std::string named(const GivenTrack& track) {
+  return fmt::format("track \"{}\"", track.name);
+}
+
+void require(bool holds, const GivenTrack& track, const char* key, const std::string& found, const char* expected,
+             std::vector<base::Issue>& issues) {
+  if (!holds) issues.push_back({named(track), 0, key, found, expected});
+}
+
+core::ClipSetup setup_of(const GivenTrack& track, std::vector<base::Issue>& issues) {
+  const auto number = [](double value) { return fmt::format("{}", value); };
+  const double mass_kg = track.mass_kg.value_or(1.0);
+  require(std::isfinite(mass_kg) && mass_kg > 0.0, track, "mass_kg", number(mass_kg), "a number above 0", issues);
+  require(std::isfinite(track.mass_sd_kg) && track.mass_sd_kg >= 0.0, track, "mass_sd_kg", number(track.mass_sd_kg),
+          "a number of 0 or more", issues);
+  require(std::abs(track.incline_deg) <= kSteepest_deg, track, "incline_deg", number(track.incline_deg),
+          "a number from -90 to 90", issues);
+  const double incline_sd_deg = track.incline_sd_deg.value_or(1.0);
+  require(std::isfinite(incline_sd_deg) && incline_sd_deg >= 0.0, track, "incline_sd_deg", number(incline_sd_deg),
+          "a number of 0 or more, or None", issues);
+
+  core::ClipSetup setup;
+  setup.name = track.name;
+  setup.mass_kg = mass_kg;
+  setup.mass_sd_kg = track.mass_sd_kg;
+  setup.incline_rad = track.incline_deg * base::kRadPerDegree;
+  if (track.incline_sd_deg) setup.incline_sd_rad = *track.incline_sd_deg * base::kRadPerDegree;
+  setup.group = track.group;
+  bool known = false;
+  for (const auto& [word, launched] : kLaunches) {
+    if (track.launched != word) continue;
+    setup.launched = launched;
+    known = true;
+  }
+  require(known, track, "launched", fmt::format("\"{}\"", track.launched), "up, down, released or unknown", issues);
+  return setup;
+}
+
+void check_readings(const std::vector<GivenTrack>& given, const std::vector<core::ClipSetup>& setups,
+                    std::vector<base::Issue>& issues) {
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (setups[i].group != setups[j].group || !core::contradicts(setups[i], setups[j])) continue;
+      issues.push_back(
+          {named(given[i]), 0, "incline_deg", fmt::format("{}", given[i].incline_deg),
+           fmt::format("{} as in {}: a group has one inclination", given[j].incline_deg, named(given[j]))});
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+GivenTracks read_given(std::vector<GivenTrack> given) {
+  std::vector<base::Issue> issues;
+  if (given.empty()) issues.push_back({"", 0, "tracks", "none", "one or more"});
+  GivenTracks read;
+  std::set<std::string> names;
+  for (GivenTrack& track : given) {
+    require(!track.name.empty() && names.insert(track.name).second, track, "name",
+            track.name.empty() ? "nothing" : "it a second time", "a name of its own", issues);
+    read.setups.push_back(setup_of(track, issues));
+    try {
+      read.tracks.push_back(
+          core::track_of_numbers(std::move(track.t_s), std::move(track.x_m), std::move(track.force_n), named(track)));
+    } catch (const base::InputError& error) {
+      issues.insert(issues.end(), error.issues().begin(), error.issues().end());
+      continue;
+    }
+    if (!track.mass_kg) read.tracks.back().notes.emplace_back(core::kMassAssumed);
+  }
+  core::name_groups(read.setups);
+  check_readings(given, read.setups, issues);
+  if (!issues.empty()) throw base::InputError(std::move(issues));
+  return read;
+}
+
+void check_gravity(double gravity_m_s2) {
+  if (std::isfinite(gravity_m_s2) && gravity_m_s2 > 0.0) return;
+  throw base::InputError(base::Issue{"", 0, "gravity_m_s2", fmt::format("{}", gravity_m_s2), "a number above 0"});
+}
+
+void bind_given_track(py::module_& module) {
+  py::class_<GivenTrack>(module, "GivenTrack")
+      .def(py::init([](std::string name, const Vector& t_s, const Vector& x_m, const Vector& force_n,
+                       std::optional<double> mass_kg, double mass_sd_kg, double incline_deg,
+                       std::optional<double> incline_sd_deg, std::string launched, std::string group) {
+        return GivenTrack{std::move(name), copy_of(t_s), copy_of(x_m),   copy_of(force_n),    mass_kg,
+                          mass_sd_kg,      incline_deg,  incline_sd_deg, std::move(launched), std::move(group)};
+      }));
+}
+
+}  // namespace glidelab::python

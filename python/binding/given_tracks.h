@@ -1,0 +1,54 @@
+/// Motions that are given as arrays, as the rooms take them: what experiment.toml states of a clip, and its x(t).
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/experiment/clip_setup.h"
+#include "core/track/track_data.h"
+
+namespace glidelab::python {
+
+/// One dimension, contiguous: glidelab/_arrays.py makes it so, and says what is wrong where it cannot.
+using Vector = pybind11::array_t<double, pybind11::array::c_style>;
+
+inline std::span<const double> span_of(const Vector& vector) {
+  return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
+inline std::vector<double> copy_of(const Vector& vector) {
+  return {vector.data(), vector.data() + vector.size()};
+}
+Vector vector_of(std::span<const double> values);
+
+/// As the keys of a clip in experiment.toml; NaN and empty where nothing is stated.
+struct GivenTrack {
+  std::string name;
+  std::vector<double> t_s, x_m, force_n;
+  std::optional<double> mass_kg;  ///< 1 kg, with a note, where none is stated
+  double mass_sd_kg = 0.0;
+  double incline_deg = 0.0;
+  std::optional<double> incline_sd_deg;
+  std::string launched;  ///< up, down, released, unknown
+  std::string group;
+};
+
+struct GivenTracks {
+  std::vector<core::ClipSetup> setups;
+  std::vector<core::TrackData> tracks;
+};
+
+/// InputError for what makes no clip: numbers that are no track, a mass that is none, a name used twice, an unknown
+/// word for the launch, readings of one group's inclination that contradict each other.
+GivenTracks read_given(std::vector<GivenTrack> given);
+
+/// InputError for what is no acceleration of gravity above 0.
+void check_gravity(double gravity_m_s2);
+
+void bind_given_track(pybind11::module_& module);
+
+}  // namespace glidelab::python

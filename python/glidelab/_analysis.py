@@ -1,0 +1,358 @@
+"""analyze(): from positions, or from an experiment folder, to K/m, mu, alpha and the limit velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _glidelab
+from ._arrays import Vector, frozen
+from ._errors import input_error
+from ._inputs import PathLike, Progress, Track, given_tracks, job_count, source_of, teller
+from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, quantity_of
+
+QUANTITIES = {"k_over_m_1_s": "1/s", "mu": "", "alpha_deg": "°", "v_lim_m_s": "m/s"}
+
+
+@dataclass(frozen=True)
+class Line:
+    """The line a = a0 - (K/m) v through the points of one direction of motion.
+
+    Attributes
+    ----------
+    direction : int
+        Sign of v.
+    points : int
+        On how many it rests.
+    k_over_m_1_s, a0_m_s2 : Quantity
+        Slope (with the other sign) and intercept.
+    covariance_k_over_m_a0 : float or None
+        Of the two.
+    r2 : float or None
+        Coefficient of determination.
+    v_range_m_s : (float, float)
+        The speeds on which it rests.
+    """
+
+    direction: int
+    points: int
+    k_over_m_1_s: Quantity
+    a0_m_s2: Quantity
+    covariance_k_over_m_a0: Optional[float]
+    r2: Optional[float]
+    v_range_m_s: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A clip frame by frame. All arrays have one length; NaN where there is no value.
+
+    Attributes
+    ----------
+    t_s : ndarray
+        Middle of the exposure, from the first frame, in seconds.
+    measured_x_m : ndarray
+        The position as measured, in metres.
+    x_m, v_m_s, a_m_s2 : ndarray
+        Position, velocity and acceleration by the local cubic.
+    sd_x_m, sd_v_m_s, sd_a_m_s2 : ndarray
+        Their standard deviations.
+    reason : ndarray of str
+        ``"used"``, or why the frame is not in a line.
+    """
+
+    t_s: Vector
+    measured_x_m: Vector
+    x_m: Vector
+    v_m_s: Vector
+    a_m_s2: Vector
+    sd_x_m: Vector
+    sd_v_m_s: Vector
+    sd_a_m_s2: Vector
+    reason: np.ndarray[Any, np.dtype[np.str_]]
+
+    @property
+    def used(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """Which frames a line rests on."""
+        used: np.ndarray[Any, np.dtype[np.bool_]] = self.reason == "used"
+        return used
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, a row a frame, with units in ``attrs["units"]``."""
+        return frame_of({name: getattr(self, name) for name in (
+            "t_s", "measured_x_m", "x_m", "sd_x_m", "v_m_s", "sd_v_m_s", "a_m_s2", "sd_a_m_s2", "reason")})
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """One clip, analysed by itself.
+
+    Attributes
+    ----------
+    name, experiment : str
+        Of the clip, and of the folder it comes from.
+    frames, detected : int
+        Of the whole clip, and those in which the marker was found.
+    frame_rate_hz, bandwidth_s, position_noise_m : float or None
+        The bandwidth is the standard deviation of the Gaussian kernel; the noise that of one position.
+    bandwidth_method : str
+        How it was chosen.
+    segments : tuple of Line
+        At most one for each direction.
+    v_lim_m_s : Quantity
+        Limit velocity.
+    motion : Motion
+        Frame by frame.
+    notes : tuple of str
+        What a reader should know.
+    """
+
+    name: str
+    experiment: str
+    frames: int
+    detected: int
+    frame_rate_hz: Optional[float]
+    bandwidth_s: Optional[float]
+    bandwidth_method: str
+    position_noise_m: Optional[float]
+    segments: tuple[Line, ...]
+    v_lim_m_s: Quantity
+    motion: Motion
+    notes: tuple[str, ...]
+
+    def plot(self, ax: Any = None) -> Any:
+        """The phase diagram: a over v, the points of the lines dark, the others light, and the lines.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            `ax`, or new ones.
+        """
+        ax = new_axes(1)[0] if ax is None else ax
+        motion, used = self.motion, self.motion.used
+        ax.plot(motion.v_m_s[~used], motion.a_m_s2[~used], ".", color="0.8", markersize=4)
+        ax.plot(motion.v_m_s[used], motion.a_m_s2[used], ".", color="C0", markersize=4, label=self.name)
+        for line in self.segments:
+            v = np.asarray(line.v_range_m_s)
+            ax.plot(v, float(line.a0_m_s2) - float(line.k_over_m_1_s) * v, color="C1")
+        ax.set_xlabel("v (m/s)")
+        ax.set_ylabel("a (m/s²)")
+        ax.legend()
+        return ax
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """All clips of one mass, one stated inclination and one group.
+
+    Attributes
+    ----------
+    mass_kg, incline_deg : float
+        As stated.
+    group : str
+        Clips that share one set-up of the track.
+    clips : tuple of str
+        Their names.
+    k_over_m_1_s, mu, alpha_deg, v_lim_m_s : Quantity
+        What the motion shows.
+    lines : tuple of Line
+        Through the points of all clips.
+    notes : tuple of str
+        What a reader should know.
+    """
+
+    mass_kg: float
+    incline_deg: float
+    group: str
+    clips: tuple[str, ...]
+    k_over_m_1_s: Quantity
+    mu: Quantity
+    alpha_deg: Quantity
+    v_lim_m_s: Quantity
+    lines: tuple[Line, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(Result):
+    """What an analysis finds.
+
+    Attributes
+    ----------
+    estimator : str
+        By which the quantities were found.
+    clips : tuple of Clip
+        In the order in which they were given.
+    configurations : tuple of Configuration
+        K/m, mu, alpha and the limit velocity of each.
+    """
+
+    estimator: str
+    clips: tuple[Clip, ...]
+    configurations: tuple[Configuration, ...]
+
+    @property
+    def configuration(self) -> Configuration:
+        """The only configuration.
+
+        Raises
+        ------
+        ValueError
+            There are several.
+        """
+        if len(self.configurations) != 1:
+            raise ValueError(f"there are {len(self.configurations)} configurations")
+        return self.configurations[0]
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, a row a configuration: each quantity and its standard deviation (``mu``, ``mu_sd``),
+        NaN where it is not determined, with units in ``attrs["units"]``."""
+        columns: dict[str, list[Any]] = {
+            "mass_kg": [one.mass_kg for one in self.configurations],
+            "incline_deg": [one.incline_deg for one in self.configurations],
+            "group": [one.group for one in self.configurations],
+            "clips": [len(one.clips) for one in self.configurations],
+        }
+        for key in QUANTITIES:
+            found = [getattr(one, key) for one in self.configurations]
+            columns[key] = [np.nan if one.value is None else one.value for one in found]
+            columns[key + "_sd"] = [np.nan if one.sd is None else one.sd for one in found]
+        return frame_of(columns)
+
+    def plot(self) -> list[Any]:
+        """The phase diagram of every clip, side by side.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            One for each clip.
+        """
+        return [clip.plot(ax) for clip, ax in zip(self.clips, new_axes(len(self.clips), 4.0))]
+
+    def _repr_html_(self) -> str:
+        rows = [[one.group, f"{one.mass_kg:g}", f"{one.incline_deg:g}", *(str(getattr(one, key)) for key in QUANTITIES)]
+                for one in self.configurations]
+        return html_table(["group", "mass (kg)", "stated α (°)", "K/m", "µ", "α", "limit velocity"], rows)
+
+
+def _line(found: Mapping[str, Any]) -> Line:
+    return Line(found["direction"], found["points"], quantity_of(found, "k_over_m_1_s", "1/s"),
+                quantity_of(found, "a0_m_s2", "m/s²"), found["covariance_k_over_m_a0"], found["r2"],
+                (found["v_range_m_s"][0], found["v_range_m_s"][1]))
+
+
+def _clip(found: Mapping[str, Any], arrays: Mapping[str, Any]) -> Clip:
+    series = {name: frozen(np.asarray(values)) for name, values in arrays.items()}
+    return Clip(found["name"], found["experiment"], found["frames"], found["detected"], found["frame_rate_hz"],
+                found["bandwidth_s"], found["bandwidth_method"], found["position_noise_m"],
+                tuple(_line(line) for line in found["segments"]), quantity_of(found, "v_lim_m_s", "m/s"),
+                Motion(**series), tuple(found["notes"]))
+
+
+def _configuration(found: Mapping[str, Any]) -> Configuration:
+    quantities = {key: quantity_of(found, key, unit) for key, unit in QUANTITIES.items()}
+    return Configuration(found["mass_kg"], found["incline_deg"], found["group"], tuple(found["clips"]),
+                         lines=tuple(_line(line) for line in found["lines"]), notes=tuple(found["notes"]), **quantities)
+
+
+def analysis_of(outcome: _glidelab.Outcome, motions: Sequence[Mapping[str, Any]]) -> Analysis:
+    """The outcome of the C++ side as a result."""
+    made = Made(outcome)
+    document = Result(made).to_dict()
+    return Analysis(made, document["estimator"],
+                    tuple(_clip(clip, arrays) for clip, arrays in zip(document["clips"], motions)),
+                    tuple(_configuration(one) for one in document["configurations"]))
+
+
+def _choices(bandwidth: Union[float, str, None], estimator: str, robust: bool,
+             jobs: Optional[int]) -> _glidelab.AnalysisChoices:
+    if bandwidth is None or isinstance(bandwidth, str):
+        return _glidelab.AnalysisChoices(None, bandwidth or "", estimator, robust, job_count(jobs))
+    if isinstance(bandwidth, bool) or not isinstance(bandwidth, (int, float, np.integer, np.floating)):
+        raise input_error("bandwidth", f"a {type(bandwidth).__name__}", "a number of seconds, or the name of a rule")
+    return _glidelab.AnalysisChoices(float(bandwidth), "", estimator, robust, job_count(jobs))
+
+
+def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
+            x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
+            force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
+            bandwidth: Union[float, str, None] = None, estimator: str = "phase-diagram", robust: bool = False,
+            gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
+            progress: Progress = None) -> Analysis:
+    """K/m, mu, alpha and the limit velocity from positions, or from an experiment folder.
+
+    Parameters
+    ----------
+    source : array_like, Track, str, path, or a sequence of tracks or of names
+        ``analyze(t_s, x_m)``: times in seconds, shape (n,), n >= 8, rising. A `Track` or several, which share the
+        glider and the track. Or names of experiment folders or of files with a track (docs/reference/commands.md).
+    x_m : array_like, shape (n,), optional
+        With times as `source`: positions in metres, positive downhill.
+    mass_kg, incline_deg : float, optional
+        With (t, x), or a file: mass of the glider, and the inclination as stated.
+    force_n : array_like, shape (n,), optional
+        With (t, x): a known force along x in newtons.
+    column : str
+        With a file: the column that is x, by its header or its number.
+    name : str
+        With arrays: what the experiment is called in results.
+    bandwidth : float or str, optional
+        Standard deviation of the smoothing kernel in seconds, or the rule that chooses it (`bandwidth_rules`).
+    estimator : {"phase-diagram", "phase-diagram-gls", "trajectory"}
+        Lines in the phase diagram as in the paper, generalised lines, or the fit of the whole motion.
+    robust : bool
+        With ``"trajectory"``: leave out positions that lie off the motion.
+    gravity_m_s2 : float
+        With arrays.
+    allow_outside : bool
+        With a folder: whether it may name files outside itself.
+    jobs : int, optional
+        Threads; as many as there are cores.
+    progress : callable, True or None
+        Called as ``progress(stage, fraction)``; True: a bar of tqdm.
+
+    Returns
+    -------
+    Analysis
+        The same numbers, to the last bit, as ``glidelab analyze`` finds in a folder with the same positions.
+
+    Raises
+    ------
+    InputError
+        Wrong input, with what was found where, and what is expected there.
+    NumericalError
+        A fit broke down.
+
+    Notes
+    -----
+    The local cubic and the lines are those of the paper (equations 10 to 13); docs/guide/measurement.md explains them.
+
+    Examples
+    --------
+    >>> import numpy as np, glidelab
+    >>> t = np.arange(0.0, 1.5, 0.005)
+    >>> x = -0.25 * t + 0.45 * (1.0 - np.exp(-t)) # doctest: +SKIP
+    >>> glidelab.analyze(t, x, mass_kg=0.335) # doctest: +SKIP
+    """
+    stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
+                              "force_n": force_n}
+    given = source_of(source, x_m, **stated)
+    choices = _choices(bandwidth, estimator, robust, jobs)
+    if given.paths:
+        return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, column, mass_kg, incline_deg,
+                                                    allow_outside, teller(progress)))
+    _refuse({"column": column or None} if x_m is not None else
+            {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
+    return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), gravity_m_s2, name, choices,
+                                                 teller(progress)))
+
+
+def _refuse(options: Mapping[str, object]) -> None:
+    """What is given and has no meaning here."""
+    for key, value in options.items():
+        if value is not None:
+            raise input_error(key, repr(value), "nothing: a Track states its own, and column is for files")

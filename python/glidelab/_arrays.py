@@ -1,0 +1,34 @@
+"""Arrays as the C++ side takes them: one dimension, contiguous, double precision; without a copy where they are so."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._errors import input_error
+
+Vector = NDArray[np.float64]
+
+
+def vector(name: str, values: ArrayLike, of: str = "") -> Vector:
+    """`values` as a vector; `name` and `of` (its track) stand in messages.
+
+    Raises
+    ------
+    InputError
+        Not real numbers, or not one dimension.
+    """
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        raise input_error(name, f"values of type {array.dtype}", "real numbers", of)
+    if array.ndim != 1:
+        raise input_error(name, f"an array of shape {array.shape}", "one dimension", of)
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def frozen(array: Any) -> Any:
+    """The array, which can no longer be written to: results do not change."""
+    array.flags.writeable = False
+    return array

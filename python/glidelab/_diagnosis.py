@@ -1,0 +1,355 @@
+"""diagnose(): which effect the law lacks; plan(): which effects planned motions would show."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+from numpy.typing import ArrayLike
+
+from . import _glidelab
+from ._analysis import QUANTITIES, _refuse
+from ._arrays import Vector, frozen
+from ._errors import input_error
+from ._inputs import (PathLike, Progress, Scenario, Track, checked_seed, given_scenario, given_tracks, job_count,
+                      source_of, teller)
+from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, quantity_of
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect that the verdict names.
+
+    Attributes
+    ----------
+    id, stage : str
+        As docs/reference/effects.md lists it, and where it acts: ``"dynamics"``, ``"timing"``, ``"optics"``, ...
+    probability : float
+        That it acts, alone or with another.
+    equivalent_to : tuple of str
+        Effects that these data cannot tell from it.
+    joint_probability : float
+        That one of the set acts.
+    parameters : dict
+        ``{"force_n": {"value": ..., "sd": ...}}``
+    """
+
+    id: str
+    stage: str
+    probability: float
+    equivalent_to: tuple[str, ...]
+    joint_probability: float
+    parameters: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One cause in the sequence that explains the gap: its share, and the gap of held-out clips after it."""
+
+    id: str
+    share: Optional[float]
+    share_interval95: Optional[tuple[float, float]]
+    gap_after: Optional[float]
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """K/m, mu, alpha and the limit velocity of one configuration, with the causes `with_causes` in the model."""
+
+    group: str
+    mass_kg: float
+    incline_deg: float
+    with_causes: tuple[str, ...]
+    k_over_m_1_s: Quantity
+    mu: Quantity
+    alpha_deg: Quantity
+    v_lim_m_s: Quantity
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """What the models leave of one motion; all arrays have one length.
+
+    Attributes
+    ----------
+    clip : str
+        Its name.
+    t_s, x_m, v_m_s : ndarray
+        Times, positions and velocities.
+    before_m, after_m : ndarray
+        Residuals of the nominal model, and with the causes.
+    """
+
+    clip: str
+    t_s: Vector
+    x_m: Vector
+    v_m_s: Vector
+    before_m: Vector
+    after_m: Vector
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Diagnosis(Result):
+    """What a diagnosis says.
+
+    Attributes
+    ----------
+    verdict : {"none", "effect", "unknown"}
+        Nothing is missing, named effects are, or something that is not on the list.
+    points : int
+        Positions that took part.
+    summary : str
+        The answer in words.
+    effects : tuple of Effect
+        What the verdict names.
+    none, unknown : float
+        Probabilities that nothing, and that something off the list, acts.
+    explained : tuple of Cause
+        How much of the gap each cause explains, in order.
+    gap_before, gap_after : float or None
+        Root mean square of standardised residuals of held-out clips; 1 is the noise floor. None where there is no gap
+        to measure.
+    recovered : tuple of Recovered
+        The quantities with the causes in the model.
+    next_experiment : str
+        What to record next.
+    residuals : tuple of Residuals
+        Of each motion.
+    twin : str
+        The fitted motions as a scenario (TOML), for `simulate`, `render` and `validate`; empty for a table of lines.
+    notes : tuple of str
+        What a reader should know.
+    """
+
+    verdict: str
+    points: int
+    summary: str
+    effects: tuple[Effect, ...]
+    none: float
+    unknown: float
+    explained: tuple[Cause, ...]
+    gap_before: Optional[float]
+    gap_after: Optional[float]
+    recovered: tuple[Recovered, ...]
+    next_experiment: str
+    residuals: tuple[Residuals, ...]
+    twin: str
+    notes: tuple[str, ...]
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame of all explanations that were weighed, the likeliest first: id, probability, gains."""
+        ranking = self.to_dict()["ranking"]
+        columns = ("id", "probability", "log_evidence_gain", "log_likelihood_gain", "parameters", "gap_after")
+        return frame_of({name: [one.get(name) for one in ranking] for name in columns})
+
+    def plot(self) -> list[Any]:
+        """Residuals over v, of the nominal model and with the causes.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            The two, with one scale.
+        """
+        axes = new_axes(2)
+        for axis, member, title in zip(axes, ("before_m", "after_m"), ("nominal model", "with the causes")):
+            for one in self.residuals:
+                axis.plot(one.v_m_s, 1e6 * getattr(one, member), ".", markersize=3, label=one.clip)
+            axis.set_title(title)
+            axis.set_xlabel("v (m/s)")
+            axis.set_ylabel("residual (µm)")
+        axes[1].set_ylim(axes[0].get_ylim())
+        return axes
+
+    def _repr_html_(self) -> str:
+        rows = [[one.id, f"{one.joint_probability:.3g}", ", ".join(one.equivalent_to)] for one in self.effects]
+        head = f"<p><b>{html.escape(self.summary)}</b></p>"
+        return head + (html_table(["effect", "probability", "or"], rows) if rows else "")
+
+
+def _recovered(found: Mapping[str, Any]) -> Recovered:
+    quantities = {key: quantity_of(found, key, unit) for key, unit in QUANTITIES.items()}
+    return Recovered(found["group"], found["mass_kg"], found["incline_deg"], tuple(found["with"]), **quantities)
+
+
+def _interval(found: Optional[Sequence[float]]) -> Optional[tuple[float, float]]:
+    return None if found is None else (found[0], found[1])
+
+
+def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, Any]], twin: str) -> Diagnosis:
+    """The outcome of the C++ side as a result."""
+    made = Made(outcome)
+    found = Result(made).to_dict()
+    gap = found.get("gap") or {}
+    return Diagnosis(
+        made, found["verdict"], found["points"], found["summary"],
+        tuple(Effect(one["id"], one["stage"], one["probability"], tuple(one["equivalent_to"]),
+                     one["joint_probability"], one["parameters"]) for one in found["effects"]),
+        found["probability"]["none"], found["probability"]["unknown"],
+        tuple(Cause(one["id"], one["share"], _interval(one.get("share_interval95")), one["gap_after"])
+              for one in found["explained"]),
+        gap.get("before"), gap.get("after"),
+        tuple(_recovered(one) for one in found["recovered"]), found["next_experiment"],
+        tuple(Residuals(**{key: value if key == "clip" else frozen(value) for key, value in one.items()})
+              for one in residuals),
+        twin, tuple(found["notes"]))
+
+
+def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
+             x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
+             force_n: Optional[ArrayLike] = None, name: str = "", without: Sequence[str] = (),
+             gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
+             progress: Progress = None) -> Diagnosis:
+    """Which effect, if any, the law of viscous drag and Coulomb friction lacks.
+
+    Parameters
+    ----------
+    source : array_like, Track, str, path, or a sequence of tracks or of names
+        ``diagnose(t_s, x_m)``, a `Track` or several, which share the glider and the track; or names of experiment
+        folders, or of one ``.csv`` with a table of lines.
+    x_m : array_like, shape (n,), optional
+        With times as `source`: positions in metres, positive downhill.
+    mass_kg, incline_deg, force_n : optional
+        With (t, x): as in `analyze`.
+    name : str
+        With arrays: what the experiment is called in results.
+    without : sequence of str
+        Effects to leave out, by the ids of docs/reference/effects.md.
+    gravity_m_s2, allow_outside, jobs, progress
+        As in `analyze`.
+
+    Returns
+    -------
+    Diagnosis
+        The same, to the last bit, as ``glidelab diagnose`` says of a folder with the same positions.
+
+    Raises
+    ------
+    InputError
+        Wrong input; too few positions for a verdict; an unknown effect in `without`.
+
+    Notes
+    -----
+    docs/guide/diagnosis.md says how explanations are weighed, and how far to trust the verdict.
+    """
+    stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
+                              "force_n": force_n}
+    given = source_of(source, x_m, **stated)
+    if x_m is None:
+        _refuse({"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
+    if given.paths:
+        return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), list(without), job_count(jobs),
+                                                      allow_outside, teller(progress)))
+    return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), gravity_m_s2, name, list(without),
+                                                   job_count(jobs), teller(progress)))
+
+
+@dataclass(frozen=True)
+class PlannedEffect:
+    """An effect that planned motions would show, or not.
+
+    Attributes
+    ----------
+    id, parameter : str
+        As docs/reference/effects.md lists it, and the key of its size, with the unit.
+    seen : bool
+        Whether the largest size that is considered would show.
+    seen_from : float or None
+        The size that makes four standard deviations.
+    alike : tuple of str
+        Effects that the motions would not tell from it.
+    """
+
+    id: str
+    parameter: str
+    seen: bool
+    seen_from: Optional[float]
+    alike: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Plan(Result):
+    """Which effects motions will show and tell apart.
+
+    Attributes
+    ----------
+    clips, points : int
+        How many motions and positions.
+    noise_m : float
+        Standard deviation of one position, the mean over the motions.
+    effects : tuple of PlannedEffect
+        All effects of the list.
+    notes : tuple of str
+        What a reader should know.
+    """
+
+    clips: int
+    points: int
+    noise_m: float
+    effects: tuple[PlannedEffect, ...]
+    notes: tuple[str, ...]
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, a row an effect."""
+        return frame_of({name: [getattr(one, name) for one in self.effects]
+                         for name in ("id", "parameter", "seen", "seen_from", "alike")})
+
+    def _repr_html_(self) -> str:
+        rows = [[one.id, one.parameter, "" if one.seen_from is None else f"{one.seen_from:.3g}", ", ".join(one.alike)]
+                for one in self.effects if one.seen]
+        return html_table(["effect", "parameter", "seen from", "looks like"], rows)
+
+
+def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[float] = None,
+         seed: Optional[int] = None, gravity_m_s2: float = 9.80665, name: str = "", jobs: Optional[int] = None,
+         progress: Progress = None) -> Plan:
+    """Which effects motions will show and tell apart, before they are recorded.
+
+    Parameters
+    ----------
+    source : str, path, dict, Track or sequence of Track
+        A scenario, or motions that were recorded.
+    noise_m : float
+        With a scenario: standard deviation of the position noise in metres, which a scenario alone does not have.
+    seed : int, optional
+        With a scenario: of the noise; the scenario's own.
+    gravity_m_s2, name
+        With tracks, as in `diagnose`.
+    jobs, progress
+        As in `analyze`.
+
+    Returns
+    -------
+    Plan
+        The same as ``glidelab diagnose --plan`` writes.
+
+    Raises
+    ------
+    InputError
+        Wrong input; nothing moves freely.
+    """
+    tracks = [source] if isinstance(source, Track) else source
+    if isinstance(tracks, Sequence) and not isinstance(tracks, str):
+        _only("noise_m", noise_m, "a scenario: recorded positions show their own noise")
+        _only("seed", seed, "a scenario")
+        given = source_of(tracks, None)
+        outcome = _glidelab.plan_arrays(given_tracks(given.tracks), gravity_m_s2, name, job_count(jobs),
+                                        teller(progress))
+    else:
+        if noise_m is None:
+            raise input_error("noise_m", "nothing", "the position noise in metres, which a scenario alone does not have")
+        if not 1e-9 <= noise_m <= 1.0:
+            raise input_error("noise_m", repr(noise_m), "a number of metres from 1e-9 to 1")
+        outcome = _glidelab.plan_scenario(given_scenario(source), noise_m, checked_seed(seed), job_count(jobs),  # type: ignore[arg-type]
+                                          teller(progress))
+    made = Made(outcome)
+    found = Result(made).to_dict()
+    return Plan(made, found["clips"], found["points"], found["noise_m"],
+                tuple(PlannedEffect(one["id"], one["parameter"], one["seen"], one.get("seen_from"), tuple(one["alike"]))
+                      for one in found["effects"]), tuple(found["notes"]))
+
+
+def _only(key: str, value: object, where: str) -> None:
+    if value is not None:
+        raise input_error(key, repr(value), f"nothing: it is for {where}")

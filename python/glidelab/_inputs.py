@@ -1,0 +1,205 @@
+"""What functions take: tracks, recordings, scenarios, and how they are to run."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _glidelab
+from ._arrays import vector
+from ._errors import input_error
+from ._toml import toml_text
+
+PathLike = Union[str, "os.PathLike[str]"]
+Scenario = Union[PathLike, Mapping[str, Any]]
+Progress = Union[Callable[[str, float], object], bool, None]
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One motion, as arrays, with what is known of it. x is positive downhill.
+
+    Attributes
+    ----------
+    t_s : array_like, shape (n,)
+        Times in seconds, rising; n is 8 or more.
+    x_m : array_like, shape (n,)
+        Positions in metres.
+    mass_kg : float, optional
+        Of the glider. Without it 1 kg is assumed, on which K/m, mu and alpha do not depend.
+    incline_deg : float
+        As stated, in degrees. It names the configuration; the inclination itself is measured.
+    name : str
+        Unique among the tracks of one call; without one, ``track-1``, ``track-2``, ...
+    force_n : array_like, shape (n,), optional
+        A known force along x, in newtons.
+    mass_sd_kg, incline_sd_deg : float, optional
+        Standard deviations of what is stated.
+    launched : {"unknown", "up", "down", "released"}
+        How the motion began. Motion against a stated launch is taken for the hand's.
+    group : str
+        Tracks of one group share one set-up of the track. Without it, those of one stated inclination do.
+    """
+
+    t_s: ArrayLike
+    x_m: ArrayLike
+    mass_kg: Optional[float] = None
+    incline_deg: float = 0.0
+    name: str = ""
+    force_n: Optional[ArrayLike] = None
+    mass_sd_kg: float = 0.0
+    incline_sd_deg: Optional[float] = None
+    launched: str = "unknown"
+    group: str = ""
+
+
+def given_tracks(tracks: Sequence[Track]) -> list[_glidelab.GivenTrack]:
+    """As the C++ side takes them."""
+    given = []
+    for number, track in enumerate(tracks, 1):
+        name = track.name or (f"track-{number}" if len(tracks) > 1 else "track")
+        of = f'track "{name}"'
+        force = np.empty(0) if track.force_n is None else vector("force_n", track.force_n, of)
+        given.append(
+            _glidelab.GivenTrack(name, vector("t_s", track.t_s, of), vector("x_m", track.x_m, of), force,
+                                 track.mass_kg, track.mass_sd_kg, track.incline_deg, track.incline_sd_deg,
+                                 track.launched, track.group))
+    return given
+
+
+def is_path(value: object) -> bool:
+    """A file's or a folder's name."""
+    return isinstance(value, (str, os.PathLike))
+
+
+@dataclass(frozen=True)
+class Source:
+    """A call's first arguments: tracks, or names of folders and files."""
+
+    tracks: tuple[Track, ...] = ()
+    paths: tuple[str, ...] = ()
+
+
+def source_of(source: Any, x_m: Optional[ArrayLike], **stated: Any) -> Source:
+    """What `analyze` and `diagnose` are given: (t, x), a Track, a name, or several tracks or names.
+
+    `stated` are fields of the Track that (t, x) makes.
+    """
+    if x_m is not None:
+        return Source(tracks=(Track(source, x_m, **stated),))
+    if is_path(source):
+        return Source(paths=(os.fspath(source),))
+    if isinstance(source, Track):
+        return Source(tracks=(source,))
+    if isinstance(source, Sequence) and len(source) > 0:
+        if all(isinstance(one, Track) for one in source):
+            return Source(tracks=tuple(source))
+        if all(is_path(one) for one in source):
+            return Source(paths=tuple(os.fspath(one) for one in source))
+    raise input_error("source", f"a {type(source).__name__}" + (" that is empty" if source is None or (
+        isinstance(source, Sequence) and not source) else ""),
+        "times and positions, a Track or a list of them, or names of folders or files")
+
+
+def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:
+    """The file, or what a dict is called in messages and its text."""
+    if isinstance(scenario, Mapping):
+        return "scenario", toml_text(scenario)
+    if not is_path(scenario):
+        raise input_error("scenario", f"a {type(scenario).__name__}", "the name of a file, or a dict")
+    return os.fspath(scenario), None
+
+
+def load_scenario(file: PathLike) -> dict[str, Any]:
+    """A scenario file as a dict, to be changed and given to `simulate`, `validate`, `coverage`, ...
+
+    Parameters
+    ----------
+    file : str or path
+        As docs/reference/scenario.md describes it. A camera file that it names is named by its absolute path then, so
+        that the dict means the same wherever it is used.
+
+    Returns
+    -------
+    dict
+        Tables are dicts, arrays of tables are lists of dicts. Nothing is checked but that the file is TOML.
+
+    Raises
+    ------
+    InputError
+        The file is not TOML.
+    OSError
+        The file cannot be read.
+    """
+    path = Path(file)
+    with path.open("rb") as opened:
+        try:
+            scenario = tomllib.load(opened)
+        except tomllib.TOMLDecodeError as error:
+            raise input_error("", str(error), "a TOML file", str(path)) from None
+    camera = scenario.get("camera_file")
+    if isinstance(camera, str):
+        scenario["camera_file"] = str((path.parent / camera).resolve())
+    return scenario
+
+
+def job_count(jobs: Optional[int]) -> int:
+    """How many threads: as many as there are cores, where nothing is said."""
+    if jobs is None:
+        return os.cpu_count() or 1
+    if isinstance(jobs, bool) or not isinstance(jobs, (int, np.integer)) or not 1 <= jobs <= 1024:
+        raise input_error("jobs", repr(jobs), "a whole number from 1 to 1024")
+    return int(jobs)
+
+
+def checked_seed(seed: Optional[int]) -> Optional[int]:
+    """A seed as the C++ side takes it."""
+    if seed is None:
+        return None
+    if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
+        raise input_error("seed", repr(seed), "a whole number from 0 to 18446744073709551615")
+    return int(seed)
+
+
+class _Bar:
+    """Progress as a bar of tqdm, one for each stage."""
+
+    def __init__(self) -> None:
+        try:
+            self._tqdm: Any = importlib.import_module("tqdm.auto").tqdm
+        except ModuleNotFoundError:
+            raise input_error("progress", "True, and no tqdm", "python3-tqdm installed, or a function(stage, fraction)"
+                              ) from None
+        self._stage: Optional[str] = None
+        self._bar: Any = None
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        if stage != self._stage:
+            self.close()
+            self._stage = stage
+            self._bar = self._tqdm(total=100, desc=stage, bar_format="{desc}: {percentage:3.0f}% |{bar}| {elapsed}")
+        self._bar.update(100.0 * fraction - self._bar.n)
+
+    def close(self) -> None:
+        """Leaves the bar as it is."""
+        if self._bar is not None:
+            self._bar.close()
+
+
+def teller(progress: Progress) -> Optional[Callable[[str, float], object]]:
+    """The function that is told of the progress; none where nobody wants to know."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        return _Bar()
+    if not callable(progress):
+        raise input_error("progress", f"a {type(progress).__name__}", "a function(stage, fraction), True or None")
+    return progress

@@ -1,0 +1,86 @@
+"""check(): a look at a recording before any analysis."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from . import _glidelab
+from ._inputs import PathLike, Progress, job_count, teller
+from ._results import Made, Result, frame_of, html_table
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that is not as it should be.
+
+    Attributes
+    ----------
+    severity : {"note", "change", "unusable"}
+        Whether the recording can be used as it is.
+    about : str
+        The clip, or a part of the folder.
+    found, advice : str
+        What was seen, and what to do about it.
+    """
+
+    severity: str
+    about: str
+    found: str
+    advice: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordingCheck(Result):
+    """What a look at a recording finds.
+
+    Attributes
+    ----------
+    name : str
+        Of the experiment.
+    usable : bool
+        Whether it can be analysed as it is.
+    findings : tuple of Finding
+        The gravest first.
+    """
+
+    name: str
+    usable: bool
+    findings: tuple[Finding, ...]
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, a row a finding."""
+        return frame_of({name: [getattr(one, name) for one in self.findings]
+                         for name in ("severity", "about", "found", "advice")})
+
+    def _repr_html_(self) -> str:
+        rows = [[one.severity, one.about, one.found, one.advice] for one in self.findings]
+        return html_table(["", "about", "found", "advice"], rows, "usable" if self.usable else "not usable as it is")
+
+
+def check(folder: PathLike, *, allow_outside: bool = False, jobs: Optional[int] = None,
+          progress: Progress = None) -> RecordingCheck:
+    """A look at a recording before any analysis: pattern, marker, exposure, blur, frame times.
+
+    Parameters
+    ----------
+    folder : str or path
+        An experiment folder.
+    allow_outside, jobs, progress
+        As in `analyze`.
+
+    Returns
+    -------
+    RecordingCheck
+        As ``glidelab check`` says it (docs/reference/check.md). A recording that cannot be used is no exception.
+
+    Raises
+    ------
+    InputError
+        There is no such folder, or its experiment.toml is wrong.
+    """
+    made = Made(_glidelab.check(os.fspath(folder), allow_outside, job_count(jobs), teller(progress)))
+    found = Result(made).to_dict()
+    return RecordingCheck(made, found["name"], found["usable"], tuple(
+        Finding(one["severity"], one["about"], one["found"], one["advice"]) for one in found["findings"]))

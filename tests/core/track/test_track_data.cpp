@@ -1,0 +1,76 @@
+#include "core/track/track_data.h"
+
+#include <limits>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/files/file_io.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+using core::TrackData;
+
+namespace {
+
+/// The issues of numbers that are refused.
+std::vector<base::Issue> issues_of(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n = {}) {
+  try {
+    core::track_of_numbers(std::move(t_s), std::move(x_m), std::move(force_n), "clip \"up\"");
+  } catch (const base::InputError& error) {
+    return error.issues();
+  }
+  return {};
+}
+
+const std::vector<double> kTimes = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
+const std::vector<double> kPlaces = {0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
+
+}  // namespace
+
+TEST_CASE("a track of numbers is that of a file with these numbers") {
+  const tests::TempDir temp;
+  std::string text = "t_s,x_m,force_n\n";
+  for (std::size_t i = 0; i < kTimes.size(); ++i) {
+    text +=
+        std::to_string(kTimes[i]) + "," + std::to_string(kPlaces[i]) + "," + std::to_string(2.0 * kPlaces[i]) + "\n";
+  }
+  base::write_file(temp / "track.csv", text);
+  const TrackData of_file = core::read_track_csv(temp / "track.csv", 1);
+  const TrackData given = core::track_of_numbers(kTimes, kPlaces, of_file.force_n, "clip");
+  CHECK(given.t_s == of_file.t_s);
+  CHECK(given.x_m == of_file.x_m);
+  CHECK(given.frame == of_file.frame);
+  CHECK(given.frame_t_s == of_file.frame_t_s);
+  CHECK(given.frame_rate_hz == of_file.frame_rate_hz);
+  CHECK(given.notes.empty());
+}
+
+TEST_CASE("numbers that make no track are named by their place") {
+  std::vector<double> bad = kPlaces;
+  bad[3] = std::numeric_limits<double>::quiet_NaN();
+  std::vector<base::Issue> issues = issues_of(kTimes, bad);
+  REQUIRE(issues.size() == 1);
+  CHECK(issues[0].file == "clip \"up\"");
+  CHECK(issues[0].key == "x_m[3]");
+  CHECK(issues[0].found == "nan");
+
+  std::vector<double> back = kTimes;
+  back[4] = back[3];
+  issues = issues_of(back, kPlaces);
+  REQUIRE(issues.size() == 1);
+  CHECK(issues[0].key == "t_s[4]");
+  CHECK(issues[0].found == "0.3 twice");
+
+  issues = issues_of(kTimes, {0.0, 1.0});
+  REQUIRE(issues.size() == 1);
+  CHECK(issues[0].key == "x_m");
+  CHECK(issues[0].found == "2 numbers");
+  CHECK(issues[0].expected == "as many as times, 8");
+
+  issues = issues_of({0.0, 1.0}, {0.0, 1.0});
+  REQUIRE(issues.size() == 1);
+  CHECK(issues[0].found == "2 points");
+
+  CHECK(issues_of(std::vector<double>(100, 0.0), std::vector<double>(100, 0.0)).size() == 10);
+}

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# usage: build_wheel.sh BUILD-FOLDER SOURCE-FOLDER PYTHON
+# `pip install .` with what is installed here and no network, of a copy of the sources, with the module of the build; then the
+# package is imported from where pip put it.
+set -euo pipefail
+build=$1
+source=$2
+python=$3
+for needed in pip setuptools wheel; do
+  "$python" -c "import $needed" 2> /dev/null || { echo "skipped: no Python package $needed"; exit 77; }
+done
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+mkdir "$work/source"
+cp -r "$source"/{CMakeLists.txt,README.md,LICENSE,pyproject.toml,setup.py,python} "$work/source"
+GLIDELAB_BUILD=$build "$python" -m pip install --no-index --no-build-isolation --no-deps --disable-pip-version-check \
+  --root-user-action=ignore --target "$work/installed" "$work/source" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+cd "$work"
+said=$(PYTHONPATH=$work/installed "$python" -c "
+import glidelab, importlib.metadata
+print(glidelab.__file__, importlib.metadata.version('glidelab'), len(glidelab.bandwidth_rules()) > 3)")
+version=$(sed -n 's/^project(glidelab VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
+[ "$said" = "$work/installed/glidelab/__init__.py $version True" ] || { echo "said $said"; exit 1; }
+for file in py.typed _glidelab.pyi; do
+  [ -e "$work/installed/glidelab/$file" ] || { echo "not installed: $file"; exit 1; }
+done

@@ -1,0 +1,1 @@
+"""Tests of the Python module: ctest runs them with PYTHONPATH of the build tree."""

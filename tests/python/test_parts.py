@@ -1,0 +1,150 @@
+"""The smoother, the rules, the calibration and the marker's fit on their own; films; studies; a check."""
+
+import math
+
+import numpy as np
+
+import glidelab
+from tests.python.support import SOURCE, InFolder, damped, read_json, run
+
+TUTORIAL = SOURCE / "scenarios" / "tutorial.toml"
+
+
+def small_scenario():
+    """The tutorial's, small and short: one clip of 40 frames."""
+    scenario = glidelab.load_scenario(TUTORIAL)
+    scenario["camera"].update(width_px=400, height_px=300, focal_px=[575.0, 575.0])
+    scenario["configuration"] = scenario["configuration"][:1]
+    scenario["configuration"][0]["clip"] = scenario["configuration"][0]["clip"][:1]
+    scenario["configuration"][0]["clip"][0]["duration_s"] = 0.34
+    return scenario
+
+
+class Smoothing(InFolder):
+    def test_a_local_cubic_gives_back_a_cubic_and_its_derivatives(self):
+        t = np.sort(np.random.default_rng(3).uniform(0.0, 1.0, 300))
+        smooth = glidelab.smooth(t, 1.0 - 2.0 * t + 3.0 * t**2 - 4.0 * t**3, 0.05)
+        # Rounding: positions of order 1 with 1e-16, over h² for a.
+        np.testing.assert_allclose(smooth.x_m, 1.0 - 2.0 * t + 3.0 * t**2 - 4.0 * t**3, atol=1e-12)
+        np.testing.assert_allclose(smooth.v_m_s, -2.0 + 6.0 * t - 12.0 * t**2, atol=1e-10)
+        np.testing.assert_allclose(smooth.a_m_s2, 6.0 - 24.0 * t, atol=1e-8)
+        at = glidelab.smooth(t, t**3, 0.05, at_s=[0.25, 0.5])
+        np.testing.assert_allclose(at.a_m_s2, [1.5, 3.0], atol=1e-8)
+
+    def test_standard_deviations_are_those_of_the_formula(self):
+        t = np.arange(0.0, 2.0, 0.002)
+        smooth = glidelab.smooth(t, 0.0 * t, 0.05, noise_m=1e-4)
+        # Far from the ends: var a = 3/(8 sqrt(pi)) s² dt/h^5 (Fan and Gijbels 1996); h is 25 steps.
+        expected = math.sqrt(3.0 / (8.0 * math.sqrt(math.pi)) * 0.002 / 0.05**5) * 1e-4
+        self.assertAlmostEqual(smooth.sd_a_m_s2[500] / expected, 1.0, places=3)
+
+    def test_the_noise_that_was_put_in_is_found_and_rules_choose_near_the_best(self):
+        rng = np.random.default_rng(5)
+        t = np.arange(0.0, 2.0, 0.005)
+        noise = 1e-4
+        x = 0.1 * np.cos(2.0 * np.pi * t) + rng.normal(0.0, noise, len(t))
+        self.assertLess(abs(glidelab.position_noise(t, x) / noise - 1.0), 0.15)  # 400 points: 4 %, by half of them
+        rms = 0.1 * (2.0 * np.pi) ** 4 / math.sqrt(2.0)  # of x''''
+        best = (1.058 * noise**2 * 0.005 / rms**2) ** (1.0 / 9.0)
+        for rule in glidelab.bandwidth_rules():
+            picked = glidelab.choose_bandwidth(t, x, rule.name)
+            self.assertLess(abs(math.log(float(picked) / best)), math.log(2.0), rule.name)
+
+    def test_wrong_input_is_refused(self):
+        t, x = damped()
+        for call in (lambda: glidelab.smooth(t, x, 0.0), lambda: glidelab.smooth(t, x, math.inf),
+                     lambda: glidelab.smooth(t, x[1:], 0.05), lambda: glidelab.smooth(t[::-1], x, 0.05),
+                     lambda: glidelab.smooth(t, x * math.nan, 0.05), lambda: glidelab.smooth(t, x, 0.05, order=6),
+                     lambda: glidelab.smooth(t, x, 0.05, kernel="square"),
+                     lambda: glidelab.smooth(t, x, 0.05, noise_m=-1.0),
+                     lambda: glidelab.smooth(t, x, 0.05, noise_m=1.0, at_s=[0.1]),
+                     lambda: glidelab.choose_bandwidth(t, x, "lines"), lambda: glidelab.position_noise(t[:3], x[:3])):
+            with self.assertRaises(glidelab.InputError):
+                call()
+
+
+class Film(InFolder):
+    def test_frames_are_those_of_the_file_and_the_marker_is_where_it_is(self):
+        scenario = small_scenario()
+        rendered = glidelab.render_folder(scenario, self.folder / "made", ideal=False)
+        clip = glidelab.render(scenario)["m1-up"]
+        frames = list(clip)
+        self.assertEqual((len(frames), rendered.frames, rendered.clips), (len(clip), len(clip), 1))
+        rows = (self.folder / "made.truth" / "marker-m1-up.csv").read_text().splitlines()[1:]
+        for frame, row in zip(frames, rows):
+            _, _, u, v, *_ = map(float, row.split(","))
+            marker = glidelab.fit_marker(frame.pixels, (u + 0.5, v - 0.5), 5.0)
+            self.assertIsNotNone(marker)
+            # Six standard deviations, and a hundredth of a pixel of the model's own.
+            self.assertLess(math.hypot(marker.u_px - u, marker.v_px - v), 6.0 * marker.sd_px + 0.02)
+        self.assertTrue((self.folder / "made" / "experiment.toml").exists())
+        with self.assertRaises(glidelab.InputError):
+            glidelab.render_folder(scenario, self.folder / "made")
+
+    def test_the_folder_is_that_of_the_command(self):
+        scenario = small_scenario()
+        glidelab.render_folder(scenario, self.folder / "mine", seed=4)
+        from glidelab._toml import toml_text
+        (self.folder / "scenario.toml").write_text(toml_text(scenario))
+        run("render", self.folder / "scenario.toml", "--seed", "4", "-q", "-o", self.folder / "its")
+        for suffix in ("", ".truth"):
+            its = self.folder / f"its{suffix}"
+            names = sorted(str(path.relative_to(its)) for path in its.rglob("*") if path.is_file())
+            self.assertGreater(len(names), 3)
+            for name in names:
+                if "truth" not in suffix or name != "truth.json":  # which names the scenario's file
+                    self.assertEqual((self.folder / f"mine{suffix}" / name).read_bytes(), (its / name).read_bytes(),
+                                     name)
+
+    def test_the_camera_is_recovered_from_its_views(self):
+        scenario = small_scenario()
+        glidelab.render_folder(scenario, self.folder / "made")
+        files = sorted((self.folder / "made" / "calibration").glob("view-*.png"))
+        camera = glidelab.calibrate(files, (9, 6), 0.04)
+        self.assertEqual(camera.views_used, 12)
+        self.assertLess(abs(camera.focal_px[0] - 575.0), 5.0 * camera.sd[0])
+        self.assertLess(camera.sd[0], 1.0)
+        self.assertEqual(camera.matrix[0, 0], camera.focal_px[0])
+        with self.assertRaises(glidelab.InputError) as caught:
+            glidelab.calibrate([np.zeros((300, 400), np.uint8)] * 3, (9, 6), 0.04)
+        self.assertEqual(caught.exception.key, "calibration.views")
+
+    def test_check_says_what_the_command_says(self):
+        glidelab.render_folder(small_scenario(), self.folder / "made")
+        checked = glidelab.check(self.folder / "made")
+        run("check", self.folder / "made", "-q", "-o", self.folder / "out", status=0 if checked.usable else 4)
+        self.assertEqual(checked.to_dict(), read_json(self.folder / "out" / "check.json"))
+
+    def test_validate_finds_what_the_command_finds(self):
+        scenario = small_scenario()
+        scenario["configuration"][0]["clip"][0]["duration_s"] = 1.2
+        validation = glidelab.validate(scenario, seed=9)
+        from glidelab._toml import toml_text
+        (self.folder / "scenario.toml").write_text(toml_text(scenario))
+        run("validate", self.folder / "scenario.toml", "--seed", "9", "-q", "-o", self.folder / "out")
+        its, mine = read_json(self.folder / "out" / "comparison.json"), validation.to_dict()
+        self.assertGreater(mine.pop("wall_s"), 0.0)
+        its.pop("wall_s")
+        self.assertEqual(mine, its)
+        self.assertEqual(validation.analysis_json, (self.folder / "out" / "results.json").read_text())
+
+
+class Studies(InFolder):
+    def test_coverage_is_that_of_the_command(self):
+        path = SOURCE / "scenarios" / "paper" / "inclined.toml"
+        mine = glidelab.coverage(path, noise_m=2e-5, replicates=10, seed=3)
+        self.assertEqual(mine.rows[0].interval95, tuple(mine.to_dict()["quantities"][0]["coverage_interval95"]))
+        run("coverage", path, "--noise-m", "2e-5", "--replicates", "10", "--seed", "3", "-q", "-o", self.folder / "out")
+        self.assertEqual(mine.to_json(), (self.folder / "out" / "coverage.json").read_text())
+
+    def test_a_sweep_goes_on_where_it_stopped(self):
+        (self.folder / "scenario.toml").write_text((SOURCE / "scenarios" / "paper" / "inclined.toml").read_text())
+        (self.folder / "sweep.toml").write_text(
+            'format = 1\nname = "short"\nscenario = "scenario.toml"\nreplicates = 3\nseed = 2\nestimators = '
+            '["phase-diagram"]\n[tracks]\nnoise_m = 2e-5\n[[vary]]\nkey = "camera.frame_rate_hz"\nvalues = [100.0, 200.0]\n')
+        first = glidelab.sweep(self.folder / "sweep.toml", self.folder / "out")
+        self.assertEqual((first.runs, first.failed), (6, 0))
+        again = glidelab.sweep(self.folder / "sweep.toml", self.folder / "out")
+        self.assertEqual(again.to_json(), first.to_json())
+        self.assertEqual(run("sweep", self.folder / "sweep.toml", "-q", "--json", "-o", self.folder / "its"),
+                         first.to_json())

@@ -1,0 +1,133 @@
+"""Results: numbers against closed forms, tables, plots, pickling."""
+
+import pickle
+import unittest
+
+import numpy as np
+
+import glidelab
+from tests.python.support import InFolder, damped, needs
+
+
+class AnalysisOfArrays(InFolder):
+    @classmethod
+    def setUpClass(cls):
+        cls.t, cls.x = damped()
+        cls.analysis = glidelab.analyze(cls.t, cls.x, mass_kg=0.335, incline_deg=4.3)
+
+    def test_it_recovers_what_was_put_in(self):
+        found = self.analysis.configuration
+        # Four standard deviations of the estimate itself: one false alarm in 10000, and the seed is fixed.
+        for quantity, truth in ((found.k_over_m_1_s, 2.77), (found.mu, 0.0071), (found.alpha_deg, 4.3)):
+            self.assertLess(abs(float(quantity) - truth), 4.0 * quantity.sd)
+            self.assertLess(quantity.sd, 0.02 * truth)
+            self.assertLess(quantity.interval95[0], float(quantity))
+
+    def test_arrays_are_those_of_the_input_and_cannot_be_written_to(self):
+        motion = self.analysis.clips[0].motion
+        self.assertEqual(motion.t_s.tolist(), self.t.tolist())
+        self.assertEqual(motion.measured_x_m.tolist(), self.x.tolist())
+        self.assertGreater(motion.used.sum(), 200)
+        with self.assertRaises(ValueError):
+            motion.x_m[0] = 0.0
+
+    def test_a_number_without_a_value_says_why(self):
+        t, x = damped(alpha_deg=0.0, v0_m_s=1.2, duration_s=0.8)
+        flat = glidelab.analyze(t, x).configuration
+        self.assertFalse(flat.alpha_deg.determined)
+        self.assertTrue(flat.alpha_deg.why)
+        with self.assertRaises(ValueError):
+            float(flat.alpha_deg)
+
+    def test_pickling_keeps_numbers_and_text(self):
+        again = pickle.loads(pickle.dumps(self.analysis))
+        self.assertEqual(again.to_json(), self.analysis.to_json())
+        self.assertEqual(str(again), str(self.analysis))
+        self.assertEqual(again.configurations, self.analysis.configurations)
+        with self.assertRaises(RuntimeError):
+            again.write(self.folder / "page")
+
+    def test_the_page_is_written(self):
+        self.analysis.write(self.folder / "page")
+        self.assertIn("<html", (self.folder / "page" / "report.html").read_text())
+
+    def test_a_notebook_shows_a_table(self):
+        self.assertIn("<table>", self.analysis._repr_html_())
+        self.assertIn("K/m", self.analysis._repr_html_())
+
+    @needs("pandas")
+    def test_tables_have_units(self):
+        table = self.analysis.to_frame()
+        self.assertEqual(table.attrs["units"]["k_over_m_1_s_sd"], "1/s")
+        self.assertEqual(table.attrs["units"]["mu"], "")
+        self.assertEqual(table["mu"][0], float(self.analysis.configuration.mu))
+        motion = self.analysis.clips[0].motion.to_frame()
+        self.assertEqual(len(motion), len(self.t))
+        self.assertEqual(motion.attrs["units"]["sd_a_m_s2"], "m/s²")
+
+    @needs("matplotlib")
+    def test_plots(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        axes = self.analysis.plot()
+        self.assertEqual(axes[0].get_xlabel(), "v (m/s)")
+        self.assertEqual(len(axes[0].lines), 2 + len(self.analysis.clips[0].segments))
+
+
+class Quantities(unittest.TestCase):
+    def test_a_value_is_rounded_to_its_uncertainty(self):
+        for value, sd, said in ((2.7791, 0.0061, "2.779 ± 0.006"), (2.7791, 0.0132, "2.779 ± 0.013"),
+                                (1234.5, 25.0, "1234 ± 25"), (0.5, None, "0.5"), (2.0, 0.0196, "2.00 ± 0.02")):
+            self.assertEqual(str(glidelab.Quantity(value, sd)), said)
+        self.assertEqual(str(glidelab.Quantity(2.7791, 0.0061, unit="1/s")), "2.779 ± 0.006 1/s")
+
+
+class CtrlC(unittest.TestCase):
+    def test_an_interrupt_ends_the_work_and_the_next_call_runs(self):
+        import _thread
+        import threading
+        import time
+        t, x = damped()
+        tracks = [glidelab.Track(t, x + 1e-9 * i, mass_kg=0.3 + 0.01 * i, name=f"m{i}") for i in range(12)]
+        started = threading.Event()
+
+        def press():
+            started.wait(60.0)
+            _thread.interrupt_main()
+
+        presser = threading.Thread(target=press)
+        presser.start()
+        begin = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            glidelab.diagnose(tracks, progress=lambda stage, fraction: started.set())
+        self.assertLess(time.monotonic() - begin, 60.0)
+        presser.join()
+        self.assertEqual(len(glidelab.analyze(t, x).clips), 1)
+
+    def test_what_the_progress_function_raises_comes_out(self):
+        t, x = damped()
+
+        def stop(stage, fraction):
+            raise LookupError(f"{stage}: {fraction}")
+
+        with self.assertRaises(LookupError):
+            glidelab.analyze(t, x, progress=stop)
+
+    def test_the_interpreter_runs_on_meanwhile(self):
+        import threading
+        t, x = damped()
+        counted = [0]
+        done = threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted[0] += 1
+
+        counter = threading.Thread(target=count)
+        counter.start()
+        before = counted[0]
+        glidelab.diagnose(t, x)
+        during = counted[0] - before
+        done.set()
+        counter.join()
+        self.assertGreater(during, 1000)  # with the lock held it would be of the order of one

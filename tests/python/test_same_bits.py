@@ -1,0 +1,73 @@
+"""The module gives the same bits as the command: the JSON is compared as text."""
+
+import glidelab
+from tests.python.support import SOURCE, InFolder, damped, read_json, run
+
+SCENARIO = SOURCE / "scenarios" / "paper" / "inclined.toml"
+
+
+def made_tracks():
+    """Four motions of two masses on one slope."""
+    tracks = []
+    for number, (mass_kg, v0) in enumerate([(0.335, -1.2), (0.335, -1.1), (0.435, -1.2), (0.435, -1.0)], 1):
+        t, x = damped(k_1_s=2.77 * 0.335 / mass_kg, v0_m_s=v0, seed=number)
+        tracks.append(glidelab.Track(t, x, mass_kg=mass_kg, incline_deg=4.3, incline_sd_deg=0.1, launched="up",
+                                     name=f"m{number}"))
+    return tracks
+
+
+class SameBits(InFolder):
+    def test_simulate(self):
+        run("simulate", SCENARIO, "-q", "-o", self.folder / "out")
+        said = run("simulate", SCENARIO, "-q", "--json", "-o", self.folder / "out")
+        for scenario in (SCENARIO, str(SCENARIO), glidelab.load_scenario(SCENARIO)):
+            simulation = glidelab.simulate(scenario)
+            self.assertEqual(simulation.to_json(), said)
+        simulation.write(self.folder / "written")
+        for clip in simulation.clips:
+            name = f"trajectory-{clip.name}.csv"
+            text = (self.folder / "out" / name).read_text()
+            self.assertEqual((self.folder / "written" / name).read_text(), text)
+            rows = [line.split(",") for line in text.splitlines()[1:]]
+            for column, values in enumerate((clip.t_s, clip.x_m, clip.v_m_s, clip.a_m_s2)):
+                self.assertEqual([float(row[column]) for row in rows], values.tolist())
+            self.assertEqual([row[4] for row in rows], clip.mode.tolist())
+
+    def test_analyze(self):
+        tracks = made_tracks()
+        folder = self.write_experiment(tracks)
+        for options, choices in ((), {}), (("--bandwidth", "0.05"), {"bandwidth": 0.05}), (
+                ("--bandwidth", "gcv"), {"bandwidth": "gcv"}), (
+                ("--estimator", "trajectory", "--robust"), {"estimator": "trajectory", "robust": True}):
+            with self.subTest(choices):
+                said = run("analyze", folder, "-q", "--json", "-o", self.folder / "out", *options)
+                self.assertEqual(glidelab.analyze(folder, **choices).to_json(), said)
+                self.assertEqual(glidelab.analyze(tracks, name="made", **choices).to_json(), said)
+
+    def test_analyze_writes_the_command_s_files(self):
+        tracks = made_tracks()
+        folder = self.write_experiment(tracks)
+        run("analyze", folder, "-q", "-o", self.folder / "out")
+        glidelab.analyze(folder).write(self.folder / "written")
+        names = sorted(path.name for path in (self.folder / "out").iterdir() if path.is_file())
+        self.assertEqual(sorted(path.name for path in (self.folder / "written").iterdir() if path.is_file()), names)
+        self.assertIn("results.json", names)
+        for name in names:
+            self.assertEqual((self.folder / "written" / name).read_bytes(), (self.folder / "out" / name).read_bytes())
+
+    def test_diagnose(self):
+        tracks = made_tracks()
+        folder = self.write_experiment(tracks)
+        run("diagnose", folder, "-q", "--no-page", "-o", self.folder / "out")
+        said = (self.folder / "out" / "diagnosis.json").read_text()
+        self.assertEqual(glidelab.diagnose(folder).to_json(), said)
+        diagnosis = glidelab.diagnose(tracks, name="made")
+        self.assertEqual(diagnosis.to_json(), said)
+        self.assertEqual(diagnosis.verdict, read_json(self.folder / "out" / "diagnosis.json")["verdict"])
+        self.assertEqual(glidelab.explain(diagnosis), run("diagnose", folder, "-q", "--no-page", "-o",
+                                                          self.folder / "out"))
+
+    def test_plan(self):
+        said = run("diagnose", "--plan", SCENARIO, "--noise-m", "2e-5", "--seed", "7", "-q", "--no-page", "--json",
+                   "-o", self.folder / "out")
+        self.assertEqual(glidelab.plan(SCENARIO, noise_m=2e-5, seed=7).to_json(), said)
