@@ -162,7 +162,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
   command->add_option("--incline", options->bare.incline_deg, "For a file: stated inclination in degrees")
       ->type_name("DEG")
       ->check(check_incline);
-  add_allow_outside(*command, options->bare.outside);
+  add_permissions(*command, options->bare.permitted);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });

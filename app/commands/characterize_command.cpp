@@ -22,11 +22,13 @@ namespace fs = std::filesystem;
 struct CharacterizeOptions {
   CommonOptions common;
   std::string folder;
+  std::size_t most_pixels = core::kMostPixels;
 };
 
 void characterize(const CharacterizeOptions& options) {
   const fs::path out = output_folder(options.common, "characterize", options.folder);
-  const core::FlatFieldFolder folder = core::read_flat_field_folder(options.folder);
+  core::FlatFieldFolder folder = core::read_flat_field_folder(options.folder);
+  folder.most_pixels = options.most_pixels;
   report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);
@@ -59,6 +61,7 @@ void add_characterize(CLI::App& app, Command& chosen) {
       ->add_option("FOLDER", options->folder,
                    "A folder with characterize.toml, dark/ and flat-…/ (docs/reference/characterize.md is the recipe)")
       ->required();
+  add_max_megapixels(*command, options->most_pixels);
   add_common_options(*command, options->common, "glidelab-out/characterize-<name of the folder>",
                      "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { characterize(*options); }; });

@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 struct CheckOptions {
   CommonOptions common;
   std::string folder;
-  core::OutsideFiles outside = core::OutsideFiles::refused;
+  core::Permissions permitted;
 };
 
 void check(const CheckOptions& options) {
   const fs::path out = output_folder(options.common, "check", options.folder);
   refuse_scenarios({options.folder});
-  const core::Experiment experiment = core::read_experiment(options.folder, options.outside);
+  const core::Experiment experiment = core::read_experiment(options.folder, options.permitted);
   report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);
@@ -57,7 +57,7 @@ void add_check(CLI::App& app, Command& chosen) {
   command->add_option("FOLDER", options->folder, "A folder that holds an experiment.toml")
       ->type_name("DIR")
       ->required();
-  add_allow_outside(*command, options->outside);
+  add_permissions(*command, options->permitted);
   add_common_options(*command, options->common, "glidelab-out/check-<name of the folder>",
                      "Accepted for consistency; has no effect here");
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/reference/check.md).");

@@ -44,7 +44,7 @@ constexpr int kWrongInput = 1;
 constexpr int kWrongCommandLine = 2;
 constexpr int kEnvironmentFailed = 3;
 constexpr int kNotMet = 4;
-constexpr int kInterrupted = 130;  // as a shell says it of SIGINT
+constexpr int kInterrupted = kInterruptedStatus;
 
 /// Colours are for people: on a terminal that has some, and where NO_COLOR (no-color.org) is not set.
 bool in_colour() {

@@ -199,10 +199,25 @@ std::string sort_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-void add_allow_outside(CLI::App& command, core::OutsideFiles& outside) {
+constexpr double kMostMegapixels = 1000.0;  // OpenCV decodes no image of more than 2^30 pixels
+
+void add_permissions(CLI::App& command, core::Permissions& permitted) {
   command.add_flag_callback(
-      "--allow-outside", [&outside] { outside = core::OutsideFiles::allowed; },
+      "--allow-outside", [&permitted] { permitted.outside = core::OutsideFiles::allowed; },
       "Follow absolute names and `..` in experiment.toml to files outside the folder");
+  add_max_megapixels(command, permitted.most_pixels);
+}
+
+void add_max_megapixels(CLI::App& command, std::size_t& most_pixels) {
+  command
+      .add_option_function<double>(
+          "--max-megapixels",
+          [&most_pixels](double megapixels) { most_pixels = static_cast<std::size_t>(std::llround(1e6 * megapixels)); },
+          fmt::format("The largest image or frame that is read, in millions of pixels (default {:g})",
+                      1e-6 * static_cast<double>(most_pixels)))
+      ->type_name("NUMBER")
+      ->check(check_above_0)
+      ->check(CLI::Range(0.0, kMostMegapixels));
 }
 
 void refuse_scenarios(const std::vector<std::string>& inputs) {

@@ -2,6 +2,7 @@
 /// common, and how a command writes: files, tables and JSON.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,7 +12,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "core/experiment/file_names.h"
+#include "core/experiment/permissions.h"
 
 namespace CLI {
 class App;
@@ -100,8 +101,11 @@ class App;
 
 namespace glidelab::app {
 
-/// Adds --allow-outside, which sets `outside`.
-void add_allow_outside(CLI::App& command, core::OutsideFiles& outside);
+/// Adds --allow-outside and --max-megapixels, which set `permitted`.
+void add_permissions(CLI::App& command, core::Permissions& permitted);
+
+/// Adds --max-megapixels alone.
+void add_max_megapixels(CLI::App& command, std::size_t& most_pixels);
 
 /// InputError if one of these is a scenario or a sweep, which hold no recording.
 void refuse_scenarios(const std::vector<std::string>& inputs);

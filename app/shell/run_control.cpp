@@ -1,6 +1,7 @@
 #include "app/shell/run_control.h"
 
 #include <fmt/format.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <sys/ioctl.h>
 #include <time.h>
@@ -12,8 +13,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <thread>
 
 #include "base/errors.h"
+#include "base/files/passing_folders.h"
 
 namespace glidelab::app {
 namespace {
@@ -25,6 +28,10 @@ std::atomic<std::int64_t> first_s = 0;
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "likewise");
 constexpr std::int64_t kSeconds = 2;  // whoever sends one to the process and its group sends two at once
 
+sem_t asked;                                   // posted by the first signal
+std::atomic<int> keeping = 0;                  // scopes of keep_on_interrupt()
+constexpr timespec kPatience{0, 800'000'000};  // for work to see the flag and end by itself
+
 std::int64_t now_s() {
   timespec now = {};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
@@ -35,14 +42,32 @@ std::int64_t now_s() {
 void set_flag(int signal) {
   if (!flag.exchange(true)) {
     first_s = now_s();
+    ::sem_post(&asked);
   } else if (now_s() - first_s >= kSeconds) {
     ::_exit(128 + signal);
   }
 }
 
+/// Waits for the first signal, and ends a process that is still at work some time later: a library's loop does not
+/// look at the flag. Nothing has been put in place then, and what was begun is removed.
+void end_what_does_not_end() {
+  while (::sem_wait(&asked) != 0) {
+  }
+  timespec left = kPatience;
+  while (::nanosleep(&left, &left) != 0) {
+  }
+  if (keeping > 0 || !base::discard_passing_folders()) return;  // ends after the piece in hand, or is about to end
+  const char* const over_the_bar = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  fmt::print(stderr, "{}glidelab: error: interrupted; nothing was written\n", over_the_bar);
+  std::fflush(stderr);
+  ::_exit(kInterruptedStatus);
+}
+
 }  // namespace
 
 void catch_interrupts() {
+  ::sem_init(&asked, 0, 0);
+  std::thread(end_what_does_not_end).detach();
   struct sigaction action = {};
   action.sa_handler = set_flag;
   ::sigemptyset(&action.sa_mask);
@@ -65,7 +90,19 @@ void throw_if_interrupted() {
   if (flag) throw base::Interrupted();
 }
 
+namespace {
+
+struct Keeping {
+  Keeping() { ++keeping; }
+  ~Keeping() { --keeping; }
+  Keeping(const Keeping&) = delete;
+  Keeping& operator=(const Keeping&) = delete;
+};
+
+}  // namespace
+
 void keep_on_interrupt(const std::function<void()>& work, const std::function<std::string()>& kept) {
+  const Keeping scope;
   try {
     work();
   } catch (const std::exception&) {

@@ -15,9 +15,12 @@
 
 namespace glidelab::app {
 
-/// From now on SIGINT, SIGTERM and SIGHUP set a flag; the work checks it, ends by itself and cleans up. A second
-/// signal, two seconds later or more, ends the process at once and leaves what it had begun. Writing beyond a size
-/// limit or to a closed pipe becomes an error that the write reports and no longer ends the process.
+inline constexpr int kInterruptedStatus = 130;  ///< as a shell says it of SIGINT
+
+/// From now on SIGINT, SIGTERM and SIGHUP set a flag; the work checks it, ends by itself and cleans up. Work that has
+/// not ended after 0.8 s is ended (kInterruptedStatus, what it had begun is removed), unless it keeps what it has
+/// finished or is putting its results in place: that is ended by a second signal, two seconds later or more. Writing
+/// beyond a size limit or to a closed pipe becomes an error that the write reports and no longer ends the process.
 void catch_interrupts();
 
 bool interrupted();

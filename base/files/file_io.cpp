@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/files/passing_folders.h"
 
 namespace glidelab::base {
 namespace fs = std::filesystem;
@@ -80,11 +81,13 @@ TemporaryFolder::TemporaryFolder(const std::string& purpose) {
   std::string pattern = (parent / ("glidelab-" + purpose + "-XXXXXX")).string();
   if (::mkdtemp(pattern.data()) == nullptr) throw_system_error(pattern, "cannot be made", errno);
   path_ = pattern;
+  remember_passing_folder(path_);
 }
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;  // a destructor has nobody to tell
   fs::remove_all(path_, ignored);
+  forget_passing_folder(path_);
 }
 
 namespace {
@@ -287,14 +290,17 @@ StagedOutput::StagedOutput(fs::path final_dir)
   clear_leftovers(final_);
   fs::create_directories(staging_, error);
   if (error) throw_system_error(final_.string(), "output folder cannot be written", error.value());
+  remember_passing_folder(staging_);
 }
 
 StagedOutput::~StagedOutput() {
   std::error_code ignored;  // a destructor has nobody to tell
   fs::remove_all(staging_, ignored);
+  forget_passing_folder(staging_);
 }
 
 void StagedOutput::publish_files() {
+  begin_publishing();
   std::error_code error;
   fs::create_directories(final_, error);
   if (error) throw_system_error(final_.string(), "output folder cannot be made", error.value());
@@ -311,6 +317,7 @@ void StagedOutput::publish_files() {
 }
 
 void StagedOutput::publish_whole() {
+  begin_publishing();
   swap_in(staging_, final_);
 }
 

@@ -260,7 +260,9 @@ class GroupTracks {
     }
     const GroupSetup* group = group_of(experiment_, name_);
     const std::optional<PlumbSetup>& plumb = group != nullptr && group->plumb ? group->plumb : experiment_.plumb;
-    if (plumb) results.plumbs.push_back({name_, plumb_angle(*plumb, restitution_, axis, setting_.size, modes)});
+    if (plumb)
+      results.plumbs.push_back(
+          {name_, plumb_angle(*plumb, restitution_, axis, setting_.size, modes, most_pixels_of(experiment_))});
     results.modes += modes.size() - of_camera;
   }
 
@@ -321,7 +323,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   if (pictures.empty()) return results;
 
   progress("calibration", 0.0);
-  const CameraAndPlanes setting = camera_and_planes_of(experiment, jobs, seen_pattern);
+  const CameraAndPlanes setting = camera_and_planes_of(experiment, jobs, seen_pattern, progress);
   progress("calibration", 1.0);
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, pictures.size());

@@ -44,7 +44,7 @@ class Gatherer {
   }
 
   void read_darks() {
-    form_ = form_of(folder_.darks.front().files.front());
+    form_ = form_of(folder_.darks.front().files.front(), folder_.most_pixels);
     if (form_.depth == CV_8U && folder_.bit_depth > 8) {
       throw base::InputError(base::Issue{form_.named, 0, "", "an image of 8 bits",
                                          fmt::format("16 bits for codes of bit_depth = {}", folder_.bit_depth)});

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "core/experiment/permissions.h"
+
 namespace glidelab::core {
 
 /// Frames that were taken under the same conditions.
@@ -30,8 +32,9 @@ struct FlatFieldFolder {
   std::optional<double> frame_rate_hz;
   std::optional<double> pixel_pitch_m;
   std::string price_class;
-  std::vector<FrameSet> darks;  ///< "dark" first, then the others by name
-  std::vector<FrameSet> flats;  ///< by name
+  std::vector<FrameSet> darks;            ///< "dark" first, then the others by name
+  std::vector<FrameSet> flats;            ///< by name
+  std::size_t most_pixels = kMostPixels;  ///< of one image, as the person who runs the program permits
 
   int largest_code() const { return (1 << bit_depth) - 1; }
 };

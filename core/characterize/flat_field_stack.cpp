@@ -30,8 +30,8 @@ std::string bits(int depth) {
 }
 
 /// Grey codes; a colour file counts as grey where its three channels are equal.
-cv::Mat read_codes(const fs::path& file) {
-  const cv::Mat image = read_image(file);
+cv::Mat read_codes(const fs::path& file, std::size_t most_pixels) {
+  const cv::Mat image = read_image(file, most_pixels);
   if (image.channels() == 1) return image;
   std::vector<cv::Mat> channels;
   cv::split(image, channels);
@@ -54,17 +54,17 @@ double spread(const cv::Mat& codes) {
 
 }  // namespace
 
-FrameForm form_of(const fs::path& file) {
-  const cv::Mat codes = read_codes(file);
+FrameForm form_of(const fs::path& file, std::size_t most_pixels) {
+  const cv::Mat codes = read_codes(file, most_pixels);
   if (codes.cols < kSmallestFlatFieldPx || codes.rows < kSmallestFlatFieldPx) {
     fail(file, fmt::format("{} x {} pixels", codes.cols, codes.rows),
          fmt::format("at least {0} x {0} pixels", kSmallestFlatFieldPx));
   }
-  return {codes.size(), codes.depth(), file.string()};
+  return {codes.size(), codes.depth(), file.string(), most_pixels};
 }
 
 cv::Mat read_flat_field_frame(const fs::path& file, const FrameForm& form, int largest_code) {
-  const cv::Mat codes = read_codes(file);
+  const cv::Mat codes = read_codes(file, form.most_pixels);
   if (codes.size() != form.size) {
     fail(file, fmt::format("{} x {} pixels", codes.cols, codes.rows),
          fmt::format("{} x {} pixels, as {}", form.size.width, form.size.height, form.named));

@@ -31,10 +31,12 @@ struct FrameForm {
   cv::Size size;
   int depth = 0;      ///< CV_8U or CV_16U
   std::string named;  ///< file that set it
+  std::size_t most_pixels = kMostPixels;
 };
 
-/// InputError if the file is not a grey image of at least kSmallestFlatFieldPx pixels each way.
-FrameForm form_of(const std::filesystem::path& file);
+/// InputError if the file is not a grey image of at least kSmallestFlatFieldPx pixels each way and at most
+/// `most_pixels` in all.
+FrameForm form_of(const std::filesystem::path& file, std::size_t most_pixels = kMostPixels);
 
 /// One frame of a flat-field folder, read strictly, for a wrong frame spoils a variance without a trace. Grey codes; a
 /// colour file counts as grey where its three channels are equal. InputError (file, found, expected) for a file that is

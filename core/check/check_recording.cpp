@@ -46,7 +46,7 @@ std::set<std::filesystem::path> all_planes(const Experiment& experiment) {
 
 }  // namespace
 
-CheckedPattern check_pattern(const Experiment& experiment, int jobs) {
+CheckedPattern check_pattern(const Experiment& experiment, int jobs, const base::Progress& progress) {
   CheckedPattern checked;
   PatternCheck& pattern = checked.check;
   std::optional<SeenPattern>& seen = checked.seen;
@@ -55,7 +55,8 @@ CheckedPattern check_pattern(const Experiment& experiment, int jobs) {
   const BoardSize grid = experiment.calibration->inner_corners;
   BoardViews boards;
   try {
-    boards = find_board_views(pattern_files(experiment), cv::Size(grid.columns, grid.rows), jobs);
+    boards = find_board_views(pattern_files(experiment), cv::Size(grid.columns, grid.rows), jobs,
+                              most_pixels_of(experiment), progress);
     seen = SeenPattern{boards, calibrate_any_lens(boards, square_m)};
   } catch (const base::InputError& error) {
     pattern.failure = error.what();
@@ -186,7 +187,7 @@ RecordingCheck check_recording(const Experiment& experiment, int jobs, const bas
   progress("pattern", 0.0);
   std::optional<SeenPattern> seen_pattern;
   if (experiment.calibration) {
-    CheckedPattern checked = check_pattern(experiment, jobs);
+    CheckedPattern checked = check_pattern(experiment, jobs, progress);
     check.pattern = std::move(checked.check);
     seen_pattern = std::move(checked.seen);
   }

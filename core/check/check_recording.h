@@ -26,7 +26,8 @@ struct CheckedPattern {
 /// The images of the pattern: in which of them it is found, how well one camera explains them, how much of the image
 /// they cover. For an experiment with [calibration]; images are read `jobs` at a time. check.failure says what is wrong
 /// with them.
-CheckedPattern check_pattern(const Experiment& experiment, int jobs);
+CheckedPattern check_pattern(const Experiment& experiment, int jobs,
+                             const base::Progress& progress = base::no_progress);
 
 /// The share of a path that lies within the convex hull of all corners, where the lens is known; nothing for an empty
 /// path or fewer than three corners.

@@ -17,9 +17,6 @@ namespace glidelab::core {
 /// up: towards -x, down: towards +x, also on a level track; unknown: a track file on its own, which does not say.
 enum class Launched { up, down, released, unknown };
 
-/// Whether an experiment folder may name files outside itself.
-enum class OutsideFiles { refused, allowed };
-
 struct PixelPoint {
   double x = 0.0, y = 0.0;
   bool operator==(const PixelPoint&) const = default;

@@ -228,9 +228,9 @@ void check_folder(const fs::path& path) {
 
 }  // namespace
 
-Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
+Experiment read_experiment(const fs::path& path, Permissions permitted) {
   check_folder(path);
-  const FolderFiles folder{path, outside};
+  const FolderFiles folder{path, permitted.outside};
   Experiment experiment;
   experiment.folder = path;
   experiment.file = path / "experiment.toml";
@@ -242,6 +242,7 @@ Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
   experiment.name = root.text("name");
   experiment.gravity_m_s2 = root.number_or("gravity_m_s2", experiment.gravity_m_s2, base::above(0.0));
   if (const auto table = root.maybe_table("camera")) experiment.camera = read_camera(*table);
+  if (experiment.camera) experiment.camera->most_pixels = permitted.most_pixels;
   if (const auto table = root.maybe_table("calibration")) experiment.calibration = read_calibration(*table, folder);
   if (const auto table = root.maybe_table("scale")) experiment.scale = read_scale(*table);
   if (const auto table = root.maybe_table("plumb")) experiment.plumb = read_plumb(*table, folder);
@@ -279,6 +280,10 @@ Experiment read_experiment(const fs::path& path, OutsideFiles outside) {
   return experiment;
 }
 
+std::size_t most_pixels_of(const Experiment& experiment) {
+  return experiment.camera ? experiment.camera->most_pixels : kMostPixels;
+}
+
 void require_clips(const Experiment& experiment) {
   if (!experiment.clips.empty()) return;
   if (experiment.lines) {
@@ -294,7 +299,7 @@ bool is_bare_track(const std::filesystem::path& path) {
 }
 
 Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options) {
-  if (!is_bare_track(path)) return read_experiment(path, options.outside);
+  if (!is_bare_track(path)) return read_experiment(path, options.permitted);
   Experiment experiment;
   experiment.folder = path.parent_path();
   experiment.file = path;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
+#include "core/experiment/permissions.h"
 
 namespace glidelab::core {
 
@@ -27,6 +28,7 @@ struct CameraSettings {
   bool bottom_row_first = false;  ///< rolling: the image's bottom row is read first; else its top row
   int bit_depth = 8;
   TimeSource time = TimeSource::rate;
+  std::size_t most_pixels = kMostPixels;  ///< of one of its images: a larger one is refused
 };
 
 /// Of a chessboard, in inner corners.
@@ -79,17 +81,20 @@ struct Experiment {
 
 /// Reads and checks `folder`/experiment.toml. InputError with all that is wrong: missing, misspelt, mistyped, out of
 /// range, files that are not there, clips that need a section which is missing, names used twice.
-Experiment read_experiment(const std::filesystem::path& folder, OutsideFiles outside = OutsideFiles::refused);
+Experiment read_experiment(const std::filesystem::path& folder, Permissions permitted = {});
 
 /// InputError where there is neither a clip nor a track: a table of lines is for `glidelab diagnose`.
 void require_clips(const Experiment& experiment);
+
+/// Of one of its images, as permitted where it was read.
+std::size_t most_pixels_of(const Experiment& experiment);
 
 /// What the analysis needs beside a track's file that is given on its own.
 struct BareTrackOptions {
   std::string column;                 ///< of x in an exported table (track_data.h); empty: found by its header
   std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
   std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
-  OutsideFiles outside = OutsideFiles::refused;  ///< of a folder: whether it may name files outside (file_names.h)
+  Permissions permitted = {};         ///< of a folder
 };
 
 /// The note on a track without a stated mass.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/toml/strict_toml.h"
-#include "core/experiment/clip_setup.h"
+#include "core/experiment/permissions.h"
 
 namespace glidelab::core {
 

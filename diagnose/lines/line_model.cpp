@@ -49,10 +49,10 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file) {
   return lines;
 }
 
-core::Experiment read_recording(const std::filesystem::path& path, core::OutsideFiles outside) {
+core::Experiment read_recording(const std::filesystem::path& path, core::Permissions permitted) {
   std::error_code ignored;  // what cannot be looked at is read as a folder, which says what is wrong
   if (path.extension() != ".csv" || !std::filesystem::is_regular_file(path, ignored)) {
-    return core::read_experiment(path, outside);
+    return core::read_experiment(path, permitted);
   }
   core::Experiment experiment;
   experiment.folder = path.parent_path();

@@ -48,7 +48,7 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file);
 
 /// An experiment folder; or a table of lines that lies in no folder, a CSV file: an experiment named after the file, of
 /// its lines alone, with the default gravity. InputError as read_experiment(); what is in the table is not looked at.
-core::Experiment read_recording(const std::filesystem::path& path, core::OutsideFiles outside);
+core::Experiment read_recording(const std::filesystem::path& path, core::Permissions permitted);
 
 /// The issue of a table with too few lines.
 base::Issue too_few_lines(const std::string& file, std::size_t lines);

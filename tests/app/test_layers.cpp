@@ -60,7 +60,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"python", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
 };
 
-/// C libraries that live behind one file (a header and its source) each, by how their headers start.
+/// C libraries that live behind one file (a header and its source) of a room each, by how their headers start.
 const std::map<std::string, std::vector<std::string>> kBehindOneFile = {
     {"OSMesa", {"GL/", "GLES", "osmesa"}},
     {"SUNDIALS", {"sundials/", "cvode/", "cvodes/", "nvector/", "sunmatrix/", "sunlinsol/", "sunnonlinsol/"}},
@@ -102,7 +102,7 @@ bool joins_suites(const std::string& path, const std::string& include) {
 
 std::vector<std::string> violations(const std::vector<Source>& sources) {
   std::vector<std::string> found;
-  std::map<std::string, std::set<std::string>> users;  // of each library: files without their ending
+  std::map<std::string, std::set<std::string>> users;  // of each library in each room: files without their ending
   for (const Source& source : sources) {
     const std::string room = *source.path.begin();
     for (const std::string& include : includes_of(source)) {
@@ -117,7 +117,8 @@ std::vector<std::string> violations(const std::vector<Source>& sources) {
       }
       for (const auto& [library, starts] : kBehindOneFile) {
         for (const std::string& start : starts) {
-          if (include.starts_with(start)) users[library].insert(fs::path(source.path).replace_extension().string());
+          if (include.starts_with(start))
+            users[library + " of " + room].insert(fs::path(source.path).replace_extension().string());
         }
       }
     }

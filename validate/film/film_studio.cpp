@@ -189,7 +189,7 @@ core::Experiment rendered(const render::Scenario& scenario, const fs::path& fold
   fs::remove_all(truth);
   fs::create_directory(truth);
   render::render_experiment(scenario, pictures, truth, options, progress);
-  core::Experiment experiment = core::read_experiment(pictures, core::OutsideFiles::refused);
+  core::Experiment experiment = core::read_experiment(pictures);
   experiment.plumb.reset();  // tracks have no use for it
   for (core::GroupSetup& group : experiment.groups) group.plumb.reset();
   return experiment;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 
 #include "base/errors.h"
@@ -35,17 +36,22 @@ std::vector<cv::Point3d> pattern_points(cv::Size grid, double square_m) {
   return points;
 }
 
-BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_corners, int jobs) {
+BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_corners, int jobs,
+                            std::size_t most_pixels, const base::Progress& progress) {
   std::vector<fs::path> unique;
   for (const fs::path& file : files) {
     if (std::find(unique.begin(), unique.end(), file) == unique.end()) unique.push_back(file);
   }
   std::vector<std::optional<BoardCorners>> corners(unique.size());
   std::vector<cv::Size> sizes(unique.size());
+  std::atomic<std::size_t> done = 0;
+  const auto tell = [&] { progress("pattern", static_cast<double>(done.load()) / static_cast<double>(unique.size())); };
   base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
-    const cv::Mat grey = read_grey_image(unique[i]);
+    tell();
+    const cv::Mat grey = read_grey_image(unique[i], most_pixels);
     sizes[i] = grey.size();
-    corners[i] = find_board(grey, inner_corners);
+    corners[i] = find_board(grey, inner_corners, BoardDetector::any, tell);
+    ++done;
   });
   BoardViews found;
   for (std::size_t i = 0; i < unique.size(); ++i) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/long_work.h"
+#include "core/experiment/permissions.h"
 #include "core/pictures/board/chessboard.h"
 
 namespace glidelab::core {
@@ -25,8 +27,9 @@ struct BoardViews {
 };
 
 /// Finds the board in every file (once, even if it is named twice), `jobs` at a time. InputError for a file that is not
-/// an image, or has another size than the first.
-BoardViews find_board_views(const std::vector<std::filesystem::path>& files, cv::Size inner_corners, int jobs);
+/// an image, has more than `most_pixels`, or another size than the first.
+BoardViews find_board_views(const std::vector<std::filesystem::path>& files, cv::Size inner_corners, int jobs,
+                            std::size_t most_pixels = kMostPixels, const base::Progress& progress = base::no_progress);
 
 /// The views with a board; InputError, naming the images without one, if there are fewer than three.
 std::vector<const BoardView*> checked_views(const BoardViews& boards);

@@ -1,8 +1,6 @@
 #include "core/pictures/board/chessboard.h"
 
 #include <Eigen/Dense>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -131,61 +129,8 @@ std::optional<FittedCorner> fit_corner(const cv::Mat& grey, cv::Point2d start, c
 
 namespace {
 
-constexpr int kLargestForDetection = 1600;  // px; larger images are halved for finding, not for refining
-constexpr int kSmallestSide = 20;  // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
-constexpr double kLeastNoiseToBlur = 8.0;  // codes
-constexpr int kMostBlurs = 5;              // by 1 px
-constexpr double kWindowShare = 0.7;       // of the distance to the next edge
+constexpr double kWindowShare = 0.7;  // of the distance to the next edge
 constexpr double kLargestWindowPx = 14.0;
-
-/// 8 bits for the detectors, the darkest and brightest half per cent clipped.
-cv::Mat to_8_bits(const cv::Mat& grey) {
-  if (grey.depth() == CV_8U) return grey;
-  cv::Mat flat = grey.reshape(1, 1).clone();
-  std::vector<std::uint16_t> values;
-  for (int i = 0; i < flat.cols; i += 7) values.push_back(flat.at<std::uint16_t>(0, i));
-  const auto quantile = [&](double share) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return static_cast<double>(*at);
-  };
-  const double low = quantile(0.005);
-  const double high = std::max(quantile(0.995), low + 1.0);
-  cv::Mat eight;
-  grey.convertTo(eight, CV_8U, 255.0 / (high - low), -low * 255.0 / (high - low));
-  return eight;
-}
-
-/// The detectors look through the outlines of all dark spots, pairs of them too: noise makes so many that they take
-/// hours. Blurred until it is below kLeastNoiseToBlur; the corners' places are refined in the image itself.
-cv::Mat without_specks(const cv::Mat& eight) {
-  cv::Mat seen = eight, values;
-  for (int pass = 0; pass < kMostBlurs; ++pass) {
-    seen.convertTo(values, CV_32F);
-    if (noise_of(values) < kLeastNoiseToBlur) break;
-    cv::Mat softer;
-    cv::GaussianBlur(seen, softer, {}, 1.0);
-    seen = softer;
-  }
-  return seen;
-}
-
-std::vector<cv::Point2f> detect(const cv::Mat& image, cv::Size inner_corners, BoardDetector detector) {
-  if (std::min(image.cols, image.rows) < kSmallestSide) return {};
-  const cv::Mat eight = without_specks(image);
-  std::vector<cv::Point2f> corners;
-  bool found = false;
-  if (detector != BoardDetector::sector_based) {
-    found = cv::findChessboardCorners(eight, inner_corners, corners,
-                                      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
-  }
-  if (!found && detector != BoardDetector::classic) {
-    found = cv::findChessboardCornersSB(eight, inner_corners, corners,
-                                        cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
-  }
-  const bool whole = found && corners.size() == static_cast<std::size_t>(inner_corners.area());
-  return whole ? corners : std::vector<cv::Point2f>{};
-}
 
 template <class Pixel>
 double mean_around(const cv::Mat& grey, cv::Point2d centre, double radius) {
@@ -324,24 +269,10 @@ BoardCorners refine_board(const cv::Mat& grey, BoardCorners board) {
   return board;
 }
 
-std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corners, BoardDetector detector) {
-  const cv::Mat eight = to_8_bits(grey);
-  const int largest = std::max(eight.cols, eight.rows);
-  const double shrink = largest > kLargestForDetection ? static_cast<double>(kLargestForDetection) / largest : 1.0;
-  cv::Mat small = eight;
-  const auto shrunk = [shrink](int length) { return std::max(1, static_cast<int>(std::lround(shrink * length))); };
-  if (shrink < 1.0) cv::resize(eight, small, {shrunk(eight.cols), shrunk(eight.rows)}, 0.0, 0.0, cv::INTER_AREA);
-  std::vector<cv::Point2f> corners = detect(small, inner_corners, detector);
-  if (corners.empty() && shrink < 1.0) {  // small squares may have got lost
-    small = eight;
-    corners = detect(small, inner_corners, detector);
-  }
+std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corners, BoardDetector detector,
+                                       const std::function<void()>& between) {
+  const std::vector<cv::Point2f> corners = search_board(grey, inner_corners, detector, between);
   if (corners.empty()) return std::nullopt;
-  const cv::Size2d factor(static_cast<double>(eight.cols) / small.cols, static_cast<double>(eight.rows) / small.rows);
-  for (cv::Point2f& corner : corners) {
-    corner.x = static_cast<float>((corner.x + 0.5) * factor.width - 0.5);
-    corner.y = static_cast<float>((corner.y + 0.5) * factor.height - 0.5);
-  }
   return refine_board(grey, orient_board(grey, inner_corners, corners));
 }
 

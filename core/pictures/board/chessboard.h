@@ -10,8 +10,11 @@
 #include <opencv2/core.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
+
+#include "core/pictures/board/board_search.h"
 
 namespace glidelab::core {
 
@@ -48,12 +51,12 @@ struct BoardCorners {
   cv::Point2d at(int i, int j) const { return points[static_cast<std::size_t>(j * grid.width + i)]; }
 };
 
-enum class BoardDetector { any, classic, sector_based };  ///< findChessboardCorners, findChessboardCornersSB
-
 /// Nothing if no whole board with this number of inner corners is found. `grey` has 8 or 16 bits. `inner_corners` as
-/// OpenCV counts them; which of the two numbers comes first does not matter.
+/// OpenCV counts them; which of the two numbers comes first does not matter. `between` is called between the steps of
+/// the search (board_search.h).
 std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corners,
-                                       BoardDetector detector = BoardDetector::any);
+                                       BoardDetector detector = BoardDetector::any,
+                                       const std::function<void()>& between = {});
 
 /// The order at the head of this file, for corners that run row by row from any corner of the board in any direction.
 BoardCorners orient_board(const cv::Mat& grey, cv::Size inner_corners, const std::vector<cv::Point2f>& corners);

@@ -238,8 +238,8 @@ double inclination(const MotionAxis& axis, const PlaneLine& down) {
 }  // namespace
 
 Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
-                     std::optional<cv::Size> image_size, const std::vector<ModeAxis>& modes) {
-  const cv::Mat grey = read_grey_image(setup.view);
+                     std::optional<cv::Size> image_size, const std::vector<ModeAxis>& modes, std::size_t most_pixels) {
+  const cv::Mat grey = read_grey_image(setup.view, most_pixels);
   const auto fail = [&](std::string found, std::string expected) {
     throw base::InputError(base::Issue{setup.view.string(), 0, "plumb", std::move(found), std::move(expected)});
   };

@@ -37,9 +37,10 @@ ThreadInImage find_thread(const cv::Mat& grey, cv::Rect region,
 
 /// alpha = asin(axis . down), positive downhill, down being the thread's direction towards the image's lower edge.
 /// Its standard deviation combines those of the thread and the axis with the effect of the modes (each an error of one
-/// standard deviation of camera or plane) on the angle between them. InputError if the region leaves the image or holds
-/// no thread; undetermined if the marker does not move.
+/// standard deviation of camera or plane) on the angle between them. InputError if the image has more than
+/// `most_pixels`, and if the region leaves it or holds no thread; undetermined if the marker does not move.
 Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, const MotionAxis& axis,
-                     std::optional<cv::Size> image_size, const std::vector<ModeAxis>& modes = {});
+                     std::optional<cv::Size> image_size, const std::vector<ModeAxis>& modes = {},
+                     std::size_t most_pixels = kMostPixels);
 
 }  // namespace glidelab::core

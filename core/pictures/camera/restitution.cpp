@@ -209,12 +209,14 @@ std::vector<fs::path> pattern_files(const Experiment& experiment) {
 
 namespace {
 
-CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPattern* seen) {
+CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPattern* seen,
+                           const base::Progress& progress) {
   const CalibrationSetup& setup = *experiment.calibration;
   const BoardViews boards =
-      seen != nullptr ? seen->boards
-                      : find_board_views(pattern_files(experiment),
-                                         cv::Size(setup.inner_corners.columns, setup.inner_corners.rows), jobs);
+      seen != nullptr
+          ? seen->boards
+          : find_board_views(pattern_files(experiment), cv::Size(setup.inner_corners.columns, setup.inner_corners.rows),
+                             jobs, most_pixels_of(experiment), progress);
   const auto corners_in = [&](const fs::path& file) -> const BoardCorners& {
     for (const BoardView& view : boards.views) {
       if (view.file == file) return view.corners;
@@ -267,8 +269,9 @@ CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPat
 
 }  // namespace
 
-CameraAndPlanes camera_and_planes_of(const Experiment& experiment, int jobs, const SeenPattern* seen) {
-  if (experiment.calibration) return calibrated(experiment, jobs, seen);
+CameraAndPlanes camera_and_planes_of(const Experiment& experiment, int jobs, const SeenPattern* seen,
+                                     const base::Progress& progress) {
+  if (experiment.calibration) return calibrated(experiment, jobs, seen, progress);
   CameraAndPlanes setting;
   for (const std::string& name : filmed_groups(experiment)) {
     setting.restitutions.emplace(name, Restitution::from_scale(*experiment.scale, experiment.marker->diameter_m));

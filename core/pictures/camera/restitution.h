@@ -111,6 +111,7 @@ std::vector<std::filesystem::path> pattern_files(const Experiment& experiment);
 /// From the images of the pattern to the camera and, for each group, the mapping from pixels to its plane of motion.
 /// For an experiment with filmed clips. `seen`: the pattern, if it was found before; null: its images are read, `jobs`
 /// at a time. InputError for images that cannot be used.
-CameraAndPlanes camera_and_planes_of(const Experiment& experiment, int jobs, const SeenPattern* seen = nullptr);
+CameraAndPlanes camera_and_planes_of(const Experiment& experiment, int jobs, const SeenPattern* seen = nullptr,
+                                     const base::Progress& progress = base::no_progress);
 
 }  // namespace glidelab::core

@@ -1,7 +1,6 @@
 #include "core/pictures/frames/frame_source.h"
 
 #include <fmt/format.h>
-#include <opencv2/videoio.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "core/experiment/file_names.h"
 #include "core/math/quantile.h"
 #include "core/pictures/frames/read_image.h"
+#include "core/pictures/frames/video_decoder.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
@@ -100,7 +100,7 @@ class FolderFrames final : public FrameSource {
 
   std::optional<Frame> next() override {
     if (count_ == files_.size()) return std::nullopt;
-    const cv::Mat image = read_image(files_[count_]);
+    const cv::Mat image = read_image(files_[count_], camera_.most_pixels);
     check_size_(image, count_, files_[count_]);
     Frame frame = make_frame(image, with_color_, count_);
     frame.t_s = static_cast<double>(count_) / camera_.frame_rate_hz;
@@ -138,7 +138,7 @@ namespace {
 // Matroska rounds stamps to 1 ms, so that a regular clip's steps differ by up to that.
 constexpr double kStampRounding_s = 1.05e-3;
 
-/// By the four letters that FFmpeg gives; nothing for others.
+/// By the four letters of the container; nothing for others.
 std::optional<bool> is_lossy(const std::string& letters) {
   const std::string codec = lower(letters);
   static const std::set<std::string> kLossy{"mjpg", "h264", "avc1", "x264", "hevc", "hvc1", "hev1", "vp80",
@@ -157,27 +157,25 @@ class VideoFrames final : public FrameSource {
       : file_(file), camera_(camera), with_color_(with_color), check_size_(size) {
     std::error_code error;
     if (fs::file_size(file, error) == 0) fail_frames(file, "", "an empty file", "a video");
-    if (!capture_.open(file.string(), cv::CAP_FFMPEG)) fail_frames(file, "", "no video that can be opened", "a video");
-    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
-    if (count > 0.0 && count < 1e9) stated_ = static_cast<std::size_t>(std::lround(count));
-    stated_rate_hz_ = capture_.get(cv::CAP_PROP_FPS);
+    decoder_ = std::make_unique<VideoDecoder>(file, camera.most_pixels);
+    stated_ = decoder_->stated_frames();
+    stated_rate_hz_ = decoder_->rate_hz();
   }
 
   std::optional<Frame> next() override {
     if (ended_) return std::nullopt;
-    cv::Mat image;
-    if (!read(image)) {
+    const auto decoded = decoder_->next();
+    if (!decoded) {
       ended_ = true;
       check_length();
       return std::nullopt;
     }
-    check_size_(image, count_, file_);
-    Frame frame = make_frame(image, with_color_, count_);
+    check_size_(decoded->image, count_, file_);
+    Frame frame = make_frame(decoded->image, with_color_, count_);
     repeats_(frame.grey);
-    const double stamp_s = capture_.get(cv::CAP_PROP_POS_MSEC) * 1e-3;
+    const double stamp_s = decoded->stamp_s.value_or(0.0);
     if (count_ == 0) first_stamp_s_ = stamp_s;
-    // OpenCV says 0 of a frame without a stamp: the last ones of a clip, which it gets by emptying the decoder.
-    if (count_ > 0 && stamp_s == 0.0) {
+    if (count_ > 0 && !decoded->stamp_s) {
       ++unstamped_;
       if (camera_.time == TimeSource::container) {
         ended_ = true;
@@ -220,8 +218,7 @@ class VideoFrames final : public FrameSource {
 
   FileFacts facts() const override {
     FileFacts facts;
-    const auto letters = static_cast<unsigned>(std::lround(capture_.get(cv::CAP_PROP_FOURCC)));
-    for (unsigned shift = 0; shift < 32; shift += 8) facts.codec.push_back(static_cast<char>(letters >> shift & 255U));
+    facts.codec = decoder_->codec();
     facts.lossy = is_lossy(facts.codec);
     if (stated_rate_hz_ > 0.0) facts.container_rate_hz = stated_rate_hz_;
     facts.stamps_missing = missing_;
@@ -232,15 +229,6 @@ class VideoFrames final : public FrameSource {
   }
 
  private:
-  bool read(cv::Mat& image) {  // as cv::VideoCapture wants it
-    try {
-      return capture_.read(image) && !image.empty();
-    } catch (const cv::Exception& exception) {
-      fail_frames(file_, fmt::format("frame {}", count_),
-                  "a frame that cannot be decoded (" + std::string(exception.err) + ")", "an image");
-    }
-  }
-
   void check_length() {
     if (count_ == 0) fail_frames(file_, "", "no frame", "a clip with frames");
     // Where the container tells its length and not its number of frames, frames that were dropped are in the stated
@@ -304,7 +292,7 @@ class VideoFrames final : public FrameSource {
   CameraSettings camera_;
   bool with_color_;
   SizeCheck check_size_;
-  cv::VideoCapture capture_;
+  std::unique_ptr<VideoDecoder> decoder_;
   std::size_t stated_ = 0;
   double stated_rate_hz_ = 0.0;
   std::size_t count_ = 0;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/errors.h"
+#include "core/pictures/frames/image_size.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;
@@ -21,14 +22,18 @@ void silence_opencv() {
   });
 }
 
-cv::Mat read_image(const fs::path& path) {
+cv::Mat read_image(const fs::path& path, std::size_t most_pixels) {
   silence_opencv();
   const auto fail = [&](const std::string& found) {
-    throw base::InputError(base::Issue{path.string(), 0, "", found, "an image (PNG, JPEG, TIFF, PGM)"});
+    throw base::InputError(base::Issue{path.string(), 0, "", found, "an image (PNG, JPEG, TIFF, BMP, PGM)"});
   };
   std::error_code error;
   if (!fs::is_regular_file(path, error)) fail("no file");
   if (fs::file_size(path, error) == 0) fail("an empty file");
+  const auto size = stated_image_size(path);
+  if (!size) fail("no image that can be decoded");
+  check_pixels(path, "", size->width, size->height, most_pixels);
+  check_pixels(path, "tile", size->part_width, size->part_height, most_pixels);
   cv::Mat image;
   try {
     image = cv::imread(path.string(), cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
@@ -47,8 +52,8 @@ cv::Mat to_grey(const cv::Mat& image) {
   return grey;
 }
 
-cv::Mat read_grey_image(const fs::path& path) {
-  return to_grey(read_image(path));
+cv::Mat read_grey_image(const fs::path& path, std::size_t most_pixels) {
+  return to_grey(read_image(path, most_pixels));
 }
 
 }  // namespace glidelab::core

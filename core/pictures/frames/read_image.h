@@ -3,7 +3,10 @@
 
 #include <opencv2/core.hpp>
 
+#include <cstddef>
 #include <filesystem>
+
+#include "core/experiment/permissions.h"
 
 namespace glidelab::core {
 
@@ -12,11 +15,11 @@ namespace glidelab::core {
 void silence_opencv();
 
 /// The image with 1 or 3 (BGR) channels of 8 or 16 bits, turned as its EXIF data say. InputError if the file is not an
-/// image.
-cv::Mat read_image(const std::filesystem::path& path);
+/// image (PNG, JPEG, TIFF, BMP, PBM, PGM, PPM), and before it is decoded if it states more than `most_pixels`.
+cv::Mat read_image(const std::filesystem::path& path, std::size_t most_pixels = kMostPixels);
 
 /// The same as grey, 8 or 16 bits; a grey image comes out bit by bit as it is stored.
-cv::Mat read_grey_image(const std::filesystem::path& path);
+cv::Mat read_grey_image(const std::filesystem::path& path, std::size_t most_pixels = kMostPixels);
 
 /// Grey of an image with 1 or 3 channels; three equal channels give exactly their value.
 cv::Mat to_grey(const cv::Mat& image);

@@ -323,7 +323,7 @@ TEST_CASE("names that leave the folder are refused with the option that permits 
     CHECK(contains(message, "experiment.toml:"));
     CHECK(contains(message, "outside the folder"));
     CHECK(contains(message, "--allow-outside"));
-    CHECK_NOTHROW(core::read_experiment(folder.dir.path(), core::OutsideFiles::allowed));
+    CHECK_NOTHROW(core::read_experiment(folder.dir.path(), {.outside = core::OutsideFiles::allowed}));
   }
   CHECK(contains(folder.message(with(kWhole, "clips/a.mkv", "..")), "outside the folder"));
   CHECK(contains(folder.message(with(kWhole, "calibration/view-*.png", up + "/*")), "outside the folder"));

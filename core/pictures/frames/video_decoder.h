@@ -1,0 +1,44 @@
+/// A video file, decoded frame by frame: the one place of core/ that calls libav.
+///
+/// A file from a stranger is read as nothing but that file. libav gets its bytes through a reader that knows no other
+/// file and no network; formats and codecs are those that cameras and converters write (a playlist, which names other
+/// files, and a text that draws characters are not among them), and whatever a format asks to be opened besides is
+/// refused. A frame of more pixels than permitted is refused before memory for it is asked for.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace glidelab::core {
+
+struct DecodedFrame {
+  cv::Mat image;                  ///< BGR, 8 bits; equal channels for a grey video, turned as the container says
+  std::optional<double> stamp_s;  ///< on the container's clock; nothing for a frame without a stamp
+};
+
+class VideoDecoder {
+ public:
+  /// InputError for a file that is not a video, a playlist, a codec that is not decoded, frames above `most_pixels`.
+  VideoDecoder(const std::filesystem::path& file, std::size_t most_pixels);
+  ~VideoDecoder();
+  VideoDecoder(const VideoDecoder&) = delete;
+  VideoDecoder& operator=(const VideoDecoder&) = delete;
+
+  /// The next frame; nothing at the end and where the rest cannot be decoded. InputError for a frame above the limit.
+  std::optional<DecodedFrame> next();
+
+  std::size_t stated_frames() const;  ///< as the container counts them, or its length times its rate; 0: not stated
+  double rate_hz() const;             ///< as the container states it; 0 where it does not
+  std::string codec() const;          ///< four letters, as the container calls it
+
+ private:
+  class Libav;
+  std::unique_ptr<Libav> av_;
+};
+
+}  // namespace glidelab::core
