@@ -51,9 +51,9 @@ struct Moved {
   std::vector<double> v_m_s;  ///< true
 };
 
-/// At the stated times (rising, from the clip's first frame). `late_s`, where not empty, is what the true time of each
-/// frame is later than stated. Not finite where the motion runs away, or would need more than 1e5 steps, each under
-/// 1.26 ms (a motion of 1 s with K/m above 3e4 1/s).
+/// At the stated times (rising, from the clip's first frame), each later by its `late_s`, where that is not empty. Not
+/// finite where the motion runs away or needs too much work: more than 100 steps for each time, all under 1.26 ms (K/m
+/// above 3000 1/s at 100 Hz), or 2000 with those that find turns. Fewer than 100 times count as 100.
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
 }  // namespace glidelab::diagnose
