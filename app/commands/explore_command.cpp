@@ -6,6 +6,7 @@
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
+#include "app/shell/run_control.h"
 #include "base/files/file_io.h"
 #include "report/text/json_numbers.h"
 #include "teach/page/teaching_pages.h"
@@ -20,6 +21,7 @@ void explore(const CommonOptions& options) {
   check_writable(out);
   base::StagedOutput staged(out);
   report::write_page(staged.dir(), "explore.html", teach::explorer_page(teach::explore_phases()));
+  throw_if_interrupted();
   staged.publish_files();
   const std::string page = (out / "explore.html").string();
   print_result(options.json ? report::json_text({{"page", page}}) : page + "\n");

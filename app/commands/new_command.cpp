@@ -6,6 +6,7 @@
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/toml/strict_toml.h"
@@ -51,6 +52,7 @@ void make_new(const NewOptions& options) {
   base::write_file(staged.dir() / "README.md", core::experiment_readme(name));
   fs::create_directory(staged.dir() / "clips");
   fs::create_directory(staged.dir() / "calibration");
+  throw_if_interrupted();
   staged.publish_whole();
   if (options.common.json) {
     print_result(report::json_text({{"folder", folder.string()},

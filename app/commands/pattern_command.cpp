@@ -7,6 +7,7 @@
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
+#include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "report/print/print_sheet.h"
@@ -69,6 +70,7 @@ void pattern(const PatternOptions& options) {
     base::write_file(staged.dir() / name, bytes);
     names.push_back((out / name).string());
   }
+  throw_if_interrupted();
   staged.publish_files();
   if (options.common.json) {
     print_result(report::json_text({{"paper", paper.name},

@@ -69,6 +69,7 @@ int fail(int status, std::string_view message) {
 /// Runs the command; the only place where an exception becomes a status.
 int run_command(const Command& command) {
   try {
+    throw_if_interrupted();  // since the program began
     command();
     return kDone;
   } catch (const InterruptedKeeping& interrupt) {
@@ -190,6 +191,7 @@ void hush_libraries() {
 }  // namespace
 
 int run(int argc, char** argv) {
+  catch_interrupts();  // first: from here on every command ends in one way
   hush_libraries();
   CLI::App app(
       "Glidelab rehearses video experiments on friction: it simulates a glider on a track, films it, analyses the film "
@@ -233,7 +235,6 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "{}", app.help());
     return kWrongCommandLine;
   }
-  catch_interrupts();
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::Success& help_or_version) {

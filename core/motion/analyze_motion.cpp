@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "base/errors.h"
 #include "base/text/number_text.h"
 #include "core/math/quantile.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
@@ -182,6 +183,16 @@ BandwidthChoice by_rule(const std::string& name, const Motion& motion, const Fre
   return {free.pilot_bandwidth_s, "that of the first smoothing: the motion is too short for the rule " + name, 0.0};
 }
 
+/// InputError where the bandwidth that is given smooths more than the clip.
+void check_bandwidth(const MotionOptions& options, const std::string& clip, const Motion& motion) {
+  if (!options.bandwidth_s || motion.t_s.empty()) return;
+  const double duration_s = motion.t_s.back() - motion.t_s.front();
+  if (*options.bandwidth_s <= duration_s) return;
+  throw base::InputError(base::Issue{"", 0, fmt::format("clip \"{}\": bandwidth", clip),
+                                     fmt::format("{:.6g} s", *options.bandwidth_s),
+                                     fmt::format("at most {:.6g} s, what the clip lasts", duration_s)});
+}
+
 /// That of the options, or as they have it chosen.
 BandwidthChoice bandwidth_of(const Motion& motion, const FreeMotion& free, const MotionOptions& options) {
   if (options.bandwidth_s) return {*options.bandwidth_s, "given", 0.0};
@@ -309,6 +320,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   note_lost_frames(clip.lost_frames, options.lost_frames, clip.notes);
 
   const Motion measured = motion_of(track, setup.mass_kg);
+  check_bandwidth(options, setup.name, measured);
   const std::vector<std::size_t> outliers = find_outliers(measured);
   const Motion motion = without(measured, outliers);
   const FreeMotion free = find_free_motion(motion, setup);

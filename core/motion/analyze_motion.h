@@ -52,7 +52,7 @@ struct MotionOptions {
 };
 
 /// Smooths one clip's x(t) with the local cubic, decides which points count, and fits a line for v < 0 and v
-/// > 0. A given bandwidth is used as it is; otherwise the rule named, or choose_bandwidth(), decides.
+/// > 0. A given bandwidth is used (InputError: longer than the clip); otherwise the rule named, or choose_bandwidth().
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 
 }  // namespace glidelab::core

@@ -17,6 +17,7 @@
 #include "base/text/csv.h"
 #include "core/experiment/file_names.h"
 #include "core/math/quantile.h"
+#include "core/math/time_gap.h"
 #include "core/track/column_table.h"
 #include "core/track/even_times.h"
 
@@ -85,6 +86,18 @@ std::vector<base::Issue> issues_of_numbers(const std::vector<GivenSeries>& serie
         {what, 0, "t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", kFewestTrackPoints)});
   }
   return issues;
+}
+
+/// InputError, with the line of the file, where the times have a gap that no motion bridges.
+void check_gaps(const TrackData& track, const std::string& file, const std::string& column,
+                const std::vector<int>& lines) {
+  const std::optional<TimeGap> gap = too_long_gap(track.t_s);
+  if (!gap) return;
+  throw base::InputError(base::Issue{
+      file, lines[gap->after], column,
+      fmt::format("{} s, a gap of {:.6g} s after line {}", track.t_s[gap->after], gap->gap_s, lines[gap->after - 1]),
+      fmt::format("a gap of at most {:.6g} s, {:.0f} times the median step; two recordings are two clips",
+                  gap->longest_s, kLongestGapSteps)});
 }
 
 const std::vector<std::string> kPlaces{"x",   "position", "pos",        "distance",     "displacement",    "position x",
@@ -223,6 +236,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
                                        fmt::format("{} points", track.t_s.size()),
                                        fmt::format("at least {}", kFewestTrackPoints)});
   }
+  check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
   if (missing > 0)
     track.notes.push_back(fmt::format("{} rows between others lack a time or x and are left out", missing));
   take_rows_as_frames(track);
@@ -286,6 +300,7 @@ TrackData read_track_csv(const std::filesystem::path& file, int downhill, const 
   TrackData track;
   track.t_s = table.column("t_s");
   check_times(table, track.t_s);
+  check_gaps(track, table.file, "column \"t_s\"", table.line);
   track.x_m = table.column("x_m");
   for (double& x : track.x_m) x *= downhill;
   if (table.has("force_n")) {

@@ -59,13 +59,13 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 /// or x are left out (columns of several runs differ in length), and a note counts those that lie between others.
 ///
 /// x is multiplied by `downhill`. InputError: no or several columns that x may be, a unit that is no length or time,
-/// times that do not rise, fewer points than kFewestTrackPoints.
+/// times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than kFewestTrackPoints.
 TrackData import_track(const std::filesystem::path& file, const std::string& column, int downhill);
 
 /// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or what another
 /// program exported. x and the force are multiplied by `downhill` (+1 or -1), so that both are positive downhill. Times
 /// stay those of the file but for take_rows_as_frames(). InputError, up to ten issues named by line: no number, a time
-/// that does not rise, too few points.
+/// that does not rise, a gap that is too long (core/math/time_gap.h), too few points.
 ///
 /// A file whose header has no `t_s`, or of which a column is asked for, goes to import_track().
 TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column = {});

@@ -22,6 +22,8 @@ constexpr double kNoSpeed_m_s = 1e-300;  // has a direction, and moves nothing
 constexpr int kMostLeaving = 40;         // steps to the instant at which friction gives way,
 constexpr double kSameTime_s = 1e-13;    // to within this
 constexpr double kMostSteps = 2500.0, kMostOfFrame = 24.0;  // steps of a motion: so many, and so many a frame
+constexpr std::size_t kMostWork = 2000;                     // steps for each position, with what turns cost;
+constexpr std::size_t kFewTimes = 100;                      // where fewer are asked for, as many as for these
 
 // What the integrator itself has to know of effects of the time: where a wave stands, and where a hand lets go.
 constexpr EffectSlot kShake = slot_of(ids::base_vibration, 0), kShakeHz = slot_of(ids::base_vibration, 1),
@@ -160,6 +162,8 @@ class Mover {
   }
 
   double longest_step() const { return step_; }
+  /// Steps so far, those included that found a turn.
+  std::size_t work() const { return work_; }
 
   /// To t_end, by way of the known force's samples: it has corners there. `stretch`: true over stated time.
   PlaceAndSpeed advance(PlaceAndSpeed s, double t, double t_end, double stretch) {
@@ -210,6 +214,7 @@ class Mover {
   };
 
   Step rk4(const PlaceAndSpeed& s, double t, double h) {
+    ++work_;
     const std::array<double, 3> wave = shaken_ ? wave_.over(t, h) : std::array<double, 3>{};
     const double a1 = slide(s.x, s.v, t, wave[0]);
     const double v2 = s.v + 0.5 * h * a1;
@@ -287,6 +292,7 @@ class Mover {
   bool shaken_;
   SineSteps wave_;
   double step_ = kLongestStep;
+  std::size_t work_ = 0;
   int direction_ = 0;
   bool pushed_ = false;
   std::size_t sample_ = 0;  // of the known force: the first one later than now
@@ -297,6 +303,16 @@ double seen(const ActingLaws& laws, const GliderConstants& glider, double x, dou
   double measured = x;
   for (const Acting& effect : laws.seen.all()) measured = effect.law->seen_m(effect.p, glider, x, t, measured);
   return measured;
+}
+
+}  // namespace
+
+namespace {
+
+/// A motion that is not followed: nothing that was filmed is as stiff, or turns as often.
+Moved not_followed(std::size_t count) {
+  const std::vector<double> nowhere(count, std::numeric_limits<double>::quiet_NaN());
+  return {nowhere, nowhere};
 }
 
 }  // namespace
@@ -326,13 +342,11 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     moved.v_m_s.push_back(state.v);
   };
   const double most_steps = kMostSteps + kMostOfFrame * static_cast<double>(at.size());
-  if (!(at.back() - t <= most_steps * mover.longest_step())) {
-    // A fit that diverges asks for millions of steps; nothing that was filmed is as stiff as that.
-    moved.x_m.assign(at.size(), std::numeric_limits<double>::quiet_NaN());
-    moved.v_m_s = moved.x_m;
-    return moved;
-  }
+  // A fit that diverges asks for millions of steps; nothing that was filmed is as stiff as that.
+  if (!(at.back() - t <= most_steps * mover.longest_step())) return not_followed(at.size());
+  const std::size_t positions = std::max(at.size(), kFewTimes);
   for (std::size_t i = 0; i < at.size();) {
+    if (mover.work() > kMostWork * positions) return not_followed(at.size());
     // Several frames by one step where it reaches so far.
     std::size_t last = i;
     while (last + 1 < at.size() && at[last + 1] - t <= mover.longest_step()) ++last;

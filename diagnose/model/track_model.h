@@ -51,9 +51,9 @@ struct Moved {
   std::vector<double> v_m_s;  ///< true
 };
 
-/// At the stated times (rising, from the clip's first frame). `late_s`, where not empty, is what the true time of each
-/// frame is later than stated. Not finite where the motion runs away, or would need more than 2500 steps and 24 a
-/// frame (200 frames in 2 s: K/m above 1100 1/s).
+/// At the stated times (rising, from the clip's first frame), each later by its `late_s`, where that is not empty. Not
+/// finite where the motion runs away, or would need more than 2500 steps and 24 a frame (200 frames in 2 s: K/m above
+/// 1100 1/s), or more work with what turns cost than 2000 steps a frame; fewer than 100 frames count as 100.
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
 }  // namespace glidelab::diagnose

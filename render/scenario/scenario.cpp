@@ -10,6 +10,7 @@
 #include "base/files/file_io.h"
 #include "base/toml/strict_toml.h"
 #include "base/toml/toml_set.h"
+#include "render/scenario/clip_length.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"
@@ -179,6 +180,22 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
   }
 }
 
+/// What takes hours or terabytes is refused before it begins.
+void check_length(const TomlTable& root, const Scenario& scenario) {
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      const std::size_t frames = frame_count(scenario.recording, motion);
+      if (frames <= kMostFrames) continue;
+      const double pixels = static_cast<double>(scenario.camera.width_px) * scenario.camera.height_px;
+      root.reject(
+          "configuration",
+          fmt::format("clip \"{}\" with {} frames ({:.6g} s at {:.6g} Hz; {:.3g} GB of pixels)", motion.name, frames,
+                      motion.duration_s, scenario.recording.frame_rate_hz, 1e-9 * pixels * static_cast<double>(frames)),
+          fmt::format("at most {} frames in a clip: a lower frame_rate_hz or a shorter duration_s", kMostFrames));
+    }
+  }
+}
+
 /// A file of the other sort is said to be one, not taken apart key by key. It is read apart: asking for a key makes it
 /// a known one.
 void refuse_sweep(std::string_view text, const std::filesystem::path& path) {
@@ -220,6 +237,7 @@ Scenario read_scenario(std::string_view text, const std::filesystem::path& path,
   scenario.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1, 0, std::numeric_limits<long>::max()));
   read_sections(root, scenario);
   file.finish();
+  check_length(root, scenario);
   if (checks == ScenarioChecks::all) check_pictures(root, scenario);
   file.finish();
   return scenario;

@@ -36,9 +36,9 @@ std::string with_camera_written_in(std::string_view scenario_text, const std::fi
 /// The name and the price class of the camera file at `path` alone.
 CameraFile read_camera_name(const std::filesystem::path& path);
 
-/// Reads a whole scenario file. InputError with everything that is wrong with it, among it what makes no physical
-/// sense: an exposure longer than the frame time, a lens that folds the image over, a marker that gets behind the
-/// camera or is never seen, a pattern that does not fit into the image.
+/// Reads a whole scenario file. InputError with everything that is wrong with it, among it what makes no sense: an
+/// exposure longer than the frame time, a lens that folds the image over, a marker that gets behind the camera or is
+/// never seen, a pattern that does not fit into the image, a clip without an end (clip_length.h).
 Scenario read_scenario(const std::filesystem::path& path);
 
 /// How much of a scenario's text is checked: everything, or all but what the camera sees of it (for who makes no

@@ -4,11 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <regex>
 
 #include "base/errors.h"
 #include "base/files/child_process.h"
@@ -114,6 +116,34 @@ std::string with_files(const Drawing& drawing) {
   return text;
 }
 
+/// What gnuplot says of numbers that leave nothing to draw, as 5.4 and 6.0 word it. What else it says is of a script.
+constexpr std::array<std::string_view, 12> kNothingToShow = {"value undefined",
+                                                             "points undefined",
+                                                             "range is invalid",
+                                                             "with an empty",
+                                                             "range undefined or overflow",
+                                                             "empty or undefined",
+                                                             "for log scale",
+                                                             "must have positive range",
+                                                             "increment must be positive",
+                                                             "undefined variable: inf",
+                                                             "undefined variable: nan",
+                                                             "Undefined value"};
+
+/// "all points y value undefined!" of a log that ends with `"01-x.gp" line 12: all points y value undefined!`, where
+/// that is said of numbers; else "".
+std::string why_nothing(const std::string& log) {
+  static const std::regex kMessage("\",? line [0-9]+: ([^\n]*)");
+  std::smatch found;
+  std::string message;
+  for (auto at = log.cbegin(); std::regex_search(at, log.cend(), found, kMessage); at = found.suffix().first) {
+    message = found[1].str();
+  }
+  const bool of_numbers = std::any_of(kNothingToShow.begin(), kNothingToShow.end(),
+                                      [&](std::string_view words) { return message.find(words) != std::string::npos; });
+  return of_numbers ? message : std::string();
+}
+
 /// Both files come from one script, run twice. At the font size 15 text is still 11 pixels high where the page shows
 /// the plot 350 pixels wide; a point of the PDF is a pixel of the SVG.
 std::string script_of(const Drawing& drawing, const std::string& name) {
@@ -196,21 +226,43 @@ std::vector<std::string> plot_file_names(std::span<const Plot> plots) {
   return names;
 }
 
+namespace {
+
+std::vector<std::string> arguments_in(const fs::path& folder) {
+  return {"-d", "-e", "cd " + gnuplot_quoted(folder.string())};
+}
+
+/// Draws them one by one, in a folder that has their scripts and numbers, and finds those that show nothing.
+void draw_each(const fs::path& folder, std::vector<DrawnPlot>& plots) {
+  for (DrawnPlot& plot : plots) {
+    const fs::path log = folder / "log.txt";
+    std::vector<std::string> arguments = arguments_in(folder);
+    arguments.push_back(plot.name + ".gp");
+    const int status = run(std::move(arguments), log);
+    if (!base::how_it_failed(status).empty()) plot.left_out = why_nothing(base::read_file(log));
+    if (plot.left_out.empty()) check_status(status, log);
+  }
+}
+
+}  // namespace
+
 std::vector<DrawnPlot> draw_plots(std::span<const Plot> plots, std::span<const std::string> names) {
   assert(plots.size() == names.size());
   if (plots.empty()) return {};
   const base::TemporaryFolder folder("plot");
   const fs::path log = folder / "log.txt";
   std::vector<DrawnPlot> drawn;
-  std::vector<std::string> arguments = {"-d", "-e", "cd " + gnuplot_quoted(folder.path().string())};
+  std::vector<std::string> arguments = arguments_in(folder.path());
   for (std::size_t i = 0; i < plots.size(); ++i) {
     drawn.push_back({names[i], {}, {}, script_of(plots[i].drawing, names[i]), csv_of(plots[i].drawing)});
     base::write_file(folder / (names[i] + ".gp"), drawn[i].script);
     base::write_file(folder / (names[i] + ".csv"), drawn[i].csv);
     arguments.push_back(names[i] + ".gp");
   }
-  check_status(run(std::move(arguments), log), log);
+  // All at once; gnuplot ends at the first that it cannot draw.
+  if (!base::how_it_failed(run(std::move(arguments), log)).empty()) draw_each(folder.path(), drawn);
   for (DrawnPlot& plot : drawn) {
+    if (!plot.left_out.empty()) continue;
     const fs::path svg = folder / (plot.name + ".svg"), pdf = folder / (plot.name + ".pdf");
     std::error_code missing;
     if (!fs::exists(svg, missing) || !fs::exists(pdf, missing)) {

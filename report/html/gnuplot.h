@@ -22,10 +22,13 @@ struct DrawnPlot {
   std::string script;  ///< NAME.gp
   std::string csv;     ///< what the axes show and the blocks of data, each under its name and its columns' in comments,
                        ///< two blank lines apart
+  /// Why there is no plot, in gnuplot's words: its values leave nothing to show (all undefined, infinite or out of
+  /// range). Then `svg` and `pdf` are empty. Empty: it is drawn.
+  std::string left_out = {};
 };
 
-/// Draws the plots; names[i] is that of plots[i]'s files. EnvironmentError if gnuplot is missing or fails (with its
-/// message).
+/// Draws the plots; names[i] is that of plots[i]'s files. A plot whose numbers gnuplot cannot draw is left out.
+/// EnvironmentError if gnuplot is missing, is ended, or rejects a script for any other reason (with its message).
 std::vector<DrawnPlot> draw_plots(std::span<const Plot> plots, std::span<const std::string> names);
 
 /// Names for the files of a page's plots, in order: "01-residuals-of-the-fitted-lines-over-v", of ASCII only.

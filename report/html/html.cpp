@@ -308,9 +308,9 @@ Html figures(const std::vector<Plot>& plots) {
   Html html(plots.size() % 3 == 0 ? "<div class=\"figures\">\n" : "<div class=\"figures large\">\n");
   for (const Plot& plot : plots) {
     // As an image of its own: gnuplot gives every plot the same ids, which would clash within one page.
-    html += fmt::format("<figure><img alt=\"{}\" src=\"", escape(plot.description));
+    html += "<figure>";
     html.plot(plot);
-    html += fmt::format("\"><figcaption>{}</figcaption></figure>\n", escape(plot.caption));
+    html += fmt::format("<figcaption>{}</figcaption></figure>\n", escape(plot.caption));
   }
   return html + "</div>\n";
 }
@@ -328,6 +328,20 @@ std::string symbols_html(std::string_view text) {
   return std::regex_replace(escape(text), kSymbol, "$1$2<sub>$3</sub>");
 }
 
+namespace {
+
+std::string image_of(const DrawnPlot& plot, const std::string& description) {
+  if (plot.left_out.empty()) {
+    return fmt::format("<img alt=\"{}\" src=\"{}\">", escape(description), data_uri("image/svg+xml", plot.svg));
+  }
+  return fmt::format(
+      "<p class=\"note\">This plot is left out, for its numbers leave nothing to draw (gnuplot: {}). They stand in "
+      "<code>plots/{}.csv</code>.</p>\n",
+      escape(plot.left_out), plot.name);
+}
+
+}  // namespace
+
 Page page(std::string_view title, const Html& body) {
   Page made;
   std::string text;
@@ -335,12 +349,13 @@ Page page(std::string_view title, const Html& body) {
   for (std::size_t i = 0; i < body.texts().size(); ++i) {
     text += body.texts()[i];
     if (i == drawn.size()) break;
-    text += data_uri("image/svg+xml", drawn[i].svg);
     const std::string stem = "plots/" + drawn[i].name;
+    text += image_of(drawn[i], body.plots()[i].description);
+    made.files[stem + ".csv"] = drawn[i].csv;
+    if (!drawn[i].left_out.empty()) continue;
     made.files[stem + ".svg"] = drawn[i].svg;
     made.files[stem + ".pdf"] = drawn[i].pdf;
     made.files[stem + ".gp"] = drawn[i].script;
-    made.files[stem + ".csv"] = drawn[i].csv;
   }
   if (!drawn.empty()) {
     text +=

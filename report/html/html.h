@@ -61,7 +61,7 @@ class Html {
   Html(const char* text) : texts_{text} {}             // NOLINT(google-explicit-constructor)
   Html& operator+=(const Html& next);
   friend Html operator+(Html first, const Html& next) { return first += next; }
-  /// The plot's SVG as a data URI goes here.
+  /// The plot goes here: an image, or words where it has nothing to show.
   void plot(Plot plot);
 
   /// One more than plots: texts()[i] stands before plots()[i].
@@ -79,7 +79,7 @@ std::string tile(const std::string& number, const std::string& words);
 /// The part at the top of a page that says in plain words what its numbers say; HTML below a heading.
 std::string meaning_section(const std::string& html);
 
-/// Plots side by side where there is room, each on white paper with its caption.
+/// Plots side by side where there is room, each on white paper with its caption, or why it has nothing to show.
 Html figures(const std::vector<Plot>& plots);
 
 /// A whole HTML document and the files of its plots, by their path beside it ("plots/NAME.svg", .pdf, .gp, .csv).

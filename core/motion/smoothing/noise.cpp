@@ -21,9 +21,11 @@ double autocorrelation(const std::vector<double>& filter, std::size_t lag) {
   return sum;
 }
 
-/// p = 1 - s on a uniform grid of the step.
-std::vector<double> residual_filter(double bandwidth_s, double step_s) {
-  const auto half = static_cast<std::size_t>(std::ceil(kKernelReach * bandwidth_s / step_s)) + 1;
+/// p = 1 - s on a uniform grid of the step; no longer than a series of so many points, beside which nothing is smoothed
+/// (a gap in the times makes the bandwidth long beside the step).
+std::vector<double> residual_filter(double bandwidth_s, double step_s, std::size_t points) {
+  const double reach = std::ceil(kKernelReach * bandwidth_s / step_s) + 1.0;
+  const auto half = static_cast<std::size_t>(std::min(reach, static_cast<double>(points)));
   std::vector<double> t(2 * half + 1);
   for (std::size_t i = 0; i < t.size(); ++i) t[i] = static_cast<double>(i) * step_s;
   const auto row = LocalCubic(t, bandwidth_s).row_of_point(half);
@@ -179,7 +181,7 @@ PositionNoise estimate_noise(const std::vector<NoisePiece>& pieces, double at_le
   }
   if (steps.empty()) return noise;
   const double step = quantile(std::move(steps), 0.5), bandwidth = pieces.front().cubic->bandwidth_s();
-  const std::vector<double> filter = residual_filter(bandwidth, step);
+  const std::vector<double> filter = residual_filter(bandwidth, step, points);
   const auto lags = static_cast<std::size_t>(
       std::clamp(std::ceil(3.0 * bandwidth / step), 4.0, std::max(4.0, static_cast<double>(points) / 10.0)));
   const Residuals residuals = residuals_of(pieces, lags);

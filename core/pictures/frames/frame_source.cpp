@@ -10,6 +10,7 @@
 #include "base/errors.h"
 #include "core/experiment/file_names.h"
 #include "core/math/quantile.h"
+#include "core/math/time_gap.h"
 #include "core/pictures/frames/read_image.h"
 #include "core/pictures/frames/video_decoder.h"
 
@@ -240,7 +241,18 @@ class VideoFrames final : public FrameSource {
       fail_frames(file_, fmt::format("frame {}", count_), fmt::format("the end of the clip after {} frames", count_),
                   fmt::format("{} frames, as the container says (is the file truncated?)", stated_));
     }
+    if (camera_.time == TimeSource::container) check_gaps();
     find_irregular_steps();
+  }
+
+  void check_gaps() const {
+    const std::optional<TimeGap> gap = too_long_gap(stamps_s_);
+    if (!gap) return;
+    fail_frames(
+        file_, fmt::format("frame {}", gap->after),
+        fmt::format("a time stamp of {:.6g} s, {:.6g} s after that of the frame before", stamps_s_[gap->after],
+                    gap->gap_s),
+        fmt::format("one at most {:.6g} s after it, {:.0f} times the median step", gap->longest_s, kLongestGapSteps));
   }
 
   void look_at_stamp(double stamp_s) {

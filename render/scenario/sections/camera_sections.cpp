@@ -21,6 +21,10 @@ double longest_exposure_s(double frame_rate_hz) {
   return (1.0 + 1e-9) / frame_rate_hz;
 }
 
+/// Of an image. The scene is drawn from a table of all pixels' rays, 40 bytes each beside its copy in OpenGL, and Mesa
+/// takes textures of up to 1 GiB.
+constexpr long kMostPixels = 8192L * 4096L;
+
 void read_lens(const TomlTable& camera, Lens& lens) {
   const std::string model = camera.word("lens", {"brown-conrady", "rational", "fisheye"}, "brown-conrady");
   lens.model = model == "rational"  ? LensModel::rational
@@ -65,6 +69,13 @@ void read_camera(const std::optional<TomlTable>& found, Scenario& scenario) {
     const TomlTable& table = *found;
     camera.width_px = static_cast<int>(table.integer_or("width_px", camera.width_px, 64, 8192));
     camera.height_px = static_cast<int>(table.integer_or("height_px", camera.height_px, 64, 8192));
+    if (const long pixels = static_cast<long>(camera.width_px) * camera.height_px; pixels > kMostPixels) {
+      table.reject("height_px",
+                   fmt::format("{} with width_px = {}, {:.3g} million pixels", camera.height_px, camera.width_px,
+                               1e-6 * static_cast<double>(pixels)),
+                   fmt::format("at most {:.3g} million pixels, such as 8192 x 4096, which take 3 GB of memory",
+                               1e-6 * kMostPixels));
+    }
     recording.frame_rate_hz = table.number_or("frame_rate_hz", recording.frame_rate_hz, {1e-3, 1e5, false, false});
     recording.exposure_s =
         table.number_or("exposure_s", std::min(recording.exposure_s, 1.0 / recording.frame_rate_hz), base::above(0.0));

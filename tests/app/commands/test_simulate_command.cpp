@@ -46,3 +46,15 @@ TEST_CASE("the option --rate gives the states of another camera, and the table i
   const std::string csv = base::read_file(temp / "glidelab-out/simulate-tiny/trajectory-up.csv");
   CHECK(csv.find("\n0.0025,") != std::string::npos);
 }
+
+TEST_CASE("simulate refuses more states than it can hold, says what they would take, and leaves nothing") {
+  const tests::TempDir temp;
+  tests::write_tiny_scenario(temp / "tiny.toml", 3600.0);
+  const tests::ProcessResult result =
+      tests::glidelab({"simulate", (temp / "tiny.toml").string(), "--rate", "1e5", "-o", "out"}, temp.path());
+  CHECK(result.status == 1);
+  // The exposure of 1 ms ends within the 3600 s: 100 states fewer, and the first one.
+  CHECK(result.err.find("--rate: found 100000 Hz, for clip \"up\" of 3600 s 35999") != std::string::npos);
+  CHECK(result.err.find("23.4 GB, expected at most 5000000 states in a clip, 1388.89 Hz") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(temp / "out"));
+}

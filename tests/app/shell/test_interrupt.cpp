@@ -1,10 +1,19 @@
 #include "app/shell/run_control.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/shell/cli.h"
+#include "base/files/file_io.h"
+#include "tests/app/command_names.h"
 #include "tests/catch.h"
+#include "tests/temp_dir.h"
 
 using namespace glidelab;
 
@@ -31,7 +40,46 @@ int status_of(unsigned apart_s, bool keeps) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// Exit status of the program where it is sent SIGTERM before its command begins, run in `folder`; what it said is in
+/// the file "said" there.
+int status_when_interrupted(const std::filesystem::path& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "glidelab");
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::chdir(folder.c_str()) != 0) ::_exit(126);
+    ::dup2(::open("said", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+    ::dup2(STDERR_FILENO, STDOUT_FILENO);
+    app::catch_interrupts();
+    ::raise(SIGTERM);
+    ::_exit(app::run(static_cast<int>(pointers.size()), pointers.data()));
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+}
+
 }  // namespace
+
+TEST_CASE(
+    "every command that is ended before its first line of progress says so, with status 130, and writes nothing") {
+  std::vector<std::vector<std::string>> commands = {{"diagnose", "--plan", "--noise-m", "1e-5", "a.toml"},
+                                                    {"--version"}};
+  for (const std::string& name : tests::kCommands) {
+    std::vector<std::string> command = {name};
+    if (name != "pattern" && name != "explore" && name != "blind") command.emplace_back("nothing.toml");
+    commands.push_back(std::move(command));
+  }
+  for (const std::vector<std::string>& command : commands) {
+    const tests::TempDir dir;
+    CAPTURE(command);
+    CHECK(status_when_interrupted(dir.path(), command) == 130);
+    CHECK(base::read_file(dir / "said") == "glidelab: error: interrupted; nothing was written\n");
+    std::filesystem::remove(dir / "said");
+    CHECK(std::filesystem::is_empty(dir.path()));
+  }
+}
 
 TEST_CASE("what does not look at the first signal is ended within a second") {
   CHECK(status_of(0, false) == 7);

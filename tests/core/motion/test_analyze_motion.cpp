@@ -241,3 +241,11 @@ TEST_CASE("tracks at the edge of what can be smoothed end in nulls with reasons,
   CHECK(nothing.clip.segments.empty());
   CHECK(nothing.clip.left_out.front().reason == LeftOut::before_start);
 }
+
+TEST_CASE("a given bandwidth that is longer than the clip is refused, and one as long as the clip is used") {
+  const TrackData track = turning_track({100.0, 1.0, 1e-4, 1});
+  const double duration_s = track.t_s.back() - track.t_s.front();
+  CHECK(analyze_motion(kUp, track, MotionOptions{.bandwidth_s = duration_s}).bandwidth_s == duration_s);
+  CHECK_THROWS_WITH(analyze_motion(kUp, track, MotionOptions{.bandwidth_s = 1e9}),
+                    Catch::Contains("bandwidth: found 1e+09 s, expected at most"));
+}

@@ -64,3 +64,18 @@ TEST_CASE("a track with a decimal comma, a NaN or no file is an input error") {
   CHECK_THROWS_WITH(core::read_track_csv(write(folder, "t_s,x_m\n" + rows(8) + "1.0,nan\n"), 1), Contains(":10"));
   CHECK_THROWS_AS(core::read_track_csv(folder / "none.csv", 1), base::InputError);
 }
+
+TEST_CASE(
+    "a gap in the times that no motion bridges is named by line, in a track of our own and in another program's") {
+  const tests::TempDir folder;
+  // A median step of 0.01 s allows for 1000 s. Line 11 is the first behind the gap.
+  const std::string paused = rows(9) + "900.08,4\n900.09,4.1\n", lost = rows(9) + "1000001,4\n1000001.01,4.1\n";
+  CHECK(core::read_track_csv(write(folder, "t_s,x_m\n" + paused), 1).t_s.size() == 11);
+  CHECK(core::read_track_csv(write(folder, "time,x\n" + paused), 1).t_s.size() == 11);
+  CHECK_THROWS_WITH(
+      core::read_track_csv(write(folder, "t_s,x_m\n" + lost), 1),
+      Contains("track.csv:11: column \"t_s\": found 1000001 s, a gap of 1e+06 s after line 10, expected a "
+               "gap of at most 1000 s"));
+  CHECK_THROWS_WITH(core::read_track_csv(write(folder, "time,x\n" + lost), 1),
+                    Contains("track.csv:11: column \"time\": found 1000001 s, a gap"));
+}

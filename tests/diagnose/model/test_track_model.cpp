@@ -1,7 +1,9 @@
 #include "diagnose/model/track_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "tests/catch.h"
@@ -124,4 +126,33 @@ TEST_CASE("frames that are far apart cost a few steps each, and the motion stays
     CHECK(moved.v_m_s[i] == Approx(a / k + (model.v0_m_s - a / k) * gone).epsilon(1e-9));
   }
   CHECK(evaluations < 100 * 8 * 4 + 100);  // 8 steps of a frame, each of four stages
+}
+
+TEST_CASE("no motion takes more work than its positions are worth, however it turns or decays") {
+  // Forces are asked for 4 times in each of 2000 steps for each time and, in one interval that was begun, of 40 ms or,
+  // by the limit of 100 steps a time, at most 500 parts, each of 20 turns with 7 steps, which ask up to 45 times
+  // besides.
+  const std::size_t most = 5 * (2000 * times(100.0).size() + 500 * 20 * (7 + 45));
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> decades(-3.0, 4.0), speed(-2.0, 2.0);
+  std::size_t asked = 0, largest = 0;
+  const diagnose::UnnamedForce nothing = [&](double, double, double) {
+    ++asked;
+    return 0.0;
+  };
+  for (int i = 0; i < 300; ++i) {
+    diagnose::TrackModel model = glider();
+    model.unnamed = &nothing;
+    model.k_n_s_m = std::pow(10.0, decades(random)) * (i % 3 == 0 ? -1.0 : 1.0);
+    model.mu = std::pow(10.0, decades(random)) * (i % 2 == 0 ? -1.0 : 1.0);  // what pushes along turns at once
+    model.alpha_rad = 0.3 * speed(random);
+    model.v0_m_s = speed(random);
+    asked = 0;
+    const diagnose::Moved moved = diagnose::move(model, times(100.0));
+    CAPTURE(model.k_n_s_m, model.mu, model.v0_m_s);
+    CHECK(moved.x_m.size() == times(100.0).size());
+    CHECK(asked <= most);
+    largest = std::max(largest, asked);
+  }
+  CHECK(largest > times(100.0).size());  // the counter counts
 }

@@ -131,6 +131,7 @@ TEST_CASE("What makes no sense is refused by its key, with the line") {
       {"[camera]\nfocal_px = [1200.0]\n", "camera.focal_px", "2 numbers"},
       {"[camera]\nfocal_px = [-1200.0, 1200.0]\n", "camera.focal_px", "from 1"},
       {"[camera]\nwidth_px = 10\n", "camera.width_px", "whole number"},
+      {"[camera]\nwidth_px = 8192\nheight_px = 8192\n", "camera.height_px", "8192 with width_px = 8192, 67.1 million"},
       {"[camera]\nposition_m = [0.0, 0.0, -2.0]\n", "camera.position_m", "before the plane"},
       {"[camera]\nposition_m = [0.0, 0.0, 2.0]\ntarget_m = [0.0, 1.0, 2.0]\n", "camera.target_m", "farther"},
       {"[camera]\ndistortion = { k1 = -3.0 }\n", "camera", "folds"},
@@ -212,4 +213,17 @@ TEST_CASE("A marker that is never seen is refused, one that is seen for a while 
 TEST_CASE("All errors of a file are reported together") {
   const std::string text = message("[camera]\nexposure_s = 1.0\nwidth_px = 1\n[sensor]\nbit_depth = 99\n");
   CHECK_THAT(text, Catch::Contains("exposure_s") && Catch::Contains("width_px") && Catch::Contains("bit_depth"));
+}
+
+TEST_CASE(
+    "A clip of more frames than memory and time allow is refused with what it would take, and a long one is not") {
+  const auto refusal = [](const std::string& rate, const std::string& duration) {
+    std::string motions = kMotions;
+    motions.replace(motions.find("duration_s = 0.1"), 16, "duration_s = " + duration);
+    return message("[camera]\nexposure_s = 1e-6\nframe_rate_hz = " + rate + "\n", motions);
+  };
+  // 3.6e8 frames of 480 kilopixels are 173 TB.
+  CHECK_THAT(refusal("1e5", "3600.0"), Catch::Contains("clip \"m1-up\" with 360000000 frames (3600 s at 100000 Hz; "
+                                                       "1.73e+05 GB of pixels), expected at most 5000000 frames"));
+  CHECK(refusal("240.0", "3600.0") == "nothing");
 }

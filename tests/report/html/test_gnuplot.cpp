@@ -1,5 +1,6 @@
 #include "report/html/gnuplot.h"
 
+#include <fmt/format.h>
 #include <stdlib.h>
 
 #include <cmath>
@@ -160,4 +161,39 @@ TEST_CASE("no plot leaves a temporary folder behind") {
   drawn({"plot sin(x)", {}});
   CHECK_THROWS(drawn({"no command", {}}));
   CHECK(std::filesystem::is_empty(temp.path()));
+}
+
+TEST_CASE(
+    "a plot whose numbers leave nothing to show is left out with gnuplot's reason, and those beside it are drawn") {
+  const double nan = std::nan(""), infinite = HUGE_VAL;
+  const auto data = [](std::vector<std::vector<double>> rows) {
+    return std::vector<report::PlotData>{{"points", std::move(rows)}};
+  };
+  const std::string plot = "plot $points using 1:2 with lines";
+  const std::vector<report::Plot> plots = {
+      {{plot, kPoints}, "", "some numbers"},
+      {{plot, data({{nan, nan}})}, "", "no number"},
+      {{plot, data({{0.0, infinite}, {1.0, infinite}})}, "", "infinite values"},
+      {{plot, data({{0.0, 1e308}, {1.0, -1e308}})}, "", "a span that overflows"},
+      {{"set yrange [0.3:0.3]\n" + plot, kPoints}, "", "an empty range"},
+      {{fmt::format("set xrange [{}:1]\n", infinite) + plot, kPoints}, "", "an infinite range"},
+      {{fmt::format("set yrange [0:{}]\n", nan) + plot, kPoints}, "", "no range"},
+      {{fmt::format("set ytics ('a' {})\n", -infinite) + plot, kPoints}, "", "an infinite mark"},
+      {{"set ytics 0\n" + plot, kPoints}, "", "marks without a step"},
+      {{"set logscale y\n" + plot, data({{0.0, 0.0}, {1.0, -1.0}})}, "", "no logarithm"},
+      {{plot, kPoints}, "", "some numbers again"}};
+  const std::vector<report::DrawnPlot> drawn = report::draw_plots(plots, report::plot_file_names(plots));
+  REQUIRE(drawn.size() == plots.size());
+  for (const std::size_t i : {std::size_t{0}, drawn.size() - 1}) {
+    CHECK(drawn[i].left_out.empty());
+    CHECK(drawn[i].svg.find("</svg>") != std::string::npos);
+  }
+  for (std::size_t i = 1; i + 1 < drawn.size(); ++i) {
+    CAPTURE(plots[i].description);
+    CHECK_FALSE(drawn[i].left_out.empty());
+    CHECK(drawn[i].svg.empty());
+    CHECK(drawn[i].pdf.empty());
+    CHECK_FALSE(drawn[i].csv.empty());
+  }
+  CHECK(drawn[4].left_out == "Can't plot with an empty y range!");
 }

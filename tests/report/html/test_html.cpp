@@ -1,5 +1,7 @@
 #include "report/html/html.h"
 
+#include <cmath>
+
 #include "report/analysis/analysis_report.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
@@ -132,4 +134,18 @@ TEST_CASE("the detail near v = 0 promises the limit velocity only where it shows
     REQUIRE(page.find("Near v = 0: the gap between the lines") != std::string::npos);
     CHECK((page.find("their crossing of a = 0 the limit velocity") != std::string::npos) == (v_lim_m_s < 0.18));
   }
+}
+
+TEST_CASE("a page says in words where a plot has nothing to show, and keeps its numbers and every other plot") {
+  const report::Plot seen = {{"plot $a using 1:2", {{"a", {{0.0, 1.0}, {1.0, 2.0}}}}}, "seen", "a plot"};
+  const report::Plot nothing = {{"plot $a using 1:2", {{"a", {{0.0, HUGE_VAL}}}}}, "not <seen>", "an empty plot"};
+  const report::Page page = report::page("two", report::figures({nothing, seen}));
+  CHECK(page.html.find("This plot is left out, for its numbers leave nothing to draw") != std::string::npos);
+  CHECK(page.html.find("<code>plots/01-an-empty-plot.csv</code>") != std::string::npos);
+  CHECK(page.html.find("not &lt;seen&gt;") != std::string::npos);
+  CHECK(page.html.find("<img alt=\"a plot\" src=\"data:image/svg+xml") != std::string::npos);
+  CHECK(page.html.find("alt=\"an empty plot\"") == std::string::npos);
+  CHECK(page.files.contains("plots/01-an-empty-plot.csv"));
+  CHECK_FALSE(page.files.contains("plots/01-an-empty-plot.svg"));
+  CHECK(page.files.contains("plots/02-a-plot.svg"));
 }

@@ -141,6 +141,9 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
     throw base::EnvironmentError(fmt::format("{}: cannot be opened: {}", file.string(), sqlite3_errstr(status)));
   }
   sqlite3_extended_result_codes(database, 1);
+  // A file's own code never runs, whoever opens it and whenever it got there.
+  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   constexpr int kPatience_ms = 10000;  // a reader's checkpoint, a copy of the file
   sqlite3_busy_timeout(database, kPatience_ms);
 }

@@ -14,79 +14,10 @@
 
 #include "base/errors.h"
 #include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/sweep_tables.h"
 
 namespace glidelab::validate {
 namespace {
-
-constexpr const char* kTables = R"sql(
-CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE "schema" ("table" TEXT, "column" TEXT, unit TEXT, meaning TEXT, PRIMARY KEY ("table", "column")) WITHOUT ROWID;
-CREATE TABLE result (run INTEGER, configuration TEXT, estimator TEXT, quantity TEXT, truth REAL, value REAL, sd REAL,
-                     low95 REAL, high95 REAL, least_sd REAL, why TEXT, uncorrected REAL,
-                     PRIMARY KEY (run, configuration, estimator, quantity)) WITHOUT ROWID;
-CREATE TABLE clip (run INTEGER, clip TEXT, estimator TEXT, frames INTEGER, detected INTEGER, bandwidth_s REAL,
-                   position_noise_m REAL, r2_up REAL, r2_down REAL, a_rms_error_m_s2 REAL,
-                   PRIMARY KEY (run, clip, estimator)) WITHOUT ROWID;
-CREATE TABLE timing (run INTEGER PRIMARY KEY, wall_s REAL);
-INSERT INTO "schema" VALUES
- ('run', 'run', '', 'number of the run, from 0'), ('run', 'point', '', 'combination of values: run / replicates'),
- ('run', 'replicate', '', 'which of the runs of its point'), ('run', 'seed', '', 'of all random numbers of the run'),
- ('run', 'status', '', 'done or failed'), ('run', 'why', '', 'why a run failed'),
- ('result', 'run', '', 'number of the run'), ('clip', 'run', '', 'number of the run'),
- ('timing', 'run', '', 'number of the run'), ('clip', 'clip', '', 'its name in the scenario'),
- ('result', 'configuration', '', 'its name in the scenario'), ('result', 'estimator', '', 'how it was analysed'),
- ('result', 'quantity', '', 'what was recovered, with its unit: k_over_m_1_s, mu, alpha_deg, v_lim_m_s'),
- ('result', 'truth', 'of the quantity', 'what the scenario put in; null where it has no such thing'),
- ('result', 'value', 'of the quantity', 'as recovered; null where the data do not determine it'),
- ('result', 'sd', 'of the quantity', 'standard deviation as the analysis states it'),
- ('result', 'low95', 'of the quantity', 'lower end of the stated 95 % interval'),
- ('result', 'high95', 'of the quantity', 'upper end of the stated 95 % interval'),
- ('result', 'least_sd', 'of the quantity', 'Cramer-Rao bound of the standard deviation; of tracks only'),
- ('result', 'why', '', 'why there is no value'),
- ('result', 'uncorrected', 'of the quantity', 'value before the smoothing''s bias was taken off; null where none was'),
- ('clip', 'estimator', '', 'how it was analysed'), ('clip', 'frames', '', 'of the clip'),
- ('clip', 'detected', '', 'frames in which the marker was found'),
- ('clip', 'bandwidth_s', 's', 'standard deviation of the smoothing kernel'),
- ('clip', 'position_noise_m', 'm', 'standard deviation of a position, as estimated'),
- ('clip', 'r2_up', '', 'of the line a(v) for v < 0'), ('clip', 'r2_down', '', 'of the line a(v) for v > 0'),
- ('clip', 'a_rms_error_m_s2', 'm/s^2', 'root mean square of a(t) minus the truth, over the points that count'),
- ('timing', 'wall_s', 's', 'wall time of the run on its thread');
-)sql";
-
-/// A key's unit is the end of its name.
-std::string unit_of_key(const std::string& key) {
-  static const std::vector<std::pair<const char*, const char*>> kUnits = {{"_over_m_1_s", "1/s"},
-                                                                          {"_m_s2", "m/s^2"},
-                                                                          {"_n_s_m", "N s/m"},
-                                                                          {"_e_s", "e-/s"},
-                                                                          {"_photons_s", "1/s"},
-                                                                          {"_m_s", "m/s"},
-                                                                          {"_kbit_s", "kbit/s"},
-                                                                          {"_kg_m", "kg/m"},
-                                                                          {"_kg", "kg"},
-                                                                          {"_deg", "deg"},
-                                                                          {"_hz", "Hz"},
-                                                                          {"_px", "px"},
-                                                                          {"_ppm", "1e-6"},
-                                                                          {"_s", "s"},
-                                                                          {"_m", "m"},
-                                                                          {"_n", "N"},
-                                                                          {"_e", "e-"}};
-  const std::size_t index = key.rfind('[');
-  const std::string bare = key.back() == ']' && index != std::string::npos ? key.substr(0, index) : key;
-  for (const auto& [ending, unit] : kUnits) {
-    if (bare.ends_with(ending)) return unit;
-  }
-  return {};
-}
-
-std::string run_table(const Sweep& sweep) {
-  std::string sql =
-      "CREATE TABLE run (run INTEGER PRIMARY KEY, point INTEGER NOT NULL, replicate INTEGER NOT NULL, seed INTEGER NOT "
-      "NULL, status TEXT NOT NULL, why TEXT";
-  for (const Axis& axis : sweep.axes) sql += ", " + sql_name(axis.name);
-  return sql + ")";
-}
 
 std::string shorten(const std::string& text) {
   constexpr std::size_t kShownLength = 60;
@@ -110,6 +41,8 @@ SweepEntries entries_of(const Sweep& sweep, const std::string& version) {
   return entries;
 }
 
+namespace {
+
 SweepEntries sweep_entries(Database& database) {
   SweepEntries entries;
   SqlStatement select = database.prepare("SELECT key, value FROM sweep ORDER BY key");
@@ -117,23 +50,10 @@ SweepEntries sweep_entries(Database& database) {
   return entries;
 }
 
-void make_tables(Database& database, const Sweep& sweep, const SweepEntries& entries) {
-  database.run(kTables);
-  database.run(run_table(sweep));
-  SqlStatement column = database.prepare("INSERT INTO \"schema\" VALUES ('run', ?1, ?2, ?3)");
-  for (const Axis& axis : sweep.axes) {
-    column.bind(1, axis.name).bind(2, axis.choices.empty() ? unit_of_key(axis.keys.front()) : "");
-    column.bind(3, fmt::format("varied: {}", fmt::join(axis.keys, ", "))).run();
-  }
-  SqlStatement entry = database.prepare("INSERT INTO sweep VALUES (?1, ?2)");
-  for (const auto& [key, value] : entries) entry.bind(1, key).bind(2, value).run();
-}
-
+/// InputError, which says what differs, where the database has other entries.
 void check_entries(Database& database, const SweepEntries& expected) {
   SweepEntries found;
-  SqlStatement tables = database.prepare("SELECT count(*) FROM sqlite_master WHERE name IN ('sweep', 'run', 'result')");
-  tables.step();
-  if (tables.integer(0) == 3) found = sweep_entries(database);
+  if (has_entries(database)) found = sweep_entries(database);
   for (const auto& wanted : expected) {
     const auto entry =
         std::find_if(found.begin(), found.end(), [&](const auto& pair) { return pair.first == wanted.first; });
@@ -145,27 +65,47 @@ void check_entries(Database& database, const SweepEntries& expected) {
   }
 }
 
+/// InputError if a row is of no run of the sweep, or of one that has another seed there.
 void check_runs(Database& database, const Sweep& sweep) {
   const std::uint64_t count = run_count(sweep);
   const auto refuse = [&](std::int64_t run, const std::string& found, const std::string& expected) {
     throw base::InputError(base::Issue{database.file().string(), 0, fmt::format("run {}", run), found, expected});
   };
-  SqlStatement runs = database.prepare("SELECT run, seed FROM run");
+  SqlStatement runs = database.prepare("SELECT run, seed, point, replicate, status FROM run");
   while (runs.step()) {
     const std::int64_t run = runs.integer(0);
     if (run < 0 || static_cast<std::uint64_t>(run) >= count) {
       refuse(run, "no run of this sweep", fmt::format("the runs 0 to {}", count - 1));
     }
-    const std::uint64_t seed = seed_of(sweep, static_cast<std::uint64_t>(run));
-    if (static_cast<std::uint64_t>(runs.integer(1)) == seed) continue;
-    refuse(run, fmt::format("the seed {}", static_cast<std::uint64_t>(runs.integer(1))),
-           fmt::format("{}, which is that of this run", seed));
+    const std::uint64_t number = static_cast<std::uint64_t>(run), seed = seed_of(sweep, number);
+    if (static_cast<std::uint64_t>(runs.integer(1)) != seed) {
+      refuse(run, fmt::format("the seed {}", static_cast<std::uint64_t>(runs.integer(1))),
+             fmt::format("{}, which is that of this run", seed));
+    }
+    const std::uint64_t point = number / sweep.replicates, replicate = number % sweep.replicates;
+    if (static_cast<std::uint64_t>(runs.integer(2)) != point ||
+        static_cast<std::uint64_t>(runs.integer(3)) != replicate) {
+      refuse(run, fmt::format("replicate {} of point {}", runs.integer(3), runs.integer(2)),
+             fmt::format("{} of {}", replicate, point));
+    }
+    if (runs.text(4) == "done" || runs.text(4) == "failed") continue;
+    refuse(run, fmt::format("the status {}", shorten(runs.text(4))), "done or failed");
   }
   for (const char* const table : {"result", "clip", "timing"}) {
     SqlStatement stray =
         database.prepare(fmt::format("SELECT run FROM {} WHERE run NOT IN (SELECT run FROM run) LIMIT 1", table));
     if (stray.step()) refuse(stray.integer(0), fmt::format("rows in {} alone", table), "a row in run as well");
   }
+}
+
+}  // namespace
+
+void check_database(Database& database, const Sweep& sweep, const SweepEntries& expected) {
+  refuse_code(database);
+  check_entries(database, expected);
+  check_tables(database, sweep);
+  check_values(database);
+  check_runs(database, sweep);
 }
 
 namespace {
@@ -221,8 +161,7 @@ void check_file(const fs::path& file, const Sweep& sweep, const SweepEntries& ex
     throw base::InputError(base::Issue{file.string(), 0, "", "no such file", "a database of this sweep"});
   }
   Database database(file, Database::Mode::read);
-  check_entries(database, expected);
-  check_runs(database, sweep);
+  check_database(database, sweep, expected);
 }
 
 /// Runs of a file that are in the database already, with the same rows. `before`: the files that were taken over.
@@ -309,10 +248,12 @@ SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std
   if (empty) {
     database_.run("PRAGMA journal_mode = WAL");
     Transaction transaction(database_);
-    make_tables(database_, sweep, entries_);
+    make_tables(database_, sweep);
+    SqlStatement entry = database_.prepare("INSERT INTO sweep VALUES (?1, ?2)");
+    for (const auto& [key, value] : entries_) entry.bind(1, key).bind(2, value).run();
     transaction.commit();
   } else {
-    check_entries(database_, entries_);
+    check_database(database_, sweep, entries_);
   }
   database_.run("PRAGMA synchronous = NORMAL");  // a killed process loses nothing; a power cut at most the last runs
   std::string marks;

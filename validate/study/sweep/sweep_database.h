@@ -12,7 +12,8 @@
 /// contents are a function of the sweep and the program alone.
 ///
 /// A file is one of a sweep where each entry of its table `sweep` is the sweep's: texts, seed, number of runs and the
-/// program's version. A row is one where its run has that number and that seed in the sweep's design.
+/// program's version. A row is one where its run has that number and that seed in the sweep's design. A file that was
+/// damaged or changed is refused when it is opened (sweep_tables.h).
 #pragma once
 
 #include <cstdint>
@@ -34,17 +35,9 @@ using SweepEntries = std::vector<std::pair<std::string, std::string>>;
 /// What a sweep's file says of it, whichever of its runs the file is for.
 SweepEntries entries_of(const Sweep& sweep, const std::string& version);
 
-/// The sweep that a database is of, for who has only the database.
-SweepEntries sweep_entries(Database& database);
-
-/// All tables, their schema and the sweep's entries, in an empty database.
-void make_tables(Database& database, const Sweep& sweep, const SweepEntries& entries);
-
-/// InputError if the database is not one of these entries; it says which one differs.
-void check_entries(Database& database, const SweepEntries& expected);
-
-/// InputError if a row is of no run of the sweep, or of one that has another seed there.
-void check_runs(Database& database, const Sweep& sweep);
+/// InputError if the file is no undamaged database of this sweep with these entries (sweep_tables.h), or if a row is of
+/// no run of the sweep or of one that has another seed there. It says where and what differs.
+void check_database(Database& database, const Sweep& sweep, const SweepEntries& expected);
 
 /// Merges all runs of the other files, which several processes (the jobs of a Slurm array) may have made, into a
 /// database of the sweep. `expected`: the entries that each of them must have. InputError for a file that is not there,
@@ -79,7 +72,7 @@ class WriterLock {
 class SweepDatabase {
  public:
   /// Makes the file, or opens one of the same sweep, version and shard. InputError, which says what differs, for
-  /// another one's; EnvironmentError if another process writes it.
+  /// another one's or a damaged one; EnvironmentError if another process writes it.
   SweepDatabase(const std::filesystem::path& file, const Sweep& sweep, const std::string& version, const Shard& shard);
 
   /// Runs of [from, to) that are there, in order.

@@ -101,3 +101,16 @@ TEST_CASE("outliers and impacts do not inflate the first figure of the noise") {
   for (std::size_t i = 50; i < 1000; i += 50) x[i] += 0.01;  // 2 % of the points, each seen by five neighbourhoods
   CHECK(pilot_noise(t, x) == Approx(2e-5).epsilon(0.3));     // the median of 90 % clean ones: 12 % up, and its own 10 %
 }
+
+TEST_CASE("the noise of a series with a long gap costs what its points cost, not what the gap would hold") {
+  // 300 points of 1 ms each, 90 s apart from 300 more: the bandwidth of the gap's size is 10⁴ steps and more, and the
+  // filter on a grid of such steps would have 10⁵ lags, whose products of all with all no test would wait for.
+  std::vector<double> t, x;
+  for (int i = 0; i < 600; ++i) {
+    t.push_back(0.001 * i + (i < 300 ? 0.0 : 90.0));
+    x.push_back(1e-4 * std::sin(12.9898 * i * i));
+  }
+  const PositionNoise noise = noise_of(t, x, 12.0);
+  CHECK(std::isfinite(noise.sd_m));
+  CHECK(noise.sd_m > 0.0);
+}

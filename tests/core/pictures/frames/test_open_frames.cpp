@@ -244,3 +244,27 @@ TEST_CASE("grey of three equal channels is exactly their value") {
   const cv::Mat grey = core::to_grey(picture);
   for (int i = 0; i < 256; ++i) CHECK(grey.at<uchar>(i / 16, i % 16) == i);
 }
+
+TEST_CASE("a time stamp of the container that is far off is an error that names its frame, where the stamps count") {
+  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) {
+    WARN("skipped: no ffmpeg program");
+    return;
+  }
+  const TempDir dir;
+  tests::write_video(dir / "whole.mkv", some_frames(), 50.0, 0.0);
+  const std::string command = "ffmpeg -v error -i '" + (dir / "whole.mkv").string() +
+                              "' -vf \"setpts=PTS+gte(N\\,20)*1000000/TB\" -vsync vfr -c:v ffv1 '" +
+                              (dir / "far.mkv").string() + "'";
+  REQUIRE(std::system(command.c_str()) == 0);
+  const auto read = [&](core::TimeSource time) {
+    core::CameraSettings settings = camera(time);
+    settings.frame_rate_hz = 50.0;
+    const auto source = core::open_frames(dir / "far.mkv", settings, false, std::nullopt);
+    while (source->next()) {
+    }
+  };
+  // 20 ms apart, so that 2000 s are the most.
+  CHECK_THROWS_WITH(read(core::TimeSource::container), Catch::Contains("far.mkv: frame 20: found a time stamp of") &&
+                                                           Catch::Contains("expected one at most 2000 s after it"));
+  CHECK_NOTHROW(read(core::TimeSource::rate));
+}

@@ -1,0 +1,34 @@
+/// Gaps in the times of a clip that no motion bridges.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+
+/// The longest step between two times of one clip, in median steps: 1000 s at 100 Hz. Smoothing looks at the clip as
+/// at a series of such steps, and a longer gap is one between two recordings, or a time that is wrong.
+inline constexpr double kLongestGapSteps = 1e5;
+
+struct TimeGap {
+  std::size_t after = 0;  ///< index of the time behind it
+  double gap_s = 0.0;
+  double longest_s = 0.0;  ///< that is allowed
+};
+
+/// The first gap that is too long; nothing where there is none. Times rise.
+inline std::optional<TimeGap> too_long_gap(std::span<const double> t_s) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);
+  const double longest_s = kLongestGapSteps * quantile(steps, 0.5);
+  const auto found = std::find_if(steps.begin(), steps.end(), [&](double step) { return step > longest_s; });
+  if (found == steps.end()) return std::nullopt;
+  return TimeGap{static_cast<std::size_t>(found - steps.begin()) + 1, *found, longest_s};
+}
+
+}  // namespace glidelab::core
