@@ -12,8 +12,9 @@ constexpr int kVideos = 2;  // more would make the page heavy
 
 }  // namespace
 
-void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir) {
-  base::write_file(dir / "results.json", report::results_json(results));
+void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir,
+                          const report::Json& with) {
+  base::write_file(dir / "results.json", report::results_json(results, with));
   const std::vector<std::string> names = report::phase_file_names(results);
   const std::vector<std::string> motions = report::motion_file_names(results);
   for (std::size_t c = 0; c < results.clips.size(); ++c) {

@@ -8,11 +8,13 @@
 #include "core/analysis/preview.h"
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
+#include "report/text/json_numbers.h"
 
 namespace glidelab::app {
 
-/// results.json, phase-<clip>.csv and motion-<clip>.csv.
-void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir);
+/// results.json (`with` as results_json() has it), phase-<clip>.csv and motion-<clip>.csv.
+void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir,
+                          const report::Json& with = nullptr);
 
 /// One preview for each clip of the results, which come from these folders in this order. The first two clips with
 /// images get a video, the others one frame.

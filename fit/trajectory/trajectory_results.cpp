@@ -103,20 +103,13 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.notes.clear();  // of the lines
     std::vector<FitBlock> blocks;
-    bool forced = false;
     for (const core::ClipResult& clip : results.clips) {
       if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {
         continue;
       }
-      forced = forced || clip.forced;
       for (const core::FreeBlock& block : clip.blocks) {
         blocks.push_back({&block, clip.noise_autocovariance_m2, clip.scale_sd_relative});
       }
-    }
-    if (forced) {
-      leave_out("a known force acts, which the fit of the whole motion does not include; use the phase diagram",
-                configuration);
-      continue;
     }
     if (blocks.empty()) {
       leave_out("no free motion", configuration);

@@ -231,7 +231,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
 }
 
 Page analysis_report(const std::string& title, const core::AnalysisResults& results,
-                     const std::vector<core::Preview>& previews, const base::Progress& progress) {
+                     const std::vector<core::Preview>& previews, const base::Progress& progress,
+                     const Html& with_causes) {
   std::size_t frames = 0;
   std::size_t detected = 0;
   bool pictures = false;
@@ -248,6 +249,7 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
                       tile(std::to_string(detected), pictures ? "with the marker found" : "positions"));
   body += meaning_of(results);
   body += recovered_section(results);
+  body += with_causes;
   body += phase_section(results);
   body += details_sections(results, previews, progress);
   return page(title, body);

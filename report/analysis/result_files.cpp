@@ -12,7 +12,6 @@
 #include "core/result/results.h"
 #include "report/analysis/motion_plots.h"
 #include "report/text/display_text.h"
-#include "report/text/json_numbers.h"
 
 namespace glidelab::report {
 namespace {
@@ -213,7 +212,7 @@ std::string lens_of(const core::CalibrationResult& calibration) {
   return calibration.distortion.size() == 4 ? "fisheye" : "brown-conrady";
 }
 
-std::string results_json(const core::AnalysisResults& results) {
+std::string results_json(const core::AnalysisResults& results, const Json& with) {
   Json document;
   document["format"] = 1;
   document["estimator"] = results.estimator;
@@ -235,6 +234,7 @@ std::string results_json(const core::AnalysisResults& results) {
     }
   }
   document["inclination"] = inclination_json(results);
+  if (!with.is_null()) document["with"] = with;
   return json_text(document);
 }
 
