@@ -225,6 +225,8 @@ struct ConfigurationResult {
   Quantity mu;
   Quantity alpha_deg;
   Quantity v_lim_m_s;
+  /// Of the fit of the whole motion: root mean square residual over the noise, where that is more than chance makes.
+  std::optional<double> scatter = {};
   std::vector<std::string> notes;
 };
 

@@ -84,6 +84,7 @@ void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::
                                        fit.points + fit.left_out));
   }
   if (std::isfinite(fit.degrees)) {
+    result.scatter = fit.scatter;
     result.notes.push_back(
         fmt::format("the positions scatter {} times as far about the fitted motion as their noise, or one part of "
                     "the motion disagrees with others by more than it explains: the intervals are widened ({:.0f} "

@@ -15,10 +15,6 @@ namespace glidelab::report {
 /// law is in doubt, that comes first and the numbers are presented only as the result of a fit. HTML.
 std::string meaning_of(const core::AnalysisResults& results);
 
-/// Results that the assumed law cannot explain (drag or friction below zero, points far off their line), and what to do
-/// next. One sentence each, plain text; none if the law fits.
-std::vector<std::string> doubts_about(const core::AnalysisResults& results);
-
 /// `title` names what was analysed; `previews` is empty or has one for each clip of the results; `with_causes` is a
 /// section on a fit with causes in the model, which stands after the recovered values. EnvironmentError where gnuplot
 /// fails.

@@ -1,5 +1,7 @@
 #include "report/diagnosis/diagnosis_json.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -182,7 +184,8 @@ Json rests_json(const diagnose::CalibrationRests& of) {
 Json explained_json(const diagnose::Diagnosis& diagnosis) {
   const bool few = diagnosis.gap && diagnosis.gap->interval95.too_few;
   const std::string why =
-      few ? too_few_words(diagnosis.gap->interval95) : "the gap without one of the clips is not above the floor";
+      few ? too_few_words(diagnosis.gap->interval95)
+          : fmt::format("the gap without one of the {} is not above the floor", diagnosis.lines ? "lines" : "clips");
   Json list = Json::array();
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
     Json one;

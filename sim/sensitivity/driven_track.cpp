@@ -13,8 +13,7 @@
 namespace glidelab::sim {
 namespace {
 
-constexpr Eigen::Index kParameters = 5;  // k, d, f, x0, v0
-using Derivatives = Eigen::Matrix<double, 2, kParameters>;
+using ByLawAndStart = Eigen::Matrix<double, 2, 5>;  // by k, d, f, x0, v0
 constexpr int kMostEvents = 100000;
 constexpr double kRounding = 1e-12;  // of the accelerations: a net one below that is none
 
@@ -22,7 +21,7 @@ constexpr double kRounding = 1e-12;  // of the accelerations: a net one below th
 struct Instant {
   double t_s = 0.0, x_m = 0.0, v_m_s = 0.0;
   int direction = 0;
-  Derivatives by;
+  ByLawAndStart by;
 };
 
 /// Of the law while it moves in one direction, on a piece of the drive.
