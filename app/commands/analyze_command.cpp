@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
@@ -17,9 +18,11 @@
 #include "core/analysis/preview.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "diagnose/verdict/given_causes.h"
 #include "fit/estimators.h"
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/result_files.h"
+#include "report/diagnosis/given_causes_report.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::app {
@@ -33,6 +36,7 @@ struct AnalyzeOptions {
   std::string bandwidth{core::kLinesRule};
   std::string estimator{fit::default_estimator().name};
   bool robust = false;
+  std::vector<std::string> with;
   core::BareTrackOptions bare;
 };
 
@@ -64,6 +68,22 @@ void check_file_options(const AnalyzeOptions& options, const std::vector<fs::pat
   }
 }
 
+constexpr const char* kWith = "--with";
+
+/// The fit with causes in the model, of the motions as the analysis took them; nothing where none is named.
+std::optional<diagnose::GivenCauses> with_causes(const AnalyzeOptions& options, const std::vector<fs::path>& folders,
+                                                 const core::AnalysisResults& results, const base::Progress& progress) {
+  if (options.with.empty()) return {};
+  std::vector<core::ClipSetup> setups;
+  std::vector<std::optional<core::CameraSettings>> cameras;
+  for (const fs::path& folder : folders) {
+    const core::Experiment experiment = core::read_input(folder, options.bare);
+    setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
+    cameras.resize(setups.size(), experiment.camera);
+  }
+  return diagnose::fit_given_causes(results, setups, cameras, options.with, kWith, progress);
+}
+
 void analyze(const AnalyzeOptions& options) {
   const fit::Estimator& estimator = *fit::find_estimator(options.estimator);  // a checked name
   if (options.robust && !estimator.takes_robust) {
@@ -75,6 +95,7 @@ void analyze(const AnalyzeOptions& options) {
   const fs::path out = output_folder(options.common, "analyze", folders.front());
   refuse_scenarios(options.experiments);
   check_file_options(options, folders);
+  diagnose::check_given_causes(options.with, kWith);
   const std::string title = title_of(folders, options.bare);
   report::check_gnuplot();
   check_writable(out);
@@ -87,16 +108,23 @@ void analyze(const AnalyzeOptions& options) {
   how.bare = options.bare;
   read_bandwidth(options.bandwidth, how);
   how.lines = estimator.lines;
+  how.pictures = !options.with.empty();
   const core::AnalysisResults results =
       estimator.estimate(core::analyze(folders, how, progress), {.robust = options.robust});
-  report::write_analysis_files(results, staged.dir());
+  const std::optional<diagnose::GivenCauses> given = with_causes(options, folders, results, progress);
+  const report::Json with = given ? report::given_causes_json(*given) : report::Json(nullptr);
+  report::write_analysis_files(results, staged.dir(), with);
   const std::vector<core::Preview> previews = core::previews_of(folders, results, progress, options.bare);
-  report::write_page(staged.dir(), "report.html", report::analysis_report(title, results, previews, progress));
+  report::write_page(staged.dir(), "report.html",
+                     report::analysis_report(title, results, previews, progress,
+                                             given ? report::given_causes_section(results, *given) : report::Html{}));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
 
-  print_result(options.common.json ? report::results_json(results) : report::analysis_text(results));
+  print_result(options.common.json ? report::results_json(results, with)
+                                   : report::analysis_text(results) +
+                                         (given ? report::given_causes_text(results, *given) : std::string()));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 
@@ -152,6 +180,12 @@ void add_analyze(CLI::App& app, Command& chosen) {
   command->add_flag("--robust", options->robust,
                     "With \"trajectory\": leave out positions more than four scaled median absolute deviations off the "
                     "motion, found with Huber's weights");
+  command
+      ->add_option("--with", options->with,
+                   "Give K/m, mu, alpha and v_lim also with this effect in the model (ids as in "
+                   "docs/reference/effects.md); may be repeated")
+      ->type_name("EFFECT")
+      ->allow_extra_args(false);
   command
       ->add_option("--column", options->bare.column,
                    "For a file: the column that holds x, by header or number; default: found by its header")

@@ -336,6 +336,9 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   clip.noise_autocovariance_m2 = noise.autocovariance;
   clip.rounding_m = coarse_rounding(motion, noise);
   clip.blocks = free_blocks(motion, free.stretches, track.shared_m, clip.bandwidth_s);
+  for (FreeBlock& block : clip.blocks) {
+    if (clip.forced) block.force = force_over(block, track, setup.mass_kg, setup.mass_sd_kg);
+  }
 
   const std::vector<StretchPoint> points = smooth_stretches(motion, free.stretches, clip.bandwidth_s);
   const SmoothedClip smoothed{track, motion, free, noise, points, clip.bandwidth_s, setup.mass_kg};

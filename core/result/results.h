@@ -154,12 +154,23 @@ struct MarkerSighting {
   double radius_px = 0.0;
 };
 
-/// Measured positions of free motion that follow each other; the motion may turn at v = 0 and is otherwise free.
+/// A force that was recorded with the positions, over the mass: linear between its samples.
+struct RecordedForce {
+  std::vector<double> t_s;
+  std::vector<double> a_m_s2;
+  double mass_sd_relative = 0.0;  ///< by which all of it may err together
+
+  bool empty() const { return t_s.empty(); }
+};
+
+/// Measured positions of free motion that follow each other; the motion may turn at v = 0 and is otherwise free, but
+/// for a recorded force.
 struct FreeBlock {
   std::vector<double> t_s;
   std::vector<double> x_m;
   std::vector<int> directions;                ///< signs of v that occur, in order: one, or two where it turns
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of these points
+  RecordedForce force;                        ///< over these points; empty where none was recorded
 };
 
 /// Motion against the stated direction of the launch, before any along it (free_motion.h).
@@ -214,6 +225,8 @@ struct ConfigurationResult {
   Quantity mu;
   Quantity alpha_deg;
   Quantity v_lim_m_s;
+  /// Of the fit of the whole motion: root mean square residual over the noise, where that is more than chance makes.
+  std::optional<double> scatter = {};
   std::vector<std::string> notes;
 };
 

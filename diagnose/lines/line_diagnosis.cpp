@@ -153,6 +153,26 @@ Leaders leaders_of(const std::vector<LineExplanation>& all) {
   return leaders;
 }
 
+constexpr double kHalf = 0.5;         // of the gap
+constexpr double kLeastShare = 0.02;  // of it: less is no cause that a person would look for
+
+/// The share of each cause that the likeliest name has; where the cause is unknown, of those that help, less than half
+/// together.
+std::vector<ExplainedCause> shares_of(const LineExplanation& named, const LineData& data,
+                                      const std::vector<LineTerm>& terms, const LineSolution& nominal,
+                                      const OwnScatter& scatter, const Diagnosis& diagnosis) {
+  std::vector<LineTerm> causes;
+  for (const std::size_t t : named.named) causes.push_back(terms[t]);
+  std::vector<ExplainedCause> explained = explained_by(data, causes, nominal, scatter, diagnosis.gap->standard_error);
+  if (diagnosis.verdict == Verdict::effect) return explained;
+  double sum = 0.0;
+  const auto no_help = std::find_if(explained.begin(), explained.end(), [&](const ExplainedCause& cause) {
+    return !(cause.share > kLeastShare) || (sum += cause.share) >= kHalf;
+  });
+  explained.erase(no_help, explained.end());
+  return explained;
+}
+
 /// The probabilities of nothing and of what has no name, the verdict that they give, and the ranking of the rest.
 void weigh_up(const std::vector<LineExplanation>& all, LineComparison& table, Diagnosis& diagnosis) {
   for (std::size_t e = 0; e < all.size(); ++e) {
@@ -245,6 +265,9 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
     diagnosis.gap = std::move(gap.sizes);
     diagnosis.notes = std::move(gap.notes);
     diagnosis.isolability = line_isolability(data, terms, scatter.slope, scatter.intercept_m_s2);
+    if (leaders.named != nullptr && (is_effect || is_unknown)) {
+      diagnosis.explained = shares_of(*leaders.named, data, terms, nominal, scatter, diagnosis);
+    }
   }
   table.off = lines_off(lines, nominal);
   table.curves = curves_of(lines, data, terms, all);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "base/math/dense.h"
@@ -189,6 +190,52 @@ LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSoluti
     compare_inclination(incline, mean_intercept(lines, incline), g, result);
   }
   return result;
+}
+
+namespace {
+
+/// What each line adds to the gap's mean square.
+std::vector<ClipSquares> squares_of(const LineSolution& solution, const OwnScatter& scatter) {
+  std::vector<ClipSquares> squares;
+  for (std::size_t i = 0; i < solution.held_out_a.size(); ++i) {
+    squares.push_back({std::pow(gap_of_line(solution, scatter, i), 2), 1.0});
+  }
+  return squares;
+}
+
+constexpr double kClear = 3.0;  // standard errors of a gap
+
+}  // namespace
+
+std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineTerm>& terms,
+                                         const LineSolution& nominal, const OwnScatter& scatter,
+                                         double standard_error) {
+  const double first = gap_of_lines(nominal, scatter);
+  if (!(first > 1.0 + kClear * standard_error)) return {};
+  std::vector<ExplainedCause> causes;
+  std::vector<LineTerm> beside, left = terms;
+  LineSolution before = nominal;
+  while (!left.empty()) {
+    // Of those that are left, the one that leaves least.
+    std::optional<LineSolution> best;
+    std::size_t which = 0;
+    for (std::size_t t = 0; t < left.size(); ++t) {
+      std::vector<LineTerm> with = beside;
+      with.push_back(left[t]);
+      LineSolution solution = solve_lines(data, with);
+      if (best && !(gap_of_lines(solution, scatter) < gap_of_lines(*best, scatter))) continue;
+      best = std::move(solution);
+      which = t;
+    }
+    const double gap_before = gap_of_lines(before, scatter), gap = gap_of_lines(*best, scatter);
+    causes.push_back(
+        {left[which].id, (gap_before * gap_before - gap * gap) / (first * first - 1.0),
+         share_interval(squares_of(nominal, scatter), squares_of(before, scatter), squares_of(*best, scatter)), gap});
+    beside.push_back(left[which]);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
+    before = std::move(*best);
+  }
+  return causes;
 }
 
 std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const LineData& data,

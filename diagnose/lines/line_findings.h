@@ -47,6 +47,15 @@ struct LineGap {
 LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
                  const OwnScatter& scatter);
 
+/// How much of the gap each of the terms takes, beside those before it: first the one that takes more by itself.
+///
+///     share_i = (g²_{i-1} - g²_i) / (g²_0 - 1),        g the gap of held-out lines, g_0 of the nominal model
+///
+/// Intervals are over lines, each left out in turn (gap/gap_sizes.h). Empty where the gap before is not above its floor
+/// by three standard errors. The lines' own scatter is known.
+std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineTerm>& terms,
+                                         const LineSolution& nominal, const OwnScatter& scatter, double standard_error);
+
 /// Where lines depart from the nominal model: by the intercepts (m/s²) of each mass, and of each set-up, in one
 /// direction, and by the drag K (N s/m) of each mass and of each set-up. None where the lines' own scatter is not
 /// known.

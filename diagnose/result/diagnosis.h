@@ -199,7 +199,7 @@ struct VerdictLimits {
 struct ExplainedCause {
   std::string id;
   double share = 0.0;                                ///< (g²_{i-1} - g²_i)/(g²_0 - 1), g the gap of held-out clips
-  std::optional<GapInterval> share_interval95 = {};  ///< over clips
+  std::optional<GapInterval> share_interval95 = {};  ///< over clips, or lines
   double gap_after = 0.0;                            ///< g_i
 };
 

@@ -2,9 +2,8 @@
 ///
 ///     folders ─ core's analysis ─ track_set ─ hypotheses (motion_fit, effect_scan, unnamed) ─ held_out ─ Diagnosis
 ///
-/// The noise comes from neighbouring positions alone. Where the analysis took part of the motion for a hand or a stop,
-/// all of it is tried first (a push that lasts, a cable that tightens look like that); where nothing of the list
-/// explains it, the part in dispute is left out, and a note says so.
+/// What the analysis took for a hand or a stop is tried as part of the motion first; where nothing of the list explains
+/// it, it is left out, and a note says so (settled_motions.h).
 #pragma once
 
 #include <filesystem>

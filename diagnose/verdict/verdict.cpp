@@ -77,20 +77,9 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
     const auto count = static_cast<double>(missing_in(set, fit));
     if (count > 0.0) parameters.push_back({"fraction", count / points, std::sqrt(count) / points});
   }
-  const Eigen::MatrixXd covariance = common_covariance(fit);
-  const auto& globals = fit.layout->globals();
-  for (std::size_t g = 0; g < globals.size(); ++g) {
-    if (globals[g].parameter == nullptr || globals[g].effect != effect || globals[g].parameter->key.empty()) continue;
-    if (globals[g].parameter->shown_as == ShownAs::together) continue;
-    const auto known = std::find_if(parameters.begin(), parameters.end(),
-                                    [&](const auto& p) { return p.key == globals[g].parameter->key; });
-    const auto at = static_cast<Eigen::Index>(g);
-    ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
-    if (globals[g].parameter->slot == slot_of(ids::rolling_shutter)) {
-      value.value += pictures.stated_line_s;  // tracks show what it is more than stated
-    }
-    const DiagnosedParameter tracked{std::string(globals[g].parameter->key), value.value,
-                                     std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_fitted)};
+  for (const DiagnosedParameter& tracked : fitted_parameters(fit, effect, pictures.stated_line_s)) {
+    const auto known =
+        std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.key == tracked.key; });
     if (known == parameters.end()) {
       parameters.push_back(tracked);
     } else if (tracked.sd < known->sd) {  // seen in the images as well, but less well

@@ -41,6 +41,23 @@ double px_per_m(const PictureEvidence& pictures) {
 
 }  // namespace
 
+std::vector<DiagnosedParameter> fitted_parameters(const MotionFit& fit, std::size_t effect, double stated_line_s) {
+  std::vector<DiagnosedParameter> parameters;
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    const EffectParameter* parameter = globals[g].parameter;
+    if (parameter == nullptr || globals[g].effect != effect || parameter->key.empty()) continue;
+    if (parameter->shown_as == ShownAs::together) continue;
+    const auto at = static_cast<Eigen::Index>(g);
+    ShownValue value = shown(*parameter, fit.at.global[at]);
+    if (parameter->slot == slot_of(ids::rolling_shutter)) value.value += stated_line_s;
+    parameters.push_back({std::string(parameter->key), value.value,
+                          std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_fitted)});
+  }
+  return parameters;
+}
+
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
                                                    const PictureEvidence& pictures,
                                                    const std::vector<DiagnosedParameter>& known) {

@@ -13,7 +13,7 @@
 #include "core/math/quantile.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
-#include "sim/sensitivity/sensitivity.h"
+#include "sim/sensitivity/driven_track.h"
 
 namespace glidelab::fit {
 namespace {
@@ -156,6 +156,7 @@ void TrajectoryUncertainty::add_shared(TrajectoryFit& fit) const {
   std::size_t modes = 0;
   for (const FitBlock& block : blocks_) modes = std::max(modes, block.block->shared_m.size());
   fit.shared.assign(modes + 1, Eigen::VectorXd::Zero(inverse_.rows()));
+  Eigen::VectorXd mass = Eigen::VectorXd::Zero(inverse_.rows());
   Eigen::VectorXd clock = 2.0 * core::kClockSdRelative * fit.parameters;  // accelerations go as 1 / time^2
   clock[0] *= 0.5;
   fit.shared.push_back(clock);
@@ -168,7 +169,12 @@ void TrajectoryUncertainty::add_shared(TrajectoryFit& fit) const {
     }
     fit.shared[modes] +=
         blocks_[b].scale_sd_relative * product(gain, Eigen::Map<const Eigen::VectorXd>(block.x_m.data(), gain.cols()));
+    if (at_[b].force.size() == 0) continue;
+    const Eigen::VectorXd by_force = product(gain, at_[b].force);
+    mass += block.force.mass_sd_relative * by_force;
+    fit.shared[modes + 1] += 2.0 * core::kClockSdRelative * by_force;  // a slow clock makes the force too small as well
   }
+  if (mass.squaredNorm() > 0.0) fit.shared.push_back(mass);
 }
 
 namespace {
@@ -182,19 +188,42 @@ constexpr int kRobustPasses = 8;
 constexpr double kHuber = 1.5;    // scaled deviations beyond which a position counts less
 constexpr double kOutlier = 4.0;  // and beyond which it is left out: 6 of 1e5 by chance
 
+/// The recorded force of a block as a drive from its first point on, `factor` times as large.
+sim::RecordedDrive drive_of(const core::FreeBlock& block, double factor) {
+  sim::RecordedDrive drive;
+  for (std::size_t i = 0; i < block.force.t_s.size(); ++i) {
+    drive.t_s.push_back(block.force.t_s[i] - block.t_s.front());
+    drive.p_m_s2.push_back(factor * block.force.a_m_s2[i]);
+  }
+  return drive;
+}
+
+constexpr double kForceStep = 1e-4;  // of the force, for the difference of the motion by it
+
 Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const Eigen::Vector2d& start) {
   const core::FreeBlock& block = *fit.block;
   std::vector<double> times;
   for (const double t : block.t_s) times.push_back(t - block.t_s.front());
-  const std::vector<sim::SensitiveState> states =
-      sim::track_motion_sensitive(common[0], common[1], common[2], start[0], start[1], times);
+  const auto moved = [&](double factor) {
+    return sim::driven_track_sensitive(common[0], common[1], common[2], start[0], start[1], times,
+                                       drive_of(block, factor));
+  };
+  const std::vector<sim::SensitiveState> states = moved(1.0);
   const auto n = static_cast<Eigen::Index>(times.size());
-  Linearised result{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixXd(n, 2)};
+  Linearised result{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixXd(n, 2), {}};
   for (Eigen::Index i = 0; i < n; ++i) {
     const sim::SensitiveState& state = states[static_cast<std::size_t>(i)];
     result.residual[i] = block.x_m[static_cast<std::size_t>(i)] - state.x_m;
     result.common.row(i) = state.by_parameter.row(0).head(3);
     result.start.row(i) = state.by_parameter.row(0).tail(2);
+  }
+  if (!block.force.empty()) {
+    const auto above = moved(1.0 + kForceStep), below = moved(1.0 - kForceStep);
+    result.force.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto p = static_cast<std::size_t>(i);
+      result.force[i] = (above[p].x_m - below[p].x_m) / (2.0 * kForceStep);
+    }
   }
   return result;
 }

@@ -4,16 +4,18 @@
 /// For all clips of one configuration at once, by least squares weighted with each clip's noise:
 ///
 ///     x_i = x(t_i; k, d, f, x0_b, v0_b) + noise,
-///     dv/dt = d - k v - sign(v) f,     d = g sin(alpha),  f = mu g cos(alpha)
+///     dv/dt = d + F(t)/m - k v - sign(v) f,     d = g sin(alpha),  f = mu g cos(alpha)
 ///
-/// with a start (x0, v0) for every block b of free motion. Levenberg and Marquardt's method with sensitivities that
+/// with a start (x0, v0) for every block b of free motion, and F the force that was recorded with the positions, if any
+/// (linear between its samples). Levenberg and Marquardt's method with sensitivities that
 /// carry the jump at v = 0 (sim/sensitivity/sensitivity.h), from several starts; the starts x0, v0 are eliminated block
 /// by block. Where the noise is white and Gaussian this is the maximum of the likelihood, and its covariance the
 /// Cramer-Rao bound.
 ///
 /// Uncertainty: correlated noise by the sandwich H^-1 J'W Gamma W J H^-1; where the residuals are larger than the noise
 /// explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is added, with
-/// its degrees of freedom; the errors of the camera and the plane, and of the scale, are propagated as signed shifts.
+/// its degrees of freedom; the errors of the camera and the plane, of the scale, and of the mass that a recorded force
+/// is divided by are propagated as signed shifts.
 #pragma once
 
 #include <Eigen/Core>
@@ -54,11 +56,13 @@ struct Linearised {
   Eigen::VectorXd residual;
   Eigen::MatrixXd common;  ///< n x 3
   Eigen::MatrixXd start;   ///< n x 2
+  Eigen::VectorXd force;   ///< derivative of the model's positions by a factor of the recorded force; empty: none
 
   void scale_rows(const Eigen::VectorXd& by) {
     residual.array() *= by.array();
     common.array().colwise() *= by.array();
     start.array().colwise() *= by.array();
+    if (force.size() > 0) force.array() *= by.array();
   }
 };
 

@@ -84,6 +84,7 @@ void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::
                                        fit.points + fit.left_out));
   }
   if (std::isfinite(fit.degrees)) {
+    result.scatter = fit.scatter;
     result.notes.push_back(
         fmt::format("the positions scatter {} times as far about the fitted motion as their noise, or one part of "
                     "the motion disagrees with others by more than it explains: the intervals are widened ({:.0f} "
@@ -103,20 +104,13 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.notes.clear();  // of the lines
     std::vector<FitBlock> blocks;
-    bool forced = false;
     for (const core::ClipResult& clip : results.clips) {
       if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {
         continue;
       }
-      forced = forced || clip.forced;
       for (const core::FreeBlock& block : clip.blocks) {
         blocks.push_back({&block, clip.noise_autocovariance_m2, clip.scale_sd_relative});
       }
-    }
-    if (forced) {
-      leave_out("a known force acts, which the fit of the whole motion does not include; use the phase diagram",
-                configuration);
-      continue;
     }
     if (blocks.empty()) {
       leave_out("no free motion", configuration);

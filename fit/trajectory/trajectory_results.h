@@ -12,7 +12,7 @@ inline constexpr const char* kTrajectory = "trajectory";  ///< the estimator's n
 /// and estimator = kTrajectory; the clips and their lines stay. mu = f / (g cos(alpha)), sin(alpha) = d / g.
 ///
 /// Null with the reason: mu and alpha where the motion has one direction only (the reason says which combination is
-/// known); all of them for tracks with a known force, for clips without free motion, and where no fit converges.
+/// known); all of them for clips without free motion, and where no fit converges.
 core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options = {});
 
 }  // namespace glidelab::fit

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/sections.h"
 #include "report/html/html.h"
@@ -17,8 +18,6 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
-constexpr double kBelowZero = 2.0;  // standard deviations: what chance does in one of forty
-constexpr double kOffLine = 2.0;    // times the noise: more than a wrong idea of the noise makes
 
 std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
@@ -106,46 +105,6 @@ std::string damping_sentence(const core::AnalysisResults& results) {
 
 }  // namespace
 
-std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
-  std::vector<std::string> doubts;
-  for (const core::ConfigurationResult& c : results.configurations) {
-    const auto below_zero = [](const core::Quantity& quantity) {
-      return quantity.estimate && quantity.estimate->value < -kBelowZero * quantity.estimate->sd;
-    };
-    const auto doubt = [&](core::Measurand which, const char* reason) {
-      const core::Quantity& quantity = core::value_of(c, which);
-      if (!below_zero(quantity)) return;
-      doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c),
-                                   symbol_of(core::key_of(which)),
-                                   base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), reason));
-    };
-    doubt(core::Measurand::k_over_m, "no drag can cause");
-    doubt(core::Measurand::mu, "no friction can cause");
-  }
-  const core::ClipResult* farthest = nullptr;
-  const core::LineFit* line = nullptr;
-  for (const core::ClipResult& clip : results.clips) {
-    for (const core::LineFit& of : clip.segments) {
-      if (std::isinf(of.parts.degrees) || of.parts.scatter < kOffLine) continue;
-      if (line != nullptr && of.parts.scatter <= line->parts.scatter) continue;
-      farthest = &clip;
-      line = &of;
-    }
-  }
-  if (line != nullptr) {
-    doubts.push_back(fmt::format("{}, v {} 0: the points lie {} times as far off their line as the noise explains.",
-                                 farthest->name, line->direction > 0 ? ">" : "<",
-                                 base::number_text(line->parts.scatter, 2)));
-  }
-  if (!doubts.empty()) {
-    doubts.push_back(
-        "The law (drag in proportion to the speed, dry friction, gravity) does not fit these clips as they "
-        "are. Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
-        "from the law?).");
-  }
-  return doubts;
-}
-
 std::string meaning_of(const core::AnalysisResults& results) {
   std::string text;
   const std::vector<std::string> doubts = doubts_about(results);
@@ -161,8 +120,8 @@ std::string meaning_of(const core::AnalysisResults& results) {
     text += "</ul>\n";
     if (!numbers.empty()) {
       text +=
-          "<p>A fit of that law still gives these numbers, which need not be properties of the track or the glider:</p>"
-          "\n<ul class=\"soft\">\n" +
+          "<p>A fit of that law still gives these numbers, which need not be properties of the track or the glider; "
+          "their ± hold only if the law did:</p>\n<ul class=\"soft\">\n" +
           numbers + "</ul>\n";
     }
   }
@@ -193,8 +152,10 @@ std::string r2_of(const core::ConfigurationResult& configuration, int direction)
 }  // namespace
 
 std::string analysis_text(const core::AnalysisResults& results) {
-  std::vector<std::vector<std::string>> rows = {
-      {"mass (kg)", "incline (°)", "group", "K/m (1/s)", "µ", "α (°)", "v_lim (m/s)", "R² v<0", "R² v>0"}};
+  const std::vector<std::string> doubts = doubts_about(results);
+  const std::string mark = doubts.empty() ? "" : " *";
+  std::vector<std::vector<std::string>> rows = {{"mass (kg)", "incline (°)", "group", "K/m (1/s)" + mark, "µ" + mark,
+                                                 "α (°)" + mark, "v_lim (m/s)" + mark, "R² v<0", "R² v>0"}};
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), c.group,
@@ -208,6 +169,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
     }
   }
   std::string text = text_table(rows, 3);
+  if (!doubts.empty()) text += fmt::format("* {}\n", kIfItHeld);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
   rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
   std::string notes;
@@ -224,14 +186,14 @@ std::string analysis_text(const core::AnalysisResults& results) {
   }
   if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));
   if (!notes.empty()) text.append("\n").append(notes);
-  const std::vector<std::string> doubts = doubts_about(results);
   for (const std::string& doubt : doubts)
     text += fmt::format("{}{}\n", &doubt == &doubts.front() ? "\n" : "", printable(doubt));
   return text;
 }
 
 Page analysis_report(const std::string& title, const core::AnalysisResults& results,
-                     const std::vector<core::Preview>& previews, const base::Progress& progress) {
+                     const std::vector<core::Preview>& previews, const base::Progress& progress,
+                     const Html& with_causes) {
   std::size_t frames = 0;
   std::size_t detected = 0;
   bool pictures = false;
@@ -248,6 +210,7 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
                       tile(std::to_string(detected), pictures ? "with the marker found" : "positions"));
   body += meaning_of(results);
   body += recovered_section(results);
+  body += with_causes;
   body += phase_section(results);
   body += details_sections(results, previews, progress);
   return page(title, body);

@@ -15,14 +15,12 @@ namespace glidelab::report {
 /// law is in doubt, that comes first and the numbers are presented only as the result of a fit. HTML.
 std::string meaning_of(const core::AnalysisResults& results);
 
-/// Results that the assumed law cannot explain (drag or friction below zero, points far off their line), and what to do
-/// next. One sentence each, plain text; none if the law fits.
-std::vector<std::string> doubts_about(const core::AnalysisResults& results);
-
-/// `title` names what was analysed; `previews` is empty or has one for each clip of the results. EnvironmentError
-/// where gnuplot fails.
+/// `title` names what was analysed; `previews` is empty or has one for each clip of the results; `with_causes` is a
+/// section on a fit with causes in the model, which stands after the recovered values. EnvironmentError where gnuplot
+/// fails.
 Page analysis_report(const std::string& title, const core::AnalysisResults& results,
-                     const std::vector<core::Preview>& previews, const base::Progress& progress = base::no_progress);
+                     const std::vector<core::Preview>& previews, const base::Progress& progress = base::no_progress,
+                     const Html& with_causes = {});
 
 /// Of each configuration: K/m, mu, alpha, v_lim with sd, R² of its lines; below, why something is missing.
 std::string analysis_text(const core::AnalysisResults& results);

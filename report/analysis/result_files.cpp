@@ -13,7 +13,6 @@
 #include "core/result/results.h"
 #include "report/analysis/motion_plots.h"
 #include "report/text/display_text.h"
-#include "report/text/json_numbers.h"
 
 namespace glidelab::report {
 namespace {
@@ -214,7 +213,7 @@ std::string lens_of(const core::CalibrationResult& calibration) {
   return calibration.distortion.size() == 4 ? "fisheye" : "brown-conrady";
 }
 
-std::string results_json(const core::AnalysisResults& results) {
+std::string results_json(const core::AnalysisResults& results, const Json& with) {
   Json document;
   document["format"] = 1;
   document["estimator"] = results.estimator;
@@ -236,11 +235,12 @@ std::string results_json(const core::AnalysisResults& results) {
     }
   }
   document["inclination"] = inclination_json(results);
+  if (!with.is_null()) document["with"] = with;
   return json_text(document);
 }
 
-void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir) {
-  base::write_file(dir / "results.json", results_json(results));
+void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir, const Json& with) {
+  base::write_file(dir / "results.json", results_json(results, with));
   const std::vector<std::string> names = phase_file_names(results);
   const std::vector<std::string> motions = motion_file_names(results);
   for (std::size_t c = 0; c < results.clips.size(); ++c) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result/results.h"
+#include "report/text/json_numbers.h"
 
 namespace glidelab::report {
 
@@ -40,11 +41,13 @@ std::string phase_csv(const core::ClipResult& clip);
 ///
 /// A quantity that the data do not determine is null, and the object "why" beside it says why. Beyond what the form
 /// asks for, clips hold their stretches, what was left out, notes and the name of their CSV; configurations their group
-/// and lines; every folder's calibration stands in "calibrations" where there are several.
-std::string results_json(const core::AnalysisResults& results);
+/// and lines; every folder's calibration stands in "calibrations" where there are several. `with` is what a fit with
+/// causes in the model gives (report/diagnosis/given_causes_report.h); null: there was none, and no such object.
+std::string results_json(const core::AnalysisResults& results, const Json& with = nullptr);
 
 /// results.json, `phase-<clip>.csv` and `motion-<clip>.csv` into the folder.
-void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir);
+void write_analysis_files(const core::AnalysisResults& results, const std::filesystem::path& dir,
+                          const Json& with = nullptr);
 
 /// "fisheye" or "brown-conrady": a fisheye's distortion has four terms, k1 to k4, the other five.
 std::string lens_of(const core::CalibrationResult& calibration);

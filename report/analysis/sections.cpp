@@ -9,6 +9,7 @@
 
 #include "base/text/number_text.h"
 #include "report/analysis/camera_plots.h"
+#include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/result_files.h"
 #include "report/html/html.h"
@@ -234,8 +235,10 @@ std::string corrections_html(const core::AnalysisResults& results) {
 }  // namespace
 
 std::string recovered_section(const core::AnalysisResults& results) {
-  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)", "µ", "α (°)", "v<sub>lim</sub> (m/s)",
-                   "R² (v &lt; 0)", "R² (v &gt; 0)"});
+  const bool in_doubt = !doubts_about(results).empty();
+  const std::string mark = in_doubt ? " *" : "";
+  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)" + mark, "µ" + mark, "α (°)" + mark,
+                   "v<sub>lim</sub> (m/s)" + mark, "R² (v &lt; 0)", "R² (v &gt; 0)"});
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
@@ -248,6 +251,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
     }
   }
   std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();
+  if (in_doubt) text += fmt::format("<p class=\"note\">* {}</p>\n", kIfItHeld);
   std::vector<std::string> notes;
   for (const core::ConfigurationResult& c : results.configurations) {
     for (const std::string& note : c.notes)

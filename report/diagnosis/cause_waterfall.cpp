@@ -97,10 +97,13 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
   script += "\n";
   std::vector<PlotData> data = {bars};
   if (!errors.rows.empty()) data.push_back(errors);
+  const char* const held_out = diagnosis.lines ? "lines" : "clips";
   return {
       {Drawing{script, std::move(data), {kWidth, kFramePoints + kRowPoints * static_cast<int>(rows.size())}},
-       "What each cause explains of the gap of held-out clips, added one after the other, and what is left. The excess "
-       "is the squared gap minus 1, its value for noise alone; bars with whiskers have their 95 % interval over clips",
+       fmt::format("What each cause explains of the gap of held-out {0}, added one after the other, and what is left. "
+                   "The excess is the squared gap minus 1, its value for noise alone; bars with whiskers have their "
+                   "95 % interval over {0}",
+                   held_out),
        "Waterfall of the gap: before, each cause, what is left"}};
 }
 

@@ -1,37 +1,21 @@
 #include "report/diagnosis/diagnosis_json.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "base/math/normal95.h"
-#include "core/result/quantity.h"
 #include "report/analysis/camera_plots.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/verdict_words.h"
+#include "report/text/found_json.h"
 #include "report/text/json_numbers.h"
 
 namespace glidelab::report {
 namespace {
-
-Json parameters_json(const std::vector<diagnose::DiagnosedParameter>& parameters) {
-  Json object = Json::object();
-  for (const diagnose::DiagnosedParameter& parameter : parameters) {
-    Json value;
-    if (!parameter.text.empty()) {
-      value["value"] = parameter.text;
-    } else if (parameter.why.empty()) {
-      put(value, "value", parameter.value);
-      put(value, "sd", parameter.sd);
-    } else {
-      put(value, "value", std::optional<double>(), parameter.why);
-      value["sd"] = nullptr;
-    }
-    object[parameter.key] = std::move(value);
-  }
-  return object;
-}
 
 Json effect_json(const diagnose::DiagnosedEffect& effect) {
   Json object;
@@ -200,7 +184,8 @@ Json rests_json(const diagnose::CalibrationRests& of) {
 Json explained_json(const diagnose::Diagnosis& diagnosis) {
   const bool few = diagnosis.gap && diagnosis.gap->interval95.too_few;
   const std::string why =
-      few ? too_few_words(diagnosis.gap->interval95) : "the gap without one of the clips is not above the floor";
+      few ? too_few_words(diagnosis.gap->interval95)
+          : fmt::format("the gap without one of the {} is not above the floor", diagnosis.lines ? "lines" : "clips");
   Json list = Json::array();
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
     Json one;
@@ -231,22 +216,6 @@ Json levels_json(const diagnose::GapLevels& levels) {
   put(object, "all", levels.all);
   object["holds_within"] = levels.holds_within;
   return object;
-}
-
-Json recovered_json(const std::vector<diagnose::RecoveredConfiguration>& recovered) {
-  Json list = Json::array();
-  for (const diagnose::RecoveredConfiguration& of : recovered) {
-    Json one;
-    one["group"] = of.group;
-    put(one, "mass_kg", of.mass_kg);
-    put(one, "incline_deg", of.incline_deg);
-    one["with"] = of.with;
-    for (const core::QuantityName& name : core::kQuantities) {
-      put(one, std::string(name.key), core::value_of(of, name.which));
-    }
-    list.push_back(std::move(one));
-  }
-  return list;
 }
 
 }  // namespace

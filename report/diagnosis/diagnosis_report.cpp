@@ -334,6 +334,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     rows.push_back({explanation_id(ranked.explanation), fmt::format("{:.3f}", ranked.probability),
                     ranked.left_out ? "not weighed" : base::gain_text(ranked.log_evidence_gain)});
   }
+  if (diagnosis.lines && !diagnosis.explained.empty()) text += text_table(explained_rows(diagnosis, true), 1) + "\n";
   text += text_table(diagnosis.lines ? line_rows(*diagnosis.lines) : rows, diagnosis.lines ? 2 : 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
+#include "report/diagnosis/cause_waterfall.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/verdict_words.h"
@@ -247,6 +248,8 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   body += line_tiles(diagnosis);
   body += diagnosis_meaning(diagnosis) + next_step_note(diagnosis) + note_paragraphs(diagnosis);
   body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));
+  const std::vector<Plot> waterfall = waterfall_plots(diagnosis);
+  if (!waterfall.empty()) body += "<h2>What explains the gap</h2>\n" + figures(waterfall);
   const std::vector<Plot> left = line_plots(lines);
   if (!left.empty() || !diagnosis.regions.empty()) {
     body += "<h2>Where the gap lies</h2>\n" + figures(left) + line_region_table(diagnosis);

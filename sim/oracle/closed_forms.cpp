@@ -105,6 +105,27 @@ double phi2(double z) {
   return sum;
 }
 
+namespace {
+
+constexpr double kSeries = 0.5;  // |z| below which a series has all digits in 15 terms: 0.5^15 / 15! < 1e-16
+
+/// 1/n! + z/(n + 1)! + z²/(n + 2)! + …, `first` = 1/n!.
+double series_of_phi(int n, double first, double z) {
+  double term = first, sum = term;
+  for (int m = n + 1; m < n + 16; ++m) sum += term *= z / m;
+  return sum;
+}
+
+}  // namespace
+
+double phi3(double z) {
+  return std::abs(z) < kSeries ? series_of_phi(3, 1.0 / 6.0, z) : (phi2(z) - 0.5) / z;
+}
+
+double phi4(double z) {
+  return std::abs(z) < kSeries ? series_of_phi(4, 1.0 / 24.0, z) : (phi3(z) - 1.0 / 6.0) / z;
+}
+
 DryTrack dry_track(double incline_rad, double mu, double mu_static, double gravity_m_s2) {
   const double normal = gravity_m_s2 * std::cos(incline_rad);
   return {gravity_m_s2 * std::sin(incline_rad), mu * normal, mu_static * normal};

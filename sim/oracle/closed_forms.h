@@ -17,6 +17,10 @@ namespace glidelab::sim {
 double phi1(double z);
 /// (e^z - 1 - z) / z², 1/2 at z = 0.
 double phi2(double z);
+/// (phi2(z) - 1/2) / z, 1/6 at z = 0.
+double phi3(double z);
+/// (phi3(z) - 1/6) / z, 1/24 at z = 0.
+double phi4(double z);
 
 struct Kinematics {
   double x_m = 0.0;

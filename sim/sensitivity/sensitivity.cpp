@@ -168,17 +168,6 @@ namespace {
 constexpr Eigen::Index kParameters = 5;  // k, d, f, x0, v0
 using Derivatives = Eigen::Matrix<double, 2, kParameters>;
 
-/// (e^z - 1 - z - z²/2) / z³, 1/6 at z = 0. Below |z| = 0.5 by its series, whose 15th term is below 1e-17.
-double phi3(double z) {
-  if (std::abs(z) >= 0.5) return (phi2(z) - 0.5) / z;
-  double term = 1.0 / 6.0, sum = term;
-  for (int n = 4; n < 18; ++n) {
-    term *= z / n;
-    sum += term;
-  }
-  return sum;
-}
-
 /// e, phi and psi after the time t, and their derivatives by k.
 struct Flow {
   double e, phi, psi, phi_k, psi_k;

@@ -49,6 +49,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "validate/blind/blind_score.h",
       "validate/blind/everyday_score.h",
       "diagnose/result/diagnosis.h",
+      "diagnose/result/given_causes.h",
       "diagnose/result/next_step.h",
       "diagnose/result/note.h",
       "diagnose/effects/effect_library.h",

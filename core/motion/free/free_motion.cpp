@@ -337,6 +337,8 @@ FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
 
 namespace {
 
+constexpr std::size_t kStretchesOfDriven = 3;  // of a block: two turns
+
 bool turns_into(const FreeStretch& before, const FreeStretch& after) {
   return before.end == LeftOut::kernel_reversal && after.start == LeftOut::kernel_reversal &&
          before.first + before.count == after.first;
@@ -361,18 +363,28 @@ FreeBlock block_of(const Motion& motion, std::size_t from, std::size_t to,
 std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s) {
   std::vector<FreeBlock> blocks;
+  const auto middle_of = [&](std::size_t s) { return stretches[s].first + stretches[s].count / 2; };
+  bool cut = false;  // the block goes on from the middle of its first stretch
   for (std::size_t s = 0; s < stretches.size();) {
     std::size_t end = s + 1;
     while (end < stretches.size() && turns_into(stretches[end - 1], stretches[end])) ++end;
     std::size_t from = stretches[s].first, to = stretches[end - 1].first + stretches[end - 1].count;
+    const bool cuts = motion.forced && end - s > kStretchesOfDriven;
+    if (cut) from = middle_of(s);
+    if (cuts) {
+      end = s + kStretchesOfDriven;
+      to = middle_of(end - 1);
+    }
     bool counts = false;
     std::vector<int> directions;
-    for (; s < end; ++s) {
-      counts = counts || stretches[s].whole == LeftOut::used;
-      directions.push_back(stretches[s].direction);
+    for (std::size_t of = s; of < end; ++of) {
+      counts = counts || stretches[of].whole == LeftOut::used;
+      directions.push_back(stretches[of].direction);
     }
-    const double first_s = motion.t_s[from] + (from > 0 ? margin_s : 0.0);
-    const double last_s = motion.t_s[to - 1] - (to < motion.t_s.size() ? margin_s : 0.0);
+    s = cuts ? end - 1 : end;
+    const double first_s = motion.t_s[from] + (from > 0 && !cut ? margin_s : 0.0);
+    const double last_s = motion.t_s[to - 1] - (to < motion.t_s.size() && !cuts ? margin_s : 0.0);
+    cut = cuts;
     while (from < to && motion.t_s[from] < first_s) ++from;
     while (to > from && motion.t_s[to - 1] > last_s) --to;
     if (!counts || to - from < kFewestBlockPoints) continue;
@@ -380,6 +392,17 @@ std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeS
     blocks.back().directions = std::move(directions);
   }
   return blocks;
+}
+
+RecordedForce force_over(const FreeBlock& block, const TrackData& track, double mass_kg, double mass_sd_kg) {
+  RecordedForce force;
+  force.mass_sd_relative = mass_sd_kg / mass_kg;
+  for (std::size_t i = 0; i < track.force_n.size(); ++i) {
+    if (track.t_s[i] < block.t_s.front() || track.t_s[i] > block.t_s.back()) continue;
+    force.t_s.push_back(track.t_s[i]);
+    force.a_m_s2.push_back(track.force_n[i] / mass_kg);
+  }
+  return force;
 }
 
 }  // namespace glidelab::core

@@ -78,9 +78,16 @@ FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
 /// Stretches that follow each other across a reversal make one block. Where a block borders on something that is not
 /// free (a hand, a stop, a rest), `margin_s` of it is left out: the border is known to about a bandwidth. Blocks of
 /// fewer than kFewestBlockPoints, and such of which no stretch counts, are left out.
+///
+/// Where a recorded force drives the glider to and fro a block ends in the middle of its third stretch, where it is
+/// fast, and the next begins there: over more than two turns what the law lacks makes a fit end in the wrong one of
+/// many orders of turns.
 std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s);
 
 inline constexpr std::size_t kFewestBlockPoints = 8;
+
+/// The force of a track over the mass, at its samples from the block's first point to its last.
+RecordedForce force_over(const FreeBlock& block, const TrackData& track, double mass_kg, double mass_sd_kg);
 
 }  // namespace glidelab::core

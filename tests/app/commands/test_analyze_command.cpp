@@ -86,6 +86,42 @@ TEST_CASE("analyze fits generalised lines where they are asked for, in the same 
   for (const auto& [key, value] : plain.items()) CHECK(better.contains(key));
 }
 
+TEST_CASE("analyze --with gives the numbers with an effect in the model beside its own, and refuses what it cannot") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const std::string folder = (temp / "made").string();
+  const tests::ProcessResult plain = tests::glidelab({"analyze", folder, "--out", (temp / "plain").string(), "--json"});
+  REQUIRE(plain.status == 0);
+  const tests::ProcessResult result =
+      tests::glidelab({"analyze", "--with", "quadratic_drag", folder, "--out", (temp / "out").string(), "--json"});
+  INFO(result.err);
+  REQUIRE(result.status == 0);
+  json document = json::parse(result.out);
+  const json with = document.at("with");
+  CHECK(with.at("effects").at(0).at("id") == "quadratic_drag");
+  CHECK(with.at("effects").at(0).at("parameters").contains("c_kg_m"));
+  const json& k = with.at("recovered").at(0).at("k_over_m_1_s");
+  // Nothing but the law acts on this track: its K/m, 2.768, within four standard deviations.
+  CHECK(std::abs(k.at("value").get<double>() - 2.768) < 4.0 * k.at("sd").get<double>());
+  document.erase("with");
+  CHECK(document == json::parse(plain.out));
+  CHECK(base::read_file(temp / "out/report.html").find("With quadratic drag in the model") != std::string::npos);
+  const tests::ProcessResult text =
+      tests::glidelab({"analyze", folder, "--with", "quadratic_drag", "--out", (temp / "out").string()});
+  CHECK(text.out.find("the law alone") != std::string::npos);
+
+  for (const char* const id : {"quadratic_darg", "light_flicker", "rolling_shutter"}) {
+    const tests::ProcessResult refused =
+        tests::glidelab({"analyze", folder, "--with", id, "--out", (temp / "none").string()});
+    INFO(refused.err);
+    CHECK(refused.status == 1);
+    CHECK(refused.out.empty());
+    CHECK(refused.err.find(id) != std::string::npos);
+    CHECK(refused.err.find("quadratic_drag") != std::string::npos);
+    CHECK_FALSE(fs::exists(temp / "none"));
+  }
+}
+
 TEST_CASE("analyze takes a file that another program exported, its column of x by name") {
   const tests::TempDir temp;
   std::string text = "Run 1: Time (s);Run 1: Position (cm);Run 2: Time (s);Run 2: Position (cm)\n";

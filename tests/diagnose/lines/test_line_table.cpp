@@ -87,6 +87,44 @@ TEST_CASE("published lines: two causes at once are found where the masses differ
   }
 }
 
+TEST_CASE("published lines: each named cause has its share of the gap of held-out lines, the larger one first") {
+  const diagnose::Diagnosis one = diagnosed({.friction_n = 0.03}, 1);
+  REQUIRE(one.gap);
+  REQUIRE(one.explained.size() == 1);
+  CHECK(one.explained[0].id == "load_independent_friction");
+  CHECK(one.explained[0].gap_after == Approx(one.gap->after).epsilon(1e-9));
+  const double excess = one.gap->before * one.gap->before - 1.0, left = one.gap->after * one.gap->after - 1.0;
+  CHECK(one.explained[0].share == Approx(1.0 - left / excess).epsilon(1e-9));
+  CHECK(one.explained[0].share > 0.9);  // it alone acts
+  REQUIRE(one.explained[0].share_interval95);
+  CHECK(one.explained[0].share_interval95->low < one.explained[0].share);
+  CHECK(one.explained[0].share < one.explained[0].share_interval95->high);
+
+  const diagnose::Diagnosis two = diagnosed({.friction_n = 0.024, .bias_s2_m_s2 = 0.005}, 1);
+  REQUIRE(two.explained.size() == 2);
+  CHECK(two.explained[0].share > two.explained[1].share);
+  CHECK(two.explained[1].share > 0.0);
+  // The shares of both and what is left make all of the excess.
+  const double after = two.explained[1].gap_after, before = two.gap->before;
+  CHECK(two.explained[0].share + two.explained[1].share + (after * after - 1.0) / (before * before - 1.0) ==
+        Approx(1.0).epsilon(1e-9));
+  CHECK(after == Approx(two.gap->after).epsilon(1e-9));
+
+  CHECK(diagnosed({}, 1).explained.empty());  // nothing acts
+}
+
+TEST_CASE("published lines: of an unknown cause, what helps takes less than half together") {
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    tests::LineCauses causes;
+    causes.friction = [](std::size_t mass, std::size_t) { return mass % 2 == 0 ? 0.02 : -0.02; };
+    const diagnose::Diagnosis diagnosis = diagnosed(causes, seed);
+    REQUIRE(diagnosis.verdict == diagnose::Verdict::unknown);
+    double sum = 0.0;
+    for (const diagnose::ExplainedCause& cause : diagnosis.explained) sum += cause.share;
+    CHECK(sum < 0.5);
+  }
+}
+
 TEST_CASE("published lines of three masses like each other: either of two, each with its size") {
   // The columns 1/m and 1/m² of these masses have a cosine of 0.99: what one does the other does to 12 %.
   const diagnose::Diagnosis diagnosis = diagnosed({.bias_s2_m_s2 = 0.005, .scatter = 3.0}, 3, kThreeMasses);

@@ -1,4 +1,5 @@
 #include "report/analysis/analysis_report.h"
+#include "report/analysis/doubts.h"
 
 #include <limits>
 
@@ -85,6 +86,22 @@ TEST_CASE("where the law is in doubt the doubt comes first and the numbers are c
   CHECK(report::meaning_of(one_clip()).find("Coulomb friction is µ = 0.0071") != std::string::npos);
   results.configurations[0].mu = tests::known(-0.002, 0.002);
   CHECK(report::meaning_of(results).find("Coulomb friction cannot be distinguished from zero") != std::string::npos);
+}
+
+TEST_CASE("where the law does not fit, ± are marked as holding only if it did, on the page and in the terminal") {
+  core::AnalysisResults results = one_clip();
+  const std::string held = "± hold only if it did";
+  CHECK(report::analysis_text(results).find(held) == std::string::npos);
+  CHECK(report::analysis_report("fits", results, {}).html.find(held) == std::string::npos);
+  results.configurations[0].scatter = 1.4;  // of the fit of the whole motion; a wrong idea of the noise makes as much
+  CHECK(report::doubts_about(results).empty());
+  results.configurations[0].scatter = 6.2;
+  CHECK(any_has(report::doubts_about(results), "the positions lie 6.2 times as far off the fitted motion"));
+  CHECK(report::analysis_text(results).find("K/m (1/s) *") != std::string::npos);
+  CHECK(report::analysis_text(results).find(held) != std::string::npos);
+  const std::string page = report::analysis_report("fails", results, {}).html;
+  CHECK(page.find("K/m (1/s) *") != std::string::npos);
+  CHECK(page.find(held, page.find("id=\"recovered\"")) != std::string::npos);
 }
 
 TEST_CASE("what blind cases mean is told of what was there, with intervals, and what is missed is named") {

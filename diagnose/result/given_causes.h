@@ -1,0 +1,30 @@
+/// What K/m, mu, alpha and the terminal velocity are with causes in the model that a person names, as plain data
+/// (diagnose/verdict/given_causes.h fits it).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/result/diagnosis.h"
+#include "diagnose/result/note.h"
+
+namespace glidelab::diagnose {
+
+/// One of them with the size that the fit gives it.
+struct GivenCause {
+  std::string id;
+  std::vector<DiagnosedParameter> parameters;
+};
+
+struct GivenCauses {
+  std::vector<GivenCause> causes;  ///< in the order in which they were named
+  std::vector<RecoveredConfiguration> recovered;
+  /// Of clips that are held out (of quarters of a single one), with the nominal model and with the causes; 1 is the
+  /// floor (gap/held_out.h).
+  double gap_before = 1.0, gap_after = 1.0;
+  double standard_error = 0.0;  ///< of a gap at the floor
+  bool converged = true;        ///< false: the fit has not come to a minimum
+  std::vector<Note> notes;
+};
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,226 @@
+#include "diagnose/verdict/settled_motions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/errors.h"
+#include "core/result/estimate.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/frames/missing_frames.h"
+#include "diagnose/frames/plain_losses.h"
+#include "diagnose/frames/point_scatter.h"
+#include "diagnose/noise/position_noise.h"
+#include "diagnose/tracks/coarse_force.h"
+#include "diagnose/tracks/rounded_positions.h"
+#include "diagnose/tracks/track_set.h"
+#include "diagnose/tracks/usable_motions.h"
+#include "diagnose/tracks/whitening.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kFewestPositions = 40;  // of all clips together: fewer carry no verdict beside four parameters
+constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
+constexpr double kContradiction = 5.0;        // standard deviations between two statements
+constexpr double kLatestLaunch_s = 0.2;       // a motion that begins later is not the launch
+constexpr std::size_t kFirstPoints = 8;       // that show which way it begins,
+constexpr double kOtherWay = 10.0;            // by so many standard deviations of a position
+constexpr double kMisfit = 1.5;               // chi² per point from which on the motion counts as not explained
+
+std::size_t points_of(const TrackSet& set) {
+  std::size_t points = 0;
+  for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
+  return points;
+}
+
+/// InputError, an issue for each clip, where all of them together hold too little motion.
+void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
+  if (points_of(set) >= kFewestPositions) return;
+  std::vector<std::size_t> of_clip(set.clips.size(), 0);
+  for (const TrackedMotion& motion : set.motions) of_clip[motion.clip] += motion.t_s.size();
+  std::vector<base::Issue> issues;
+  for (std::size_t c = 0; c < of_clip.size(); ++c) {
+    issues.push_back(
+        {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
+         fmt::format("clip \"{}\"", set.clips[c].name),
+         of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
+         fmt::format("at least {} in all clips together: fewer carry no verdict", kFewestPositions)});
+  }
+  throw base::InputError(std::move(issues));
+}
+
+void add_once(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+/// A reading without its uncertainty holds no fit: what the accelerations say against it must be said all the same.
+void note_readings(const core::AnalysisResults& results, TrackSet& set) {
+  for (const core::ConfigurationResult& found : results.configurations) {
+    if (found.incline_sd_deg) continue;
+    auto contradiction = core::incline_contradiction(found, results.gravity_m_s2, core::stated_incline(found));
+    if (!contradiction || !contradiction->gross) continue;
+    set.notes.emplace_back(ContradictedReading{found.mass_kg, std::move(contradiction->sentence)});
+  }
+}
+
+/// What a reader should know of the data before trusting the verdict: one note for what several set-ups share.
+void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
+  std::vector<std::string> free, mixed;
+  for (const TrackGroup& group : set.groups) {
+    if (group.statements.empty()) add_once(group.name, free);
+    for (std::size_t a = 0; a < group.statements.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const InclineStatement &one = group.statements[a], &two = group.statements[b];
+        const double z = (one.alpha_rad - two.alpha_rad) / std::hypot(one.sd_rad, two.sd_rad);
+        if (std::abs(z) < kContradiction) continue;
+        set.notes.emplace_back(StatementsDisagree{group.name, one.against, two.against, std::abs(z)});
+      }
+    }
+  }
+  for (std::size_t a = 0; a < set.groups.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (set.groups[a].name == set.groups[b].name) add_once(set.groups[a].name, mixed);
+    }
+  }
+  if (!free.empty()) set.notes.emplace_back(NoInclination{std::move(free)});
+  if (only_falls(set)) set.notes.emplace_back(OnlyFalls{});
+  if (!mixed.empty()) set.notes.emplace_back(SplitSetUps{std::move(mixed)});
+  for (const TrackedMotion& motion : set.motions) {
+    const core::ClipSetup& setup = setups[motion.clip];
+    const bool stated_way = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
+    if (!stated_way || motion.t_s.front() > kLatestLaunch_s) continue;
+    const std::size_t some = std::min<std::size_t>(kFirstPoints, motion.x_m.size() - 1);
+    const double way = motion.x_m[some] - motion.x_m.front();
+    const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;
+    if (way * stated < -kOtherWay * motion.sd_m) {
+      set.notes.emplace_back(LaunchedOtherWay{setup.name, stated < 0.0});
+    }
+  }
+}
+
+/// Of imported tracks, whose images nobody sees here.
+void note_lasting_noise(TrackSet& set) {
+  const NoiseShape& shape = set.position_noise->shape;
+  if (set.pictures || !(shape.lasting > 0.0)) return;
+  const double lasting = shape.lasting * shape.lasting;
+  set.notes.emplace_back(LastingErrors{lasting / (1.0 + lasting) * std::exp(-1.0 / shape.lasting_frames),
+                                       lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)});
+}
+
+/// One position beyond a gap may as well be an outlier where no frame is missing elsewhere; two at one end are none.
+void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
+  const auto same_end = [&](const EdgePosition& a, const EdgePosition& b) {
+    const std::size_t middle = set.motions[a.motion].t_s.size() / 2;
+    return a.motion == b.motion && (a.point < middle) == (b.point < middle);
+  };
+  const std::vector<EdgePosition> all = beyond;
+  std::erase_if(beyond, [&](const EdgePosition& position) {
+    return std::count_if(all.begin(), all.end(), [&](const EdgePosition& of) { return same_end(position, of); }) < 2;
+  });
+}
+
+constexpr double kUnfelt_sd = 0.3, kUnfeltPart = 1e-3;  // of the noise, and of what the nominal model leaves
+
+/// Recorded forces without what neither the noise nor the misfit would let anyone see.
+void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
+  for (std::size_t i = 0; i < set.motions.size(); ++i) {
+    TrackedMotion& motion = set.motions[i];
+    if (motion.known.t_s.empty()) continue;
+    const Eigen::VectorXd& left = nominal.motions[i].residual;
+    const double rms = std::sqrt(left.squaredNorm() / static_cast<double>(left.size()));
+    coarsen_force(motion, set.masses[motion.mass].mass_kg, motion.sd_m * std::max(kUnfelt_sd, kUnfeltPart * rms));
+  }
+}
+
+/// The noise of every position, by what single frames tell of it. Frames that are missing are taken out first: a jump
+/// is no noise and no outlier.
+void settle(TrackSet& set) {
+  const MotionFit nominal = fit_nominal(set);
+  coarsen_forces(set, nominal);
+  MissingFrames missing = find_missing_frames(set, nominal);
+  std::vector<EdgePosition> beyond = positions_beyond_gaps(set, missing.fit);
+  if (missing.count == 0) leave_single(set, beyond);
+  for (const EdgePosition& position : beyond) set.motions[position.motion].outlier[position.point] = 0;
+  if (!beyond.empty()) missing = find_missing_frames(set, fit_nominal(set));
+  if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
+  const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
+  if (missing.count > 0 && set.pictures) refit();
+  // Of rounded positions neighbours tell no noise but that of rounding, which is known.
+  if (noise_is_rounding(set)) {
+    refit();
+    set_tails_aside(set, missing.fit);
+    return;
+  }
+  if (find_position_noise(set, missing.fit)) {
+    refit();
+    set_tails_aside(set, missing.fit);
+    note_lasting_noise(set);
+    for (TrackedMotion& motion : set.motions) {
+      whiten(motion, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
+    }
+    return;
+  }
+  if (give_fast_positions_their_noise(set, missing.fit.late)) {
+    refit();
+  }
+  set_tails_aside(set, missing.fit);
+}
+
+/// A codec that predicts each image from those before it leaves a marker in place that has moved by less than some
+/// hundredths of a pixel, and so makes the slowest motion look like friction.
+constexpr double kHeldPx = 0.05;  // from one frame to the next
+
+/// Whether the files say, or the images show, that they went through a lossy codec.
+void note_loss(const PictureEvidence& pictures, TrackSet& set) {
+  set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
+    return finding.id == ids::compression && (finding.stated || finding.seen);
+  });
+  set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
+                    return clip.record->codec == "MJPG";  // each image by itself
+                  });
+  set.held_m_s = 0.0;
+  if (!set.handed_on) return;
+  for (const FilmedClip& clip : pictures.clips) {
+    if (clip.px_per_m > 0.0) {
+      set.held_m_s = std::max(set.held_m_s, kHeldPx * clip.camera.frame_rate_hz / clip.px_per_m);
+    }
+  }
+}
+
+}  // namespace
+
+TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups) {
+  require_usable_motions(results, setups);
+  TrackSet set = track_set(results, setups, true);
+  check(setups, set);
+  note_limits(setups, set);
+  note_readings(results, set);
+  cut_driven_motions(set, kFewestPoints);
+  return set;
+}
+
+std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& results,
+                                             const std::vector<core::ClipSetup>& setups, std::size_t disputed) {
+  TrackSet set = track_set(results, setups, false);
+  if (points_of(set) < kFewestPositions) return {};
+  note_limits(setups, set);
+  note_readings(results, set);
+  cut_driven_motions(set, kFewestPoints);
+  set.notes.emplace_back(HandLeftOut{disputed});
+  return set;
+}
+
+bool is_misfit(const TrackSet& set, const MotionFit& fit) {
+  return fit.cost / static_cast<double>(points_of(set)) > kMisfit;
+}
+
+void settle_noise(const PictureEvidence& pictures, TrackSet& set) {
+  note_loss(pictures, set);
+  settle(set);
+}
+
+}  // namespace glidelab::diagnose

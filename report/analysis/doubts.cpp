@@ -1,0 +1,63 @@
+#include "report/analysis/doubts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/text/number_text.h"
+#include "core/result/quantity.h"
+#include "report/text/display_text.h"
+
+namespace glidelab::report {
+namespace {
+
+constexpr double kOffLine = 2.0;  // times the noise: more than a wrong idea of the noise makes
+
+}  // namespace
+
+std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
+  std::vector<std::string> doubts;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    const auto below_zero = [](const core::Quantity& quantity) {
+      return quantity.estimate && quantity.estimate->value < -kBelowZero * quantity.estimate->sd;
+    };
+    const auto doubt = [&](core::Measurand which, const char* reason) {
+      const core::Quantity& quantity = core::value_of(c, which);
+      if (!below_zero(quantity)) return;
+      doubts.push_back(fmt::format("{}: {} = {} is below zero, which {}.", configuration_name(results, c),
+                                   symbol_of(core::key_of(which)),
+                                   base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd), reason));
+    };
+    doubt(core::Measurand::k_over_m, "no drag can cause");
+    doubt(core::Measurand::mu, "no friction can cause");
+  }
+  const core::ClipResult* farthest = nullptr;
+  const core::LineFit* line = nullptr;
+  for (const core::ClipResult& clip : results.clips) {
+    for (const core::LineFit& of : clip.segments) {
+      if (std::isinf(of.parts.degrees) || of.parts.scatter < kOffLine) continue;
+      if (line != nullptr && of.parts.scatter <= line->parts.scatter) continue;
+      farthest = &clip;
+      line = &of;
+    }
+  }
+  if (line != nullptr) {
+    doubts.push_back(fmt::format("{}, v {} 0: the points lie {} times as far off their line as the noise explains.",
+                                 farthest->name, line->direction > 0 ? ">" : "<",
+                                 base::number_text(line->parts.scatter, 2)));
+  }
+  for (const core::ConfigurationResult& c : results.configurations) {
+    if (!c.scatter || *c.scatter < kOffLine) continue;
+    doubts.push_back(fmt::format("{}: the positions lie {} times as far off the fitted motion as their noise explains.",
+                                 configuration_name(results, c), base::number_text(*c.scatter, 2)));
+  }
+  if (!doubts.empty()) {
+    doubts.push_back(
+        "The law (drag in proportion to the speed, dry friction, gravity) does not fit these clips as they "
+        "are. Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
+        "from the law?).");
+  }
+  return doubts;
+}
+
+}  // namespace glidelab::report
