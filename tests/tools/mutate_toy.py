@@ -122,6 +122,7 @@ assert "given.txt:1: '3.0 * a' stands 0 times in toy/length.cpp, expected once" 
 git("commit", "-qam", "changed")
 done = mutate("toy", "50", "--changed", "HEAD~1", "--list", status=0)
 assert set(re.findall(r"^(toy/\S+)  ", done.stdout, re.MULTILINE)) == {"toy/length.cpp:5"}, done.stdout
+assert mutate("--changed", "HEAD~1", "--list", status=0).stdout
 assert "no change was left to try" in mutate("toy", "50", "--changed", "HEAD", status=0).stdout
 
 # Wrong use is one clear sentence.
