@@ -193,3 +193,22 @@ TEST_CASE("what an unknown leaves of the positions is what its likeliest curve l
     if (parameter.z_after) CHECK(std::abs(*parameter.z_after) < 4.0);  // the inclinations are right
   }
 }
+
+TEST_CASE("where nothing is missing the gap scatters about 1 by its standard error") {
+  constexpr int kExperiments = 100;
+  double mean = 0.0, squares = 0.0;
+  for (unsigned seed = 1; seed <= kExperiments; ++seed) {
+    const auto made = tests::made_experiment({{0.4, 0.0, 0.5, -1.2}, {0.4, 0.0, -0.5, 1.0}, {0.4, 4.0, -0.6, 1.2}}, {},
+                                             seed + 100, 3e-5, 80);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::HeldOutGap gap = diagnose::held_out_gap(set, diagnose::fit_nominal(set));
+    const double off = (gap.value - 1.0) / gap.standard_error;
+    mean += off / kExperiments;
+    squares += off * off / kExperiments;
+  }
+  INFO("mean " << mean << ", mean square " << squares);
+  // Of 100 normal numbers the mean square has a standard deviation of 0.14: three of them.
+  CHECK(std::abs(mean) < 0.5);
+  CHECK(squares > 0.58);
+  CHECK(squares < 1.42);
+}
