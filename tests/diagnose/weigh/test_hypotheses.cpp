@@ -1,5 +1,6 @@
 #include "diagnose/weigh/hypotheses.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -137,7 +138,8 @@ TEST_CASE("what the prior odds buy: few false alarms, and no miss of what stands
   int alarms = 0, unknowns = 0, named[2] = {};
   for (int experiment = 0; experiment < kExperiments; ++experiment) {
     const diagnose::Comparison nothing = weighed(effects, seen({}, random));
-    alarms += nothing.none < 0.5 && nothing.unknown < 0.5;
+    alarms += std::any_of(nothing.effect_probability.begin(), nothing.effect_probability.end(),
+                          [](double probability) { return probability > 0.5; });
     unknowns += nothing.unknown > 0.5;
     for (const int k : {0, 1}) {
       std::vector<double> z = seen({}, random);
@@ -147,7 +149,9 @@ TEST_CASE("what the prior odds buy: few false alarms, and no miss of what stands
   }
   INFO("of " << kExperiments << ": false alarms " << alarms << ", unknown " << unknowns << ", named at 3 sd "
              << named[0] << ", at 5 sd " << named[1]);
-  CHECK(alarms < 0.06 * kExperiments);
+  // One of eight has odds of 0.05 to 0.3, and as much again for what else may be: half from a ratio of ten on, which is
+  // |z| > 2.75, 0.6 % for each. The standard deviation of 5 % of 2000 is 0.5 %.
+  CHECK(alarms < 0.065 * kExperiments);
   CHECK(unknowns < 0.02 * kExperiments);
   CHECK(named[0] > 0.25 * kExperiments);
   CHECK(named[0] < 0.65 * kExperiments);
