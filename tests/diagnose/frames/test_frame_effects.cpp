@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
@@ -33,6 +34,31 @@ tests::MadeExperiment spoilt(std::size_t frames, unsigned seed) {
 diagnose::FrameEffect tails_of(const tests::MadeExperiment& made) {
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   return diagnose::scan_tails(set, diagnose::fit_nominal(set));
+}
+
+/// Errors of 1 mm in the listed frames of every clip whose number is listed with them; the noise is 20 µm.
+struct SpoiltFrames {
+  std::vector<std::size_t> clips, frames;
+};
+
+diagnose::FrameEffect tails_of(const std::vector<SpoiltFrames>& spoilt_frames, unsigned seed) {
+  std::size_t clip = 0, frame = 0;
+  const tests::MadeEffect effect{.seen = [&](double x, double t) {
+    if (t == 0.0) {
+      ++clip;
+      frame = 0;
+    }
+    const auto is_in = [](const std::vector<std::size_t>& all, std::size_t one) {
+      return std::find(all.begin(), all.end(), one) != all.end();
+    };
+    double error = 0.0;
+    for (const SpoiltFrames& some : spoilt_frames) {
+      if (is_in(some.clips, clip - 1) && is_in(some.frames, frame)) error = frame / 10 % 2 == 0 ? 1e-3 : -1e-3;
+    }
+    ++frame;
+    return x + error;
+  }};
+  return tails_of(tests::made_experiment(tests::made_launches(), effect, seed, 2e-5, 250, 150.0));
 }
 
 }  // namespace
@@ -87,4 +113,25 @@ TEST_CASE("what the law lacks by a hundred deviations, and smoothly, is no error
     CHECK(diagnose::scan_tails(set, nominal).log_evidence < 3.0);
     CHECK(diagnose::set_tails_aside(set, nominal) == 0);
   }
+}
+
+TEST_CASE(
+    "errors in a row are a pattern where they are four steps and a quarter of all errors, and no accident below") {
+  const std::vector<std::size_t> all_clips{0, 1, 2, 3, 4, 5, 6, 7};
+  // Six errors, of which three follow each other: one error that lasted beside three of single frames.
+  const std::vector<SpoiltFrames> one_run{{{1}, {61, 62, 63}}, {{3}, {81}}, {{5}, {121}}, {{6}, {161}}};
+  CHECK(tails_of(one_run, 7).log_evidence > 5.0);
+  CHECK(tails_of(one_run, 7).in_runs == 0.0);
+  // Four such runs and nothing else.
+  CHECK(tails_of({{{1, 2, 4, 6}, {61, 62, 63}}}, 8).in_runs > 10.0);
+  // Four runs among forty errors of single frames: chance makes no such runs, but most errors have another cause.
+  CHECK(tails_of({{{1, 2, 4, 6}, {61, 62, 63}}, {all_clips, {33, 85, 113, 146, 187}}}, 9).in_runs == 0.0);
+}
+
+TEST_CASE("the first three frames of a clip are its start, the seventh is not") {
+  const std::vector<std::size_t> all_clips{0, 1, 2, 3, 4, 5, 6, 7};
+  CHECK(tails_of({{all_clips, {2}}}, 10).in_runs > 10.0);
+  CHECK(tails_of({{all_clips, {6}}}, 10).in_runs == 0.0);
+  // Of errors at any place a single one at a start is no pattern.
+  CHECK(tails_of({{{2}, {1}}, {{4, 5}, {101}}, {{6}, {151}}}, 11).in_runs == 0.0);
 }

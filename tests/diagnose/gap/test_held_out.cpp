@@ -193,3 +193,25 @@ TEST_CASE("what an unknown leaves of the positions is what its likeliest curve l
     if (parameter.z_after) CHECK(std::abs(*parameter.z_after) < 4.0);  // the inclinations are right
   }
 }
+
+TEST_CASE("where nothing is missing the gap scatters about 1 by two thirds of its standard error") {
+  constexpr int kExperiments = 100;
+  double mean = 0.0, squares = 0.0;
+  for (unsigned seed = 1; seed <= kExperiments; ++seed) {
+    const auto made = tests::made_experiment({{0.4, 0.0, 0.5, -1.2}, {0.4, 0.0, -0.5, 1.0}, {0.4, 4.0, -0.6, 1.2}}, {},
+                                             seed + 100, 3e-5, 80);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::HeldOutGap gap = diagnose::held_out_gap(set, diagnose::fit_nominal(set));
+    const double off = (gap.value - 1.0) / gap.standard_error;
+    mean += off / kExperiments;
+    squares += off * off / kExperiments;
+  }
+  INFO("mean " << mean << ", mean square " << squares);
+  CHECK(std::abs(mean) < 0.5);
+  // The standard error adds 0.5/n of the residuals and 1.32/n of the noise that they are held against as if they were
+  // independent. Both come from the same positions, and the residuals' is the least that there is, so that it is the
+  // covariance of the two as well: 1.32 + 0.5 - 2 * 0.5 = 0.82 of 1.82 are left, 0.45. A mean square of 100 numbers has
+  // a standard deviation of 0.14 of itself: three of them.
+  CHECK(squares > 0.26);
+  CHECK(squares < 0.64);
+}

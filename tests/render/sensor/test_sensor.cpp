@@ -175,3 +175,21 @@ TEST_CASE("Codes saturate at the full well and at the largest code, never wrap")
   CHECK(*std::max_element(black.begin(), black.end()) < 8);
   CHECK(std::count(black.begin(), black.end(), 0) > 2000);
 }
+
+TEST_CASE("Light just below the full well loses what the well cuts off the photons' scatter") {
+  // E min(X, W) of X = N(m, m) is W - s (phi(d) + d Phi(d)), d = (W - m)/s, s = sqrt(m).
+  const Sensor sensor{
+      .bit_depth = 16, .full_well_e = 10000.0, .read_noise_e = 0.0, .gain_dn_per_e = 1.0, .offset_dn = 200.0};
+  for (const double below_sd : {3.0, 1.0, 0.0, -1.0}) {
+    const double mean = sensor.full_well_e - below_sd * 100.0, s = std::sqrt(mean);
+    const double d = (sensor.full_well_e - mean) / s;
+    const double density = std::exp(-0.5 * d * d) / std::sqrt(2.0 * std::acos(-1.0));
+    const double below = 0.5 * std::erfc(-d / std::sqrt(2.0));
+    const double lost = mean - (sensor.full_well_e - s * (density + d * below));
+    const auto codes = codes_of<std::uint16_t>(sensor, flat(400, 300, static_cast<float>(mean)), {5, 0, 0});
+    INFO("full well " << below_sd << " standard deviations above the light, which loses " << lost << " electrons");
+    CHECK(*std::max_element(codes.begin(), codes.end()) <= 10200);
+    // A mean of 120000 pixels is known to s / sqrt(120000) or better: 4.5 of them are 1.3 electrons.
+    CHECK(std::abs(sample_of(codes).mean - 200.0 - (mean - lost)) < 4.5 * s / std::sqrt(120000.0));
+  }
+}

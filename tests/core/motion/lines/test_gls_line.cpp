@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include <cmath>
+#include <random>
 
 #include "core/motion/analyze_motion.h"
 #include "core/motion/join_configurations.h"
@@ -245,4 +246,96 @@ TEST_CASE("joined clips of generalised lines are weighed by what each of them kn
   }
   CHECK(covers(*joined[0].mu.estimate, kInclined.mu));
   CHECK(joined[0].mu.estimate->sd < 0.05 * kInclined.mu);
+}
+
+namespace {
+
+/// A run down the inclined track with white noise, as one piece.
+struct OnePiece {
+  core::Motion motion;
+  std::vector<core::FreePiece> pieces;
+  core::GlsInput input;
+};
+
+OnePiece one_piece(double noise_m, double stated_m, std::mt19937_64& random) {
+  constexpr std::size_t kPoints = 300;
+  std::normal_distribution<double> normal(0.0, noise_m);
+  const auto run = tests::launch(kInclined, 0.2, 1.6);
+  OnePiece all;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    all.motion.t_s.push_back(0.005 * static_cast<double>(i));
+    all.motion.x_m.push_back(run.x(all.motion.t_s.back()) + normal(random));
+    all.motion.point.push_back(i);
+  }
+  all.motion.y_m = all.motion.x_m;
+  all.motion.step_s = 0.005;
+  all.pieces = {{0, kPoints, 1}};
+  all.input.bandwidth_s = 0.03;
+  all.input.autocovariance = {stated_m * stated_m};
+  all.input.k_start_1_s = kInclined.k_1_s;
+  return all;
+}
+
+/// rho' C^-1 rho at the best a0, by dense matrices.
+double chi2_of(const core::LineNodes& nodes, double k) {
+  const Eigen::MatrixXd lower = nodes.covariance(k);
+  const Eigen::MatrixXd covariance = lower.selfadjointView<Eigen::Lower>();
+  const Eigen::LDLT<Eigen::MatrixXd> inverse(covariance);
+  const core::NodeResidual at = nodes.residual(k);
+  const double a0 = at.p.dot(inverse.solve(at.y)) / at.p.dot(inverse.solve(at.p));
+  const Eigen::VectorXd rho = at.y - a0 * at.p;
+  return rho.dot(inverse.solve(rho));
+}
+
+}  // namespace
+
+TEST_CASE("the K/m of a generalised line is where rho' C(k)^-1 rho is least, C(k) and all") {
+  std::mt19937_64 random(12);
+  const double noise_m = 2e-4;
+  for (int clip = 0; clip < 5; ++clip) {
+    const OnePiece all = one_piece(noise_m, noise_m, random);
+    const auto line = core::fit_line_gls(1, all.motion, all.pieces, all.input);
+    REQUIRE(line);
+    const auto count = static_cast<std::size_t>(std::lround(299 * 0.005 / all.input.bandwidth_s)) + 1;
+    const core::LineNodes nodes(all.motion, all.pieces[0], all.input, count);
+    REQUIRE(nodes.well_conditioned(kInclined.k_1_s));
+    const double k = line->k_over_m_1_s.value, sd = std::sqrt(line->parts.var_k);
+    CHECK(line->parts.scatter == Approx(std::sqrt(chi2_of(nodes, k) / (nodes.count() - 2))).epsilon(1e-6));
+    // The parabola through three values has its least within 0.003 sd: the search ends at 1e-4 sd, by the first
+    // derivatives of rho alone, and the third derivative of chi² is worth the rest.
+    const double below = chi2_of(nodes, k - 0.1 * sd), at = chi2_of(nodes, k), above = chi2_of(nodes, k + 0.1 * sd);
+    const double least_sd = 0.05 * (below - above) / (below - 2.0 * at + above);
+    INFO("least at " << least_sd << " standard deviations");
+    CHECK(std::abs(least_sd) < 0.003);
+  }
+}
+
+TEST_CASE("noise that is twice what a clip says makes the covariance of twice the noise, for a generalised line too") {
+  std::mt19937_64 random(13);
+  const double stated_m = 1e-4, noise_m = 2.0 * stated_m;
+  constexpr int kClips = 300;
+  Eigen::Matrix2d mean = Eigen::Matrix2d::Zero(), truth = Eigen::Matrix2d::Zero();
+  for (int clip = 0; clip < kClips; ++clip) {
+    OnePiece all = one_piece(noise_m, stated_m, random);
+    const auto line = core::fit_line_gls(1, all.motion, all.pieces, all.input);
+    all.input.autocovariance = {noise_m * noise_m};
+    const auto known = core::fit_line_gls(1, all.motion, all.pieces, all.input);
+    REQUIRE((line && known));
+    if (std::isinf(known->parts.degrees)) {
+      // 51 nodes in nine blocks, less two for the line; the part that is known is that of the stated noise.
+      // Both searches for k end within 1e-4 of its standard deviation.
+      const double wider = line->parts.var_a0 - known->parts.var_a0 * std::pow(stated_m / noise_m, 2);
+      CHECK(line->parts.degrees == Approx(7.0 * std::pow(line->parts.var_a0 / wider, 2)).epsilon(1e-4));
+    }
+    mean(0, 0) += line->parts.var_k / kClips;
+    mean(0, 1) += line->parts.cov / kClips;
+    mean(1, 1) += line->parts.var_a0 / kClips;
+    truth(0, 0) += known->parts.var_k / kClips;
+    truth(0, 1) += known->parts.cov / kClips;
+    truth(1, 1) += known->parts.var_a0 / kClips;
+  }
+  INFO(mean << "\n" << truth);
+  CHECK(mean(0, 0) / truth(0, 0) == Approx(0.90).margin(0.05));
+  CHECK(mean(0, 1) / truth(0, 1) == Approx(0.90).margin(0.05));
+  CHECK(mean(1, 1) / truth(1, 1) == Approx(0.90).margin(0.05));
 }

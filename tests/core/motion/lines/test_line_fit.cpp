@@ -2,9 +2,11 @@
 
 #include <Eigen/Dense>
 
+#include <memory>
 #include <random>
 
 #include "core/motion/bandwidth/rule_lines.h"
+#include "core/result/estimate.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
 
@@ -144,6 +146,109 @@ TEST_CASE("points that are no line widen the interval, points that are do not") 
   CHECK(bent->parts.scatter > 2.0);
   CHECK(bent->k_over_m_1_s.sd > 3.0 * straight->k_over_m_1_s.sd);
   CHECK(std::isfinite(bent->parts.degrees));
+}
+
+TEST_CASE("neighbouring residuals count as many independent ones as the squares of their correlations say") {
+  // The variance of a sum of squares of normal numbers of covariance C is 2 tr C², so that it is worth (tr C)² / tr C²
+  // independent ones; here for all residuals at once, of which those at the ends have fewer neighbours.
+  const auto all = smoothed(positions({4.0, 0.006, 2.0}, 1.2, 800), 1, 0.03);
+  const auto used = static_cast<Eigen::Index>(all.input.rows.size());
+  const double k = 4.0;
+  Eigen::MatrixXd of_e = Eigen::MatrixXd::Zero(used, 800);
+  for (Eigen::Index j = 0; j < used; ++j) {
+    const KernelRow& row = all.input.rows[static_cast<std::size_t>(j)];
+    for (std::size_t i = 0; i < row.weights->a.size(); ++i) {
+      of_e(j, static_cast<Eigen::Index>(row.first + i)) = row.weights->a[i] + k * row.weights->v[i];
+    }
+  }
+  const Eigen::MatrixXd covariance = of_e * of_e.transpose();
+  const double worth = std::pow(covariance.trace(), 2) / covariance.squaredNorm();
+  const std::vector<double> residual(all.input.rows.size(), 1.0);
+  const Scatter scatter = scatter_of(all.input, residual, k, {1.0});
+  // A kernel reaches over a twentieth of the points or less: what the ends lack is less than that.
+  CHECK(scatter.limit - 1.0 == Approx(chi2_ratio_limit(worth) - 1.0).epsilon(0.03));
+  CHECK(scatter.ratio == Approx(static_cast<double>(used) / covariance.trace()).epsilon(1e-9));  // rounding
+}
+
+namespace {
+
+/// Points of a line, each with a position and an error of its own: fit_line() then is ordinary least squares.
+LineInput independent_points(double k, double a0, double error_m_s2, std::mt19937_64& random) {
+  constexpr std::size_t kPoints = 400;
+  std::normal_distribution<double> normal(0.0, error_m_s2);
+  const auto weights = std::make_shared<const KernelWeights>(KernelWeights{{0.0}, {0.0}, {1.0}});
+  LineInput input;
+  input.track_points = kPoints;
+  for (std::size_t j = 0; j < kPoints; ++j) {
+    input.v_m_s.push_back(1.2 - static_cast<double>(j) / kPoints);
+    input.a_m_s2.push_back(a0 - k * input.v_m_s[j] + normal(random));
+    input.rows.push_back({j, weights});
+  }
+  input.stretch.assign(kPoints, 0);
+  input.bias_a_m_s2.assign(kPoints, 0.0);
+  input.mass_part_m_s2.assign(kPoints, 0.0);
+  return input;
+}
+
+}  // namespace
+
+TEST_CASE("noise that is twice what a clip says makes the covariance of twice the noise") {
+  const double k = 4.0, a0 = 0.5, stated = 0.01, real = 2.0 * stated;
+  std::mt19937_64 random(31);
+  constexpr int kClips = 2000;
+  Eigen::Matrix2d mean = Eigen::Matrix2d::Zero(), truth = Eigen::Matrix2d::Zero();
+  int inside = 0;
+  for (int clip = 0; clip < kClips; ++clip) {
+    const LineInput input = independent_points(k, a0, real, random);
+    const auto noise = fit_line(1, input, {stated * stated}, 0.0, Misfit::ignored);
+    const auto line = fit_line(1, input, {stated * stated}, 0.0);
+    REQUIRE((line && noise));
+    Eigen::Matrix2d covariance;
+    covariance << line->parts.var_k, line->parts.cov, line->parts.cov, line->parts.var_a0;
+    mean += covariance / kClips;
+    truth << noise->parts.var_k, noise->parts.cov, noise->parts.cov, noise->parts.var_a0;
+    inside += line->a0_m_s2.low95 <= a0 && a0 <= line->a0_m_s2.high95;
+    // Welch and Satterthwaite: a part that is known, and one from eight blocks less two for the line.
+    const double wider = line->parts.var_a0 - noise->parts.var_a0;
+    CHECK(line->parts.degrees == Approx(6.0 * std::pow(line->parts.var_a0 / wider, 2)).epsilon(1e-6));
+  }
+  truth *= std::pow(real / stated, 2);
+  // Of the squares of eight blocks along v the fit takes up 1/8 + 1.8/8 = 0.35 for the slope (1.8: the kurtosis of even
+  // v); 8/(8 - 2) gives back a quarter. So three quarters of the variance come out as 0.65 * 8/6 = 0.87 of themselves,
+  // the whole as 0.90. A single clip's has a standard deviation of a half, the mean of 2000 one of 0.012.
+  CHECK(mean(0, 0) / truth(0, 0) == Approx(0.90).margin(0.05));
+  CHECK(mean(0, 1) / truth(0, 1) == Approx(0.90).margin(0.05));
+  CHECK(mean(1, 1) / truth(1, 1) == Approx(0.90).margin(0.05));
+  // 1900 of 2000 with a standard deviation of 10; four of them, and 5 % too narrow are 1.3 % of the clips.
+  CHECK(std::abs(inside - 0.937 * kClips) < 60);
+}
+
+TEST_CASE("leaving out one at a time gives a mean the variance s²/n that a textbook gives it") {
+  // Of the mean of n values y the i-th one's loss moves it by (m - y_i)/(n - 1); so (n - 1)/n of the sum of squares is
+  // sum of (y - m)² / (n (n - 1)).
+  const std::vector<double> y{0.3, -1.2, 2.5, 0.1, -0.7, 1.1};
+  const auto n = static_cast<double>(y.size());
+  double mean = 0.0, squares = 0.0, with_other = 0.0;
+  for (const double value : y) mean += value / n;
+  std::vector<Eigen::Vector2d> moved;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const double off = y[i] - mean, other = i % 2 == 0 ? 1.0 : -1.0;
+    squares += off * off;
+    with_other += off * other;
+    moved.push_back(Eigen::Vector2d(-off, -other) / (n - 1.0));
+  }
+  LineUncertainty parts;
+  parts.var_k = parts.var_a0 = 1e-3;
+  REQUIRE(widen_by_jackknife(moved, parts));
+  CHECK(parts.var_k == Approx(squares / (n * (n - 1.0))).epsilon(1e-12));
+  CHECK(parts.var_a0 == Approx(1.0 / (n - 1.0)).epsilon(1e-12));
+  CHECK(parts.cov == Approx(with_other / (n * (n - 1.0))).epsilon(1e-12));
+  CHECK(parts.degrees == n - 2.0);
+  // What noise explains within chance stays as it is.
+  LineUncertainty wide;
+  wide.var_k = wide.var_a0 = 1.0;
+  CHECK_FALSE(widen_by_jackknife(moved, wide));
+  CHECK(wide.var_k == 1.0);
 }
 
 TEST_CASE("the scale's uncertainty is one of a0 and not of K/m, the mass's one of both where a force is known") {

@@ -113,6 +113,22 @@ TEST_CASE("the centre of a sphere's image is put right to a few micrometres") {
   CHECK(std::abs(*corrected.marker_radius_px(seen) - 15.0) < 2.0);
 }
 
+TEST_CASE("a sphere's place comes back from the centre of its own image to a millionth of what is put right") {
+  const KnownCamera known{.fx = 500.0, .fy = 500.0};
+  const KnownPlane plane = slanted();
+  cv::RNG random(1);
+  const auto corners = tests::known_corners(known, plane, 0.04, 0.0, random);
+  const auto sphere = core::Restitution::from_pattern(exact(known), {corners}, 0.04, 0.02, 0.12);
+  for (const cv::Point2d place : {cv::Point2d(0.7, 0.3), cv::Point2d(-0.4, 0.4), cv::Point2d(0.7, -0.3)}) {
+    const cv::Point2d seen = sphere.to_pixel(place);
+    const auto found = sphere.to_plane(seen), as_a_point = sphere.to_plane(sphere.centre_pixel(place));
+    REQUIRE((found && as_a_point));
+    const double put_right_m = cv::norm(*as_a_point - place);
+    CHECK(put_right_m > 1e-4);  // so that a millionth is above the nanometre that rounding leaves in a plane
+    CHECK(cv::norm(*found - place) < 1e-6 * put_right_m + 1e-9);
+  }
+}
+
 TEST_CASE("several plane views join in one plane, with the first one's origin") {
   const KnownCamera known;
   const KnownPlane plane = slanted();

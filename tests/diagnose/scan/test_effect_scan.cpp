@@ -1,0 +1,44 @@
+#include "diagnose/scan/effect_scan.h"
+
+#include <cmath>
+#include <vector>
+
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Of a force c v |v| beside the linear drag, the scans of the drags that have one sign and of one that has both.
+struct Scans {
+  diagnose::EffectScan quadratic, asymmetry;
+};
+
+Scans scans_of(double c_n_s2_m2) {
+  const tests::MadeEffect effect{
+      .force = [=](double, double, double v, double) { return -c_n_s2_m2 * v * std::abs(v); }};
+  const auto made = tests::made_experiment(tests::made_launches(), effect, 5, 2e-5, 100);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const diagnose::ScoreSpace space(set, nominal);
+  return {diagnose::scan_effect(space, diagnose::effect_index("quadratic_drag")),
+          diagnose::scan_effect(space, diagnose::effect_index("direction_asymmetry"))};
+}
+
+}  // namespace
+
+TEST_CASE("a drag that brakes is seen, and one that would drive is no drag") {
+  const double c = 0.1;
+  const Scans braking = scans_of(c), driving = scans_of(-c);
+  REQUIRE(braking.quadratic.visible);
+  CHECK(braking.quadratic.gain > 20.0);
+  CHECK(braking.quadratic.log_evidence > 20.0);
+  // Of a linear neighbourhood: K takes up most of the force, and by how much changes with the motion itself.
+  CHECK(braking.quadratic.values.front() == Approx(c).epsilon(0.3));
+  // The same force with the other sign shows as clearly, and an effect that has one sign gains nothing by it.
+  REQUIRE(driving.quadratic.visible);
+  CHECK(driving.quadratic.gain == 0.0);
+  CHECK(driving.quadratic.log_evidence < -1.0);
+  CHECK(driving.quadratic.values.front() > 0.0);
+}
