@@ -24,8 +24,9 @@ struct Checked {
 
 Outcome check(const std::string& folder, bool allow_outside, int jobs, const py::object& told) {
   const auto checked = WatchedWork(told).run([&](const base::Progress& progress) {
-    Checked made{
-        core::read_experiment(folder, allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused), {}};
+    Checked made{core::read_experiment(
+                     folder, {.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused}),
+                 {}};
     made.found = core::check_recording(made.experiment, jobs, progress);
     return std::make_shared<const Checked>(std::move(made));
   });
