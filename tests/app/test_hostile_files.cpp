@@ -30,7 +30,8 @@ std::string experiment_with(const std::string& clip, const std::string& scale) {
 
 const std::string kScale = "[scale]\npx_per_m = 200\n";
 const std::string kPattern =
-    "[calibration]\ninner_corners = [9, 6]\nsquare_m = 0.03\nviews = \"views/*.png\"\nplane = \"views/a.png\"\n";
+    "[calibration]\npattern = \"chessboard\"\ninner_corners = [9, 6]\nsquare_m = 0.03\nviews = \"views/*.png\"\nplane "
+    "= \"views/a.png\"\n";
 
 /// A bright disc that slides to the right, ever faster.
 void write_clip(const fs::path& file) {
@@ -62,7 +63,9 @@ TEST_CASE("hostile clips and images end with one message and status 1, soon, and
       "#EXTM3U\n#EXT-X-TARGETDURATION:10\n#EXT-X-MEDIA-SEQUENCE:0\n#EXTINF:10,\n" + other + "\n";  // and has no end
   const std::string dash =
       "<?xml version=\"1.0\"?>\n<MPD xmlns=\"urn:mpeg:dash:schema:mpd:2011\" type=\"static\" "
-      "mediaPresentationDuration=\"PT1S\"><Period><AdaptationSet mimeType=\"video/mp4\"><Representation id=\"1\" "
+      "mediaPresentationDuration=\"PT1S\" "
+      "profiles=\"urn:mpeg:dash:profile:isoff-on-demand:2011\"><Period><AdaptationSet "
+      "mimeType=\"video/mp4\"><Representation id=\"1\" "
       "bandwidth=\"1\"><BaseURL>" +
       other + "</BaseURL></Representation></AdaptationSet></Period></MPD>\n";
   const std::string concat = "ffconcat version 1.0\nfile '" + other + "'\n";

@@ -1,7 +1,6 @@
 #include "core/pictures/frames/video_decoder.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <set>
 #include <string_view>
@@ -47,10 +47,10 @@ const std::set<std::string_view> kTexts{"tty", "bin", "xbin", "adf", "idf"};
 constexpr int kReadBuffer = 1 << 16;  // bytes
 constexpr int kMostRetries = 4096;    // of a format that has nothing to give yet
 
-/// A user's own setting of OpenCV's FFmpeg log stays.
+/// Our own errors say it better; where a user sets OpenCV's level of FFmpeg's log, that counts.
 void silence_libav() {
-  static const bool quiet = ::getenv("OPENCV_FFMPEG_LOGLEVEL") == nullptr;
-  if (quiet) av_log_set_level(AV_LOG_QUIET);
+  const char* const level = std::getenv("OPENCV_FFMPEG_LOGLEVEL");
+  av_log_set_level(level != nullptr ? std::atoi(level) : AV_LOG_QUIET);
 }
 
 int read_bytes(void* opaque, std::uint8_t* to, int size) {
