@@ -88,6 +88,8 @@ TEST_CASE(
   CHECK(agreeing.k_over_m_1_s.estimate->value == Approx((2.0 * 4.0 + 2.01) / 5.0).epsilon(1e-12));
   CHECK(agreeing.k_over_m_1_s.estimate->sd ==
         Approx(std::hypot(std::sqrt(1.0 / (1e4 + 2500.0)), kClock * 2.002)).epsilon(1e-12));
+  CHECK(*agreeing.k_over_m_1_s.noise_sd ==
+        Approx(std::sqrt(1.0 / (1e4 + 2500.0))).epsilon(1e-12));  // without the clock
   const auto apart =
       join({kUp, kDown}, {clip_on({{-1, 2.5, 0.8, 0.01, 0.002}}), clip_on({{1, 1.7, 0.6, 0.02, 0.002}})});
   // Weights 1/(tau^2 + sd^2) with tau = 0.57 and sd of 0.01 and 0.02 differ by 1e-3; half of that, and of what they are

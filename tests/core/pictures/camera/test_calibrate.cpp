@@ -85,6 +85,17 @@ TEST_CASE("terms that the views do not determine are fixed to zero, and the mode
   CHECK_THAT(calibration.model, !Catch::Matchers::Contains("e+"));  // χ² of thousands is written out
 }
 
+TEST_CASE("a pair that the views do not support is left out beside a high term that they do") {
+  KnownCamera known{.k3 = 0.05};
+  known.p1 = known.p2 = 0.0;
+  cv::RNG random(3);
+  const core::Calibration calibration = core::calibrate_camera(tests::known_views(known, 0.02, random), 0.04);
+  // k3 of 0.02 has two to three standard deviations at 0.1 px; this one some thirty.
+  CHECK(calibration.camera.distortion[4] != 0.0);
+  CHECK(calibration.camera.distortion[2] == 0.0);
+  CHECK(calibration.camera.distortion[3] == 0.0);
+}
+
 TEST_CASE("a lens without distortion gets no term of it") {
   KnownCamera known;
   known.k1 = known.k2 = known.p1 = known.p2 = known.k3 = 0.0;
