@@ -152,7 +152,11 @@ void bind_analysis(py::module_& module) {
   module.def("analyze_files", [](const std::vector<std::string>& inputs, const AnalysisChoices& choices,
                                  std::string column, std::optional<double> mass_kg, std::optional<double> incline_deg,
                                  bool allow_outside, const py::object& progress) {
-    const core::BareTrackOptions bare{std::move(column), mass_kg, incline_deg, permissions_of(allow_outside)};
+    const core::BareTrackOptions bare{
+        std::move(column),
+        mass_kg,
+        incline_deg,
+        {.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused}};
     return analyze_files(inputs, choices, bare, progress);
   });
   module.def("analyze_arrays", &analyze_arrays);

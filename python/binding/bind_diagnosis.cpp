@@ -33,6 +33,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+core::OutsideFiles outside_of(bool allow_outside) {
+  return allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
+}
+
 /// Residuals of each motion before and after, for plots.
 py::list residual_arrays(const diagnose::Diagnosis& diagnosis) {
   py::list curves;
@@ -67,10 +71,10 @@ py::tuple diagnose_files(const std::vector<std::string>& inputs, const std::vect
   if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
   std::string title;
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
-    title = diagnose::read_recording(folders.front(), permissions_of(allow_outside)).name;
+    title = diagnose::read_recording(folders.front(), {.outside = outside_of(allow_outside)}).name;
     if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
     return diagnose::diagnose(
-        folders, {.without = without, .jobs = jobs, .twin = false, .permitted = permissions_of(allow_outside)},
+        folders, {.without = without, .jobs = jobs, .twin = false, .permitted = {.outside = outside_of(allow_outside)}},
         progress);
   });
   return told(std::move(diagnosis), title);

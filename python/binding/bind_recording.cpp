@@ -7,7 +7,6 @@
 #include "base/files/file_io.h"
 #include "core/check/check_recording.h"
 #include "python/binding/bindings.h"
-#include "python/binding/given_tracks.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
 #include "report/check/check_report.h"
@@ -25,7 +24,9 @@ struct Checked {
 
 Outcome check(const std::string& folder, bool allow_outside, int jobs, const py::object& told) {
   const auto checked = WatchedWork(told).run([&](const base::Progress& progress) {
-    Checked made{core::read_experiment(folder, permissions_of(allow_outside)), {}};
+    Checked made{core::read_experiment(
+                     folder, {.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused}),
+                 {}};
     made.found = core::check_recording(made.experiment, jobs, progress);
     return std::make_shared<const Checked>(std::move(made));
   });

@@ -106,12 +106,6 @@ GivenTracks read_given(std::vector<GivenTrack> given) {
   return read;
 }
 
-core::Permissions permissions_of(bool allow_outside) {
-  core::Permissions permitted;
-  if (allow_outside) permitted.outside = core::OutsideFiles::allowed;
-  return permitted;
-}
-
 void check_gravity(double gravity_m_s2) {
   if (std::isfinite(gravity_m_s2) && gravity_m_s2 > 0.0) return;
   throw base::InputError(base::Issue{"", 0, "gravity_m_s2", fmt::format("{}", gravity_m_s2), "a number above 0"});

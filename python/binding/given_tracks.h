@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
-#include "core/experiment/permissions.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::python {
@@ -46,9 +45,6 @@ struct GivenTracks {
 /// InputError for what makes no clip: numbers that are no track, a mass that is none, a name used twice, an unknown
 /// word for the launch, readings of one group's inclination that contradict each other.
 GivenTracks read_given(std::vector<GivenTrack> given);
-
-/// What a folder may ask of this machine.
-core::Permissions permissions_of(bool allow_outside);
 
 /// InputError for what is no acceleration of gravity above 0.
 void check_gravity(double gravity_m_s2);
