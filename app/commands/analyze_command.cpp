@@ -18,7 +18,7 @@
 #include "core/analysis/preview.h"
 #include "core/experiment/experiment.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "diagnose/verdict/given_causes.h"
+#include "diagnose/verdict/fit_given_causes.h"
 #include "fit/estimators.h"
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/result_files.h"

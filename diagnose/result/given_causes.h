@@ -1,5 +1,5 @@
 /// What K/m, mu, alpha and the terminal velocity are with causes in the model that a person names, as plain data
-/// (diagnose/verdict/given_causes.h fits it).
+/// (diagnose/verdict/fit_given_causes.h fits it).
 #pragma once
 
 #include <string>

@@ -69,6 +69,8 @@ TEST_CASE(
   for (const std::string& name : tests::kCommands) {
     std::vector<std::string> command = {name};
     if (name != "pattern" && name != "explore" && name != "blind") command.emplace_back("nothing.toml");
+    if (name == "require") command.insert(command.end(), {"--target", "mu=0.001"});
+    if (name == "blind") command.insert(command.end(), {"--cases", "1", "--seed", "1"});
     commands.push_back(std::move(command));
   }
   for (const std::vector<std::string>& command : commands) {

@@ -1,4 +1,4 @@
-#include "diagnose/verdict/given_causes.h"
+#include "diagnose/verdict/fit_given_causes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
