@@ -71,7 +71,8 @@ std::vector<base::Issue> issues_of_numbers(const std::vector<GivenSeries>& serie
     }
     for (std::size_t i = 0; i < one.values.size() && issues.size() < kMostRowIssues; ++i) {
       if (std::isfinite(one.values[i])) continue;
-      issues.push_back({what, 0, fmt::format("{}[{}]", one.name, i), fmt::format("{}", one.values[i]),
+      issues.push_back({what, 0, fmt::format("{}[{}]", one.name, i),
+                        std::isnan(one.values[i]) ? "nan" : fmt::format("{}", one.values[i]),
                         "a finite number; leave out what was not measured"});
     }
   }

@@ -115,9 +115,8 @@ py::dict calibrate_files(const std::vector<std::string>& files, std::pair<int, i
                          int jobs, const py::object& told) {
   check_board(inner_corners.first, inner_corners.second, square_m);
   return as_dict(WatchedWork(told).run([&](const base::Progress& progress) {
-    progress("finding the pattern", 0.0);
-    const core::BoardViews views =
-        core::find_board_views({files.begin(), files.end()}, {inner_corners.first, inner_corners.second}, jobs);
+    const core::BoardViews views = core::find_board_views(
+        {files.begin(), files.end()}, {inner_corners.first, inner_corners.second}, jobs, core::kMostPixels, progress);
     core::checked_views(views);
     progress("fitting the camera", 0.0);
     return core::calibrate_any_lens(views, square_m);

@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "base/errors.h"
@@ -14,6 +15,7 @@
 #include "python/binding/given_tracks.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
+#include "render/scenario/clip_length.h"
 #include "render/scenario/clip_motion.h"
 #include "report/simulation/simulation_report.h"
 
@@ -25,6 +27,16 @@ namespace {
 
 constexpr double kMostRate_hz = 1e6;  // as the command's --rate has it
 
+/// InputError where a trajectory has more states than are held in memory.
+void check_length(const sim::MotionSetup& motion, const render::Recording& recording) {
+  const std::size_t states = render::frame_count(recording, motion);
+  if (states <= render::kMostFrames) return;
+  throw base::InputError(base::Issue{"", 0, "rate_hz",
+                                     fmt::format("{:.6g} Hz, for clip \"{}\" of {:.6g} s {} states",
+                                                 recording.frame_rate_hz, motion.name, motion.duration_s, states),
+                                     fmt::format("at most {} states in a clip", render::kMostFrames)});
+}
+
 std::vector<report::SimulatedClip> simulated(const render::Scenario& scenario, std::optional<double> rate_hz,
                                              const base::Progress& progress) {
   render::Recording recording = scenario.recording;
@@ -33,6 +45,7 @@ std::vector<report::SimulatedClip> simulated(const render::Scenario& scenario, s
   double done = 0.0;
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {
+      check_length(motion, recording);
       progress("simulating", done / static_cast<double>(scenario.motion.configurations.size()));
       clips.push_back({motion.name, configuration.name, fmt::format("trajectory-{}.csv", motion.name),
                        render::recorded_motion(configuration.body, motion, recording)});

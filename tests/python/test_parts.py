@@ -73,7 +73,7 @@ class Film(InFolder):
         rows = (self.folder / "made.truth" / "marker-m1-up.csv").read_text().splitlines()[1:]
         for frame, row in zip(frames, rows):
             _, _, u, v, *_ = map(float, row.split(","))
-            marker = glidelab.fit_marker(frame.pixels, (u + 0.5, v - 0.5), 5.0)
+            marker = glidelab.fit_marker(frame.pixels, (u + 0.5, v - 0.5), 2.4)
             self.assertIsNotNone(marker)
             # Six standard deviations, and a hundredth of a pixel of the model's own.
             self.assertLess(math.hypot(marker.u_px - u, marker.v_px - v), 6.0 * marker.sd_px + 0.02)
