@@ -8,7 +8,6 @@
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
-#include "base/errors.h"
 #include "base/files/file_io.h"
 #include "render/scenario/clip_length.h"
 #include "render/scenario/clip_motion.h"
@@ -26,24 +25,6 @@ struct SimulateOptions {
   std::optional<double> rate_hz;
 };
 
-/// InputError where a trajectory has too many states, with what it would take.
-void check_length(const SimulateOptions& options, const sim::MotionScenario& scenario,
-                  const render::Recording& recording) {
-  constexpr double kBytesOfRow = 65.0;  // of the CSV
-  for (const sim::ConfigurationSetup& configuration : scenario.configurations) {
-    for (const sim::MotionSetup& motion : configuration.motions) {
-      const std::size_t states = render::frame_count(recording, motion);
-      if (states <= render::kMostFrames) continue;
-      throw base::InputError(base::Issue{
-          options.scenario, 0, "--rate",
-          fmt::format("{:.6g} Hz, for clip \"{}\" of {:.6g} s {} states or {:.3g} GB", recording.frame_rate_hz,
-                      motion.name, motion.duration_s, states, 1e-9 * kBytesOfRow * static_cast<double>(states)),
-          fmt::format("at most {} states in a clip, {:.6g} Hz", render::kMostFrames,
-                      static_cast<double>(render::kMostFrames) / motion.duration_s)});
-    }
-  }
-}
-
 void simulate_command(const SimulateOptions& options) {
   const render::Scenario scenario = render::read_scenario(options.scenario);
   const fs::path out = output_folder(options.common, "simulate", options.scenario);
@@ -53,7 +34,7 @@ void simulate_command(const SimulateOptions& options) {
   const base::Progress progress = display.callback();
   render::Recording recording = scenario.recording;
   if (options.rate_hz) recording.frame_rate_hz = *options.rate_hz;
-  check_length(options, scenario.motion, recording);
+  render::check_states(scenario.motion, recording, options.scenario, "--rate");
 
   std::vector<report::SimulatedClip> clips;
   std::size_t configurations_done = 0;

@@ -27,25 +27,15 @@ namespace {
 
 constexpr double kMostRate_hz = 1e6;  // as the command's --rate has it
 
-/// InputError where a trajectory has more states than are held in memory.
-void check_length(const sim::MotionSetup& motion, const render::Recording& recording) {
-  const std::size_t states = render::frame_count(recording, motion);
-  if (states <= render::kMostFrames) return;
-  throw base::InputError(base::Issue{"", 0, "rate_hz",
-                                     fmt::format("{:.6g} Hz, for clip \"{}\" of {:.6g} s {} states",
-                                                 recording.frame_rate_hz, motion.name, motion.duration_s, states),
-                                     fmt::format("at most {} states in a clip", render::kMostFrames)});
-}
-
 std::vector<report::SimulatedClip> simulated(const render::Scenario& scenario, std::optional<double> rate_hz,
                                              const base::Progress& progress) {
   render::Recording recording = scenario.recording;
   if (rate_hz) recording.frame_rate_hz = *rate_hz;
+  render::check_states(scenario.motion, recording, "", "rate_hz");
   std::vector<report::SimulatedClip> clips;
   double done = 0.0;
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {
-      check_length(motion, recording);
       progress("simulating", done / static_cast<double>(scenario.motion.configurations.size()));
       clips.push_back({motion.name, configuration.name, fmt::format("trajectory-{}.csv", motion.name),
                        render::recorded_motion(configuration.body, motion, recording)});
