@@ -14,7 +14,7 @@ constexpr double kNamed = 1.1, kLeft = 12.5, kLarger = 0.8;    // a, b and c
 constexpr double kLate = 3.2, kScatter = 1.8, kUnnamed = 1.4;  // log odds against
 constexpr double kAnything = 1.0;                         // log odds against a function without a name, of anything
 constexpr double kFurther = 2.0;                          // log odds against a further cause, without noise
-constexpr double kNotMeasured = -0.5;                     // held-out clips are never so much better than their noise
+constexpr double kNotMeasured = -1.0;                     // a gap of nothing: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // between which a larger excess speaks for a cause
 
 bool names(const Hypothesis& hypothesis, std::size_t effect) {

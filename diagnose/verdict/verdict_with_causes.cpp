@@ -187,6 +187,10 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   const MotionFit& fit = names ? by.fits[static_cast<std::size_t>(best.fit)] : nominal;
   const CauseSequence sequence = sequence_of(set, nominal, with, fit, without, weighed ? kLeastNamed : kLeastShare);
   const bool in_images = found != nullptr && shows_in_images(*found);
+  // Of a verdict by the noise alone: scatter has no fit of its own.
+  const bool scatter =
+      found != nullptr && is_scatter_alone(*found) && verdict_by(by.none, by.unknown) == Verdict::effect;
+  const std::vector<std::size_t> named = names || scatter ? found->effects : std::vector<std::size_t>();
   Diagnosis diagnosis;
   std::vector<std::string> traces;
   const std::vector<Hypothesis> weighed_all = weighed ? by.all : std::vector<Hypothesis>();  // before the share counts
@@ -216,12 +220,11 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     }
     // Without a gap a name must do more than small imperfections would. Scatter of single positions shifts no
     // parameter either: unless it is all but certain, it is a trace.
-    if (!weighed && !sequence.is_gap && !below_noise && names) {
-      const bool scatter = is_scatter_alone(best);
-      if (shows_in_gap(best)) allow_for_remainders(set, without, jobs, first);
+    if (!weighed && !sequence.is_gap && !below_noise && !named.empty()) {
+      if (names && shows_in_gap(best)) allow_for_remainders(set, without, jobs, first);
       if (scatter && probability_of_scatter(first) < kSureScatter) set_none_of(is_scatter_alone, first);
       if ((scatter || shows_in_gap(best)) && verdict_by(first.none, first.unknown) == Verdict::none) {
-        for (const std::size_t e : best.effects) traces.emplace_back(effect_list()[e].id);
+        for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
       }
     }
     diagnosis = verdict_of(set, first, std::move(pictures));

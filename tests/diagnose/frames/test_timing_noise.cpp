@@ -1,5 +1,6 @@
 #include "diagnose/frames/point_scatter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -74,4 +75,25 @@ TEST_CASE("uneven times are named alone: what they scatter is no push and no for
     REQUIRE(diagnosis.effects.front().parameters.size() == 1);
     CHECK(diagnosis.effects.front().parameters.front().value == Approx(kJitter).epsilon(0.1));
   }
+}
+
+TEST_CASE("uneven times that hardly show are a trace, and the verdict only where they are all but certain") {
+  std::size_t traces = 0, verdicts = 0;
+  for (const double part : {0.06, 0.1, 0.12}) {
+    for (const unsigned seed : {6u, 7u, 8u}) {
+      CAPTURE(part, seed);
+      const auto made = uneven(part * kJitter, seed);
+      const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+      if (diagnosis.verdict == diagnose::Verdict::effect) {
+        ++verdicts;
+        CHECK(diagnosis.effects.front().joint_probability >= 0.9);
+      } else {
+        CHECK(diagnosis.verdict == diagnose::Verdict::none);
+        CHECK(diagnosis.effects.empty());
+        traces += std::count(diagnosis.traces.begin(), diagnosis.traces.end(), "timestamp_jitter") != 0;
+      }
+    }
+  }
+  CHECK(traces > 0);
+  CHECK(verdicts > 0);
 }

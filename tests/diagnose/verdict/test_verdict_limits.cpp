@@ -128,6 +128,25 @@ TEST_CASE("an inclination without its uncertainty that the accelerations contrad
   CHECK(diagnosis.verdict == diagnose::Verdict::none);
 }
 
+TEST_CASE("of positions without noise nothing is claimed below what a sensor could measure, and a drag is named") {
+  // As a simulation writes them, to all digits; also to the ninth place.
+  const std::function<double(double, double)> to_the_ninth = [](double x, double) {
+    return 1e-9 * std::round(1e9 * x);
+  };
+  for (const bool rounded : {false, true}) {
+    CAPTURE(rounded);
+    tests::MadeEffect effect;
+    if (rounded) effect.seen = to_the_ninth;
+    const auto nominal = diagnosed(tests::made_experiment(tests::made_launches(), effect, 1, 0.0));
+    CHECK(nominal.verdict == diagnose::Verdict::none);
+    CHECK(nominal.effects.empty());
+    effect.force = [](double, double, double v, double) { return -0.1 * v * std::abs(v); };
+    const auto drag = diagnosed(tests::made_experiment(tests::made_launches(), effect, 1, 0.0));
+    REQUIRE(drag.verdict == diagnose::Verdict::effect);
+    CHECK(drag.effects.front().id == "quadratic_drag");
+  }
+}
+
 TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
   // Downhill only: what is stated too small of the inclination is taken for friction that drives,
   // mu' = (mu cos 4 - sin 4 + sin 3)/cos 3 = -0.0114.
