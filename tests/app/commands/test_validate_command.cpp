@@ -213,8 +213,11 @@ TEST_CASE("coverage refuses numbers that mean nothing before it begins, and says
       CHECK(result.err.find(option) != std::string::npos);
     }
   }
-  // 100 s in a clip of 1.2 s: no point is free of the clip's ends.
-  const tests::ProcessResult wide = coverage("--bandwidth", "100");
+  // 1 s in a clip of 1.2 s: no point is free of the clip's ends. More than the clip lasts is wrong input.
+  const tests::ProcessResult wide = coverage("--bandwidth", "1");
   CHECK(wide.status == 4);
-  CHECK(wide.err.find("with --bandwidth 100 the phase diagram finds no value") != std::string::npos);
+  CHECK(wide.err.find("with --bandwidth 1 the phase diagram finds no value") != std::string::npos);
+  const tests::ProcessResult wider = coverage("--bandwidth", "100");
+  CHECK(wider.status == 1);
+  CHECK(wider.err.find("bandwidth: found 100 s, expected at most 1.") != std::string::npos);
 }
