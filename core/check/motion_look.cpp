@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -17,9 +16,9 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestPoints = 12;
-// Parabolas go through a tenth of the points, or through more where these tell no acceleration from the noise,
-constexpr std::array<std::size_t, 3> kParts = {10, 4, 1};
+constexpr std::size_t kParts = 10;            // parabolas go through a tenth of the points,
 constexpr std::size_t kFewestOfParabola = 7;  // and so many at least
+constexpr double kOffWhole = 0.05;            // of the range of x: one parabola through all points is off by less
 constexpr double kOverNoise = 5.0;            // standard deviations of a parabola's a that a typical one has
 constexpr double kTurnOverNoise = 20.0;       // a turn comes back by so many standard deviations of a position,
 constexpr double kTurnOverRange = 0.05;       // and by such a part of the range of x
@@ -57,6 +56,17 @@ std::optional<double> typical_acceleration(std::span<const double> t_s, std::spa
   }
   const double typical = quantile(sizes, 0.5);
   return typical > kOverNoise * sd_m_s2 ? std::optional(typical) : std::nullopt;
+}
+
+/// Whether one parabola goes through all points to within so much: neither a bounce nor a sensor's jump is among them.
+bool is_parabola(std::span<const double> t_s, std::span<const double> x_m, double off_m) {
+  const Eigen::Vector3d fit = parabola(t_s, x_m);
+  const double middle = 0.5 * (t_s.front() + t_s.back());
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    const double t = t_s[i] - middle;
+    if (!(std::abs(x_m[i] - (fit[0] + fit[1] * t + 0.5 * fit[2] * t * t)) < off_m)) return false;
+  }
+  return true;
 }
 
 std::size_t turns_in(std::span<const double> x_m, double back_m) {
@@ -122,9 +132,9 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   const double noise_m = pilot_noise(t_s, x_m);
   look.smooth = noise_m < kSmoothPart * look.distance_m;
   if (forced) return look;
-  for (const std::size_t parts : kParts) {
-    look.acceleration_m_s2 = typical_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / parts), noise_m);
-    if (look.acceleration_m_s2) break;
+  look.acceleration_m_s2 = typical_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / kParts), noise_m);
+  if (!look.acceleration_m_s2 && is_parabola(t_s, x_m, kOffWhole * look.distance_m)) {
+    look.acceleration_m_s2 = typical_acceleration(t_s, x_m, x_m.size(), noise_m);
   }
   look.turns = turns_in(x_m, std::max(kTurnOverNoise * noise_m, kTurnOverRange * look.distance_m));
   // Fine enough for a swing: eight parabolas between turns.

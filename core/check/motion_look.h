@@ -1,10 +1,10 @@
 /// Whether positions can be those of a body that slides along a straight incline, from the positions alone.
 ///
-/// Typical acceleration a: the median of |a| of parabolas through a tenth of the points each, a quarter or all of them
-/// where that is what tells it from the noise; for friction and drag aside no incline makes more than g. An
-/// oscillation: a = -w² (x - x_c) explains four fifths of the variance of a over six turns or more. Bend: the sagitta
-/// of the marker's path in the image over its length, by a parabola. Smooth: the scatter off neighbouring positions is
-/// below 1e-7 of the distance, which no camera or sensor reaches, and no rounding makes it.
+/// Typical acceleration a: the median of |a| of parabolas through a tenth of the points each, or of one through all of
+/// them where only that tells it from the noise and it goes through each to a twentieth of the range; for friction and
+/// drag aside no incline makes more than g. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of a
+/// over six turns or more. Bend: the sagitta of the marker's path in the image over its length, by a parabola. Smooth:
+/// the scatter off neighbouring positions is below 1e-7 of the distance, which no camera or sensor reaches.
 #pragma once
 
 #include <optional>

@@ -64,6 +64,20 @@ TEST_CASE("where short stretches hide the acceleration in their noise the whole 
   CHECK(findings(positions(run, 3e-3)).empty());
 }
 
+TEST_CASE("a sensor that jumps far off at the end of a fall makes no unit wrong") {
+  // 26 positions of 0.5 s to a centimetre, as of a motion sensor, and one of the wall behind.
+  Positions of;
+  for (int i = 0; i < 26; ++i) {
+    const double t = 0.02 * i;
+    of.t_s.push_back(t);
+    of.x_m.push_back(0.01 * std::round(100.0 * 2.0 * t * t));
+  }
+  CHECK(findings(of, 90.0).empty());
+  of.t_s.push_back(0.54);
+  of.x_m.push_back(2.8);
+  CHECK(findings(of, 90.0).empty());
+}
+
 TEST_CASE("positions seconds apart have their times in another unit") {
   Positions of = positions(run);
   for (double& t : of.t_s) t *= 1000.0;
