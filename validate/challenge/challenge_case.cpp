@@ -95,7 +95,7 @@ Drawn draw(const LevelDesign& design, BlindRandom& random) {
       static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(design.rates_hz.size()))))];
   drawn.noise_m = rounded(log_uniform(random, design.least_noise_m, 1.0000001 * design.most_noise_m));
   drawn.exposure_s = rounded(uniform(random, 5e-4, 3e-3));
-  drawn.focal_px = rounded(uniform(random, 1000.0, 1200.0));
+  drawn.focal_px = rounded(uniform(random, 600.0, 720.0));
   drawn.camera_x_m = rounded(uniform(random, -0.1, 0.1));
   for (std::size_t pair = 0; pair < design.pairs; ++pair) {
     drawn.launches.push_back(
@@ -112,7 +112,7 @@ std::string clip_name(std::size_t launch) {
 
 std::string scenario_text(const LevelDesign& design, const Drawn& drawn) {
   std::string text = fmt::format(
-      "format = 1\nname = \"challenge\"\n\n[camera]\nwidth_px = 800\nheight_px = 600\nframe_rate_hz = {}\n"
+      "format = 1\nname = \"challenge\"\n\n[camera]\nwidth_px = 480\nheight_px = 360\nframe_rate_hz = {}\n"
       "exposure_s = {}\nfocal_px = [{}, {}]\nposition_m = [{}, 0.05, 1.75]\ntarget_m = [0.0, 0.0, 0.0]\n\n"
       "[calibration]\ninner_corners = [9, 6]\nsquare_m = 0.04\nviews = 10\n\n"
       "[clock]\ndropped_fraction = {}\n\n"

@@ -39,8 +39,10 @@ std::vector<json> rows_of(const json& document, const std::string& estimator, co
 TEST_CASE("validate judges an outside program beside its own estimators, and keeps what it wrote") {
   const tests::TempDir temp;
   base::write_file(temp / "small.toml", tests::kSmallScenario);
-  const tests::ProcessResult result = tests::glidelab(
-      {"validate", "small.toml", "--out", "out", "--json", "--estimator-command", analyze_command()}, temp.path());
+  const tests::ProcessResult result =
+      tests::glidelab({"validate", "small.toml", "--out", "out", "--json", "--estimator-command", analyze_command(),
+                       "--estimator-seconds", "600"},
+                      temp.path());
   INFO(result.err);
   REQUIRE(result.status == 0);
   const json document = json::parse(result.out);
@@ -131,7 +133,7 @@ TEST_CASE("coverage of an outside program that is the default estimator has the 
   base::write_file(temp / "swept.toml", tests::kSweptScenario);
   const tests::ProcessResult result =
       tests::glidelab({"coverage", "swept.toml", "--noise-m", "2e-5", "--replicates", "4", "--out", "out", "--json",
-                       "--estimator-command", analyze_command()},
+                       "--estimator-command", analyze_command(), "--estimator-seconds", "600"},
                       temp.path());
   INFO(result.err);
   // 4: of so few replicates the naive lines alone may fail, which are not judged.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/trajectory/trajectory_results.h"
 #include "tests/catch.h"
 #include "tests/validate/small_sweep.h"
 
@@ -121,9 +122,9 @@ TEST_CASE("A gate of few runs is weak, and says with how many it would not be") 
 
 namespace {
 
-/// The phase diagram's results without its clips, under its own name, and with K/m errors a tenth larger under another.
+/// The fit of the whole motion without its clips, under its own name, and with K/m errors a tenth larger under another.
 std::vector<core::AnalysisResults> and_worsened(const MadeTracks& made) {
-  core::AnalysisResults results = analyze_tracks(made, core::MotionOptions{});
+  core::AnalysisResults results = fit::with_trajectory_fits(analyze_tracks(made, core::MotionOptions{}));
   results.clips.clear();
   core::AnalysisResults worse = results;
   worse.estimator = "worsened";
@@ -149,7 +150,7 @@ TEST_CASE("the gate finds an estimator of real motions whose K/m was worsened by
   const auto measured = [&](std::uint64_t seed, std::uint64_t runs) {
     return measure_baseline(scenario, "text", {.noise_m = 2e-5, .runs = runs, .seed = seed, .jobs = 2}, and_worsened);
   };
-  const Baseline few = only(measured(100, 200), "phase-diagram");
+  const Baseline few = only(measured(100, 200), fit::kTrajectory);
   const std::vector<Detectable> all = detectable(few, few, compare_baselines(few, few));
   const auto k =
       std::find_if(all.begin(), all.end(), [](const Detectable& of) { return of.quantity == "k_over_m_1_s"; });
@@ -159,17 +160,17 @@ TEST_CASE("the gate finds an estimator of real motions whose K/m was worsened by
   // known to 10 %.
   CHECK(runs > 2000);
   CHECK(runs < 4500);
-  const Baseline then = only(measured(101, runs), "phase-diagram");
+  const Baseline then = only(measured(101, runs), fit::kTrajectory);
   int found = 0, alarms = 0;
-  constexpr int kGates = 20;
+  constexpr int kGates = 8;
   for (int gate = 0; gate < kGates; ++gate) {
     const Baseline now = measured(static_cast<std::uint64_t>(102 + gate), runs);
     found += compare_baselines(then, only(now, "worsened")).worse.empty() ? 0 : 1;
-    alarms += compare_baselines(then, only(now, "phase-diagram")).worse.empty() ? 0 : 1;
+    alarms += compare_baselines(then, only(now, fit::kTrajectory)).worse.empty() ? 0 : 1;
   }
   WARN("runs " << runs << ", worsened found " << found << " of " << kGates << ", false alarms " << alarms);
-  // One baseline for all: its own noise is common to them. Fewer than 15 of 20 with probability 0.95 on average, or
-  // more than 2 alarms with 0.01, come about once in 300 times.
-  CHECK(found >= 15);
-  CHECK(alarms <= 2);
+  // One baseline for all: its own noise is common to them. Fewer than 5 of 8 with probability 0.95, or more than 1
+  // alarm with 0.01, come once in 300 times or more seldom.
+  CHECK(found >= 5);
+  CHECK(alarms <= 1);
 }
