@@ -32,7 +32,7 @@ void add_outside_options(CLI::App& command, OutsideOptions& options) {
           .add_option("--estimator-command", options.command,
                       "An estimator of your own, judged as well: a program that reads the experiment folder {folder} "
                       "and writes {out}/results.json (docs/reference/own-estimator.md)")
-          ->type_name("\"PROGRAM {folder} {out}\"");
+          ->type_name("COMMAND");
   command.add_option("--estimator-name", options.name, "Its name in results; default: that of the program's file")
       ->type_name("NAME")
       ->needs(judged);

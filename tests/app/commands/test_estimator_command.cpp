@@ -156,7 +156,7 @@ TEST_CASE("the gate judges an outside program alone, and finds a worse one under
   // K/m from the parity of a digit of the last position, which is random: off by 0.1, and by 0.3 once it is worse.
   const auto script = [](const char* off) {
     return std::string(
-               "d=$(tail -n 1 \"$1/tracks/up.csv\" | cut -c 12)\n"
+               "d=$(tail -n 1 \"$1/tracks/up.csv\" | tail -c 2)\n"
                "case \"$d\" in [02468]) k=-") +
            off + ";; *) k=" + off +
            ";; esac\necho \"{\\\"format\\\": 1, \\\"configurations\\\": [{\\\"clips\\\": [\\\"up\\\"], "
