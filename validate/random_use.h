@@ -17,6 +17,7 @@ enum class RandomUse : std::uint32_t {
   bootstrap = 0xB007,          ///< no seed of a user's: resampled errors of a requirement (target.h)
   everyday_case = 0x65767279,  ///< "evry" (everyday_case.h)
   filmed_case = 0x66696C6D,    ///< "film" (blind_filmed_case.h)
+  challenge = 0x63686C67,      ///< "chlg" (challenge_case.h)
 };
 
 /// {seed low, seed high, number}, and the use's word behind it where it has one.

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 #include "app/shell/run_control.h"
 #include "base/errors.h"
@@ -10,8 +13,10 @@
 #include "base/text/number_text.h"
 #include "render/scenario/scenario.h"
 #include "report/text/display_text.h"
+#include "report/text/outside_text.h"
 #include "validate/study/baseline/baseline.h"
 #include "validate/study/baseline/baseline_comparison.h"
+#include "validate/tracks/outside_runs.h"
 
 namespace glidelab::app {
 namespace {
@@ -33,20 +38,23 @@ std::string table(const validate::Baseline& baseline) {
 /// What would have to become worse to be found, and where that is much.
 void say_power(const CommonOptions& common, const validate::Baseline& then, const validate::Baseline& now,
                const validate::BaselineComparison& comparison) {
-  std::vector<std::vector<std::string>> rows = {
-      {"configuration", "estimator", "quantity", "errors larger by a factor of", "or mean error larger by"}};
+  std::vector<std::vector<std::string>> rows = {{"configuration", "estimator", "quantity",
+                                                 "errors larger by a factor of", "or mean error larger by",
+                                                 fmt::format("runs for a factor of {}", validate::kSmallFactor)}};
   std::size_t weak = 0;
   std::uint64_t runs = 0;
   for (const validate::Detectable& of : validate::detectable(then, now, comparison)) {
     rows.push_back({of.configuration, of.estimator, of.quantity,
                     of.factor ? base::number_text(*of.factor, 3) : "not detected",
-                    of.bias ? base::number_text(*of.bias, 2) : "–"});
+                    of.bias ? base::number_text(*of.bias, 2) : "–", fmt::format("{}", of.runs_for_small)});
     if (!of.weak()) continue;
     ++weak;
     runs = std::max(runs, of.runs_for_weak);
   }
-  say(common, fmt::format("smallest worsening that is detected with probability {}:\n{}",
-                          validate::kDetectionProbability, report::text_table(rows, 3)));
+  say(common, fmt::format("smallest worsening that is detected with probability {}; and how many runs, in the baseline "
+                          "and now, detect errors {} times as large with probability {}:\n{}",
+                          validate::kDetectionProbability, validate::kSmallFactor, validate::kSmallDetection,
+                          report::text_table(rows, 3)));
   if (weak == 0) return;
   say(common, fmt::format("warning: a weak gate: for {} of {} quantities it detects with probability {} only errors "
                           "more than {} times as large; about {} runs would suffice, in the baseline and now (--runs)",
@@ -55,7 +63,8 @@ void say_power(const CommonOptions& common, const validate::Baseline& then, cons
 
 }  // namespace
 
-void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file) {
+void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file,
+                       const std::optional<fit::OutsideEstimator>& outside) {
   if (!gate.write.empty()) {
     check_file_writable(gate.write);
     check_own_file(gate.write, "--write-baseline", "{");
@@ -89,11 +98,20 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
   options.seed = common.seed.value_or(then ? validate::other_seed(*then) : options.seed);
   options.jobs = common.jobs;
   ProgressDisplay display(common.quiet, common.verbose);
-  const validate::Baseline now =
-      validate::measure_baseline(scenario, text, options, validate::analyze_as_judged, display.callback());
+  std::vector<fit::OutsideRun> outside_runs;
+  std::mutex adding;
+  const validate::AnalyzeTracks by_outside = [&](const validate::MadeTracks& made) {
+    fit::OutsideOutcome outcome = validate::run_outside_on_tracks(*outside, made);
+    const std::lock_guard lock(adding);
+    outside_runs.push_back(std::move(outcome.run));
+    return std::vector<core::AnalysisResults>{std::move(outcome.results)};
+  };
+  const validate::Baseline now = validate::measure_baseline(
+      scenario, text, options, outside ? by_outside : validate::analyze_as_judged, display.callback());
   display.clear();
   throw_if_interrupted();
   print_result(common.json ? validate::baseline_json(now) : table(now));
+  if (outside) say(common, report::outside_text(fit::tally_of(*outside, outside_runs)));
   if (!gate.write.empty()) write_whole(gate.write, validate::baseline_json(now));
   if (!then) return;
   const validate::BaselineComparison comparison = validate::compare_baselines(*then, now);

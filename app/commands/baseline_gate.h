@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/shell/common_options.h"
+#include "fit/outside/outside_estimator.h"
 
 namespace glidelab::app {
 
@@ -17,7 +18,8 @@ struct BaselineGate {
   bool wanted() const { return !compare.empty() || !write.empty(); }
 };
 
-/// NotMet if something is worse.
-void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file);
+/// NotMet if something is worse. Where there is an outside estimator, it alone is judged.
+void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file,
+                       const std::optional<fit::OutsideEstimator>& outside);
 
 }  // namespace glidelab::app

@@ -10,6 +10,7 @@
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
+#include "app/shell/outside_options.h"
 #include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
@@ -31,6 +32,7 @@ struct CoverageCommand {
   double bandwidth_s = 0.0;
   double noise_m = 0.0;
   std::vector<double> levels;  ///< in per cent
+  OutsideOptions outside;
 };
 
 std::string check_level(const std::string& text) {
@@ -40,6 +42,7 @@ std::string check_level(const std::string& text) {
 }
 
 void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool noise_given) {
+  const std::optional<fit::OutsideEstimator> outside = options.outside.estimator();
   // With a noise that is given no camera looks on: it need not see the motions.
   const render::Scenario scenario =
       render::read_scenario(base::read_file(options.scenario), options.scenario,
@@ -52,6 +55,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
   validate::CoverageOptions wanted = options.coverage;
   wanted.seed = options.common.seed.value_or(scenario.seed);
   wanted.jobs = options.common.jobs;
+  wanted.outside = outside;
   if (noise_given) wanted.noise_sd_m = options.noise_m;
   if (!options.levels.empty()) wanted.levels.clear();
   for (const double percent : options.levels) wanted.levels.push_back(percent / 100.0);
@@ -124,6 +128,7 @@ void add_coverage(CLI::App& app, Command& chosen) {
                                             "Bandwidth of the phase diagram in seconds; default: chosen clip by clip")
                                ->type_name("SECONDS")
                                ->check(check_above_0);
+  add_outside_options(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/coverage-<name of the scenario file>",
                      "Seed of the noise; default: the scenario's");
   command->callback([options, bandwidth, noise, &chosen] {

@@ -7,6 +7,7 @@
 
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
+#include "app/shell/outside_options.h"
 #include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
@@ -36,6 +37,7 @@ struct SweepOptions {
   std::optional<std::uint64_t> show;
   bool many = false;
   bool dry_run = false;
+  OutsideOptions outside;
 };
 
 constexpr std::uint64_t kMostShards = 1000000000;
@@ -201,6 +203,7 @@ void fill(const SweepOptions& options, const validate::Sweep& sweep, const valid
 void sweep_command(const SweepOptions& options) {
   validate::Sweep sweep = validate::read_sweep(options.sweep);
   if (options.common.seed) sweep.seed = *options.common.seed;
+  sweep.outside = options.outside.estimator();
   if (options.show) return show_run(sweep, *options.show);
   check_size(options, sweep);
   const validate::Shard shard = read_shard(options.shard).value_or(validate::Shard{});
@@ -254,6 +257,7 @@ void add_sweep(CLI::App& app, Command& chosen) {
       ->add_flag("--dry-run", options->dry_run,
                  "Print the number of runs, the time and the disk space needed, and stop")
       ->excludes("--merge", "--show");
+  add_outside_options(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/sweep-<name of the sweep file>",
                      "Seed of the sweep; default: the file's");
   command->callback([options, &chosen] { chosen = [options] { sweep_command(*options); }; });

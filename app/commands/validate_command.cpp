@@ -7,6 +7,7 @@
 #include "app/commands/baseline_gate.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
+#include "app/shell/outside_options.h"
 #include "app/shell/run_control.h"
 #include "base/files/file_io.h"
 #include "core/analysis/preview.h"
@@ -14,6 +15,7 @@
 #include "render/scenario/scenario.h"
 #include "report/analysis/result_files.h"
 #include "report/html/gnuplot.h"
+#include "report/text/display_text.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
 
@@ -26,6 +28,7 @@ struct ValidateOptions {
   CommonOptions common;
   std::string scenario;
   BaselineGate gate;
+  OutsideOptions outside;
 };
 
 /// The trajectories also stand beside the other results, as `simulate` writes them.
@@ -37,7 +40,8 @@ void copy_trajectories(const fs::path& truth, const fs::path& dir) {
 }
 
 void validate_command(const ValidateOptions& options) {
-  if (options.gate.wanted()) return run_baseline_gate(options.gate, options.common, options.scenario);
+  const std::optional<fit::OutsideEstimator> outside = options.outside.estimator();
+  if (options.gate.wanted()) return run_baseline_gate(options.gate, options.common, options.scenario, outside);
   const render::Scenario scenario = render::read_scenario(options.scenario);
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "validate", options.scenario);
@@ -54,12 +58,17 @@ void validate_command(const ValidateOptions& options) {
   validate::ValidationOptions run;
   run.render = {.seed = options.common.seed.value_or(scenario.seed), .jobs = options.common.jobs};
   run.analysis.jobs = options.common.jobs;
+  run.outside = outside;
   const validate::ValidationResult result = validate::run_validation(scenario, experiment, truth, run, progress);
 
   report::write_analysis_files(result.results, staged.dir());
   copy_trajectories(truth, staged.dir());
   const std::string comparison = report::comparison_json(result.comparison);
   base::write_file(staged.dir() / "comparison.json", comparison);
+  if (!result.outside_json.empty()) {
+    base::write_file(staged.dir() / fmt::format("results-{}.json", report::file_name_part(outside->name)),
+                     result.outside_json);
+  }
   const std::vector<core::Preview> previews = core::previews_of({experiment}, result.results, progress, {});
   report::write_page(
       staged.dir(), "report.html",
@@ -98,6 +107,7 @@ void add_validate(CLI::App& app, Command& chosen) {
                                         "--baseline takes the stored one and refuses another")
                            ->type_name("METRES")
                            ->check(check_noise_m);
+  add_outside_options(*command, options->outside);
   add_common_options(
       *command, options->common, "glidelab-out/validate-<name of the scenario file>",
       "Seed of the noise; default: the scenario's; with --write-baseline 1, with --baseline one other than the file's");

@@ -226,6 +226,7 @@ int run(int argc, char** argv) {
   add_characterize(app, command);
   add_diagnose(app, command);
   add_blind(app, command);
+  add_challenge(app, command);
   add_new(app, command);
   add_pattern(app, command);
   add_check(app, command);

@@ -27,6 +27,7 @@ void add_laws(CLI::App& app, Command& chosen);
 void add_characterize(CLI::App& app, Command& chosen);
 void add_diagnose(CLI::App& app, Command& chosen);
 void add_blind(CLI::App& app, Command& chosen);
+void add_challenge(CLI::App& app, Command& chosen);
 void add_new(CLI::App& app, Command& chosen);
 void add_pattern(CLI::App& app, Command& chosen);
 void add_check(CLI::App& app, Command& chosen);

@@ -3,15 +3,19 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <sstream>
 #include <thread>
 
 #include "base/errors.h"
@@ -46,10 +50,9 @@ int waited_for(pid_t child, const std::string& program, const std::function<bool
   }
 }
 
-}  // namespace
-
-int run_program(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
-                std::vector<std::string> environment, const std::string& hint, const std::function<bool()>& stop) {
+/// Starts it as the header says; its process number.
+pid_t spawned(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
+              std::vector<std::string> environment, const std::string& hint) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -68,7 +71,78 @@ int run_program(const std::string& program, std::vector<std::string> arguments, 
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0)
     throw EnvironmentError(fmt::format("{} cannot be started: {}{}", program, std::strerror(error), hint));
-  return waited_for(child, program, stop);
+  return child;
+}
+
+void set_limit(pid_t child, decltype(RLIMIT_AS) which, std::uint64_t most) {
+  const rlimit limit{most, most};
+  // Fails if the child has ended, or where a lower limit stands already: both are as good.
+  static_cast<void>(::prlimit(child, which, &limit, nullptr));
+}
+
+/// Whether it has ended; it is not reaped, so that its number stays its group's.
+bool has_ended(pid_t child, const std::string& program) {
+  siginfo_t info = {};
+  if (::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 && errno != EINTR) {
+    throw EnvironmentError(fmt::format("{}: waiting for it: {}", program, std::strerror(errno)));
+  }
+  return info.si_pid == child;
+}
+
+}  // namespace
+
+int run_program(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
+                std::vector<std::string> environment, const std::string& hint, const std::function<bool()>& stop) {
+  return waited_for(spawned(program, std::move(arguments), log, std::move(environment), hint), program, stop);
+}
+
+ProgramEnd run_limited(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
+                       const ProgramLimits& limits, const std::function<bool()>& stop) {
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  constexpr Seconds kPatience(0.5), kShortestLook(0.001), kLongestLook(0.02);
+  const auto start = Clock::now();
+  const pid_t child = spawned(program, std::move(arguments), log, {}, {});
+  set_limit(child, RLIMIT_AS, limits.memory_bytes);
+  set_limit(child, RLIMIT_FSIZE, limits.memory_bytes);
+  set_limit(child, RLIMIT_CORE, 0);
+  const double cores = std::max(1U, std::thread::hardware_concurrency());
+  set_limit(child, RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.wall_s * cores)) + 1);
+  ProgramEnd end;
+  Clock::time_point asked;
+  while (!has_ended(child, program)) {
+    const auto now = Clock::now();
+    if (end.by == ProgramEndedBy::itself) {
+      if (stop && stop()) end.by = ProgramEndedBy::request;
+      if (Seconds(now - start).count() > limits.wall_s) end.by = ProgramEndedBy::time;
+      if (end.by != ProgramEndedBy::itself) {
+        ::kill(-child, SIGTERM);
+        asked = now;
+      }
+    } else if (now - asked > kPatience) {
+      ::kill(-child, SIGKILL);
+    }
+    // Looks at a program that soon ends often, and at a long one seldom.
+    std::this_thread::sleep_for(std::clamp(Seconds(now - start) / 20.0, kShortestLook, kLongestLook));
+  }
+  ::kill(-child, SIGKILL);
+  while (::waitpid(child, &end.status, 0) < 0 && errno == EINTR) {
+  }
+  end.wall_s = Seconds(Clock::now() - start).count();
+  return end;
+}
+
+bool is_program(const std::string& name) {
+  const auto runs = [](const std::filesystem::path& file) {
+    return std::filesystem::is_regular_file(file) && ::access(file.c_str(), X_OK) == 0;
+  };
+  if (name.find('/') != std::string::npos) return runs(name);
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "/bin:/usr/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (!name.empty() && runs(std::filesystem::path(folder.empty() ? "." : folder) / name)) return true;
+  }
+  return false;
 }
 
 std::string how_it_failed(int status) {

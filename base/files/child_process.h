@@ -4,6 +4,7 @@
 /// interrupt at the terminal reaches this program alone, which then decides.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -18,6 +19,29 @@ namespace glidelab::base {
 int run_program(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
                 std::vector<std::string> environment = {}, const std::string& hint = {},
                 const std::function<bool()>& stop = {});
+
+/// What a program that nobody here wrote may take at most.
+struct ProgramLimits {
+  double wall_s = 60.0;
+  std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< address space of a process, and size of a file it writes
+};
+
+enum class ProgramEndedBy { itself, request, time };
+
+struct ProgramEnd {
+  int status = 0;  ///< of waitpid
+  ProgramEndedBy by = ProgramEndedBy::itself;
+  double wall_s = 0.0;
+};
+
+/// As run_program(), within limits: processor time is wall_s on every core, and when wall_s is over the group is ended
+/// as by `stop`. Processes that it leaves behind in its group are ended with it. The limits of memory and processor
+/// time are set right after the start (prlimit(2)).
+ProgramEnd run_limited(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
+                       const ProgramLimits& limits, const std::function<bool()>& stop = {});
+
+/// Whether run_program() would find it: an executable file, looked up in PATH if the name has no slash.
+bool is_program(const std::string& name);
 
 /// "" if it ended with status 0, else how it ended.
 std::string how_it_failed(int status);

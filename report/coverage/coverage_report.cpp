@@ -11,13 +11,14 @@
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
+#include "report/text/outside_text.h"
 
 namespace glidelab::report {
 
 Plot coverage_plot(const validate::Coverage& coverage) {
   std::string tics, script(kFrame);
   std::vector<PlotData> data;
-  const std::vector<std::string> estimators = validate::coverage_estimators();
+  const std::vector<std::string> estimators = validate::coverage_estimators(coverage.outside);
   for (std::size_t e = 0; e < estimators.size(); ++e) data.push_back({fmt::format("e{}", e), {}});
   double row_number = 0.0, lowest = 90.0;
   for (const validate::CoverageRow& row : coverage.rows) {
@@ -51,7 +52,7 @@ Plot reliability_plot(const validate::Coverage& coverage) {
   // A column of the plot for each level: over the level itself 90, 95 and 99 % would lie over each other.
   PlotData band{"band", {}}, stated{"stated", {}};
   std::string tics;
-  const std::vector<std::string> estimators = validate::coverage_estimators();
+  const std::vector<std::string> estimators = validate::coverage_estimators(coverage.outside);
   for (std::size_t i = 0; i < coverage.levels.size(); ++i) {
     const double level = coverage.levels[i], x = static_cast<double>(i);
     const validate::CoverageBand of = validate::band_of(level, coverage.replicates);
@@ -286,6 +287,7 @@ std::string coverage_json(const validate::Coverage& coverage) {
     put(object, "efficiency", row.efficiency, "no bound, or no value");
     document["quantities"].push_back(std::move(object));
   }
+  if (coverage.outside) document["outside"] = outside_json(*coverage.outside);
   return json_text(document);
 }
 
@@ -311,7 +313,10 @@ std::string coverage_text(const validate::Coverage& coverage) {
       levels.back().push_back(k < row.levels.size() ? fmt::format("{:.1f} %", 100.0 * row.levels[k].coverage) : "–");
     }
   }
-  return text_table(rows, 3) + (coverage.levels.empty() ? std::string() : fmt::format("\n{}", text_table(levels, 3)));
+  std::string text =
+      text_table(rows, 3) + (coverage.levels.empty() ? std::string() : fmt::format("\n{}", text_table(levels, 3)));
+  if (coverage.outside) text += "\n" + outside_text(*coverage.outside) + "\n";
+  return text;
 }
 
 Page coverage_page(const std::string& title, const validate::Coverage& coverage) {
@@ -346,6 +351,7 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
       "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
       "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the fraction "
       "of 95 % intervals that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
+  if (coverage.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*coverage.outside)));
   return page(title, body);
 }
 

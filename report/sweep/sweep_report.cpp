@@ -11,6 +11,7 @@
 #include "report/sweep/sweep_plots.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
+#include "report/text/outside_text.h"
 
 namespace glidelab::report {
 namespace {
@@ -215,6 +216,7 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       base::number_text(summary.cpu_s, 3));
   for (const std::string& failure : summary.failures)
     body += fmt::format("<p class=\"note\">{}</p>\n", escape(failure));
+  if (summary.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*summary.outside)));
   body += sweep_meaning(summary) + mass_study_section(summary.masses);
   body += "<h2>All runs</h2>\n" + overall_table(summary);
   body +=
@@ -242,6 +244,7 @@ std::string sweep_text(const SweepSummary& summary) {
   std::string text = text_table(rows, 2);
   text += fmt::format("{} of {} runs, {} failed\n", summary.runs, summary.planned, summary.failed);
   for (const std::string& failure : summary.failures) text += fmt::format("  {}\n", failure);
+  if (summary.outside) text += outside_text(*summary.outside) + "\n";
   return text;
 }
 
@@ -253,6 +256,7 @@ std::string sweep_json(const SweepSummary& summary) {
   document["planned"] = summary.planned;
   document["failed"] = summary.failed;
   document["failures"] = summary.failures;
+  if (summary.outside) document["outside"] = outside_json(*summary.outside);
   document["overall"] = Json::array();
   for (const validate::Series& series : summary.overall) {
     Json object = statistics_json(series.groups.front().statistics);

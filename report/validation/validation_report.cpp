@@ -18,6 +18,7 @@
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
+#include "report/text/outside_text.h"
 
 namespace glidelab::report {
 
@@ -58,6 +59,7 @@ std::string comparison_json(const validate::Comparison& comparison) {
   document["frames"] = comparison.frames;
   document["detected"] = comparison.detected;
   put(document, "wall_s", comparison.wall_s);
+  if (comparison.outside) document["outside"] = outside_json(*comparison.outside);
   return json_text(document);
 }
 
@@ -73,19 +75,20 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
   std::vector<std::string> order;
   std::string tics;
   std::map<std::pair<std::string, std::string>, double> row_of;  // configuration and quantity
-  std::map<std::string, bool> open;                              // by the name of the data
+  std::map<std::string, int> marks;                              // gnuplot's point types, by the name of the data
+  constexpr int kDisc = 7, kCircle = 6, kSquare = 4;
   double widest = 3.0;
   for (const validate::QuantityComparison& quantity : comparison.quantities) {
     if (!quantity.error || !quantity.sd || !(*quantity.sd > 0.0)) continue;
     const fit::Estimator* const estimator = fit::find_estimator(quantity.estimator);
-    const bool whole_motion = estimator != nullptr && !estimator->of_lines;
-    const std::string kind = quantity.quantity + (whole_motion ? " whole" : "");
+    const int mark = estimator == nullptr ? kSquare : estimator->of_lines ? kDisc : kCircle;
+    const std::string kind = fmt::format("{} {}", quantity.quantity, mark);
     if (!by_quantity.contains(kind)) {
       order.push_back(kind);
       by_quantity[kind].name = fmt::format("q{}", order.size());
       by_quantity[kind].columns = {fmt::format("error of {} / standard deviation", symbol_of(quantity.quantity)),
                                    "row"};
-      open[kind] = whole_motion;
+      marks[kind] = mark;
     }
     const auto [place, added] =
         row_of.try_emplace({quantity.configuration, quantity.quantity}, static_cast<double>(row_of.size() + 1));
@@ -110,12 +113,13 @@ std::vector<Plot> error_plot(const validate::Comparison& comparison) {
   for (std::size_t n = 0; n < order.size(); ++n) {
     data.push_back(by_quantity[order[n]]);
     script += fmt::format("{}${} using 1:2 with points pt {} ps 0.9 lw 1.5 lc rgb '{}'", n == 0 ? "" : ", ",
-                          data.back().name, open[order[n]] ? 6 : 7, color(n % 4));
+                          data.back().name, marks[order[n]], color(n % 4));
   }
   const int height = std::max(330, 80 + static_cast<int>(row_of.size()) * 22);
   return {{Drawing{script, data, {480, height}},
            "Error of each recovered value in units of its own standard deviation; about 95 % should lie within the "
-           "band. Filled: lines of the phase diagram; open: fit of the whole motion",
+           "band. Filled: lines of the phase diagram; open: fit of the whole motion" +
+               (comparison.outside ? fmt::format("; squares: {}", comparison.outside->name) : std::string()),
            "Errors in units of their standard deviation"}};
 }
 
@@ -338,6 +342,7 @@ std::string comparison_text(const validate::Comparison& comparison) {
   text += restitution_text(comparison.restitution);
   text += fmt::format("marker found in {} of {} frames\ntime to render and analyse: {:.1f} s\n", comparison.detected,
                       comparison.frames, comparison.wall_s);
+  if (comparison.outside) text += outside_text(*comparison.outside) + "\n";
   return text;
 }
 
@@ -379,6 +384,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
       "<p class=\"soft\">sd is the standard deviation that the analysis states, camera and scale included; least sd is "
       "the smallest that the position noise allows (Cramér-Rao bound); efficiency is (least sd / sd due to position "
       "noise)².</p>\n";
+  if (comparison.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*comparison.outside)));
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);
   body += recovered_section(results);

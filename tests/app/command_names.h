@@ -6,8 +6,8 @@
 
 namespace glidelab::tests {
 
-inline const std::vector<std::string> kCommands = {"simulate", "render",  "analyze", "validate",     "coverage",
-                                                   "sweep",    "require", "laws",    "characterize", "diagnose",
-                                                   "blind",    "new",     "pattern", "check",        "explore"};
+inline const std::vector<std::string> kCommands = {
+    "simulate",     "render",   "analyze", "validate", "coverage", "sweep", "require", "laws",
+    "characterize", "diagnose", "blind",   "new",      "pattern",  "check", "explore", "challenge"};
 
 }  // namespace glidelab::tests

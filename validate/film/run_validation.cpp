@@ -1,11 +1,13 @@
 #include "validate/film/run_validation.h"
 
-#include <chrono>
-
 #include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
 
 #include "base/errors.h"
 #include "fit/estimators.h"
+#include "validate/tracks/outside_runs.h"
 #include "validate/truth/cramer_rao.h"
 #include "validate/truth/truth_folder.h"
 
@@ -34,12 +36,22 @@ ValidationResult run_validation(const render::Scenario& scenario, const std::fil
   render::render_experiment(scenario, experiment_dir, truth_dir, options.render, progress);
   ValidationResult result;
   result.results = core::analyze({experiment_dir}, options.analysis, progress);
+  std::optional<fit::OutsideOutcome> outside;
+  if (options.outside) {
+    progress(options.outside->name, 0.0);
+    outside = run_outside_on_film(*options.outside, experiment_dir, result.results);
+  }
   const Truth truth = read_truth(truth_dir);
   result.comparison = compare(result.results, truth);
   std::vector<QuantityComparison> quantities;
   for (const core::AnalysisResults& by :
        fit::estimate_each(fit::judged_estimators(), [&](core::LineMethod) { return result.results; })) {
     quantities = join_estimators(std::move(quantities), compare_quantities(by, truth));
+  }
+  if (outside) {
+    quantities = join_estimators(std::move(quantities), compare_quantities(outside->results, truth));
+    result.comparison.outside = fit::tally_of(*options.outside, {outside->run});
+    result.outside_json = std::move(outside->json);
   }
   result.comparison.quantities = with_bounds(
       std::move(quantities), least_sds(truth, noise_of(result.results, truth), scenario.motion.gravity_m_s2));

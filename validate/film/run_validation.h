@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "base/long_work.h"
 #include "core/analysis/analyze.h"
 #include "core/result/results.h"
+#include "fit/outside/outside_estimator.h"
 #include "render/film/render_experiment.h"
 #include "validate/truth/comparison.h"
 
@@ -14,15 +17,18 @@ namespace glidelab::validate {
 struct ValidationOptions {
   render::RenderOptions render;
   core::AnalysisOptions analysis;
+  std::optional<fit::OutsideEstimator> outside = {};
 };
 
 struct ValidationResult {
   core::AnalysisResults results;
-  Comparison comparison;  ///< with wall_s of rendering, analysis and comparison
+  Comparison comparison;          ///< with wall_s of rendering, analysis and comparison
+  std::string outside_json = {};  ///< results.json of the outside estimator; empty where there is none or it failed
 };
 
 /// Renders into `experiment_dir` and `truth_dir` (both exist and are empty), analyses the first, and only then reads
-/// the second. Throws what rendering and analysis throw.
+/// the second. An outside estimator gets a copy of the first (outside_runs.h). Throws what rendering and analysis
+/// throw.
 ValidationResult run_validation(const render::Scenario& scenario, const std::filesystem::path& experiment_dir,
                                 const std::filesystem::path& truth_dir, const ValidationOptions& options,
                                 const base::Progress& progress = base::no_progress);

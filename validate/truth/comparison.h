@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result/results.h"
+#include "fit/outside/outside_tally.h"
 #include "validate/truth/cramer_rao.h"
 #include "validate/truth/truth_folder.h"
 
@@ -59,7 +60,8 @@ struct Comparison {
   RestitutionComparison restitution;
   std::size_t frames = 0;
   std::size_t detected = 0;
-  double wall_s = 0.0;  ///< of simulation, rendering and analysis; set by who measures it
+  double wall_s = 0.0;                            ///< of simulation, rendering and analysis; set by who measures it
+  std::optional<fit::OutsideTally> outside = {};  ///< how an outside estimator's run went
 };
 
 /// The quantities of one estimator, configuration by configuration: K/m, mu, alpha, v_lim.

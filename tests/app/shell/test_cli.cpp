@@ -115,7 +115,7 @@ TEST_CASE("an unknown command is named together with those that exist") {
   const tests::ProcessResult result = tests::glidelab({"guess", "folder"});
   CHECK(result.err.find("unknown command \"guess\"") != std::string::npos);
   CHECK(result.err.find("simulate, render, analyze, validate, coverage, sweep, require, laws, characterize, diagnose, "
-                        "blind, new, pattern, check, explore") != std::string::npos);
+                        "blind, challenge, new, pattern, check, explore") != std::string::npos);
 }
 
 TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {
@@ -124,6 +124,7 @@ TEST_CASE("an input that is not there is status 1 and names the file, whatever t
   for (const std::string& command : kCommands) {
     if (!takes_an_input(command)) continue;
     std::vector<std::string> arguments = {command, (temp / name).string()};
+    if (command == "challenge") arguments = {command, "score", (temp / name).string(), "answers"};
     if (command == "coverage") arguments.insert(arguments.end(), {"--noise-m", "1e-5"});
     if (command == "require") arguments.insert(arguments.end(), {"--target", "mu=0.001"});
     const tests::ProcessResult result = tests::glidelab(arguments, temp.path());

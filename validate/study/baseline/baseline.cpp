@@ -119,7 +119,7 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
   base::for_each_parallel(options.runs, options.jobs, [&](std::size_t run) {
     const MadeTracks made = with_noise(clean, options.noise_m, derived_seed(options.seed, run));
     const std::vector<core::AnalysisResults> all = analyze(made);
-    smoothed[run] = smoothed_clips(all.front(), made.truth);
+    if (!all.front().clips.empty()) smoothed[run] = smoothed_clips(all.front(), made.truth);
     for (const core::AnalysisResults& results : all) {
       for (QuantityComparison& q : with_bounds(compare_quantities(results, made.truth), bounds)) {
         runs[run].push_back(std::move(q));
@@ -128,7 +128,8 @@ Baseline measure_baseline(const render::Scenario& scenario, const std::string& s
     progress("runs", static_cast<double>(++done) / static_cast<double>(options.runs));
   });
   baseline.records = records_of(runs);
-  baseline.smoothing = smoothing_of(clean.truth, smoothed);
+  const auto none = [](const auto& clips) { return clips.empty(); };
+  if (!std::all_of(smoothed.begin(), smoothed.end(), none)) baseline.smoothing = smoothing_of(clean.truth, smoothed);
   return baseline;
 }
 
@@ -143,6 +144,7 @@ std::string baseline_json(const Baseline& baseline) {
   document["noise_m"] = baseline.noise_m;
   document["runs"] = baseline.runs;
   if (baseline.seed) document["seed"] = *baseline.seed;
+  document["records"] = document["smoothing"] = nlohmann::ordered_json::array();
   for (const ErrorRecord& record : baseline.records) {
     document["records"].push_back({{"configuration", record.configuration},
                                    {"estimator", record.estimator},

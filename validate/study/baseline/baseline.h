@@ -53,7 +53,8 @@ struct BaselineOptions {
   int jobs = 1;
 };
 
-/// All results of one run's tracks, one for each estimator.
+/// All results of one run's tracks, one for each estimator. Without clips in the first one nothing is said of
+/// smoothing.
 using AnalyzeTracks = std::function<std::vector<core::AnalysisResults>(const MadeTracks&)>;
 
 /// By each of fit::judged_estimators().

@@ -181,39 +181,52 @@ std::uint64_t rounded_up(double runs) {
   return static_cast<std::uint64_t>(std::ceil(runs));
 }
 
+/// Answers then and now with which errors `factor` times as large are found.
+std::uint64_t answers_for(double factor, double z, const ErrorRecord& before) {
+  const double needed = z * before.deviation_sd / ((factor - 1.0) * before.deviation);
+  return rounded_up(needed * needed * (factor * factor + 1.0));
+}
+
+/// The same of a logarithm with this standard deviation.
+std::uint64_t logs_for(double factor, double z, double sd) {
+  const double needed = z * sd / std::log(factor);
+  return rounded_up(2.0 * needed * needed);
+}
+
 }  // namespace
 
 std::vector<Detectable> detectable(const Baseline& then, const Baseline& now, const BaselineComparison& comparison) {
   std::vector<Detectable> all;
   const double level = comparison.significance / static_cast<double>(comparison.tests);
-  const double z = z_above(level) + z_above(1.0 - kDetectionProbability),
-               z_two_sided = z_above(0.5 * level) + z_above(1.0 - kDetectionProbability);
+  const double found = z_above(1.0 - kDetectionProbability), small_found = z_above(1.0 - kSmallDetection);
+  const double one_sided = z_above(level), two_sided = z_above(0.5 * level), z = one_sided + found;
   for (const ErrorRecord& before : then.records) {
-    const auto found = std::find_if(now.records.begin(), now.records.end(), [&](const ErrorRecord& record) {
+    const auto same_now = std::find_if(now.records.begin(), now.records.end(), [&](const ErrorRecord& record) {
       return record.configuration == before.configuration && record.estimator == before.estimator &&
              record.quantity == before.quantity;
     });
-    if (found == now.records.end() || before.answers < 2 || found->answers < 2 || !(before.deviation > 0.0)) continue;
-    const auto n = static_cast<double>(found->answers), m = static_cast<double>(before.answers);
-    Detectable of{before.configuration, before.estimator, before.quantity, {}, {}, 0};
+    if (same_now == now.records.end() || before.answers < 2 || same_now->answers < 2 || !(before.deviation > 0.0))
+      continue;
+    const auto n = static_cast<double>(same_now->answers), m = static_cast<double>(before.answers);
+    Detectable of{before.configuration, before.estimator, before.quantity, {}, {}, 0, 0};
     of.factor = factor_of(before.deviation, before.deviation_sd, z, n, m);
     of.bias = z * before.sd * std::sqrt(1.0 / n + 1.0 / m);
-    const double needed = z * before.deviation_sd / ((kWeakFactor - 1.0) * before.deviation);
-    of.runs_for_weak = rounded_up(needed * needed * (kWeakFactor * kWeakFactor + 1.0));
+    of.runs_for_weak = answers_for(kWeakFactor, z, before);
+    of.runs_for_small = answers_for(kSmallFactor, one_sided + small_found, before);
     all.push_back(std::move(of));
   }
   for (const SmoothingRecord& before : then.smoothing) {
-    const auto found = std::find_if(now.smoothing.begin(), now.smoothing.end(),
-                                    [&](const SmoothingRecord& record) { return record.clip == before.clip; });
-    if (found == now.smoothing.end() || before.runs < 2 || found->runs < 2) continue;
-    const double root = std::sqrt(1.0 / static_cast<double>(found->runs) + 1.0 / static_cast<double>(before.runs));
-    const auto add = [&](const char* quantity, double sd, double z_of) {
-      const double needed = z_of * sd / std::log(kWeakFactor);
-      all.push_back({before.clip, core::name_of(core::LineMethod::ordinary), quantity, std::exp(z_of * sd * root),
-                     std::nullopt, rounded_up(2.0 * needed * needed)});
+    const auto same_now = std::find_if(now.smoothing.begin(), now.smoothing.end(),
+                                       [&](const SmoothingRecord& record) { return record.clip == before.clip; });
+    if (same_now == now.smoothing.end() || before.runs < 2 || same_now->runs < 2) continue;
+    const double root = std::sqrt(1.0 / static_cast<double>(same_now->runs) + 1.0 / static_cast<double>(before.runs));
+    const auto add = [&](const char* quantity, double sd, double z_level) {
+      all.push_back({before.clip, core::name_of(core::LineMethod::ordinary), quantity,
+                     std::exp((z_level + found) * sd * root), std::nullopt, logs_for(kWeakFactor, z_level + found, sd),
+                     logs_for(kSmallFactor, z_level + small_found, sd)});
     };
-    add("a", before.log_a_error_sd, z);
-    add("bandwidth", before.log_bandwidth_sd, z_two_sided);
+    add("a", before.log_a_error_sd, one_sided);
+    add("bandwidth", before.log_bandwidth_sd, two_sided);
   }
   return all;
 }

@@ -51,14 +51,17 @@ BaselineComparison compare_baselines(const Baseline& then, const Baseline& now);
 inline constexpr double kDetectionProbability = 0.9;
 /// A gate that detects only errors larger than this many times misses too much.
 inline constexpr double kWeakFactor = 1.5;
+/// What a gate should detect nearly always: errors this many times as large, with this probability.
+inline constexpr double kSmallFactor = 1.1, kSmallDetection = 0.95;
 
 /// How small a worsening a comparison with a baseline still detects, of one quantity.
 struct Detectable {
   std::string configuration, estimator,
-      quantity;                     ///< of smoothing: the clip, the default estimator, "a" or "bandwidth"
-  std::optional<double> factor;     ///< errors as many times as large; nothing if these runs find no factor at all
-  std::optional<double> bias;       ///< in the quantity's unit; of smoothing none
-  std::uint64_t runs_for_weak = 0;  ///< then and now, with which a factor of kWeakFactor would be found
+      quantity;                      ///< of smoothing: the clip, the default estimator, "a" or "bandwidth"
+  std::optional<double> factor;      ///< errors as many times as large; nothing if these runs find no factor at all
+  std::optional<double> bias;        ///< in the quantity's unit; of smoothing none
+  std::uint64_t runs_for_weak = 0;   ///< then and now, with which a factor of kWeakFactor would be found
+  std::uint64_t runs_for_small = 0;  ///< the same for kSmallFactor, with probability kSmallDetection
   bool weak() const { return !factor || *factor > kWeakFactor; }
 };
 

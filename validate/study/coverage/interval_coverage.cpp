@@ -19,6 +19,7 @@
 #include "fit/estimators.h"
 #include "validate/random_use.h"
 #include "validate/tracks/made_tracks.h"
+#include "validate/tracks/outside_runs.h"
 #include "validate/truth/binomial.h"
 #include "validate/truth/cramer_rao.h"
 
@@ -111,9 +112,10 @@ void summarise(const std::vector<std::vector<Outcome>>& outcomes, std::size_t pl
 
 }  // namespace
 
-std::vector<std::string> coverage_estimators() {
+std::vector<std::string> coverage_estimators(const std::optional<fit::OutsideTally>& outside) {
   std::vector<std::string> names = fit::estimator_names();
   names.emplace_back(kNaiveLines);
+  if (outside) names.push_back(outside->name);
   return names;
 }
 
@@ -147,6 +149,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
   const std::vector<LeastSd> bounds = least_sds(clean.truth, noise_sd_m, clean.gravity_m_s2);
   const std::size_t configurations = clean.truth.configurations.size();
   std::vector<std::vector<Outcome>> outcomes(options.replicates);
+  std::vector<fit::OutsideRun> outside_runs(options.outside ? options.replicates : 0);
   std::atomic<std::size_t> done = 0;
   base::for_each_parallel(options.replicates, options.jobs, [&](std::size_t r) {
     const MadeTracks noisy = with_noise(make_tracks(with_other_clock(scenario, options.seed + r), options.seed + r),
@@ -156,8 +159,13 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
       return analyze_tracks(noisy, core::MotionOptions{.bandwidth_s = options.bandwidth_s, .lines = lines});
     });
     results.push_back(with_naive_lines(results.front()));
-    const std::vector<std::size_t> places = places_of(clean.truth, results.front());
+    if (options.outside) {
+      fit::OutsideOutcome outcome = run_outside_on_tracks(*options.outside, noisy);
+      outside_runs[r] = std::move(outcome.run);
+      results.push_back(std::move(outcome.results));
+    }
     for (const core::AnalysisResults& by : results) {
+      const std::vector<std::size_t> places = places_of(clean.truth, by);
       for (std::size_t c = 0; c < configurations; ++c) {
         for (const core::QuantityName& quantity : core::kQuantities)
           outcomes[r].push_back(core::value_of(by.configurations[places[c]], quantity.which).estimate);
@@ -165,8 +173,9 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
     }
     progress("replicates", static_cast<double>(++done) / static_cast<double>(options.replicates));
   });
-  Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, options.levels, {}};
-  const std::vector<std::string> estimators = coverage_estimators();
+  Coverage coverage{options.replicates, noise_sd_m, !options.noise_sd_m, options.levels, {}, {}};
+  if (options.outside) coverage.outside = fit::tally_of(*options.outside, outside_runs);
+  const std::vector<std::string> estimators = coverage_estimators(coverage.outside);
   for (std::size_t c = 0; c < configurations; ++c) {
     for (std::size_t e = 0; e < estimators.size(); ++e) {
       for (std::size_t q = 0; q < core::kQuantities.size(); ++q) {

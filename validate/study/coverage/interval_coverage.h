@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/long_work.h"
+#include "fit/outside/outside_estimator.h"
 #include "render/scenario/scenario.h"
 #include "validate/study/coverage/naive_lines.h"
 
@@ -28,6 +29,7 @@ struct CoverageOptions {
   std::vector<double> levels = {0.50, 0.68, 0.90, 0.95, 0.99};  ///< of the intervals that are counted
   std::uint64_t seed = 1;
   int jobs = 1;
+  std::optional<fit::OutsideEstimator> outside = {};  ///< counted as well
 };
 
 /// Intervals of one level; `determined` of its row is n.
@@ -39,8 +41,8 @@ struct LevelCount {
   double p_value = 1.0;              ///< of a count as far from the level, two-sided
 };
 
-/// All that are counted, in the order of their rows: fit/estimators.h, and the naive lines.
-std::vector<std::string> coverage_estimators();
+/// All that are counted, in the order of their rows: fit/estimators.h, the naive lines, and an outside one.
+std::vector<std::string> coverage_estimators(const std::optional<fit::OutsideTally>& outside = {});
 
 /// One quantity of one configuration by one of coverage_estimators().
 struct CoverageRow {
@@ -68,6 +70,7 @@ struct Coverage {
   bool camera_noise = false;       ///< as the camera allows, not as given
   std::vector<double> levels = {};
   std::vector<CoverageRow> rows;
+  std::optional<fit::OutsideTally> outside = {};
 };
 
 /// InputError for a noise or a number of replicates that is not above 0, for a level that is not between 0 and 1 or

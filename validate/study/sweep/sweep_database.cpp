@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -27,6 +28,12 @@ std::string shorten(const std::string& text) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* kEstimatorEntry = "estimator";  // only of a sweep that judges one of the command line's
+
+}  // namespace
+
 SweepEntries entries_of(const Sweep& sweep, const std::string& version) {
   SweepEntries entries = {{"format", "2"},
                           {"program version", version},
@@ -37,6 +44,10 @@ SweepEntries entries_of(const Sweep& sweep, const std::string& version) {
                           {"runs", fmt::format("{}", run_count(sweep))}};
   for (std::size_t i = 0; i < sweep.camera_files.size(); ++i) {
     entries.emplace_back(fmt::format("camera file {}", i + 1), sweep.camera_files[i]);
+  }
+  if (sweep.outside) {
+    entries.emplace_back(kEstimatorEntry, sweep.outside->name);
+    entries.emplace_back("estimator's command", fmt::format("{}", fmt::join(sweep.outside->words, " ")));
   }
   return entries;
 }
@@ -62,6 +73,12 @@ void check_entries(Database& database, const SweepEntries& expected) {
         database.file().string(), 0, wanted.first, entry == found.end() ? "nothing" : shorten(entry->second),
         fmt::format("{}: a database is continued only by the sweep and the program that began it; give another --out",
                     wanted.second.find('\n') == std::string::npos ? shorten(wanted.second) : "that of this sweep")});
+  }
+  const auto of_estimator = [](const auto& pair) { return pair.first == kEstimatorEntry; };
+  const auto other = std::ranges::find_if(found, of_estimator);
+  if (other != found.end() && std::ranges::none_of(expected, of_estimator)) {
+    throw base::InputError(base::Issue{database.file().string(), 0, kEstimatorEntry, other->second,
+                                       "none: a sweep that began with --estimator-command goes on with it"});
   }
 }
 

@@ -10,6 +10,7 @@
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
 #include "validate/tracks/oracle_bandwidth.h"
+#include "validate/tracks/outside_runs.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
@@ -122,6 +123,9 @@ void RunWorker::fill(RunRecord& record) {
     if (estimator == nullptr || estimator->of_lines) add_clips(results, made.truth, analysis.name(), record.clips);
     add_quantities(results, made.truth, least, analysis.name(), record.quantities);
   }
+  if (!sweep_.outside) return;
+  const fit::OutsideOutcome outcome = run_outside_on_tracks(*sweep_.outside, made);
+  add_quantities(outcome.results, made.truth, least, sweep_.outside->name, record.quantities);
 }
 
 RunRecord RunWorker::evaluate(std::uint64_t run) {

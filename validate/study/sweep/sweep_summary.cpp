@@ -198,6 +198,30 @@ std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Databa
 
 }  // namespace
 
+namespace {
+
+/// A failed run left every quantity undetermined for the same reason: those of one are counted.
+fit::OutsideTally outside_tally(const fit::OutsideEstimator& estimator, Database& database) {
+  fit::OutsideTally tally = fit::tally_of(estimator, {});
+  SqlStatement runs = database.prepare("SELECT count(DISTINCT run) FROM result WHERE estimator = ?1");
+  runs.bind(1, std::string_view(estimator.name));
+  runs.step();
+  tally.runs = static_cast<std::size_t>(runs.integer(0));
+  SqlStatement failed = database.prepare(
+      "SELECT count(DISTINCT run), min(run), why FROM result WHERE estimator = ?1 AND substr(why, 1, length(?2)) = ?2");
+  for (std::size_t i = 0; i < fit::kOutsideFailures.size(); ++i) {
+    const std::string begins = fit::why_begins(fit::kOutsideFailures[i]);
+    failed.bind(1, std::string_view(estimator.name)).bind(2, std::string_view(begins));
+    if (failed.step() && failed.integer(0) > 0) {
+      tally.failures[i] = {static_cast<std::size_t>(failed.integer(0)), failed.text(2).substr(begins.size() + 2)};
+    }
+    failed.reset();
+  }
+  return tally;
+}
+
+}  // namespace
+
 SweepSummary summarize(const Sweep& sweep, Database& database) {
   SweepSummary summary;
   summary.name = sweep.name;
@@ -210,6 +234,7 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
   SqlStatement timing = database.prepare("SELECT total(wall_s) FROM timing");
   timing.step();
   summary.cpu_s = timing.number(0);
+  if (sweep.outside) summary.outside = outside_tally(*sweep.outside, database);
   std::vector<std::string> no_words;
   summary.overall = series_of(database, {}, no_words);
   const ConfigurationCounts with_truth = configurations_of(database);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fit/outside/outside_tally.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/mass_study.h"
 #include "validate/study/sweep/sweep_database.h"
@@ -88,6 +89,7 @@ struct SweepSummary {
   std::vector<AxisSummary> axes;
   std::vector<AccelerationError> accelerations;
   MassStudy masses;
+  std::optional<fit::OutsideTally> outside = {};  ///< without times: each run's stands in `timing`, with all else
 };
 
 /// Of the runs that are there. InputError, EnvironmentError as of the database (sqlite.h).

@@ -204,3 +204,20 @@ TEST_CASE("A quantity or a clip that only one of two baselines has is refused by
   CHECK_THROWS_WITH(validate::compare_baselines(without_clip, whole),
                     Catch::Matchers::Contains(whole.smoothing.front().clip + ": found nothing in the baseline"));
 }
+
+TEST_CASE(
+    "An estimator that tells nothing of clips is judged by its quantities alone, and its baseline is read again") {
+  const auto unbiased = [](const validate::MadeTracks& made) {
+    core::AnalysisResults results = validate::analyze_as_judged(made).front();
+    results.clips.clear();
+    return std::vector<core::AnalysisResults>{results};
+  };
+  const Baseline first = measured(1, unbiased), second = measured(2, unbiased);
+  CHECK(first.smoothing.empty());
+  CHECK(validate::compare_baselines(first, second).tests == 16);  // 4 quantities, 4 tests
+  const tests::TempDir temp;
+  base::write_file(temp / "baseline.json", validate::baseline_json(first));
+  const Baseline again = validate::read_baseline(temp / "baseline.json");
+  CHECK(again.smoothing.empty());
+  CHECK(validate::baseline_json(again) == validate::baseline_json(first));
+}

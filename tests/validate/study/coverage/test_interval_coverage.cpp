@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "base/files/file_io.h"
 #include "test_paths.h"
 #include "tests/catch.h"
+#include "tests/temp_dir.h"
 #include "validate/truth/binomial.h"
 
 using namespace glidelab;
@@ -136,4 +138,32 @@ TEST_CASE("rows fail where a level's count is far from it, not where it is near,
   REQUIRE(wide.size() == 1);
   CHECK(wide[0].row.estimator == "phase-diagram-gls");
   CHECK(wide[0].at.level == 0.95);
+}
+
+TEST_CASE("an outside estimator is counted beside the others, with the runs that failed") {
+  // It answers K/m alone, with an interval that holds every truth.
+  const tests::TempDir temp;
+  base::write_file(
+      temp / "mine.sh",
+      R"(echo '{"format": 1, "configurations": [{"clips": ["m1-up", "m1-down"], "k_over_m_1_s": {"value": 3, "sd": 5},
+ "mu": null, "alpha_deg": null, "v_lim_m_s": null}]}' > "$2/results.json")");
+  CoverageOptions options{.replicates = 3, .noise_sd_m = 5e-5, .seed = 3, .jobs = 2};
+  options.outside = fit::outside_estimator("sh " + (temp / "mine.sh").string() + " {folder} {out}");
+  const Coverage coverage = measure_coverage(one_mass(), options);
+  REQUIRE(coverage.rows.size() == 20);
+  CHECK(row_of(coverage, "mine", "k_over_m_1_s").determined == 3);
+  CHECK(row_of(coverage, "mine", "k_over_m_1_s").covered == 3);
+  CHECK(row_of(coverage, "mine", "k_over_m_1_s").stated_sd == Approx(5.0).epsilon(1e-12));
+  CHECK(row_of(coverage, "mine", "mu").determined == 0);
+  REQUIRE(coverage.outside);
+  CHECK(coverage.outside->runs == 3);
+  CHECK(coverage.outside->failed() == 0);
+
+  options.outside = fit::outside_estimator("sh -c 'exit 3' mine {folder} {out}");
+  const Coverage failed = measure_coverage(one_mass(), options);
+  CHECK(failed.outside->failures[0].count == 3);
+  CHECK(failed.outside->failures[0].first == "exit status 3");
+  CHECK(row_of(failed, "mine", "k_over_m_1_s").determined == 0);
+  // The others are what they are without it.
+  CHECK(row_of(failed, "trajectory", "mu").bias == row_of(coverage, "trajectory", "mu").bias);
 }

@@ -12,6 +12,7 @@
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
 #include "validate/study/sweep/run_sweep.h"
+#include "validate/study/sweep/sweep_summary.h"
 
 using namespace glidelab;
 using Catch::Matchers::Contains;
@@ -171,4 +172,34 @@ TEST_CASE("A part whose runs are not those of the sweep by number or seed is ref
   CHECK_THAT(refusal(moved("1")), Contains("part.sqlite: run 1: found the seed"));  // there is such a run
   CHECK_THAT(refusal("UPDATE clip SET run = run + 1000 WHERE run = 2"), Contains("run 1002: found rows in clip alone"));
   CHECK(refusal("SELECT 1") == "taken");
+}
+
+TEST_CASE("A sweep judges an outside estimator in every run, counts its failures, and goes on with it alone") {
+  const tests::TempDir dir;
+  validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", tests::kTwoKeys));
+  // Of the six runs the three of 50 frames a second have less than 70 rows.
+  base::write_file(dir / "mine.sh", R"(test $(wc -l < "$1/tracks/up.csv") -lt 70 && { echo few >&2; exit 3; }
+echo '{"format": 1, "configurations": [{"clips": ["up"], "k_over_m_1_s": {"value": 3, "sd": 0.5},
+ "mu": null, "alpha_deg": null, "v_lim_m_s": null}]}' > "$2/results.json")");
+  sweep.outside = fit::outside_estimator("sh " + (dir / "mine.sh").string() + " {folder} {out}");
+  {
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    CHECK(validate::run_sweep(sweep, database, {}, 2).failed == 0);
+    const validate::SweepSummary summary = validate::summarize(sweep, database.database());
+    REQUIRE(summary.outside);
+    CHECK(summary.outside->runs == 6);
+    CHECK(summary.outside->failed() == 3);
+    CHECK(summary.outside->failures[0].count == 3);
+    CHECK(summary.outside->failures[0].first == "exit status 3: few");
+    validate::SqlStatement values = database.database().prepare(
+        "SELECT count(value) FROM result WHERE estimator = 'mine' AND quantity = 'k_over_m_1_s' AND value = 3");
+    values.step();
+    CHECK(values.integer(0) == 3);
+  }
+  validate::Sweep without = sweep, other = sweep;
+  without.outside.reset();
+  other.outside->words.back() = "{out}/.";
+  for (const validate::Sweep& changed : {without, other}) {
+    CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", changed, "1", {}), Contains("estimator"));
+  }
 }

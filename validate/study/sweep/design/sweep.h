@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/toml/toml_set.h"
+#include "fit/outside/outside_estimator.h"
 
 namespace glidelab::validate {
 
@@ -103,7 +104,8 @@ struct Sweep {
   std::optional<double> field_m;  ///< width of the plane that the image shall show: sets the camera's distance
   std::vector<Axis> axes;
   std::vector<Analysis> analyses;
-  std::vector<PublishedFall> published_falls = {};  ///< to lay beside (validate/study/sweep/mass_study.h)
+  std::optional<fit::OutsideEstimator> outside = {};  ///< of the command line, not of the file; judged as well
+  std::vector<PublishedFall> published_falls = {};    ///< to lay beside (validate/study/sweep/mass_study.h)
   /// Texts of the cameras that occur (the scenario's own, or those of an axis), as part of what the sweep is.
   std::vector<std::string> camera_files;
 };

@@ -1,0 +1,47 @@
+/// An estimator that somebody else wrote: a program that reads an experiment folder and writes results.json.
+///
+/// It runs in a process of its own, once for every experiment, within limits of time and memory. What goes wrong there
+/// is an outcome that is counted, not an error: every quantity is then undetermined, and `why` says how it failed.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/files/child_process.h"
+#include "core/result/results.h"
+#include "fit/outside/outside_tally.h"
+
+namespace glidelab::fit {
+
+struct OutsideEstimator {
+  std::string name;                ///< in results: no name of fit/estimators.h
+  std::vector<std::string> words;  ///< the command's, with {folder} and {out} in them
+  base::ProgramLimits limits = {};
+  std::function<bool()> stop = {};  ///< asked while it runs; once true the program is ended and Interrupted thrown
+};
+
+/// From a command line such as "python3 mine.py {folder} {out}". Words are separated by blanks; '…' and "…" keep blanks
+/// together, and a backslash takes the next character as it is. No shell reads it: nothing else has a meaning.
+/// Without a name, it is that of the file before the first word with a placeholder, without its ending: "mine".
+/// InputError where a quote is not closed, {folder} or {out} is missing, there is no such program, or the name is one
+/// of fit/estimators.h.
+OutsideEstimator outside_estimator(std::string_view command, std::string name = {});
+
+struct OutsideOutcome {
+  core::AnalysisResults results;  ///< all configurations of the folder, all undetermined where it failed
+  OutsideRun run;
+  std::string json;  ///< results.json as it was written; empty where it failed
+};
+
+/// Runs it on an experiment folder, as it stands there: nothing else belongs in the folder that holds it. {out} is a
+/// new, empty folder. InputError if the experiment cannot be read; EnvironmentError if the program cannot be started or
+/// there is no room for its files.
+OutsideOutcome run_outside(const OutsideEstimator& estimator, const std::filesystem::path& folder);
+
+/// Of runs of this estimator.
+OutsideTally tally_of(const OutsideEstimator& estimator, const std::vector<OutsideRun>& runs);
+
+}  // namespace glidelab::fit

@@ -1,0 +1,57 @@
+#include "report/text/outside_text.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "base/text/number_text.h"
+#include "report/text/display_text.h"
+
+namespace glidelab::report {
+namespace {
+
+/// Calls with each kind that occurred.
+template <typename Use>
+void for_failures(const fit::OutsideTally& tally, const Use& use) {
+  for (std::size_t i = 0; i < fit::kOutsideFailures.size(); ++i) {
+    if (tally.failures[i].count > 0) use(fit::kOutsideFailures[i], tally.failures[i]);
+  }
+}
+
+}  // namespace
+
+Json outside_json(const fit::OutsideTally& tally) {
+  Json object;
+  object["name"] = tally.name;
+  object["command"] = tally.command;
+  object["runs"] = tally.runs;
+  object["failed"] = tally.failed();
+  object["failures"] = Json::object();
+  for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
+    object["failures"][std::string(fit::key_of(failure))] = {{"count", kind.count}, {"first", kind.first}};
+  });
+  if (tally.longest_s > 0.0) {
+    put(object, "mean_s", tally.seconds);
+    put(object, "longest_s", tally.longest_s);
+  }
+  return object;
+}
+
+std::string outside_text(const fit::OutsideTally& tally) {
+  std::string kinds;
+  for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
+    kinds += fmt::format("{}{} {}, first: {}", kinds.empty() ? "" : "; ", kind.count, fit::words_of(failure),
+                         printable(kind.first));
+  });
+  const std::string failed =
+      tally.failed() == 0
+          ? fmt::format("{} {}, none failed", tally.runs, tally.runs == 1 ? "run" : "runs")
+          : fmt::format("{} of {} {} failed ({})", tally.failed(), tally.runs, tally.runs == 1 ? "run" : "runs", kinds);
+  const std::string times = tally.longest_s > 0.0
+                                ? fmt::format("; {} s a run, {} s at most", base::number_text(tally.seconds, 2),
+                                              base::number_text(tally.longest_s, 2))
+                                : std::string();
+  return fmt::format("{}: {}{}", printable(tally.name), failed, times);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,18 @@
+/// How the runs of an outside estimator went (fit/outside/outside_tally.h), in words and as JSON.
+#pragma once
+
+#include <string>
+
+#include "fit/outside/outside_tally.h"
+#include "report/text/json_numbers.h"
+
+namespace glidelab::report {
+
+/// {"name", "command", "runs", "failed", "failures": {"exit_status": {"count", "first"}, …}, "mean_s", "longest_s"};
+/// only kinds of failure that occurred stand in it, and times only where they were kept.
+Json outside_json(const fit::OutsideTally& tally);
+
+/// "mine: 2 of 50 runs failed (2 not done in time, first: …); 0.12 s a run, 1.3 s at most"; printable, no newline.
+std::string outside_text(const fit::OutsideTally& tally);
+
+}  // namespace glidelab::report

@@ -1,0 +1,120 @@
+/// Somebody else's program as an estimator: how its command is read, and how each way to fail is told.
+#include "fit/outside/outside_estimator.h"
+
+#include <string>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/files/file_io.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+namespace fs = std::filesystem;
+
+namespace {
+
+void write_experiment(const fs::path& folder) {
+  fs::create_directories(folder / "tracks");
+  std::string csv = "t_s,x_m\n";
+  for (int i = 0; i < 20; ++i) csv += std::to_string(0.01 * i) + "," + std::to_string(0.02 * i) + "\n";
+  base::write_file(folder / "tracks/one.csv", csv);
+  base::write_file(folder / "experiment.toml",
+                   "format = 1\nname = \"x\"\n[track]\ndownhill = \"+X\"\n[[clip]]\nname = \"one\"\n"
+                   "track = \"tracks/one.csv\"\nmass_kg = 0.3\nincline_deg = 4\nlaunched = \"down\"\n");
+}
+
+constexpr const char* kAnswer =
+    R"({"format": 1, "configurations": [{"clips": ["one"], "k_over_m_1_s": {"value": 2, "sd": 1},)"
+    R"( "mu": null, "alpha_deg": null, "v_lim_m_s": null}]})";
+
+/// A shell script as the estimator; {folder} is $1, {out} is $2.
+fit::OutsideOutcome outcome_of(const tests::TempDir& temp, const std::string& script, double seconds = 60.0) {
+  write_experiment(temp / "folder");
+  base::write_file(temp / "mine.sh", script);
+  fit::OutsideEstimator estimator = fit::outside_estimator("sh '" + (temp / "mine.sh").string() + "' {folder} {out}");
+  estimator.limits.wall_s = seconds;
+  return fit::run_outside(estimator, temp / "folder");
+}
+
+}  // namespace
+
+TEST_CASE("the words of a command are read without a shell") {
+  CHECK(fit::outside_estimator("sh  -c 'a b' \"c 'd'\" e\\ f {folder} --out={out} $HOME").words ==
+        std::vector<std::string>{"sh", "-c", "a b", "c 'd'", "e f", "{folder}", "--out={out}", "$HOME"});
+  CHECK(fit::outside_estimator("sh mine.py {folder} {out}").name == "mine");
+  CHECK(fit::outside_estimator("/bin/sh {folder} {out}").name == "sh");
+  CHECK(fit::outside_estimator("sh mine.py --quick -o {out} {folder}").name == "mine");
+  CHECK(fit::outside_estimator("sh {folder} {out}", "better").name == "better");
+  for (const char* bad : {"", "sh {folder}", "sh {out}", "{folder} {out}", "sh 'x {folder} {out}",
+                          "no-such-program {folder} {out}", "sh {folder} {out} \\"}) {
+    INFO(bad);
+    CHECK_THROWS_AS(fit::outside_estimator(bad), base::InputError);
+  }
+  CHECK_THROWS_AS(fit::outside_estimator("sh {folder} {out}", "trajectory"), base::InputError);
+}
+
+TEST_CASE("an estimator's program gets the folder and an empty place, and its answer is read") {
+  const tests::TempDir temp;
+  const fit::OutsideOutcome outcome =
+      outcome_of(temp, std::string("test -f $1/experiment.toml && test -z \"$(ls $2)\" && echo '") + kAnswer +
+                           "' > $2/results.json");
+  INFO(outcome.run.what);
+  REQUIRE(outcome.run.failure == fit::OutsideFailure::none);
+  CHECK(outcome.run.what.empty());
+  CHECK(outcome.results.estimator == "mine");
+  CHECK(outcome.results.configurations.at(0).k_over_m_1_s.estimate->value == 2.0);
+  CHECK(outcome.json == std::string(kAnswer) + "\n");
+}
+
+TEST_CASE("each way in which an estimator's program fails is told apart, with what it last said") {
+  const tests::TempDir temp;
+  struct Way {
+    const char* script;
+    fit::OutsideFailure failure;
+    const char* what;
+    double seconds;
+  };
+  for (const Way& way : {Way{"echo first; echo last words >&2; exit 3", fit::OutsideFailure::exit_status,
+                             "exit status 3: last words", 60.0},
+                         Way{"kill -9 $$", fit::OutsideFailure::signal, "signal 9", 60.0},
+                         Way{"sleep 60", fit::OutsideFailure::time_out, "not done after 0.1 s", 0.1},
+                         Way{"true", fit::OutsideFailure::no_output, "no results.json", 60.0},
+                         Way{"mkdir $2/results.json", fit::OutsideFailure::no_output, "no results.json", 60.0},
+                         Way{"echo '{\"format\": 1}' > $2/results.json", fit::OutsideFailure::bad_output,
+                             "results.json: configurations: found nothing, expected a list", 60.0}}) {
+    INFO(way.script);
+    const fit::OutsideOutcome outcome = outcome_of(temp, way.script, way.seconds);
+    CHECK(outcome.run.failure == way.failure);
+    CHECK(outcome.run.what.find(way.what) != std::string::npos);
+    CHECK(outcome.json.empty());
+    REQUIRE(outcome.results.configurations.size() == 1);
+    CHECK_FALSE(outcome.results.configurations[0].mu.estimate);
+    CHECK(outcome.results.configurations[0].mu.why == fit::why_of(outcome.run));
+    CHECK(fit::why_of(outcome.run).starts_with(fit::why_begins(way.failure)));
+  }
+}
+
+TEST_CASE("runs of an outside estimator are counted by how they failed, with what the first one said") {
+  using fit::OutsideFailure;
+  const fit::OutsideTally tally = fit::tally_of("mine", "mine {folder} {out}",
+                                                {{OutsideFailure::none, "", 1.0},
+                                                 {OutsideFailure::signal, "signal 9", 2.0},
+                                                 {OutsideFailure::time_out, "late", 6.0},
+                                                 {OutsideFailure::signal, "signal 11", 3.0}});
+  CHECK(tally.runs == 4);
+  CHECK(tally.failed() == 3);
+  CHECK(tally.failures[1].count == 2);
+  CHECK(tally.failures[1].first == "signal 9");
+  CHECK(tally.failures[2].count == 1);
+  CHECK(tally.seconds == 3.0);  // (1 + 2 + 6 + 3) / 4
+  CHECK(tally.longest_s == 6.0);
+}
+
+TEST_CASE("an interrupt ends an estimator's program and the work") {
+  const tests::TempDir temp;
+  write_experiment(temp / "folder");
+  fit::OutsideEstimator estimator = fit::outside_estimator("sh -c 'sleep 60' {folder} {out}");
+  estimator.stop = [] { return true; };
+  CHECK_THROWS_AS(fit::run_outside(estimator, temp / "folder"), base::Interrupted);
+}

@@ -1,0 +1,86 @@
+#include "validate/tracks/outside_runs.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/files/file_io.h"
+#include "base/math/angles.h"
+
+namespace glidelab::validate {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string csv_row(double t_s, double x_m) {
+  return fmt::format("{},{}\n", t_s, x_m);
+}
+
+constexpr std::string_view kHeader = "t_s,x_m\n";
+
+std::string_view word_of(core::Launched launched) {
+  switch (launched) {
+    case core::Launched::up:
+      return "up";
+    case core::Launched::down:
+      return "down";
+    case core::Launched::released:
+    case core::Launched::unknown:
+      break;
+  }
+  return "released";
+}
+
+}  // namespace
+
+void write_track_folder(const MadeTracks& made, const fs::path& folder) {
+  fs::create_directories(folder / "tracks");
+  // The scenario's name stays out of it: it may say what is to be found.
+  std::string toml = fmt::format("format = 1\nname = \"tracks\"\ngravity_m_s2 = {}\n\n[track]\ndownhill = \"+X\"\n",
+                                 made.gravity_m_s2);
+  for (std::size_t c = 0; c < made.setups.size(); ++c) {
+    const core::ClipSetup& setup = made.setups[c];
+    toml += fmt::format(
+        "\n[[clip]]\nname = \"{0}\"\ntrack = \"tracks/{0}.csv\"\nmass_kg = {1}\nincline_deg = {2}\nlaunched = "
+        "\"{3}\"\ngroup = \"{4}\"\n",
+        setup.name, setup.mass_kg, setup.incline_rad * base::kDegreesPerRad, word_of(setup.launched), setup.group);
+    if (setup.incline_sd_rad)
+      toml += fmt::format("incline_sd_deg = {}\n", *setup.incline_sd_rad * base::kDegreesPerRad);
+    if (setup.mass_sd_kg > 0.0) toml += fmt::format("mass_sd_kg = {}\n", setup.mass_sd_kg);
+    std::string csv(kHeader);
+    const core::TrackData& track = made.tracks[c];
+    for (std::size_t i = 0; i < track.t_s.size(); ++i) csv += csv_row(track.t_s[i], track.x_m[i]);
+    base::write_file(folder / "tracks" / (setup.name + ".csv"), csv);
+  }
+  base::write_file(folder / "experiment.toml", toml);
+}
+
+void write_measured_tracks(const core::AnalysisResults& measured, const fs::path& folder) {
+  fs::create_directories(folder / "tracks");
+  for (const core::ClipResult& clip : measured.clips) {
+    std::string csv(kHeader);
+    for (const core::MotionPoint& point : clip.motion) {
+      if (point.measured_m) csv += csv_row(point.t_s, *point.measured_m);
+    }
+    base::write_file(folder / "tracks" / (clip.name + ".csv"), csv);
+  }
+}
+
+fit::OutsideOutcome run_outside_on_tracks(const fit::OutsideEstimator& estimator, const MadeTracks& made) {
+  const base::TemporaryFolder alone("experiment");
+  write_track_folder(made, alone / "experiment");
+  return fit::run_outside(estimator, alone / "experiment");
+}
+
+fit::OutsideOutcome run_outside_on_film(const fit::OutsideEstimator& estimator, const fs::path& folder,
+                                        const core::AnalysisResults& measured) {
+  const base::TemporaryFolder alone("experiment");
+  const fs::path copy = alone / "experiment";
+  fs::copy(folder, copy, fs::copy_options::recursive);
+  write_measured_tracks(measured, copy);
+  return fit::run_outside(estimator, copy);
+}
+
+}  // namespace glidelab::validate
