@@ -161,7 +161,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->add_option(
           "EXPERIMENT", options->experiments,
           "Folders that hold an experiment.toml; several share the glider and the track. Or files with a track: "
-          "t_s,x_m, or what Tracker, Logger Pro, Capstone or phyphox export")
+          "t_s,x_m, what Tracker, Logger Pro, Capstone or phyphox export, or a project of Tracker (.trk, .trz)")
       ->type_name("DIR|FILE")
       ->required();
   command
@@ -187,8 +187,10 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("EFFECT")
       ->allow_extra_args(false);
   command
-      ->add_option("--column", options->bare.column,
-                   "For a file: the column that holds x, by header or number; default: found by its header")
+      ->add_option(
+          "--column", options->bare.column,
+          "For a file: the column that holds x, by header or number; default: found by its header. Of a Tracker "
+          "project: the point mass; default: the only one")
       ->type_name("NAME|NUMBER");
   command->add_option("--mass", options->bare.mass_kg, "For a file: mass of the glider in kilograms")
       ->type_name("KG")
