@@ -137,7 +137,7 @@ std::string check_bandwidth(const std::string& text) {
 }
 
 std::string check_incline(const std::string& text) {
-  constexpr double kSteepest_deg = 89.9;
+  constexpr double kSteepest_deg = 90.0;  // a fall
   double value_deg = 0.0;
   if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
   return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}", text, kSteepest_deg);

@@ -76,7 +76,7 @@ TEST_CASE("a project's positions are in its scale, from its origin, at its times
   CHECK(std::abs(folder.read(project, core::Downhill::minus_x).x_m[3] + (40.0 + way(3)) / 250.0) < 1e-12);
 }
 
-TEST_CASE("what falls in the image is positive downwards, along Y; downhill says otherwise") {
+TEST_CASE("what falls in the image is positive downwards along Y, unless downhill says otherwise") {
   const Folder folder;
   MadeProject project{{kDown}};
   const core::TrackData down = folder.read(project);
