@@ -252,12 +252,13 @@ double metres_of(const fs::path& file, const TrackerProject& project, std::vecto
 void take_steps_as_frames(const TrackerProject& project, const std::vector<Place>& places, TrackData& track) {
   const auto time_of = [&](long step) { return project.time_s(project.first_frame + step * project.step); };
   const long first = places.front().step;
-  constexpr long kMostLost = 1000;  // steps for each position: a mark far behind the others is a slip of the hand
-  if (places.back().step - first > kMostLost * static_cast<long>(places.size())) {
+  constexpr long kMostLost = 1000;      // steps for each position: a mark far behind the others is a slip of the hand
+  constexpr long kMostSteps = 1000000;  // 83 minutes at 200 frames a second
+  if (places.back().step - first > std::min(kMostSteps, kMostLost * static_cast<long>(places.size()))) {
     throw base::InputError(
         base::Issue{project.shown_as, 0, "framedata",
                     fmt::format("{} positions over {} steps", places.size(), places.back().step - first),
-                    "a mass that is marked in more than one step of a thousand"});
+                    "a mass that is marked in more than one step of a thousand, over a million steps at most"});
   }
   for (long step = first; step <= places.back().step; ++step) track.frame_t_s.push_back(time_of(step));
   for (const Place& place : places) {
