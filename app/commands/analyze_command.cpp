@@ -137,7 +137,7 @@ std::string check_bandwidth(const std::string& text) {
 }
 
 std::string check_incline(const std::string& text) {
-  constexpr double kSteepest_deg = 89.9;
+  constexpr double kSteepest_deg = 90.0;  // a fall
   double value_deg = 0.0;
   if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
   return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}", text, kSteepest_deg);
@@ -161,7 +161,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->add_option(
           "EXPERIMENT", options->experiments,
           "Folders that hold an experiment.toml; several share the glider and the track. Or files with a track: "
-          "t_s,x_m, or what Tracker, Logger Pro, Capstone or phyphox export")
+          "t_s,x_m, what Tracker, Logger Pro, Capstone or phyphox export, or a project of Tracker (.trk, .trz)")
       ->type_name("DIR|FILE")
       ->required();
   command
@@ -187,8 +187,10 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("EFFECT")
       ->allow_extra_args(false);
   command
-      ->add_option("--column", options->bare.column,
-                   "For a file: the column that holds x, by header or number; default: found by its header")
+      ->add_option(
+          "--column", options->bare.column,
+          "For a file: the column that holds x, by header or number; default: found by its header. Of a Tracker "
+          "project: the point mass; default: the only one")
       ->type_name("NAME|NUMBER");
   command->add_option("--mass", options->bare.mass_kg, "For a file: mass of the glider in kilograms")
       ->type_name("KG")

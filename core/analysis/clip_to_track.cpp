@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "base/errors.h"
@@ -14,7 +15,7 @@
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/scene/scene_watch.h"
 #include "core/track/even_times.h"
-#include "core/track/track_data.h"
+#include "core/track/read_track.h"
 
 namespace glidelab::core {
 namespace {
@@ -93,7 +94,7 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     if (!usual_px) usual_px = radius_px;
     return radius_px.value_or(usual_px.value_or(kSomeRadiusPx));
   };
-  MarkerTracker tracker(clip.file, marker, radius_at);
+  MarkerTracker tracker(clip.file, marker, radius_at, clip.start_s);
   SeenClip seen;
   const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
   constexpr std::size_t kTellEvery = 10;
@@ -164,12 +165,8 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
 namespace {
 
 constexpr double kSlantedRad = 15.0 * base::kRadPerDegree;  // "X lies along the track to within a few degrees"
+constexpr double kAcrossRad = 80.0 * base::kRadPerDegree;   // off the axis along which downhill is stated
 constexpr double kLeastPath = 0.5;                          // marker diameters from end to end
-
-int downhill_of(const Experiment& experiment, const std::string& name) {
-  const GroupSetup* group = group_of(experiment, name);
-  return group != nullptr && group->downhill ? *group->downhill : experiment.track.downhill;
-}
 
 struct PlanePoint {
   MarkerSighting sighting;
@@ -219,14 +216,14 @@ void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string
 }
 
 /// The line along which the group's marker moves; a marker that rests leaves noise only, which has no direction.
-MotionAxis axis_through(const std::vector<cv::Point2d>& places, double diameter_m, int downhill) {
+MotionAxis axis_through(const std::vector<cv::Point2d>& places, double diameter_m, Downhill downhill) {
   cv::Point2d low(1e300, 1e300), high(-1e300, -1e300);
   for (const cv::Point2d& place : places) {
     low = {std::min(low.x, place.x), std::min(low.y, place.y)};
     high = {std::max(high.x, place.x), std::max(high.y, place.y)};
   }
   const bool moves = !places.empty() && cv::norm(high - low) > kLeastPath * diameter_m;
-  return moves ? MotionAxis::through(places, downhill) : MotionAxis::along_x(downhill);
+  return moves ? MotionAxis::through(places, downhill) : MotionAxis::along(downhill);
 }
 
 /// Tracks of the clips of one group, which share the plane of motion and its line.
@@ -238,7 +235,7 @@ class GroupTracks {
         setting_(setting),
         name_(std::move(name)),
         restitution_(setting.restitutions.at(name_)),
-        downhill_(downhill_of(experiment, name_)),
+        downhill_(downhill_of(experiment, name_).value_or(Downhill::plus_x)),
         seen_(seen),
         points_(seen.size()) {}
 
@@ -249,6 +246,7 @@ class GroupTracks {
       for (const PlanePoint& point : points_[i]) all.push_back(point.place);
     }
     const MotionAxis axis = axis_through(all, experiment_.marker->diameter_m, downhill_);
+    check_direction(axis);
     const std::vector<ModeAxis> modes = mode_axes(restitution_, axis, all, downhill_);
     const auto of_camera = static_cast<std::size_t>(
         std::count_if(modes.begin(), modes.end(), [](const ModeAxis& mode) { return mode.mode.of_camera; }));
@@ -288,6 +286,21 @@ class GroupTracks {
     }
   }
 
+  /// Across the stated axis nothing says which way is down. (A pattern's X is known to lie along the track, and a note
+  /// says where it does not.)
+  void check_direction(const MotionAxis& axis) const {
+    if (!experiment_.scale || !std::isfinite(axis.line().sd_angle_rad)) return;
+    const double from_x = std::abs(axis.angle_to_x_rad());
+    const double off = is_along_y(downhill_) ? 0.5 * std::numbers::pi - from_x : from_x;
+    if (off < kAcrossRad) return;
+    const bool along_y = is_along_y(downhill_);
+    throw base::InputError(base::Issue{
+        experiment_.file.string(), 0, "downhill",
+        fmt::format("\"{}\", while the marker of group \"{}\" moves along the image's {}, {:.0f} degrees off",
+                    name_of(downhill_), name_, along_y ? "x" : "y", off * base::kDegreesPerRad),
+        along_y ? "\"+X\" (to the right) or \"-X\"" : "\"+Y\" (towards the image's lower edge) or \"-Y\""});
+  }
+
   void add_notes(const MotionAxis& axis, std::vector<std::string>& notes) const {
     note_axis(axis, experiment_.calibration.has_value(), notes);
     if (experiment_.scale && experiment_.scale->px_per_m_sd == 0.0) {
@@ -299,7 +312,7 @@ class GroupTracks {
   const CameraAndPlanes& setting_;
   std::string name_;
   const Restitution& restitution_;
-  int downhill_;
+  Downhill downhill_;
   const std::vector<SeenClip>& seen_;
   std::vector<std::vector<PlanePoint>> points_;  ///< of each clip of the group
 };
@@ -315,7 +328,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
     const ClipSetup& clip = experiment.clips[i];
     if (clip.file.empty()) {
-      results.tracks[i] = read_track_csv(clip.track, downhill_of(experiment, clip.group), clip.column);
+      results.tracks[i] = read_track(clip.track, downhill_of(experiment, clip.group), clip.column);
     } else {
       pictures.push_back(i);
     }

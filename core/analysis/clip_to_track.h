@@ -64,7 +64,7 @@ struct PictureResults {
 };
 
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of
-/// motion, x positive downhill. Clips that are tracks (CSV) are read with read_track_csv. Frames stream; `jobs` clips
+/// motion, x positive downhill. Clips that are tracks are read with read_track. Frames stream; `jobs` clips
 /// at a time. With `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is known of the pattern
 /// already (restitution.h); null: its images are read. InputError for images that cannot be used (no pattern,
 /// no marker, truncated, of another size, …).

@@ -153,11 +153,12 @@ struct StatedLaunch {
 StatedLaunch stated_launch(const Experiment& experiment, const ClipSetup& clip) {
   const GroupSetup* group = group_of(experiment, clip.group);
   StatedLaunch stated{group != nullptr && group->downhill.has_value(), {}};
-  const int downhill = stated.own_downhill ? *group->downhill : experiment.track.downhill;
+  const std::optional<Downhill> downhill = downhill_of(experiment, clip.group);
   const std::string launched = clip.launched == Launched::up     ? "up"
                                : clip.launched == Launched::down ? "down"
                                                                  : "released";
-  stated.sentence = fmt::format("launched = \"{}\" and downhill = \"{}\"", launched, downhill > 0 ? "+X" : "-X");
+  stated.sentence = fmt::format("launched = \"{}\" and {}", launched,
+                                downhill ? fmt::format("downhill = \"{}\"", name_of(*downhill)) : "no stated downhill");
   return stated;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -14,7 +15,21 @@ namespace {
 
 constexpr double kContradiction = 5.0;  // standard deviations between two readings of one angle
 
+constexpr std::array<const char*, 4> kDownhillNames{"+X", "-X", "+Y", "-Y"};  // in the order of Downhill
+
 }  // namespace
+
+int sign_of(Downhill downhill) {
+  return downhill == Downhill::plus_x || downhill == Downhill::plus_y ? 1 : -1;
+}
+
+bool is_along_y(Downhill downhill) {
+  return downhill == Downhill::plus_y || downhill == Downhill::minus_y;
+}
+
+std::string name_of(Downhill downhill) {
+  return kDownhillNames.at(static_cast<std::size_t>(downhill));
+}
 
 bool contradicts(const ClipSetup& one, const ClipSetup& other) {
   if (!one.incline_sd_rad || !other.incline_sd_rad) return false;

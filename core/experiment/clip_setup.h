@@ -17,6 +17,16 @@ namespace glidelab::core {
 /// up: towards -x, down: towards +x, also on a level track; unknown: a track file on its own, which does not say.
 enum class Launched { up, down, released, unknown };
 
+/// Which direction is down (on a level track: positive): along X or Y of the pattern, of the image or of a project's
+/// axes, or against it.
+enum class Downhill { plus_x, minus_x, plus_y, minus_y };
+
+/// +1 along the axis, -1 against it.
+int sign_of(Downhill downhill);
+bool is_along_y(Downhill downhill);
+/// "+X", "-X", "+Y", "-Y", as experiment.toml says it.
+std::string name_of(Downhill downhill);
+
 struct PixelPoint {
   double x = 0.0, y = 0.0;
   bool operator==(const PixelPoint&) const = default;
@@ -35,8 +45,9 @@ struct PlumbSetup {
 struct ClipSetup {
   std::string name;
   std::filesystem::path file;   ///< a video or a folder of frames; empty for a track
-  std::filesystem::path track;  ///< a CSV `t_s,x_m[,force_n]` or an exported table; empty for a clip
-  std::string column = {};      ///< the column of an exported table that is x: its header or number; empty: found
+  std::filesystem::path track;  ///< a CSV `t_s,x_m[,force_n]`, an exported table or a Tracker project; empty for a clip
+  std::string column =
+      {};  ///< of an exported table the column that is x, of a project the point mass: name or number; empty: found
   double mass_kg = 0.0;
   double mass_sd_kg = 0.0;
   double incline_rad = 0.0;  ///< as stated
@@ -52,7 +63,7 @@ struct GroupSetup {
   std::string name;
   std::vector<std::filesystem::path> planes;
   std::optional<PlumbSetup> plumb;
-  std::optional<int> downhill;
+  std::optional<Downhill> downhill;
 };
 
 inline constexpr double kSameIncline_rad = 1e-9;  ///< stated angles that differ by less are the same

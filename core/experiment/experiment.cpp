@@ -126,8 +126,14 @@ MarkerSetup read_marker(const TomlTable& table) {
   return setup;
 }
 
-int read_downhill(const TomlTable& table) {
-  return table.word("downhill", {"+X", "-X"}) == "-X" ? -1 : 1;
+Downhill read_downhill(const TomlTable& table) {
+  using enum Downhill;
+  const std::string word =
+      table.word("downhill", {name_of(plus_x), name_of(minus_x), name_of(plus_y), name_of(minus_y)});
+  for (const Downhill downhill : {minus_x, plus_y, minus_y}) {
+    if (word == name_of(downhill)) return downhill;
+  }
+  return plus_x;
 }
 
 Launched read_launched(const TomlTable& table) {
@@ -208,6 +214,24 @@ void check_sections(const Experiment& experiment, const TomlTable& root) {
   }
 }
 
+/// X runs along the pattern's longer row, and the pattern lies along the track.
+void check_downhill(const Experiment& experiment, const TomlTable& root, const std::vector<TomlTable>& group_tables) {
+  if (!experiment.calibration) return;
+  const auto filmed_along_y =
+      std::find_if(experiment.clips.begin(), experiment.clips.end(), [&](const ClipSetup& clip) {
+        return !clip.file.empty() && is_along_y(downhill_of(experiment, clip.group).value_or(Downhill::plus_x));
+      });
+  if (filmed_along_y == experiment.clips.end()) return;
+  const GroupSetup* group = group_of(experiment, filmed_along_y->group);
+  const bool own = group != nullptr && group->downhill;
+  const TomlTable table =
+      own ? group_tables.at(static_cast<std::size_t>(group - experiment.groups.data())) : root.table("track");
+  table.reject(
+      "downhill",
+      fmt::format("\"{}\" for clip \"{}\", which goes by a pattern", table.text("downhill"), filmed_along_y->name),
+      "\"+X\" or \"-X\", along the pattern's longer row (\"+Y\" and \"-Y\" need [scale], or a Tracker project)");
+}
+
 /// The first thing that goes wrong in a first hour: no folder, another one, or a file of it.
 void check_folder(const fs::path& path) {
   const std::string wanted = "a folder with an experiment.toml (glidelab new FOLDER makes one that explains every key)";
@@ -276,12 +300,24 @@ Experiment read_experiment(const fs::path& path, Permissions permitted) {
     }
   }
   check_sections(experiment, root);
+  check_downhill(experiment, root, group_tables);
   file.finish();
   return experiment;
 }
 
 std::size_t most_pixels_of(const Experiment& experiment) {
   return experiment.camera ? experiment.camera->most_pixels : kMostPixels;
+}
+
+const GroupSetup* group_of(const Experiment& experiment, const std::string& name) {
+  const auto found = std::find_if(experiment.groups.begin(), experiment.groups.end(),
+                                  [&](const GroupSetup& group) { return group.name == name; });
+  return found == experiment.groups.end() ? nullptr : &*found;
+}
+
+std::optional<Downhill> downhill_of(const Experiment& experiment, const std::string& group) {
+  const GroupSetup* own = group_of(experiment, group);
+  return own != nullptr && own->downhill ? own->downhill : experiment.track.downhill;
 }
 
 void require_clips(const Experiment& experiment) {

@@ -58,7 +58,7 @@ struct MarkerSetup {
 };
 
 struct TrackSetup {
-  int downhill = 1;  ///< +1 or -1: which direction of the pattern's X axis (the image's x, the file's x) is down
+  std::optional<Downhill> downhill;  ///< of all groups that state none; a folder of tracks may leave it out
   std::optional<double> length_m;
 };
 
@@ -83,6 +83,12 @@ struct Experiment {
 /// range, files that are not there, clips that need a section which is missing, names used twice.
 Experiment read_experiment(const std::filesystem::path& folder, Permissions permitted = {});
 
+/// The table of a group, or null if the file has none.
+const GroupSetup* group_of(const Experiment& experiment, const std::string& name);
+
+/// Which direction is down, of a group or else of [track]; nothing where neither states it.
+std::optional<Downhill> downhill_of(const Experiment& experiment, const std::string& group);
+
 /// InputError where there is neither a clip nor a track: a table of lines is for `glidelab diagnose`.
 void require_clips(const Experiment& experiment);
 
@@ -91,7 +97,7 @@ std::size_t most_pixels_of(const Experiment& experiment);
 
 /// What the analysis needs beside a track's file that is given on its own.
 struct BareTrackOptions {
-  std::string column;                 ///< of x in an exported table (track_data.h); empty: found by its header
+  std::string column;                 ///< of x in a table, or a point mass (read_track.h); empty: found
   std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
   std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
   Permissions permitted = {};         ///< of a folder

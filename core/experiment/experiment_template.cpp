@@ -50,11 +50,12 @@ plane = "calibration/plane.png"    # the pattern where the marker moves, its lon
 diameter_m = 0.016                 # AS PRINTED: the sheet of "glidelab pattern" has discs of 8, 12, 16 and 24 mm
 #height_m = 0.0                    # its centre off the pattern's plane, towards the camera
 #color = "#101010"                 # a black disc (left out, a bright one is looked for first); or the hue of an object, as "#e04020"
-#start_px = [400, 120]             # where it is in the first frame, if something else moves as well
+#start_px = [400, 120]             # where it is in the frame at start_s, or in the first one, if something else moves as well
 
 [track]
 downhill = "+X"                    # which direction of the pattern's long row is down; it runs from the side with black
-                                   # corner squares to that with white ones; level track: the one you call positive
+                                   # corner squares to that with white ones; level track: the one you call positive.
+                                   # With [scale]: "+X" is to the right in the image, "+Y" down
 #length_m = 2.0
 
 # ---- The clips, one [[clip]] for each motion. mu and the inclination need both directions: launch it both ways, or up a
@@ -62,8 +63,8 @@ downhill = "+X"                    # which direction of the pattern's long row i
 [[clip]]
 name = "m1-up"
 file = "clips/m1-up.mp4"           # a video, or a folder of frames
-#track = "tracks/m1-up.csv"        # instead of file, for a motion tracked elsewhere: t_s,x_m; an export of Tracker, ...
-#column = "x"                      # of an export with several columns: which one is x, by header or number
+#track = "tracks/m1-up.csv"        # instead of file, for a motion tracked elsewhere: t_s,x_m; an export or project of Tracker, ...
+#column = "x"                      # of an export with several columns: which one is x, by header or number; of a project the mass
 mass_kg = 0.335                    # glider with marker and load
 #mass_sd_kg = 0.0005               # standard deviation of the mass
 incline_deg = 4.0                  # of the track, as set; one reading for all clips of a group

@@ -129,26 +129,30 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
     filmed.view = views.emplace(clip.experiment + "/" + setups[i].group, views.size()).first->second;
     filmed.record = clip.pictures;
     filmed.camera = *cameras[i];
-    double xx = 0.0, ux = 0.0, mean_u = 0.0, mean_x = 0.0, count = 0.0;
+    double xx = 0.0, ux = 0.0, vx = 0.0, mean_u = 0.0, mean_v = 0.0, mean_x = 0.0, count = 0.0;
     for (int pass = 0; pass < 2; ++pass) {
       for (const core::MarkerLook& look : clip.pictures->marker) {
         if (look.frame >= clip.motion.size() || !clip.motion[look.frame].measured_m) continue;
         const double x = *clip.motion[look.frame].measured_m;
         if (pass == 0) {
           mean_u += look.u_px;
+          mean_v += look.v_px;
           mean_x += x;
           count += 1.0;
         } else {
           ux += (look.u_px - mean_u) * (x - mean_x);
+          vx += (look.v_px - mean_v) * (x - mean_x);
           xx += (x - mean_x) * (x - mean_x);
         }
       }
       if (pass == 0) {
         mean_u /= std::max(1.0, count);
+        mean_v /= std::max(1.0, count);
         mean_x /= std::max(1.0, count);
       }
     }
-    if (xx > 0.0) filmed.px_per_m = std::abs(ux / xx);
+    filmed.down = std::abs(vx) > std::abs(ux);
+    if (xx > 0.0) filmed.px_per_m = std::abs((filmed.down ? vx : ux) / xx);
     clips.push_back(std::move(filmed));
   }
   return clips;

@@ -126,8 +126,8 @@ std::vector<Sample> samples_of(const FilmedClip& clip) {
       tv += t * looks[j].v_px;
     }
     const auto& m = looks[i];
-    samples.push_back(
-        {2.0 * m.u_px / clip.record->width_px - 1.0, clip.view, tu / tt, tv / tt, m.vv_px2, m.stretch_px2, m.uv_px2});
+    const double place = clip.down ? m.v_px / clip.record->height_px : m.u_px / clip.record->width_px;
+    samples.push_back({2.0 * place - 1.0, clip.view, tu / tt, tv / tt, m.vv_px2, m.stretch_px2, m.uv_px2});
   }
   return samples;
 }

@@ -113,7 +113,9 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
       const double code = look.amplitude + look.background;
       if (!(code > 0.0) || code > kFull * clips[c].record->full_code) continue;
       Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
-      const double s = (look.u_px - 0.5 * clips[c].record->width_px) / std::max(1.0, clips[c].px_per_m);
+      const double along_px =
+          clips[c].down ? look.v_px - 0.5 * clips[c].record->height_px : look.u_px - 0.5 * clips[c].record->width_px;
+      const double s = along_px / std::max(1.0, clips[c].px_per_m);
       row[static_cast<Eigen::Index>(c)] = 1.0;
       row[columns - 2] = s;
       row[columns - 1] = s * s;
@@ -138,9 +140,9 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   const double usual = std::hypot(sd, kUsualGradient_1_m);
   finding.log_evidence = log_deviation_evidence(std::abs(gradient) / usual, 10.0 / usual);
   finding.parameters = {{"gradient", gradient, sd}};
-  finding.words =
-      fmt::format("The light on the marker changes by {} % a metre to the right; {:.0f} % is usual in a room.",
-                  base::value_and_sd_text(100.0 * gradient, 100.0 * sd), 100.0 * kUsualGradient_1_m);
+  finding.words = fmt::format("The light on the marker changes by {} % a metre {}; {:.0f} % is usual in a room.",
+                              base::value_and_sd_text(100.0 * gradient, 100.0 * sd),
+                              clips.front().down ? "down the image" : "to the right", 100.0 * kUsualGradient_1_m);
   evidence.findings.push_back(std::move(finding));
 }
 

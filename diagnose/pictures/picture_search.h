@@ -21,6 +21,7 @@ struct FilmedClip {
   std::shared_ptr<const core::PictureRecord> record;
   core::CameraSettings camera;
   double px_per_m = 0.0;  ///< along the motion; 0 where unknown
+  bool down = false;      ///< the marker moves down or up the image, more than to its sides
 };
 
 struct PictureEvidence {

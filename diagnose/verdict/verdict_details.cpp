@@ -288,6 +288,7 @@ void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) 
       if (finding.id != effect.id || !finding.seen || where == kWhere.end() || finding.parameters.empty()) continue;
       GapRegion region;
       region.variable = where->second.first;
+      if (finding.id == ids::light_gradient && pictures.clips.front().down) region.variable = "v_px";
       region.what = where->second.second;
       const core::PictureRecord& record = *pictures.clips.front().record;
       region.to = region.variable == "u_px"   ? record.width_px

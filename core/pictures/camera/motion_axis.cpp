@@ -145,24 +145,34 @@ PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_sc
   return fit_from(points.empty() ? std::nullopt : least_median_line(points), points, least_scale);
 }
 
-MotionAxis MotionAxis::directed(const PlaneLine& line, int downhill) {
+namespace {
+
+/// Of length 1, in the plane.
+cv::Point2d towards(Downhill downhill) {
+  const double sign = sign_of(downhill);
+  return is_along_y(downhill) ? cv::Point2d(0.0, sign) : cv::Point2d(sign, 0.0);
+}
+
+}  // namespace
+
+MotionAxis MotionAxis::directed(const PlaneLine& line, Downhill downhill) {
   MotionAxis axis;
   axis.line_ = line;
-  if (axis.line_.direction.x * downhill < 0.0) axis.line_.direction = -axis.line_.direction;
+  if (axis.line_.direction.dot(towards(downhill)) < 0.0) axis.line_.direction = -axis.line_.direction;
   return axis;
 }
 
-MotionAxis MotionAxis::through(const std::vector<cv::Point2d>& points, int downhill) {
+MotionAxis MotionAxis::through(const std::vector<cv::Point2d>& points, Downhill downhill) {
   return directed(fit_plane_line(points, kLeastScale), downhill);
 }
 
-MotionAxis MotionAxis::moved_through(const std::vector<cv::Point2d>& points, int downhill) const {
+MotionAxis MotionAxis::moved_through(const std::vector<cv::Point2d>& points, Downhill downhill) const {
   return directed(fit_from(line_, points, kLeastScale), downhill);
 }
 
-MotionAxis MotionAxis::along_x(int downhill) {
+MotionAxis MotionAxis::along(Downhill downhill) {
   MotionAxis axis;
-  axis.line_.direction = {static_cast<double>(downhill), 0.0};
+  axis.line_.direction = towards(downhill);
   axis.line_.sd_angle_rad = std::numeric_limits<double>::infinity();
   return axis;
 }
@@ -198,7 +208,7 @@ std::vector<double> ModeAxis::displacement(const Restitution& restitution, const
 }
 
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
-                                const std::vector<cv::Point2d>& places, int downhill) {
+                                const std::vector<cv::Point2d>& places, Downhill downhill) {
   const std::size_t stride = places.size() / kMostPlacesUsed + 1;
   std::vector<cv::Point2d> some, pixels;
   for (std::size_t i = 0; i < places.size(); i += stride) {

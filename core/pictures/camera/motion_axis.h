@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "core/experiment/clip_setup.h"
 #include "core/pictures/camera/restitution.h"
 
 namespace glidelab::core {
@@ -30,12 +31,12 @@ PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_sc
 /// The line in which a marker moves, directed downhill.
 class MotionAxis {
  public:
-  /// `downhill`: +1 or -1, which way along X is down. NumericalError where the marker does not move.
-  static MotionAxis through(const std::vector<cv::Point2d>& points, int downhill);
+  /// `downhill`: which way along X or Y is down. NumericalError where the marker does not move.
+  static MotionAxis through(const std::vector<cv::Point2d>& points, Downhill downhill);
   /// The same through points that have moved a little, all alike: this axis is the start, which need not be searched.
-  MotionAxis moved_through(const std::vector<cv::Point2d>& points, int downhill) const;
-  /// Along X itself, for a marker that does not move.
-  static MotionAxis along_x(int downhill);
+  MotionAxis moved_through(const std::vector<cv::Point2d>& points, Downhill downhill) const;
+  /// Along X or Y itself, for a marker that does not move.
+  static MotionAxis along(Downhill downhill);
 
   /// This axis turned by as much as leads from one direction to the other.
   MotionAxis turned(const MotionAxis& to, const MotionAxis& from) const;
@@ -47,7 +48,7 @@ class MotionAxis {
   double angle_to_x_rad() const;
 
  private:
-  static MotionAxis directed(const PlaneLine& line, int downhill);
+  static MotionAxis directed(const PlaneLine& line, Downhill downhill);
 
   PlaneLine line_;
 };
@@ -66,6 +67,6 @@ struct ModeAxis {
 /// One for each of the restitution's modes, in its order; `places` are those of all clips of the group. If there are
 /// many, an even selection of them determines how a mode turns the line.
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
-                                const std::vector<cv::Point2d>& places, int downhill);
+                                const std::vector<cv::Point2d>& places, Downhill downhill);
 
 }  // namespace glidelab::core

@@ -172,13 +172,6 @@ std::vector<RestitutionMode> Restitution::modes() const {
 
 namespace fs = std::filesystem;
 
-const GroupSetup* group_of(const Experiment& experiment, const std::string& name) {
-  for (const GroupSetup& group : experiment.groups) {
-    if (group.name == name) return &group;
-  }
-  return nullptr;
-}
-
 std::vector<fs::path> planes_of(const Experiment& experiment, const std::string& group) {
   const GroupSetup* setup = group_of(experiment, group);
   return setup != nullptr && !setup->planes.empty() ? setup->planes : experiment.calibration->planes;

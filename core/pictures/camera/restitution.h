@@ -99,9 +99,6 @@ struct CameraAndPlanes {
   std::map<std::string, Restitution> restitutions;  ///< of the groups that have filmed clips
 };
 
-/// The table of a group, or null if the file has none.
-const GroupSetup* group_of(const Experiment& experiment, const std::string& name);
-
 /// The images of the plane of motion, of a group or else of [calibration].
 std::vector<std::filesystem::path> planes_of(const Experiment& experiment, const std::string& group);
 

@@ -114,7 +114,7 @@ namespace {
 
 constexpr std::size_t kFewestMoving = 8;    // sightings of a path that counts as a marker (fewer in a shorter clip)
 constexpr std::size_t kFewestResting = 10;  // sightings of something that counts as part of the scene
-constexpr std::size_t kStartFrames = 5;     // in which start_px is looked at
+constexpr double kStartFrames = 5.0;        // around the one that start_px belongs to, in which it is looked at
 
 /// They are seen in the same frames, half of the shorter path's or more, and look and move alike.
 bool are_twins(const MarkerPath& one, const MarkerPath& other) {
@@ -136,7 +136,12 @@ bool are_twins(const MarkerPath& one, const MarkerPath& other) {
 class Choice {
  public:
   Choice(const FollowedPaths& followed, const MarkerSetup& marker, const std::filesystem::path& clip)
-      : paths_(followed.paths), frames_(followed.frames), radius_px_(followed.radius_px), marker_(marker), clip_(clip) {
+      : paths_(followed.paths),
+        frames_(followed.frames),
+        radius_px_(followed.radius_px),
+        start_frame_(followed.start_frame),
+        marker_(marker),
+        clip_(clip) {
     std::erase_if(paths_, [](const MarkerPath& path) { return path.seen.size() < 2; });
   }
   TrackedMarker marker() const;
@@ -154,29 +159,52 @@ class Choice {
   std::vector<MarkerPath> paths_;
   std::size_t frames_;
   double radius_px_;
+  std::size_t start_frame_;
   const MarkerSetup& marker_;
   const std::filesystem::path& clip_;
 };
 
-/// The path that is nearest to start_px in the first frames.
+/// Where the path's thing is in a frame: between its sightings before and after, at rest where it was seen last, or
+/// where it is seen within a few frames; nothing where it is not seen around that time.
+std::optional<cv::Point2d> place_in(const MarkerPath& path, std::size_t frame) {
+  const auto after = std::lower_bound(path.seen.begin(), path.seen.end(), frame,
+                                      [](const MarkerSeen& seen, std::size_t wanted) { return seen.frame < wanted; });
+  if (after == path.seen.begin()) {
+    if (frames_between(frame, after->frame) >= kStartFrames) return {};
+    return after->fit.centre;
+  }
+  const MarkerSeen& before = *std::prev(after);
+  if (after == path.seen.end()) {
+    if (!path.asleep && frames_between(before.frame, frame) >= kStartFrames) return {};
+    return before.fit.centre;
+  }
+  const double part = frames_between(before.frame, frame) / frames_between(before.frame, after->frame);
+  return before.fit.centre + part * (after->fit.centre - before.fit.centre);
+}
+
+/// The path that is nearest to start_px in the frame that it belongs to.
 std::size_t Choice::path_at_start() const {
   std::size_t best = paths_.size();
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < paths_.size(); ++i) {
-    if (paths_[i].seen.front().frame >= kStartFrames || paths_[i].seen.size() < kFewestMoving) continue;
-    const double distance =
-        cv::norm(paths_[i].seen.front().fit.centre - cv::Point2d(marker_.start_px->x, marker_.start_px->y));
+    const std::optional<cv::Point2d> place = place_in(paths_[i], start_frame_);
+    if (!place || paths_[i].seen.size() < kFewestMoving) continue;
+    const double distance = cv::norm(*place - cv::Point2d(marker_.start_px->x, marker_.start_px->y));
     if (distance >= nearest) continue;
     nearest = distance;
     best = i;
   }
   const double allowed = 3.0 * radius_px_ + 10.0;
   if (best == paths_.size() || nearest > allowed) {
-    throw NoMarker(
-        issue(fmt::format("no marker near start_px = [{:.1f}, {:.1f}] in the first frames{}", marker_.start_px->x,
-                          marker_.start_px->y,
-                          best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
-              fmt::format("one of about {:.1f} px radius within {:.0f} px", radius_px_, allowed)));
+    throw NoMarker(issue(
+        fmt::format("no marker near start_px = [{:.1f}, {:.1f}] in {}{}", marker_.start_px->x, marker_.start_px->y,
+                    start_frame_ == 0 ? std::string("the first frames")
+                                      : fmt::format("frame {}, which start_s names", start_frame_),
+                    best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
+        fmt::format("one of about {:.1f} px radius within {:.0f} px{}", radius_px_, allowed,
+                    start_frame_ == 0 ? "; of one that comes into view later, start_s in its [[clip]] says when "
+                                        "it is there"
+                                      : "")));
   }
   return best;
 }

@@ -94,13 +94,14 @@ struct FollowedPaths {
   std::vector<MarkerPath> paths;  ///< joined, each with a method
   std::size_t frames = 0;         ///< of the clip
   double radius_px = 0.0;         ///< that the marker should have in the middle of the image
+  std::size_t start_frame = 0;    ///< the one that start_px belongs to
 };
 
 /// Which of the paths through a clip is the marker, and in which of its frames it is seen undisturbed.
 ///
-/// The marker is the path nearest to start_px in the first frames where that is given; else, of those that move, the
-/// one that is most like a marker in size, travel, brightness and number of sightings; else the only one of the right
-/// size that rests all the time.
+/// The marker is the path nearest to start_px in the frame that it belongs to where that is given; else, of those that
+/// move, the one that is most like a marker in size, travel, brightness and number of sightings; else the only one of
+/// the right size that rests all the time.
 ///
 /// NoMarker and InputError as MarkerTracker::finish(); `clip` is the file that they name.
 TrackedMarker choose_marker(const FollowedPaths& followed, const MarkerSetup& marker,

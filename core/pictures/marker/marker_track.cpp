@@ -30,11 +30,13 @@ bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, doubl
 
 }  // namespace
 
-MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at)
+MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at,
+                             std::optional<double> start_s)
     : clip_(std::move(clip)),
       marker_(std::move(marker)),
       kind_(signal_kind(marker_)),
-      radius_at_(std::move(radius_at)) {}
+      radius_at_(std::move(radius_at)),
+      start_s_(start_s) {}
 
 /// Where a path's thing is in the next frame: fitted where it should be, or looked for around there.
 std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
@@ -266,6 +268,10 @@ void MarkerTracker::add(const Frame& frame) {
     const cv::Point2d middle(0.5 * (signal->values.cols - 1), 0.5 * (signal->values.rows - 1));
     radius_px_ = std::max(radius_at_(middle), kSmallestRadiusPx);
   }
+  if (const double off = start_s_ ? std::abs(frame.t_s - *start_s_) : 0.0; off < from_start_s_) {
+    start_frame_ = frame.index;
+    from_start_s_ = off;
+  }
   follow(*signal, frame.index);
   if (is_time_to_search(*signal, frame)) {
     search_whole(*signal, frame.index);
@@ -286,7 +292,7 @@ TrackedMarker MarkerTracker::finish() {
   for (Path& path : paths_) {
     if (path.method == MarkerMethod::undecided) choose_method(path, kind_, radius_at_);
   }
-  return choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_}, marker_, clip_);
+  return choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_, start_frame_}, marker_, clip_);
 }
 
 }  // namespace glidelab::core

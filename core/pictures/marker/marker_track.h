@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -26,7 +27,8 @@ namespace glidelab::core {
 
 class MarkerTracker {
  public:
-  MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at);
+  /// `start_s`: the time of the frame that the marker's start_px belongs to; nothing: the first frame.
+  MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at, std::optional<double> start_s = {});
 
   /// Takes the next frame. InputError where a hue is to be looked for in a grey clip.
   void add(const Frame& frame);
@@ -69,6 +71,9 @@ class MarkerTracker {
   std::size_t searched_ = 0;
   double searched_s_ = 0.0;
   std::size_t frames_ = 0;
+  std::optional<double> start_s_;
+  std::size_t start_frame_ = 0;  ///< whose time is nearest to start_s_, of those so far
+  double from_start_s_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace glidelab::core

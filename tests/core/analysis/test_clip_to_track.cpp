@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "tests/catch.h"
 #include "tests/core/small_clip.h"
@@ -127,4 +128,49 @@ TEST_CASE("of a bright and a dark disc the bright one is the marker, and of two 
   CHECK(worst_px(both, {-14.0, 0.0}) < 0.03);
   const auto clip = card_clip(dir, 110.0, {{{-20.0, 0.0}, 200.0}, {{0.0, 0.0}, 20.0}, {{20.0, 0.0}, 200.0}});
   CHECK_THROWS_WITH(only_track(clip), Catch::Contains("two markers that look and move alike"));
+}
+
+namespace {
+
+/// A ball that falls in a portrait clip: v = 20 px + 4.9 m/s² t² at 120 px/m, slightly aslant.
+cv::Point2d fallen(double t) {
+  return cv::Point2d(60.3 + 3.0 * t, 20.2 + 0.5 * 9.81 * 120.0 * t * t);
+}
+
+core::Experiment falling(const std::filesystem::path& clip, std::optional<core::Downhill> downhill) {
+  core::Experiment experiment = experiment_of(clip, 0.0);
+  experiment.scale = core::ScaleSetup{120.0, 0.0};
+  experiment.marker->diameter_m = 12.0 / 120.0;
+  experiment.track.downhill = downhill;
+  experiment.file = "experiment.toml";
+  return experiment;
+}
+
+}  // namespace
+
+TEST_CASE("a fall in a portrait clip counts along the image's y, downwards or upwards as downhill says") {
+  const tests::TempDir dir;
+  std::vector<cv::Mat> frames;
+  for (int k = 0; k < 70; ++k) {
+    cv::Mat picture(cv::Size(120, 330), CV_64F, cv::Scalar(60.0));
+    tests::put_disc(picture, fallen(k / kRate), 6.0, 210.0);
+    frames.push_back(picture);
+  }
+  tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
+  const auto track_of = [&](core::Downhill downhill) {
+    return core::tracks_of(falling(dir / "clip.mkv", downhill), 1).tracks.at(0);
+  };
+  for (const auto& [downhill, sign] : {std::pair(core::Downhill::plus_y, 1.0), {core::Downhill::minus_y, -1.0}}) {
+    const core::TrackData track = track_of(downhill);
+    REQUIRE(track.t_s.size() >= 65);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < track.t_s.size(); ++i) {
+      const cv::Point2d gone = fallen(track.t_s[i]) - fallen(track.t_s[0]);
+      worst = std::max(worst, std::abs(sign * (track.x_m[i] - track.x_m[0]) - gone.y / 120.0));
+    }
+    // The line's slant of 2 px over 240 is 4e-5 of the distance; noise of 1 of 150 is 0.005 px, the largest of 70.
+    CHECK(worst < (0.03 + 4e-5 * 240.0) / 120.0);
+  }
+  CHECK_THROWS_WITH(track_of(core::Downhill::plus_x),
+                    Catch::Contains("experiment.toml: downhill: found \"+X\"") && Catch::Contains("expected \"+Y\""));
 }

@@ -178,7 +178,8 @@ namespace {
 
 /// The findings about the launch or the masses of a folder with a track each for `motions`, all filmed for 1.7 s.
 std::vector<core::Finding> of_setups(const std::vector<core::ClipSetup>& setups,
-                                     const std::vector<core::TrackData>& tracks, int downhill = 1) {
+                                     const std::vector<core::TrackData>& tracks,
+                                     core::Downhill downhill = core::Downhill::plus_x) {
   const tests::TempDir dir;
   core::Experiment experiment;
   experiment.track.downhill = downhill;
@@ -210,7 +211,7 @@ TEST_CASE("free motion against the stated launch is a finding that names the cli
   const core::TrackData down = tests::film(tests::launch(kSlope, 0.3, 1.7), {});
   const auto clip = [](Launched launched) { return tests::clip_setup(launched, 4.3); };
   CHECK(of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}).empty());
-  const auto turned = of_setups({clip(Launched::up)}, {up}, -1);
+  const auto turned = of_setups({clip(Launched::up)}, {up}, core::Downhill::minus_x);
   REQUIRE(turned.size() == 1);
   CHECK(turned[0].severity == core::Severity::unusable);
   CHECK(turned[0].about == "up-0");
@@ -235,7 +236,7 @@ TEST_CASE("a downhill that turns every launch is said once, with the number of c
   const core::TrackData up = tests::film(tests::launch(kSlope, -0.6, 1.7), {});
   const core::TrackData down = tests::film(tests::launch(kSlope, 0.3, 1.7), {});
   const auto clip = [](Launched launched) { return tests::clip_setup(launched, 4.3); };
-  const auto turned = of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}, -1);
+  const auto turned = of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}, core::Downhill::minus_x);
   REQUIRE(turned.size() == 1);
   CHECK(turned[0].about == "up-0, down-1");
   CHECK_THAT(turned[0].found, Catch::Matchers::StartsWith(

@@ -105,7 +105,7 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   CHECK(experiment.marker->height_m == 0.03);
   CHECK(experiment.marker->color_bgr == std::array<unsigned char, 3>{0xa0, 0xf0, 0x10});
   CHECK(experiment.marker->start_px == core::PixelPoint{400.0, 120.5});
-  CHECK(experiment.track.downhill == -1);
+  CHECK(experiment.track.downhill == core::Downhill::minus_x);
   CHECK(experiment.track.length_m == 2.0);
   REQUIRE(experiment.clips.size() == 2);
   const core::ClipSetup& clip = experiment.clips[0];
@@ -117,7 +117,7 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   CHECK(experiment.clips[1].group == "0 deg");
   CHECK(experiment.clips[1].file == folder.dir / "clips/frames");
   REQUIRE(experiment.groups.size() == 1);
-  CHECK(experiment.groups[0].downhill == 1);
+  CHECK(experiment.groups[0].downhill == core::Downhill::plus_x);
   CHECK(experiment.groups[0].plumb->region == core::PixelRegion{1, 2, 3, 4});
   CHECK(experiment.groups[0].planes.size() == 1);
 }
@@ -135,6 +135,22 @@ TEST_CASE("what may be left out has the contract's defaults") {
   CHECK(experiment.clips[0].group == "all");
 }
 
+TEST_CASE("downhill may lie along the image's y where a scale stands for a pattern") {
+  const Folder folder;
+  const std::string scale = "[scale]\npx_per_m = 480.0\n";
+  const auto read = [&](const std::string& downhill) {
+    return folder.read(kHead + kCamera + scale + kMarker + "[track]\ndownhill = \"" + downhill + "\"\n" + kClip);
+  };
+  CHECK(read("+Y").track.downhill == core::Downhill::plus_y);
+  CHECK(read("-Y").track.downhill == core::Downhill::minus_y);
+  CHECK(read("+X").track.downhill == core::Downhill::plus_x);
+  // A group of its own, and a track beside filmed clips of a pattern.
+  const core::Experiment own = folder.read(kHead + kCamera + scale + kMarker + kTrack + kClip +
+                                           "[[group]]\nname = \"all\"\ndownhill = \"+Y\"\n");
+  CHECK(core::downhill_of(own, "all") == core::Downhill::plus_y);
+  CHECK(core::downhill_of(own, "other") == core::Downhill::minus_x);
+}
+
 TEST_CASE("a folder of tracks needs neither camera, calibration nor marker") {
   const Folder folder;
   const core::Experiment experiment =
@@ -147,9 +163,9 @@ TEST_CASE("a folder of tracks needs neither camera, calibration nor marker") {
 TEST_CASE("a folder of tracks needs no table of the track: x is then positive downhill") {
   const Folder folder;
   const std::string track = with(kClip, "file = \"clips/a.mkv\"", "track = \"track.csv\"");
-  CHECK(folder.read(kHead + track).track.downhill == 1);
-  CHECK(folder.read(kHead + track + "[[group]]\nname = \"all\"\n").track.downhill == 1);
-  CHECK(folder.read(kHead + track + "[track]\nlength_m = 2.0\n").track.downhill == 1);
+  CHECK_FALSE(folder.read(kHead + track).track.downhill);
+  CHECK_FALSE(folder.read(kHead + track + "[[group]]\nname = \"all\"\n").track.downhill);
+  CHECK_FALSE(folder.read(kHead + track + "[track]\nlength_m = 2.0\n").track.downhill);
   CHECK(contains(folder.message(kHead + kCamera + kCalibration + kMarker + kClip), "track: found nothing"));
 }
 
@@ -235,6 +251,7 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"diameter_m = 0.02", "diameter_m = 0.02\ncolor = \"green\"", "14: marker.color: found text \"green\""},
       {"diameter_m = 0.02", "diameter_m = 0.02\nstart_px = [1, -2]", "14: marker.start_px: found -2"},
       {"\"-X\"", "\"x\"", "15: track.downhill"},
+      {"\"-X\"", "\"+Y\"", "15: track.downhill: found \"+Y\" for clip \"a\", which goes by a pattern"},
       {"name = \"a\"", "name = \"a/b\"", "17: clip[1].name"},
       {"clips/a.mkv", "clips/c.mkv", "18: clip[1].file: found no file clips/c.mkv"},
       {"mass_kg", "track = \"track.csv\"\nmass_kg", "19: clip[1].track: found a track and a file"},

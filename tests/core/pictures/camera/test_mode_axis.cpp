@@ -110,8 +110,8 @@ void add_replicate(const Set& set, std::uint64_t seed, std::map<std::string, Sco
     for (const double at : x) places.back().push_back(seen(middle + at * along));
     all.insert(all.end(), places.back().begin(), places.back().end());
   }
-  const auto axis = core::MotionAxis::through(all, 1);
-  const auto modes = core::mode_axes(restitution, axis, all, 1);
+  const auto axis = core::MotionAxis::through(all, core::Downhill::plus_x);
+  const auto modes = core::mode_axes(restitution, axis, all, core::Downhill::plus_x);
   std::vector<core::ClipSetup> setups;
   std::vector<core::ClipResult> clips;
   for (std::size_t c = 0; c < 2; ++c) {

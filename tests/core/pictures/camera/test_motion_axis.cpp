@@ -12,14 +12,27 @@ TEST_CASE("exact points give their line, x from the origin's projection and posi
   const double angle = 0.07;
   const cv::Point2d along(std::cos(angle), std::sin(angle)), across(-std::sin(angle), std::cos(angle));
   for (int k = 0; k < 50; ++k) points.push_back(0.02 * k * along + 0.3 * across);
-  const auto right = core::MotionAxis::through(points, 1);
-  const auto left = core::MotionAxis::through(points, -1);
+  const auto right = core::MotionAxis::through(points, core::Downhill::plus_x);
+  const auto left = core::MotionAxis::through(points, core::Downhill::minus_x);
   CHECK(std::abs(right.angle_to_x_rad() - angle) < 1e-12);
   for (int k = 0; k < 50; ++k) {
     CHECK(std::abs(right.x_of(points[static_cast<std::size_t>(k)]) - 0.02 * k) < 1e-12);
     CHECK(std::abs(left.x_of(points[static_cast<std::size_t>(k)]) + 0.02 * k) < 1e-12);
   }
   CHECK(right.line().rms_across < 1e-12);
+}
+
+TEST_CASE("a line along Y is directed as +Y and -Y say, and its plane's origin is where x is 0") {
+  std::vector<cv::Point2d> points;
+  for (int i = 0; i < 20; ++i) points.emplace_back(0.2, 0.05 * i);
+  const auto down = core::MotionAxis::through(points, core::Downhill::plus_y);
+  const auto up = core::MotionAxis::through(points, core::Downhill::minus_y);
+  for (const cv::Point2d& point : points) {
+    CHECK(std::abs(down.x_of(point) - point.y) < 1e-12);
+    CHECK(std::abs(up.x_of(point) + point.y) < 1e-12);
+  }
+  CHECK(core::MotionAxis::along(core::Downhill::minus_y).x_of({3.0, 2.0}) == -2.0);
+  CHECK(core::MotionAxis::along(core::Downhill::minus_x).x_of({3.0, 2.0}) == -3.0);
 }
 
 TEST_CASE("a line's direction scatters as it says, in any direction") {
@@ -72,7 +85,7 @@ TEST_CASE("a fifth of the points off the line does not turn it") {
   cv::RNG random(3);
   for (int k = 0; k < 200; ++k) points.emplace_back(0.005 * k, 0.1 + random.gaussian(1e-4));
   for (int k = 0; k < 50; ++k) points.emplace_back(1.0 + 0.0001 * k, 0.25);  // a marker that fell off its track
-  const auto axis = core::MotionAxis::through(points, 1);
+  const auto axis = core::MotionAxis::through(points, core::Downhill::plus_x);
   CHECK(std::abs(axis.angle_to_x_rad()) < 1e-4);
   CHECK(axis.line().used >= 150);
   CHECK(axis.line().used <= 200);

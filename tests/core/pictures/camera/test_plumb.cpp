@@ -59,7 +59,7 @@ cv::Mat picture_of(double x, double off, double half_width_px, double value, std
 core::MotionAxis axis_at(double alpha_rad) {
   std::vector<cv::Point2d> points;
   for (int k = 0; k < 100; ++k) points.emplace_back(0.01 * k * std::cos(alpha_rad), 0.01 * k * std::sin(alpha_rad));
-  return core::MotionAxis::through(points, 1);
+  return core::MotionAxis::through(points, core::Downhill::plus_x);
 }
 
 }  // namespace
@@ -109,8 +109,8 @@ TEST_CASE("an inclination is not determined where the marker does not move") {
   cv::imwrite((dir / "plumb.png").string(), picture_of(0.25, 0.0, 0.6, 20.0, 1));
   const cv::Point2d middle = kCamera.project(wall().at(0.25, 0.0));
   const core::PixelRegion region{static_cast<int>(middle.x) - 30, 10, 60, 270};
-  const auto found =
-      core::plumb_angle({dir / "plumb.png", region}, restitution(), core::MotionAxis::along_x(1), kCamera.size);
+  const auto found = core::plumb_angle({dir / "plumb.png", region}, restitution(),
+                                       core::MotionAxis::along(core::Downhill::plus_x), kCamera.size);
   CHECK_FALSE(found.estimate);
   CHECK_THAT(found.why, Catch::Contains("does not move"));
 }

@@ -1,0 +1,125 @@
+/// Which path is the marker's where start_px says so, in the frame that it belongs to.
+#include "core/pictures/marker/marker_path.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "base/errors.h"
+#include "core/pictures/marker/marker_track.h"
+#include "tests/catch.h"
+#include "tests/core/small_clip.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const cv::Size kSize(240, 160);
+constexpr std::size_t kFrames = 80;
+constexpr double kRadius = 5.0, kRate = 50.0;
+
+/// Comes into view at the left edge about frame 26 and leaves at the right one.
+cv::Point2d late(std::size_t k) {
+  return {5.0 * (static_cast<double>(k) - 26.0) - 4.0, 60.3};
+}
+
+/// Of the same speed, below it, and ahead.
+cv::Point2d ahead(std::size_t k) {
+  return late(k) + cv::Point2d(40.0, 50.0);
+}
+
+using Scene = std::function<void(cv::Mat&, std::size_t)>;
+
+core::TrackedMarker track(const Scene& scene, std::optional<core::PixelPoint> start_px, std::optional<double> start_s) {
+  core::MarkerSetup setup;
+  setup.diameter_m = 0.02;
+  setup.start_px = start_px;
+  core::MarkerTracker tracker(
+      "clip.mkv", setup, [](cv::Point2d) { return kRadius; }, start_s);
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    cv::Mat picture(kSize, CV_64F, cv::Scalar(60.0));
+    scene(picture, k);
+    core::Frame frame;
+    frame.index = k;
+    frame.t_s = static_cast<double>(k) / kRate;
+    frame.grey = tests::expose(picture, 2.0, 5 + k);
+    tracker.add(frame);
+  }
+  return tracker.finish();
+}
+
+std::string refusal(const Scene& scene, core::PixelPoint start_px, std::optional<double> start_s) {
+  try {
+    track(scene, start_px, start_s);
+  } catch (const core::NoMarker& error) {
+    return error.what();
+  }
+  return "";
+}
+
+core::PixelPoint point(cv::Point2d at) {
+  return {at.x, at.y};
+}
+
+double worst_px(const core::TrackedMarker& tracked, cv::Point2d (*place)(std::size_t)) {
+  double worst = 0.0;
+  for (const core::MarkerSighting& seen : tracked.sightings) {
+    worst = std::max(worst, cv::norm(cv::Point2d(seen.u_px, seen.v_px) - place(seen.frame)));
+  }
+  return worst;
+}
+
+const Scene kLate = [](cv::Mat& p, std::size_t k) { tests::put_disc(p, late(k), kRadius, 210.0); };
+const Scene kTwo = [](cv::Mat& p, std::size_t k) {
+  tests::put_disc(p, late(k), kRadius, 210.0);
+  tests::put_disc(p, ahead(k), kRadius, 210.0);
+};
+
+// Noise 2 of 150 at radius 5 leaves 0.006 px a coordinate; the largest of a hundred.
+constexpr double kWorstPx = 0.05;
+
+}  // namespace
+
+TEST_CASE("a marker that comes into view later is followed from where it is first seen whole") {
+  const auto tracked = track(kLate, {}, {});
+  // Whole in the window of its fit (1.25 radii and 2.5 px) from frame 29 on, until 231 px in frame 73.
+  CHECK(tracked.sightings.front().frame >= 27);
+  CHECK(tracked.sightings.front().frame <= 31);
+  CHECK(tracked.sightings.back().frame >= 71);
+  CHECK(tracked.sightings.size() >= 40);
+  CHECK(worst_px(tracked, late) < kWorstPx);
+}
+
+TEST_CASE("start_px belongs to the frame at start_s, and to the first one where none is given") {
+  // Its place in frame 45 (0.9 s), and the nearest frame to a time between two.
+  for (const double start_s : {0.9, 0.9049}) {
+    const auto tracked = track(kLate, point(late(45)), start_s);
+    CHECK(tracked.sightings.size() >= 40);
+    CHECK(worst_px(tracked, late) < kWorstPx);
+  }
+  CHECK_THAT(refusal(kLate, point(late(45)), {}), Contains("in the first frames") && Contains("start_s"));
+  CHECK_THAT(refusal(kLate, point(late(45)), 1.2), Contains("in frame 60, which start_s names"));
+}
+
+TEST_CASE("of two that look and move alike start_px takes the one that is there at start_s") {
+  CHECK(worst_px(track(kTwo, point(late(50)), 1.0), late) < kWorstPx);
+  CHECK(worst_px(track(kTwo, point(ahead(50)), 1.0), ahead) < kWorstPx);
+  // Where the other was a little before.
+  CHECK_THAT(refusal(kTwo, point(ahead(40)), 1.0), Contains("no marker near start_px"));
+}
+
+TEST_CASE("a marker that rests until it is released is found by its place at rest, at any time before") {
+  const Scene released = [](cv::Mat& p, std::size_t k) {
+    const double since = k < 40 ? 0.0 : static_cast<double>(k - 40);
+    tests::put_disc(p, {60.4 + 0.1 * since * since, 70.2}, kRadius, 210.0);
+    tests::put_disc(p, {120.3, 120.6}, kRadius, 210.0);  // rests all the time
+  };
+  for (const double start_s : {0.0, 0.3, 0.6, 0.8}) {
+    INFO("start_s = " << start_s);
+    const auto tracked = track(released, core::PixelPoint{60.4, 70.2}, start_s);
+    CHECK(tracked.sightings.back().frame == kFrames - 1);
+    CHECK(tracked.sightings.back().u_px > 200.0);
+  }
+}
