@@ -1,7 +1,7 @@
 #include "app/commands/analysis_files.h"
 
 #include "base/files/file_io.h"
-#include "core/experiment/experiment.h"
+#include "core/track/bare_track.h"
 #include "report/analysis/result_files.h"
 #include "report/text/display_text.h"
 

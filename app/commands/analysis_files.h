@@ -6,8 +6,8 @@
 
 #include "base/long_work.h"
 #include "core/analysis/preview.h"
-#include "core/experiment/experiment.h"
 #include "core/result/results.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::app {
 

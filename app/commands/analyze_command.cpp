@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "app/commands/analysis_files.h"
+#include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
@@ -15,8 +15,8 @@
 #include "base/files/file_io.h"
 #include "base/text/nearest_word.h"
 #include "core/analysis/analyze.h"
-#include "core/experiment/experiment.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/track/bare_track.h"
 #include "fit/estimators.h"
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/result_files.h"
@@ -53,17 +53,6 @@ std::string title_of(const std::vector<fs::path>& folders, const core::BareTrack
   return title;
 }
 
-/// Options for files have no meaning for folders, whose experiment.toml says the same.
-void check_file_options(const AnalyzeOptions& options, const std::vector<fs::path>& inputs) {
-  const core::BareTrackOptions& bare = options.bare;
-  if (bare.column.empty() && !bare.mass_kg && !bare.incline_deg) return;
-  for (const fs::path& input : inputs) {
-    if (core::is_bare_track(input)) continue;
-    throw base::InputError(base::Issue{input.string(), 0, "--column, --mass, --incline", "not a file with a track",
-                                       "a file; for a folder, experiment.toml states column, mass_kg and incline_deg"});
-  }
-}
-
 void analyze(const AnalyzeOptions& options) {
   const fit::Estimator& estimator = *fit::find_estimator(options.estimator);  // a checked name
   if (options.robust && !estimator.takes_robust) {
@@ -74,7 +63,7 @@ void analyze(const AnalyzeOptions& options) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   const fs::path out = output_folder(options.common, "analyze", folders.front());
   refuse_scenarios(options.experiments);
-  check_file_options(options, folders);
+  check_bare_options(options.bare, options.experiments);
   const std::string title = title_of(folders, options.bare);
   report::check_gnuplot();
   check_writable(out);
@@ -106,13 +95,6 @@ std::string check_bandwidth(const std::string& text) {
   if (check_above_0(text).empty()) return {};
   return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}{}", text, fmt::join(rules, ", "),
                      base::did_you_mean(text, rules));
-}
-
-std::string check_incline(const std::string& text) {
-  constexpr double kSteepest_deg = 89.9;
-  double value_deg = 0.0;
-  if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
-  return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}", text, kSteepest_deg);
 }
 
 std::string estimator_help() {
@@ -152,17 +134,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
   command->add_flag("--robust", options->robust,
                     "With \"trajectory\": leave out positions more than four scaled median absolute deviations off the "
                     "motion, found with Huber's weights");
-  command
-      ->add_option("--column", options->bare.column,
-                   "For a file: the column that holds x, by header or number; default: found by its header")
-      ->type_name("NAME|NUMBER");
-  command->add_option("--mass", options->bare.mass_kg, "For a file: mass of the glider in kilograms")
-      ->type_name("KG")
-      ->check(check_above_0);
-  command->add_option("--incline", options->bare.incline_deg, "For a file: stated inclination in degrees")
-      ->type_name("DEG")
-      ->check(check_incline);
-  add_allow_outside(*command, options->bare.outside);
+  add_bare_options(*command, options->bare);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });

@@ -106,4 +106,7 @@ void add_allow_outside(CLI::App& command, core::OutsideFiles& outside);
 /// InputError if one of these is a scenario or a sweep, which hold no recording.
 void refuse_scenarios(const std::vector<std::string>& inputs);
 
+/// "; use a decimal point: 0.335" for "0,335"; empty for any other text.
+std::string decimal_point_for(const std::string& text);
+
 }  // namespace glidelab::app

@@ -79,10 +79,6 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
-      if (is_bare_track(experiment.file) && !options.bare.mass_kg) {
-        tracks.back().notes.emplace_back(
-            "no mass is stated: 1 kg is assumed (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)");
-      }
       experiment_of.push_back(&experiment);
     }
     modes += seen.modes;

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "base/long_work.h"
-#include "core/experiment/experiment.h"
 #include "core/motion/analyze_motion.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/result/results.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 

@@ -51,7 +51,7 @@ void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) 
   findings.push_back({Severity::unusable, "masses",
                       fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", first_names(heavy),
                                   kMassRatio, least->name, least->mass_kg),
-                      "state every mass in kilograms: one of them looks like grams"});
+                      "state every mass in kilograms: one of them looks like grams", Topic::mass});
 }
 
 /// One finding for all clips: they share the marker and the scale.
@@ -75,7 +75,8 @@ void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clip
        fmt::format(
            "measure diameter_m and {} again: one of these lengths is wrong; if it is not diameter_m, all speeds and "
            "accelerations are wrong too",
-           length)});
+           length),
+       Topic::size});
 }
 
 /// A marker cannot run farther than the track is long.
@@ -92,7 +93,7 @@ void judge_distance(const Experiment& experiment, const std::vector<ClipCheck>& 
   findings.push_back({Severity::unusable, first_names(names),
                       fmt::format("the glider runs {:.3g} m, but length_m in [track] is {:.3g} m", distance_m,
                                   *experiment.track.length_m),
-                      fmt::format("measure the track again, and check {}", lengths_of(experiment))});
+                      fmt::format("measure the track again, and check {}", lengths_of(experiment)), Topic::length});
 }
 
 /// The configuration of a group that contradicts the stated inclination most.
@@ -119,7 +120,7 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
     const auto against = [&](const StatedIncline& stated) {
       return incline_contradiction(configuration, experiment.gravity_m_s2, stated);
     };
-    keep_worse(configuration, against(stated_incline(configuration)), by_key);
+    if (!configuration.incline_assumed) keep_worse(configuration, against(stated_incline(configuration)), by_key);
     for (const PlumbResult& plumb : check.plumbs) {
       if (plumb.group != configuration.group || !plumb.plumb_deg.estimate) continue;
       const Estimate& angle = *plumb.plumb_deg.estimate;
@@ -133,7 +134,8 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
                           first_names(worst.configuration->clips), worst.contradiction.sentence,
                           fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}",
                                       worst_of == &by_key ? "incline_deg" : "the plumb line", lengths_of(experiment),
-                                      experiment.camera ? ", frame_rate_hz (its square enters)" : "")});
+                                      experiment.camera ? ", frame_rate_hz (its square enters)" : ""),
+                          Topic::incline});
     }
   }
 }

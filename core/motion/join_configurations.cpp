@@ -273,6 +273,8 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
   result.group = members.front().setup->group;
+  result.mass_assumed = members.front().setup->mass_assumed;
+  result.incline_assumed = members.front().setup->incline_assumed;
   bool biased = false;
   for (const MemberClip& member : members) {
     result.clips.push_back(member.clip->name);

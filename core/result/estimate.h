@@ -31,6 +31,8 @@ Quantity undetermined(std::string why);
 /// above zero by 1.96 standard deviations. `k_is` begins the sentence: "K/m".
 std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view k_is, const Estimate& a0_m_s2);
 
+/// A glider of a laboratory is lighter; grams for kilograms are not.
+inline constexpr double kLargestMass_kg = 20.0;
 inline constexpr double kMassRatio = 100.0;  ///< gliders of one track differ by less; grams for kilograms make 1000
 
 /// An angle that somebody states, in degrees.
@@ -59,6 +61,9 @@ struct InclineContradiction {
 /// standard deviations (a choice: half a degree is a track that was not levelled with care).
 std::optional<InclineContradiction> incline_contradiction(const ConfigurationResult& found, double gravity_m_s2,
                                                           const StatedIncline& stated);
+
+/// "a mass of 1 kg and an inclination of 0° are assumed, …"; empty where both are stated.
+std::string assumption(const ConfigurationResult& configuration);
 
 /// As incline_deg and incline_sd_deg of its clips say.
 StatedIncline stated_incline(const ConfigurationResult& configuration);

@@ -281,7 +281,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
   std::vector<std::optional<core::CameraSettings>> cameras;
   std::vector<core::Experiment> experiments;
   for (const std::filesystem::path& folder : folders) {
-    const core::Experiment experiment = read_recording(folder, options.outside);
+    const core::Experiment experiment = read_recording(folder, options.bare);
     if (experiment.lines) {
       if (folders.size() > 1) {
         throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines with other folders",
@@ -300,7 +300,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
                      .jobs = options.jobs,
                      .lost_frames = core::LostFrameTimes::kept,
                      .pictures = true,
-                     .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .outside = options.outside}},
+                     .bare = options.bare},
                     progress);
   return diagnose_results(results, setups, options, progress, cameras, experiments);
 }

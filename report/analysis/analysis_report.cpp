@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "report/analysis/fitted_curve.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/sections.h"
 #include "report/html/html.h"
@@ -230,26 +231,61 @@ std::string analysis_text(const core::AnalysisResults& results) {
   return text;
 }
 
-Page analysis_report(const std::string& title, const core::AnalysisResults& results,
-                     const std::vector<core::Preview>& previews, const base::Progress& progress) {
-  std::size_t frames = 0;
-  std::size_t detected = 0;
+namespace {
+
+/// K/m, µ, α and the limit velocity with ±, of each of few configurations; of many the table has them.
+std::string value_tiles(const core::AnalysisResults& results) {
+  constexpr std::size_t kMostTiled = 2;
+  if (results.configurations.size() > kMostTiled) return {};
+  std::string html;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    html += "<div class=\"tiles\">";
+    for (const auto& [name, quantity] : quantities_of(c)) {
+      std::string what = with_unit(name.symbol, name.unit);
+      if (results.configurations.size() > 1) what += ", " + configuration_name(results, c);
+      html += tile(quantity_text(*quantity), what);
+    }
+    html += "</div>\n";
+  }
+  return html;
+}
+
+/// "12 clips, 2400 frames, the marker found in 2388".
+std::string size_words(const core::AnalysisResults& results) {
+  std::size_t frames = 0, detected = 0;
   bool pictures = false;
   for (const core::ClipResult& clip : results.clips) {
     pictures = pictures || !clip.sightings.empty();
     frames += clip.frames;
     detected += clip.detected;
   }
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, estimator {}.</p>\n", escape(title),
-                          escape(results.estimator));
-  body += fmt::format("<div class=\"tiles\">{}{}{}{}</div>\n",
-                      tile(std::to_string(results.configurations.size()), "configurations"),
-                      tile(std::to_string(results.clips.size()), "clips"), tile(std::to_string(frames), "frames"),
-                      tile(std::to_string(detected), pictures ? "with the marker found" : "positions"));
+  const std::size_t clips = results.clips.size();
+  const std::string seen = pictures ? fmt::format("{} frames, the marker found in {}", frames, detected)
+                                    : fmt::format("{} positions", detected);
+  return fmt::format("{} {}, {}", clips, clips == 1 ? "clip" : "clips", seen);
+}
+
+/// x(t) with the law over it, of the first clips.
+Html fitted_section(const core::AnalysisResults& results) {
+  constexpr std::size_t kMostFitted = 4;
+  const std::vector<Plot> plots = fitted_plots(results, kMostFitted);
+  if (plots.empty()) return {};
+  Html html = "<h2 id=\"fitted\">Does the law fit the positions?</h2>\n";
+  html += figures(plots);
+  return html;
+}
+
+}  // namespace
+
+Page analysis_report(const std::string& title, const core::AnalysisResults& results,
+                     const std::vector<core::Preview>& previews, const base::Progress& progress) {
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n", escape(title),
+                          escape(estimator_name(results.estimator)), size_words(results));
+  body += value_tiles(results) + recovered_section(results);
   body += meaning_of(results);
-  body += recovered_section(results);
+  body += fitted_section(results);
   body += phase_section(results);
-  body += details_sections(results, previews, progress);
+  body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));
   return page(title, body);
 }
 

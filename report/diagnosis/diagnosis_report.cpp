@@ -201,12 +201,6 @@ constexpr const char* kMethod =
     "clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
     "waves or positions, which frames are lost, the shape of a curve without a name) comes from all clips.</p>\n";
 
-/// A part of the page that opens where its heading is clicked; nothing of an empty one.
-Html folded(const std::string& heading, const Html& part) {
-  if (part.plots().empty() && part.texts().front().empty()) return {};
-  return Html("<details class=\"part\"><summary>" + heading + "</summary>\n") + part + "</details>\n";
-}
-
 Html gap_parts(const diagnose::Diagnosis& diagnosis) {
   const std::vector<Plot> domains = domain_plots(diagnosis);
   Html html;

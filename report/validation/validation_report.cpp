@@ -57,6 +57,8 @@ std::string comparison_json(const validate::Comparison& comparison) {
   put(positions, "field_m", restitution.field_m);
   document["frames"] = comparison.frames;
   document["detected"] = comparison.detected;
+  document["outside"] = comparison.outside;
+  document["out_of_view"] = comparison.out_of_view;
   put(document, "wall_s", comparison.wall_s);
   return json_text(document);
 }
@@ -336,8 +338,9 @@ std::string comparison_text(const validate::Comparison& comparison) {
   text += '\n';
   text += text_table(rows, 2);
   text += restitution_text(comparison.restitution);
-  text += fmt::format("marker found in {} of {} frames\ntime to render and analyse: {:.1f} s\n", comparison.detected,
-                      comparison.frames, comparison.wall_s);
+  text += fmt::format("marker found in {} of {} frames\n", comparison.detected, comparison.frames);
+  for (const std::string& sentence : comparison.out_of_view) text += printable(sentence) + "\n";
+  text += fmt::format("time to render and analyse: {:.1f} s\n", comparison.wall_s);
   return text;
 }
 
@@ -354,6 +357,9 @@ std::string meaning_of(const validate::Comparison& comparison) {
         base::number_text(100.0 * restitution.max_m / restitution.field_m, 2),
         base::number_text(restitution.field_m, 3));
   }
+  for (const std::string& sentence : comparison.out_of_view) {
+    text += fmt::format("<p class=\"note\">{}.</p>\n", escape(sentence));
+  }
   return meaning_section(text);
 }
 
@@ -369,6 +375,9 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
       escape(title));
   body += "<div class=\"tiles\">" +
           tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +
+          (comparison.outside == 0
+               ? std::string()
+               : tile(std::to_string(comparison.outside), "frames lost: the marker is outside the image")) +
           tile(restitution.points.empty() ? "–" : base::number_text(restitution.rms_m * 1e3, 2) + " mm",
                "position error (rms)") +
           tile(comparison.lines.empty() ? "–" : base::r2_text(lowest_r2), "lowest R² of a line") +
@@ -382,7 +391,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);
   body += recovered_section(results);
-  body += details_sections(results, previews, progress);
+  body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));
   return page(title, body);
 }
 
