@@ -24,11 +24,11 @@ void write_analysis_files(const core::AnalysisResults& results, const std::files
 
 std::vector<core::Preview> previews_of(const std::vector<std::filesystem::path>& folders,
                                        const core::AnalysisResults& results, const base::Progress& progress,
-                                       const core::BareTrackOptions& bare) {
+                                       const core::TrackFileOptions& bare) {
   std::vector<core::Preview> previews;
   int videos = 0;
   for (const std::filesystem::path& folder : folders) {
-    const core::Experiment experiment = core::read_input(folder, bare);
+    const core::Experiment experiment = core::read_tracks(folder, bare);
     for (const core::ClipSetup& setup : experiment.clips) {
       if (!setup.file.empty())
         progress("preparing images", static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));

@@ -18,6 +18,6 @@ void write_analysis_files(const core::AnalysisResults& results, const std::files
 /// images get a video, the others one frame.
 std::vector<core::Preview> previews_of(const std::vector<std::filesystem::path>& folders,
                                        const core::AnalysisResults& results, const base::Progress& progress,
-                                       const core::BareTrackOptions& bare = {});
+                                       const core::TrackFileOptions& bare = {});
 
 }  // namespace glidelab::app

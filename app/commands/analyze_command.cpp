@@ -33,7 +33,7 @@ struct AnalyzeOptions {
   std::string bandwidth{core::kLinesRule};
   std::string estimator{fit::default_estimator().name};
   bool robust = false;
-  core::BareTrackOptions bare;
+  core::TrackFileOptions bare;
 };
 
 /// A checked text: a number of seconds or the name of a rule.
@@ -47,8 +47,8 @@ void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
   }
 }
 
-std::string title_of(const std::vector<fs::path>& folders, const core::BareTrackOptions& bare) {
-  std::string title = core::read_input(folders.front(), bare).name;
+std::string title_of(const std::vector<fs::path>& folders, const core::TrackFileOptions& bare) {
+  std::string title = core::read_tracks(folders.front(), bare).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
   return title;
 }

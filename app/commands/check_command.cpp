@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct CheckOptions {
   CommonOptions common;
   std::string input;
-  core::BareTrackOptions bare;
+  core::TrackFileOptions bare;
 };
 
 /// One frame of every clip in which the marker was seen.
@@ -46,7 +46,7 @@ void check(const CheckOptions& options) {
   const fs::path out = output_folder(options.common, "check", options.input);
   refuse_scenarios({options.input});
   check_bare_options(options.bare, {options.input});
-  const core::Experiment experiment = core::read_input(options.input, options.bare);
+  const core::Experiment experiment = core::read_tracks(options.input, options.bare);
   report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);

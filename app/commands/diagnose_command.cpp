@@ -40,7 +40,7 @@ struct DiagnoseCommand {
   std::string twin;
   bool plan = false;
   std::optional<double> noise_m;  // of a plan
-  core::BareTrackOptions bare;
+  core::TrackFileOptions bare;
 };
 
 /// A plan of folders that were recorded, and not of a scenario.
@@ -83,11 +83,7 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
       setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     }
     return diagnose::plan_of(
-        core::analyze(folders,
-                      {.bandwidth_s = {},
-                       .jobs = options.common.jobs,
-                       .bare = options.bare},
-                      progress),
+        core::analyze(folders, {.bandwidth_s = {}, .jobs = options.common.jobs, .bare = options.bare}, progress),
         setups);
   }
   const render::Scenario scenario = render::read_scenario(first);
@@ -131,12 +127,10 @@ void diagnose(const DiagnoseCommand& options) {
   base::StagedOutput staged(out);
 
   ProgressDisplay display(options.common.quiet, options.common.verbose);
-  const diagnose::Diagnosis diagnosis = diagnose::diagnose(folders,
-                                                           {.without = options.without,
-                                                            .jobs = options.common.jobs,
-                                                            .twin = !options.twin.empty(),
-                                                            .bare = options.bare},
-                                                           display.callback());
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose(
+      folders,
+      {.without = options.without, .jobs = options.common.jobs, .twin = !options.twin.empty(), .bare = options.bare},
+      display.callback());
   base::write_file(staged.dir() / "diagnosis.json", report::diagnosis_json(diagnosis));
   if (!options.no_page) {
     const bool twin = !options.twin.empty() && !diagnosis.twin.empty();

@@ -85,9 +85,10 @@ void add_require(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "--target", options->targets,
-          fmt::format("QUANTITY=VALUE (what 95 % of the errors stay within), QUANTITY:sd=VALUE (root mean square error) "
-                      "or QUANTITY:bias=VALUE (mean error); quantities are {}",
-                      fmt::join(core::quantity_keys(), ", ")))
+          fmt::format(
+              "QUANTITY=VALUE (what 95 % of the errors stay within), QUANTITY:sd=VALUE (root mean square error) "
+              "or QUANTITY:bias=VALUE (mean error); quantities are {}",
+              fmt::join(core::quantity_keys(), ", ")))
       ->type_name("TARGET")
       ->required();
   command
@@ -96,8 +97,10 @@ void add_require(CLI::App& app, Command& chosen) {
                    "clips), by \"tracks\" with the predicted noise (the default else), or by \"none\"")
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}));
-  CLI::Option* runs = command->add_option("--runs", options->runs, "Rendered runs of a camera, at most: of the one to buy, and of those "
-                                                             "that are close to the target")
+  CLI::Option* runs = command
+                          ->add_option("--runs", options->runs,
+                                       "Rendered runs of a camera, at most: of the one to buy, and of those "
+                                       "that are close to the target")
                           ->type_name("N")
                           ->check(CLI::Range(2, 100000))
                           ->capture_default_str();

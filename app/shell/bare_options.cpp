@@ -21,7 +21,7 @@ std::string check_incline(const std::string& text) {
 
 }  // namespace
 
-void add_bare_options(CLI::App& command, core::BareTrackOptions& options) {
+void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
   command
       .add_option("--column", options.column,
                   "For a file: the column that holds x, by header or number; default: found by its header")
@@ -45,7 +45,7 @@ void add_bare_options(CLI::App& command, core::BareTrackOptions& options) {
   add_allow_outside(command, options.outside);
 }
 
-void check_bare_options(const core::BareTrackOptions& options, const std::vector<std::string>& inputs) {
+void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs) {
   if (options.column.empty() && !options.mass_kg && !options.incline_deg && options.runs.empty()) return;
   for (const std::string& input : inputs) {
     if (core::is_bare_track(input)) continue;

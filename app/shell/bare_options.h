@@ -14,10 +14,10 @@ class App;
 namespace glidelab::app {
 
 /// --column, --mass, --incline, --runs, --masses, and --allow-outside for folders.
-void add_bare_options(CLI::App& command, core::BareTrackOptions& options);
+void add_bare_options(CLI::App& command, core::TrackFileOptions& options);
 
 /// Options for files have no meaning for folders, whose experiment.toml says the same: InputError where an input is a
 /// folder and one of them is given; and for --masses without --runs, or beside --mass.
-void check_bare_options(const core::BareTrackOptions& options, const std::vector<std::string>& inputs);
+void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs);
 
 }  // namespace glidelab::app

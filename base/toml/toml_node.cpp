@@ -57,10 +57,10 @@ toml::table parsed_toml(std::string_view text, const std::string& shown_as) {
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
     const std::string expected = with_decimal_point(line_of(text, at.line));
-    throw InputError(Issue{shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
-                           expected.empty() ? fmt::format("no valid TOML ({})", error.description())
-                                            : std::string("a decimal comma"),
-                           expected.empty() ? "TOML 1.0" : fmt::format("a decimal point: {}", expected)});
+    throw InputError(Issue{
+        shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
+        expected.empty() ? fmt::format("no valid TOML ({})", error.description()) : std::string("a decimal comma"),
+        expected.empty() ? "TOML 1.0" : fmt::format("a decimal point: {}", expected)});
   }
 }
 

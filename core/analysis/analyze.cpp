@@ -16,7 +16,7 @@
 namespace glidelab::core {
 namespace {
 
-std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folders, const BareTrackOptions& bare) {
+std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folders, const TrackFileOptions& bare) {
   if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
   std::vector<Experiment> experiments;
   std::set<std::filesystem::path> seen;
@@ -25,7 +25,7 @@ std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folde
     if (!seen.insert(std::filesystem::weakly_canonical(file)).second) {
       throw base::InputError(base::Issue{folder.string(), 0, "", "the folder a second time", "each folder once"});
     }
-    experiments.push_back(read_input(folder, bare));
+    experiments.push_back(read_tracks(folder, bare));
     const Experiment& read = experiments.back();
     require_clips(read);
     if (read.gravity_m_s2 != experiments.front().gravity_m_s2) {
@@ -57,6 +57,22 @@ void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipS
 
 }  // namespace
 
+namespace {
+
+/// What a file on its own does not say and nobody states.
+std::string assumption(const TrackFileOptions& stated, const ClipSetup& clip) {
+  std::string what;
+  if (!stated.mass_kg && stated.masses_kg.empty()) what = fmt::format("a mass of {:g} kg", clip.mass_kg);
+  if (!stated.incline_deg) what += what.empty() ? "an inclination of 0°" : " and an inclination of 0°";
+  if (what.empty()) return {};
+  return fmt::format(
+      "{} assumed, for nobody states it (--mass, --incline): K/m, µ and α come from the motion and do not "
+      "depend on that",
+      what + (what.find(" and ") == std::string::npos ? " is" : " are"));
+}
+
+}  // namespace
+
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
                         const base::Progress& progress) {
   if (options.bandwidth_s && !(std::isfinite(*options.bandwidth_s) && *options.bandwidth_s > 0.0)) {
@@ -79,6 +95,10 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
+      if (is_bare_track(experiment.file)) {
+        const std::string assumed = assumption(options.bare, experiment.clips[i]);
+        if (!assumed.empty()) tracks.back().notes.push_back(assumed);
+      }
       experiment_of.push_back(&experiment);
     }
     modes += seen.modes;

@@ -9,6 +9,7 @@
 
 #include "base/math/angles.h"
 #include "core/result/estimate.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 namespace {
@@ -118,11 +119,11 @@ std::optional<Root> long_tracks(const Experiment& experiment, const RecordingChe
   }
   if (names.empty()) return std::nullopt;
   const Unit unit = likely_unit(distance_m, kUsualRun_m);
-  return Root{{Severity::unusable, first_names(names),
-               fmt::format("x covers {:.4g}, which looks like {} ({:.3g} m)", distance_m, unit.name,
-                           distance_m / unit.per_m),
-               fmt::format("give x in metres: divide the column by {:.0f}, or name its unit in the header", unit.per_m)},
-              kByLength};
+  return Root{
+      {Severity::unusable, first_names(names),
+       fmt::format("x covers {:.4g}, which looks like {} ({:.3g} m)", distance_m, unit.name, distance_m / unit.per_m),
+       fmt::format("give x in metres: divide the column by {:.0f}, or name its unit in the header", unit.per_m)},
+      kByLength};
 }
 
 bool same_angle(double one_deg, double other_deg) {
@@ -130,8 +131,9 @@ bool same_angle(double one_deg, double other_deg) {
 }
 
 std::optional<Root> wrong_angle_or_rate(const Experiment& experiment, const RecordingCheck& check) {
+  if (std::any_of(experiment.clips.begin(), experiment.clips.end(), incline_is_assumed)) return std::nullopt;
   for (const ConfigurationResult& found : check.configurations) {
-    if (found.incline_assumed || !found.alpha_deg.estimate) continue;
+    if (!found.alpha_deg.estimate) continue;
     const auto off = incline_contradiction(found, experiment.gravity_m_s2, stated_incline(found));
     if (!off || !off->gross) continue;
     const double stated = found.incline_deg, alpha = found.alpha_deg.estimate->value;

@@ -9,6 +9,7 @@
 #include "core/check/recording_check.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/result/estimate.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 namespace {
@@ -116,11 +117,12 @@ void keep_worse(const ConfigurationResult& configuration, const std::optional<In
 /// One finding for a group: its clips share the inclination.
 void judge_incline(const Experiment& experiment, const RecordingCheck& check, std::vector<Finding>& findings) {
   std::map<std::string, Worst> by_key, by_plumb;
+  const bool any_assumed = std::any_of(experiment.clips.begin(), experiment.clips.end(), incline_is_assumed);
   for (const ConfigurationResult& configuration : check.configurations) {
     const auto against = [&](const StatedIncline& stated) {
       return incline_contradiction(configuration, experiment.gravity_m_s2, stated);
     };
-    if (!configuration.incline_assumed) keep_worse(configuration, against(stated_incline(configuration)), by_key);
+    if (!any_assumed) keep_worse(configuration, against(stated_incline(configuration)), by_key);
     for (const PlumbResult& plumb : check.plumbs) {
       if (plumb.group != configuration.group || !plumb.plumb_deg.estimate) continue;
       const Estimate& angle = *plumb.plumb_deg.estimate;

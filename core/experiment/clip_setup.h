@@ -44,7 +44,6 @@ struct ClipSetup {
   double mass_sd_kg = 0.0;
   double incline_rad = 0.0;  ///< as stated
   std::optional<double> incline_sd_rad;
-  bool mass_assumed = false, incline_assumed = false;  ///< nobody states it: of a track's file on its own
   Launched launched = Launched::released;
   std::optional<double> start_s;
   std::optional<double> end_s;

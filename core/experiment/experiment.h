@@ -1,5 +1,5 @@
 /// The experiment as it is given, as plain data: the folder that a person with a track, a glider and a camera has on
-/// disk.
+/// disk, or a track's file on its own.
 ///
 /// The form of experiment.toml is a contract with other programs (experiment_template.h explains its keys). Angles are
 /// converted to radians where the file is read; every length is in metres, every time in seconds.
@@ -83,5 +83,21 @@ Experiment read_experiment(const std::filesystem::path& folder, OutsideFiles out
 
 /// InputError where there is neither a clip nor a track: a table of lines is for `glidelab diagnose`.
 void require_clips(const Experiment& experiment);
+
+/// What the analysis needs beside a track's file that is given on its own.
+struct BareTrackOptions {
+  std::string column;                 ///< of x in an exported table (track_data.h); empty: found by its header
+  std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
+  std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
+  OutsideFiles outside = OutsideFiles::refused;  ///< of a folder: whether it may name files outside (file_names.h)
+};
+
+/// A regular file that is not experiment.toml.
+bool is_bare_track(const std::filesystem::path& path);
+
+/// Of a folder read_experiment(); of a file an experiment of one clip, named after the file, x taken as downhill, how
+/// it was launched not known: no motion is the hand's for its direction alone.
+/// InputError as read_experiment(), and for a path that is not there.
+Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options);
 
 }  // namespace glidelab::core

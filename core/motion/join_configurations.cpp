@@ -12,6 +12,7 @@
 #include "core/motion/lines/line_fit.h"
 #include "core/motion/lines/line_law.h"
 #include "core/result/estimate.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 namespace {
@@ -273,8 +274,6 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
   result.group = members.front().setup->group;
-  result.mass_assumed = members.front().setup->mass_assumed;
-  result.incline_assumed = members.front().setup->incline_assumed;
   bool biased = false;
   for (const MemberClip& member : members) {
     result.clips.push_back(member.clip->name);
@@ -321,7 +320,11 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   for (const std::vector<MemberClip>& members : configurations) {
     results.push_back(join_members(members, gravity_m_s2, lines));
   }
-  note_statements(results, gravity_m_s2);
+  note_statements(results, gravity_m_s2, [&](const ConfigurationResult& result) {
+    return std::none_of(setups.begin(), setups.end(), [&](const ClipSetup& setup) {
+      return incline_is_assumed(setup) && setup.name == result.clips.front();
+    });
+  });
   return results;
 }
 

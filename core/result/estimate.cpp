@@ -1,15 +1,12 @@
 #include "core/result/estimate.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "base/math/angles.h"
 #include "core/math/quantile.h"
@@ -131,19 +128,8 @@ StatedIncline stated_incline(const ConfigurationResult& configuration) {
   return {configuration.incline_deg, configuration.incline_sd_deg, "incline_deg"};
 }
 
-std::string assumption(const ConfigurationResult& configuration) {
-  std::vector<std::string> what;
-  if (configuration.mass_assumed) what.push_back(fmt::format("a mass of {:.6g} kg", configuration.mass_kg));
-  if (configuration.incline_assumed) {
-    what.push_back(fmt::format("an inclination of {:.4g}°", configuration.incline_deg + 0.0));
-  }
-  if (what.empty()) return {};
-  return fmt::format("{} {} assumed, for none is stated (--mass, --incline): K/m, µ and α come from the motion and do "
-                     "not depend on that",
-                     fmt::join(what, " and "), what.size() == 1 ? "is" : "are");
-}
-
-void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2) {
+void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2,
+                     const std::function<bool(const ConfigurationResult&)>& states_incline) {
   double least_kg = std::numeric_limits<double>::infinity();
   for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
   for (ConfigurationResult& result : results) {
@@ -158,8 +144,7 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
           fmt::format("mass_kg = {:.6g}: masses are in kilograms, and this one looks like grams ({:.6g} kg)",
                       result.mass_kg, result.mass_kg / 1000.0));
     }
-    if (const std::string assumed = assumption(result); !assumed.empty()) result.notes.push_back(assumed);
-    if (result.incline_assumed) continue;
+    if (!states_incline(result)) continue;
     const auto contradiction = incline_contradiction(result, gravity_m_s2, stated_incline(result));
     if (contradiction && contradiction->gross) {
       result.notes.push_back(

@@ -2,6 +2,7 @@
 /// shows.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,13 +63,15 @@ struct InclineContradiction {
 std::optional<InclineContradiction> incline_contradiction(const ConfigurationResult& found, double gravity_m_s2,
                                                           const StatedIncline& stated);
 
-/// "a mass of 1 kg and an inclination of 0° are assumed, …"; empty where both are stated.
-std::string assumption(const ConfigurationResult& configuration);
-
 /// As incline_deg and incline_sd_deg of its clips say.
 StatedIncline stated_incline(const ConfigurationResult& configuration);
 
 /// Adds to the notes: masses that look like grams, stated inclinations that the motion contradicts grossly.
-void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2);
+/// Of configurations whose inclination nobody states that is no contradiction.
+void note_statements(
+    std::vector<ConfigurationResult>& results, double gravity_m_s2,
+    const std::function<bool(const ConfigurationResult&)>& states_incline = [](const ConfigurationResult&) {
+      return true;
+    });
 
 }  // namespace glidelab::core

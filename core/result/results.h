@@ -207,7 +207,6 @@ struct ConfigurationResult {
   double mass_kg = 0.0;
   double incline_deg = 0.0;
   std::optional<double> incline_sd_deg;  ///< the smallest that its clips state, if any
-  bool mass_assumed = false, incline_assumed = false;  ///< nobody states it: of a track's file on its own
   std::string group;
   std::vector<std::string> clips;
   std::vector<LineFit> lines;  ///< at most one for each direction, through the points of all its clips

@@ -7,20 +7,18 @@
 #include <charconv>
 #include <set>
 #include <string_view>
-#include <system_error>
 
 #include "base/errors.h"
-#include "base/math/angles.h"
 #include "core/track/column_table.h"
-#include "core/track/track_data.h"
 
 namespace glidelab::core {
 
 std::vector<TrackRun> runs_in(const std::filesystem::path& file) {
   const ColumnTable table = read_column_table(file);
   std::vector<TrackRun> runs;
-  for (const std::size_t c : place_columns(table)) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
+    if (!is_place_column(column)) continue;
     runs.push_back({c + 1, column.run.empty() ? column.text : column.run});
   }
   return runs;
@@ -60,36 +58,22 @@ std::vector<TrackRun> chosen_runs(const std::filesystem::path& file, const std::
   }
 }
 
-ClipSetup bare_clip(const std::filesystem::path& file, const BareTrackOptions& options) {
-  ClipSetup clip;
-  clip.name = file.stem().string();
-  clip.track = file;
-  clip.column = options.column;
-  clip.mass_kg = options.mass_kg.value_or(1.0);
-  clip.mass_assumed = !options.mass_kg;
-  clip.incline_rad = options.incline_deg.value_or(0.0) / base::kDegreesPerRad;
-  clip.incline_assumed = !options.incline_deg;
-  clip.launched = Launched::unknown;
-  clip.group = "all";
-  return clip;
-}
-
-std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const BareTrackOptions& options) {
+/// `one` is what every clip has of the file's own.
+std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const ClipSetup& one,
+                                     const TrackFileOptions& options) {
   const std::vector<TrackRun> runs = chosen_runs(file, options.runs);
   if (!options.masses_kg.empty() && options.masses_kg.size() != runs.size()) {
-    throw base::InputError(base::Issue{file.string(), 0, "--masses", fmt::format("{} of them", options.masses_kg.size()),
+    throw base::InputError(base::Issue{file.string(), 0, "--masses",
+                                       fmt::format("{} of them", options.masses_kg.size()),
                                        fmt::format("one for each of the {} runs: {}", runs.size(), runs_text(runs))});
   }
   std::vector<ClipSetup> clips;
   std::set<std::string> names;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    ClipSetup clip = bare_clip(file, options);
+    ClipSetup clip = one;
     clip.name = names.insert(runs[i].label).second ? runs[i].label : fmt::format("{} ({})", runs[i].label, i + 1);
     clip.column = std::to_string(runs[i].column);
-    if (!options.masses_kg.empty()) {
-      clip.mass_kg = options.masses_kg[i];
-      clip.mass_assumed = false;
-    }
+    if (!options.masses_kg.empty()) clip.mass_kg = options.masses_kg[i];
     clips.push_back(std::move(clip));
   }
   return clips;
@@ -97,18 +81,15 @@ std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const Ba
 
 }  // namespace
 
-bool is_bare_track(const std::filesystem::path& path) {
-  std::error_code ignored;  // what cannot be looked at is none
-  return std::filesystem::is_regular_file(path, ignored) && path.filename() != "experiment.toml";
+bool incline_is_assumed(const ClipSetup& clip) {
+  return clip.launched == Launched::unknown && clip.incline_rad == 0.0;
 }
 
-Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options) {
-  if (!is_bare_track(path)) return read_experiment(path, options.outside);
-  Experiment experiment;
-  experiment.folder = path.parent_path();
-  experiment.file = path;
-  experiment.name = path.stem().string();
-  experiment.clips = options.runs.empty() ? std::vector{bare_clip(path, options)} : clips_of_runs(path, options);
+Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options) {
+  Experiment experiment = read_input(path, options);
+  if (is_bare_track(path) && !options.runs.empty()) {
+    experiment.clips = clips_of_runs(path, experiment.clips.front(), options);
+  }
   return experiment;
 }
 

@@ -1,5 +1,5 @@
-/// An input of a command that takes experiment folders or tracks' files: a folder is read as it is, a file makes an
-/// experiment of its own, of one clip, or of one for each run that the file holds.
+/// Files with tracks beside experiment folders: a file that holds several runs, or several masses, makes an experiment
+/// of one clip for each.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,7 @@
 namespace glidelab::core {
 
 /// What the analysis needs beside a track's file that is given on its own.
-struct BareTrackOptions {
-  std::string column;                 ///< of x in an exported table (track_data.h); empty: found by its header
-  std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
-  std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
-  OutsideFiles outside = OutsideFiles::refused;  ///< of a folder: whether it may name files outside (file_names.h)
+struct TrackFileOptions : BareTrackOptions {
   /// Which of the runs (or masses) of the file become clips: "all", or their numbers from 1 on, "1,3". Empty: the file
   /// is one clip.
   std::string runs = {};
@@ -33,13 +29,12 @@ struct TrackRun {
 /// The columns that are called x or the like, in their order; as import_track() finds them.
 std::vector<TrackRun> runs_in(const std::filesystem::path& file);
 
-/// A regular file that is not experiment.toml.
-bool is_bare_track(const std::filesystem::path& path);
+/// Whether the inclination of a clip is that of a file on its own (nobody says how it was launched) that stands for
+/// what nobody states, 0: no motion contradicts it.
+bool incline_is_assumed(const ClipSetup& clip);
 
-/// Of a folder read_experiment(); of a file an experiment of one clip, named after the file, or of one for each of the
-/// runs that are asked for, named after these; x taken as downhill, how it was launched not known: no motion is the
-/// hand's for its direction alone. InputError as read_experiment(), for a path that is not there, for runs that the
-/// file does not have, and for another number of masses than of runs.
-Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options);
+/// A folder, or a file of one clip, as read_input() has it; of a file with `runs` one clip for each, named after it.
+/// InputError as read_input(), for runs that the file does not have, and for another number of masses than of runs.
+Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options);
 
 }  // namespace glidelab::core

@@ -123,6 +123,20 @@ bool is_time_name(std::string_view name) {
   return std::find(kNames.begin(), kNames.end(), lower(name)) != kNames.end();
 }
 
+bool is_time_column(const TableColumn& column) {
+  return column.unit.empty() ? is_time_name(column.name) : seconds_per(column.unit).has_value();
+}
+
+bool is_place_column(const TableColumn& column) {
+  static const std::vector<std::string> kPlaces{
+      "x", "position", "pos", "distance", "displacement", "position x", "x-position", "position (x)",
+      // German, Spanish, French, Italian, Portuguese
+      "weg", "ort", "abstand", "strecke", "entfernung", "posici\xC3\xB3n", "posici\xC3\x93n", "posicion", "distancia",
+      "desplazamiento", "d\xC3\xA9placement", "distance x", "posizione", "spostamento", "distanza",
+      "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento"};
+  return !is_time_column(column) && std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
+}
+
 std::optional<double> metres_per(std::string_view unit) {
   return factor(kLengths, unit);
 }
@@ -139,13 +153,11 @@ bool names_several_columns(const std::vector<std::string>& line, const std::vect
   const auto filled = [](const std::vector<std::string>& fields) {
     return std::count_if(fields.begin(), fields.end(), [](const std::string& field) { return !field.empty(); });
   };
-  const bool has_time = std::any_of(below.begin(), below.end(), [](const std::string& field) {
-    return is_time_name(column_of(field).name);
-  });
+  const bool has_time = std::any_of(below.begin(), below.end(),
+                                    [](const std::string& field) { return is_time_name(column_of(field).name); });
   return filled(line) > 0 && filled(line) < filled(below) && has_time &&
-         !std::any_of(line.begin(), line.end(), [](const std::string& field) {
-           return is_time_name(column_of(field).name);
-         });
+         !std::any_of(line.begin(), line.end(),
+                      [](const std::string& field) { return is_time_name(column_of(field).name); });
 }
 
 }  // namespace
@@ -153,8 +165,8 @@ bool names_several_columns(const std::vector<std::string>& line, const std::vect
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
   auto header = lines;
   std::vector<std::string> runs, units;
-  if (header.size() > 1 && (all_that_is_there(header.front(), speaks_of_a_run) ||
-                            names_several_columns(header.front(), header[1]))) {
+  if (header.size() > 1 &&
+      (all_that_is_there(header.front(), speaks_of_a_run) || names_several_columns(header.front(), header[1]))) {
     runs = header.front();
     header.erase(header.begin());
   }

@@ -28,13 +28,21 @@ struct TableColumn {
 /// "t", "time", "Zeit", …
 bool is_time_name(std::string_view name);
 
+/// A column of times, by its unit or, where it states none, its name.
+bool is_time_column(const TableColumn& column);
+
+/// A column that is called x, position, distance or displacement (or the like in German, French, Italian, Portuguese,
+/// Spanish) and is none of times.
+bool is_place_column(const TableColumn& column);
+
 /// Metres for a unit of length, seconds for one of time; nothing for any other text. "um" and "µm" are one.
 std::optional<double> metres_per(std::string_view unit);
 std::optional<double> seconds_per(std::string_view unit);
 
 /// The header lines of an exported table, taken apart into name, unit and run of each of its `width` columns, which
 /// have no values yet. The lines, first to last: of runs (where all its fields speak of a run, a set or "latest", or
-/// where it has fewer fields than the names below it, of which one is a time: "mass A" over t, x, y), of names, of short names (ignored), of units; each but the names may be missing.
+/// where it has fewer fields than the names below it, of which one is a time: "mass A" over t, x, y), of names, of
+/// short names (ignored), of units; each but the names may be missing.
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);
 
 struct ColumnTable {

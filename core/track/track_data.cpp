@@ -29,20 +29,6 @@ namespace {
 
 constexpr std::size_t kMostRowIssues = 10;
 
-bool is_place(const TableColumn& column) {
-  static const std::vector<std::string> kPlaces{
-      "x", "position", "pos", "distance", "displacement", "position x", "x-position", "position (x)",
-      // German, Spanish, French, Italian, Portuguese
-      "weg", "ort", "abstand", "strecke", "entfernung", "posici\xC3\xB3n", "posici\xC3\x93n", "posicion", "distancia",
-      "desplazamiento", "d\xC3\xA9placement", "distance x", "posizione", "spostamento", "distanza",
-      "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento"};
-  return std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
-}
-
-bool is_time(const TableColumn& column) {
-  return column.unit.empty() ? is_time_name(column.name) : seconds_per(column.unit).has_value();
-}
-
 bool is_acceleration(const TableColumn& column) {
   const std::string name = lower(column.name);
   return column.unit.starts_with("m/s^2") || column.unit.starts_with("m/s\xC2\xB2") ||
@@ -86,7 +72,7 @@ std::size_t place_column(const ColumnTable& table, const std::string& asked) {
   std::vector<std::size_t> found;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
-    if (asked.empty() ? !is_time(column) && is_place(column) : is_asked(column, c, asked)) {
+    if (asked.empty() ? is_place_column(column) : is_asked(column, c, asked)) {
       found.push_back(c);
     }
   }
@@ -97,11 +83,11 @@ std::size_t place_column(const ColumnTable& table, const std::string& asked) {
                        "one of the " + columns_text(table));
   }
   if (found.empty()) refuse_accelerations(table);
-  throw wrong_column(table, columns_text(table),
-                     fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
-                                 "experiment.toml) by its header or its number{}",
-                                 found.empty() ? "one" : "just one",
-                                 found.empty() ? "" : ", or take all as clips (--runs all)"));
+  throw wrong_column(
+      table, columns_text(table),
+      fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
+                  "experiment.toml) by its header or its number{}",
+                  found.empty() ? "one" : "just one", found.empty() ? "" : ", or take all as clips (--runs all)"));
 }
 
 std::size_t time_column(const ColumnTable& table, std::size_t place) {
@@ -109,7 +95,7 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
   std::vector<std::size_t> times;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const bool same_run = table.columns[c].run == table.columns[place].run || table.columns[c].run.empty();
-    if (c != place && is_time(table.columns[c]) && same_run) times.push_back(c);
+    if (c != place && is_time_column(table.columns[c]) && same_run) times.push_back(c);
   }
   const auto right = std::lower_bound(times.begin(), times.end(), place);
   if (right != times.begin()) return *std::prev(right);
@@ -132,14 +118,6 @@ double factor_of(const ColumnTable& table, const TableColumn& column, std::optio
 }
 
 }  // namespace
-
-std::vector<std::size_t> place_columns(const ColumnTable& table) {
-  std::vector<std::size_t> found;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (!is_time(table.columns[c]) && is_place(table.columns[c])) found.push_back(c);
-  }
-  return found;
-}
 
 TrackData import_track(const std::filesystem::path& file, const std::string& column, int downhill) {
   assert(downhill == 1 || downhill == -1);

@@ -66,8 +66,12 @@ bool is_table_of_lines(const std::filesystem::path& file) {
 
 }  // namespace
 
-core::Experiment read_recording(const std::filesystem::path& path, const core::BareTrackOptions& bare) {
-  if (!core::is_bare_track(path) || !is_table_of_lines(path)) return core::read_input(path, bare);
+core::Experiment read_recording(const std::filesystem::path& path, const core::TrackFileOptions& bare) {
+  if (!core::is_bare_track(path) || !is_table_of_lines(path)) return core::read_tracks(path, bare);
+  if (!bare.column.empty() || bare.mass_kg || bare.incline_deg || !bare.runs.empty()) {
+    throw base::InputError(base::Issue{path.string(), 0, "--column, --mass, --incline, --runs", "a table of lines",
+                                       "none of them: the table has its masses and inclinations"});
+  }
   core::Experiment experiment;
   experiment.folder = path.parent_path();
   experiment.file = path;

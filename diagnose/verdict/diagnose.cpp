@@ -294,14 +294,13 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     experiments.push_back(experiment);
   }
   indices(options.without);  // what is misspelt shows before the clips are read
-  const core::AnalysisResults results =
-      core::analyze(folders,
-                    {.bandwidth_s = {},
-                     .jobs = options.jobs,
-                     .lost_frames = core::LostFrameTimes::kept,
-                     .pictures = true,
-                     .bare = options.bare},
-                    progress);
+  const core::AnalysisResults results = core::analyze(folders,
+                                                      {.bandwidth_s = {},
+                                                       .jobs = options.jobs,
+                                                       .lost_frames = core::LostFrameTimes::kept,
+                                                       .pictures = true,
+                                                       .bare = options.bare},
+                                                      progress);
   return diagnose_results(results, setups, options, progress, cameras, experiments);
 }
 

@@ -11,6 +11,7 @@
 #include "report/analysis/fitted_curve.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/sections.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -191,6 +192,40 @@ std::string r2_of(const core::ConfigurationResult& configuration, int direction)
   return line == nullptr ? "–" : base::r2_text(line->r2);
 }
 
+/// "K/m = 2.7630 ± 0.0060 1/s" of one configuration, "K/m = 0.86 to 2.76 1/s" of several; empty where none has it.
+std::string value_words(const core::AnalysisResults& results, std::size_t which) {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  const core::Quantity* only = nullptr;
+  const QuantityName& name = kQuantities[which];
+  for (const core::ConfigurationResult& c : results.configurations) {
+    const core::Quantity& quantity = *quantities_of(c)[which].quantity;
+    if (!quantity.estimate) continue;
+    only = &quantity;
+    least = std::min(least, quantity.estimate->value);
+    most = std::max(most, quantity.estimate->value);
+  }
+  if (only == nullptr) return {};
+  if (results.configurations.size() == 1) {
+    return fmt::format("{} = {}{}", name.symbol, base::value_and_sd_text(only->estimate->value, only->estimate->sd),
+                       unit_suffix(name.unit));
+  }
+  return fmt::format("{} = {} to {}{}", name.symbol, base::number_text(least, 3), base::number_text(most, 3),
+                     unit_suffix(name.unit));
+}
+
+/// The answer in one line: the values, or that the law does not fit.
+std::string analysis_answer(const core::AnalysisResults& results) {
+  std::string values;
+  for (std::size_t which = 0; which < kQuantities.size(); ++which) {
+    const std::string words = value_words(results, which);
+    if (!words.empty()) values += (values.empty() ? "" : ", ") + words;
+  }
+  if (values.empty()) return "The data determine none of K/m, µ, α and the limit velocity; why stands below the table.";
+  const std::string doubted = doubts_about(results).empty() ? "" : " (but the law is in doubt: see below the table)";
+  const std::size_t many = results.configurations.size();
+  return fmt::format("{}{}{}.", values, many == 1 ? "" : fmt::format(" over {} configurations", many), doubted);
+}
+
 }  // namespace
 
 std::string analysis_text(const core::AnalysisResults& results) {
@@ -208,7 +243,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
       }
     }
   }
-  std::string text = text_table(rows, 3);
+  std::string text = analysis_answer(results) + "\n\n" + text_table(rows, 3);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
   rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
   std::string notes;

@@ -106,12 +106,13 @@ Plot fitted_plot(const core::ClipResult& clip, const std::vector<FittedCurve>& c
       "plot $others using 1:2 with points pt 7 ps 0.3 lc rgb '{}' title 'left out', $used using 1:2 with points pt 7 "
       "ps 0.4 lc rgb '{}' title 'measured', $law using 1:2 with lines lw 2 lc rgb '{}' title 'fitted law'",
       kGrey, kColors[4], kColors[1]);
-  return {Drawing{script, {never_empty(used), never_empty(others), never_empty(law)}},
-          fmt::format("{}: x(t) by K/m, µ and α of the table, over the measured positions; they lie {} off it (rms), and "
-                      "their noise is {}",
-                      clip.name, base::size_text(std::sqrt(square / count), 2, "m"),
-                      base::size_text(clip.position_noise_m, 2, "m")),
-          fmt::format("Measured positions and fitted law of clip {}", clip.name)};
+  return {
+      Drawing{script, {never_empty(used), never_empty(others), never_empty(law)}},
+      fmt::format("{}: x(t) by K/m, µ and α of the table, over the measured positions; they lie {} off it (rms), and "
+                  "their noise is {}",
+                  clip.name, base::size_text(std::sqrt(square / count), 2, "m"),
+                  base::size_text(clip.position_noise_m, 2, "m")),
+      fmt::format("Measured positions and fitted law of clip {}", clip.name)};
 }
 
 }  // namespace

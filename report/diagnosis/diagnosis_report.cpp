@@ -14,6 +14,7 @@
 #include "report/diagnosis/gap_plots.h"
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/verdict_words.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 

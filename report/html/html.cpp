@@ -323,11 +323,6 @@ std::string meaning_section(const std::string& html) {
   return "<h2 id=\"meaning\">What this means</h2>\n" + html;
 }
 
-Html folded(const std::string& heading, const Html& part) {
-  if (part.plots().empty() && part.texts().front().empty()) return {};
-  return Html("<details class=\"part\"><summary>" + heading + "</summary>\n") + part + "</details>\n";
-}
-
 std::string symbols_html(std::string_view text) {
   static const std::regex kSymbol("(^|[^A-Za-z0-9_/])([A-Za-z])_([A-Za-z0-9]+)(?![A-Za-z0-9_/])");
   return std::regex_replace(escape(text), kSymbol, "$1$2<sub>$3</sub>");

@@ -79,9 +79,6 @@ std::string tile(const std::string& number, const std::string& words);
 /// The part at the top of a page that says in plain words what its numbers say; HTML below a heading.
 std::string meaning_section(const std::string& html);
 
-/// A part of the page that opens where its heading (HTML) is clicked; nothing of an empty one.
-Html folded(const std::string& heading, const Html& part);
-
 /// Plots side by side where there is room, each on white paper with its caption.
 Html figures(const std::vector<Plot>& plots);
 

@@ -127,11 +127,11 @@ std::string requirement_answer(const Requirement& requirement) {
     return fmt::format("{} can reach {} by its bound ({}), but nothing was run.", near->name, asked_words(requirement),
                        expected_words(requirement, *near));
   }
-  std::string text = fmt::format("{} {}. {} comes nearest: expect {}{} ({}).",
-                                 near->verdict == Verdict::undecided ? "Nothing here surely reaches" : "Nothing here reaches",
-                                 asked_words(requirement), near->name,
-                                 near->judged_by == validate::Confirm::none ? "at least " : "",
-                                 expected_words(requirement, *near), judged_words(requirement, *near));
+  std::string text =
+      fmt::format("{} {}. {} comes nearest: expect {}{} ({}).",
+                  near->verdict == Verdict::undecided ? "Nothing here surely reaches" : "Nothing here reaches",
+                  asked_words(requirement), near->name, near->judged_by == validate::Confirm::none ? "at least " : "",
+                  expected_words(requirement, *near), judged_words(requirement, *near));
   if (!near->limits.empty() && near->limits.front().gain >= kLeastNamedGain) {
     text += fmt::format(" What most limits it: {}.", near->limits.front().name);
   }

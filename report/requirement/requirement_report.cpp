@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/text/number_text.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/requirement/requirement_answer.h"
 #include "report/requirement/requirement_plot.h"
@@ -198,10 +199,10 @@ std::string how_judged(const Requirement& requirement) {
 }  // namespace
 
 Page requirement_report(const Requirement& requirement) {
-  Html body = fmt::format("<h1>Which of these reaches {}?</h1>\n<p><b>{}</b> {}</p>\n<p>{} From <i>{}</i>.</p>\n",
-                          escape(targets_text(requirement)), escape(requirement_answer(requirement)),
-                          escape(enough_words(requirement)), escape(counts_text(requirement)),
-                          escape(requirement.name));
+  Html body =
+      fmt::format("<h1>Which of these reaches {}?</h1>\n<p><b>{}</b> {}</p>\n<p>{} From <i>{}</i>.</p>\n",
+                  escape(targets_text(requirement)), escape(requirement_answer(requirement)),
+                  escape(enough_words(requirement)), escape(counts_text(requirement)), escape(requirement.name));
   const std::string next = next_step(requirement);
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
   body += figures({requirement_plot(requirement)});

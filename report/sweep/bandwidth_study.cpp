@@ -79,7 +79,8 @@ Curves curves_of(const SweepSummary& summary) {
   Curves curves;
   for (const QuantityName& quantity : kQuantities) {
     Curve curve = curve_of(summary, quantity.key, curves.unanswered_s);
-    if (curve.size() >= kLeastBandwidths && least_total(curve) > 0.0) curves.of.emplace_back(&quantity, std::move(curve));
+    if (curve.size() >= kLeastBandwidths && least_total(curve) > 0.0)
+      curves.of.emplace_back(&quantity, std::move(curve));
   }
   std::sort(curves.unanswered_s.begin(), curves.unanswered_s.end());
   if (curves.of.empty()) return curves;
@@ -143,8 +144,8 @@ std::string rule_words(const SweepSummary& summary, const Curves& curves, double
     factor = std::max(factor, ours->rms / curve.at(use)->rms);
   }
   if (chosen == summary.bandwidths.end()) return {};
-  const std::string errs = factor > 1.05 ? fmt::format("errs up to {} times as much", base::number_text(factor, 2))
-                                         : "errs no more";
+  const std::string errs =
+      factor > 1.05 ? fmt::format("errs up to {} times as much", base::number_text(factor, 2)) : "errs no more";
   return fmt::format("; the default rule chooses {} ({} to {} in eight of ten clips) and {}",
                      seconds_text(chosen->median_s), base::number_text(chosen->low_s, 2),
                      base::number_text(chosen->high_s, 2), errs);
@@ -275,14 +276,14 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   const auto [least, most] = std::minmax_element(ends.begin(), ends.end());
   const double from = *least / 1.15, to = *most * 1.15;
   std::vector<PlotData> data = {errors, best};
-  std::string script = std::string(kFrame) +
-                       "set key at screen 0.5, screen 0.99 center top font ',11' maxcols 2 samplen 1.6\n"
-                       "set tmargin at screen 0.76\nset logscale xy\nset offsets 0,0,0,0\n"
-                       "set xlabel 'bandwidth h (s)'\n" +
-                       fmt::format("set ylabel {}\nset xrange [{:.6g}:{:.6g}]\n",
-                                   gnuplot_quoted(with_unit("error of " + symbol_of(quantity.key), quantity.unit)),
-                                   from, to) +
-                       labelled_tics("x", bandwidths_s);
+  std::string script =
+      std::string(kFrame) +
+      "set key at screen 0.5, screen 0.99 center top font ',11' maxcols 2 samplen 1.6\n"
+      "set tmargin at screen 0.76\nset logscale xy\nset offsets 0,0,0,0\n"
+      "set xlabel 'bandwidth h (s)'\n" +
+      fmt::format("set ylabel {}\nset xrange [{:.6g}:{:.6g}]\n",
+                  gnuplot_quoted(with_unit("error of " + symbol_of(quantity.key), quantity.unit)), from, to) +
+      labelled_tics("x", bandwidths_s);
   std::string drawn = fmt::format(
       "plot $errors using 1:2 with linespoints pt 7 ps 0.5 lw 2.2 lc rgb '{0}' title 'total', "
       "$errors using 1:3 with lines lw 1.4 dt 2 lc rgb '{1}' title 'noise', "
@@ -311,11 +312,12 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   }
   script += error_range(data);
   if (!choice.rows.empty()) data.push_back(choice);
-  return {Drawing{script + drawn, data, {480, 400}},
-          fmt::format("{}: error over the bandwidth. Total² is noise² + bias²; a dot on the line of the bias where it is "
-                      "more than two of its standard errors",
-                      symbol_of(quantity.key)),
-          fmt::format("Error of {} over the bandwidth", symbol_of(quantity.key))};
+  return {
+      Drawing{script + drawn, data, {480, 400}},
+      fmt::format("{}: error over the bandwidth. Total² is noise² + bias²; a dot on the line of the bias where it is "
+                  "more than two of its standard errors",
+                  symbol_of(quantity.key)),
+      fmt::format("Error of {} over the bandwidth", symbol_of(quantity.key))};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/sweep/bandwidth_study.h"
 #include "report/sweep/sweep_meaning.h"
@@ -246,8 +247,8 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       "<p class=\"soft\">Sweep by Glidelab. Errors are recovered minus true values, over all configurations of the "
       "scenario.</p>\n";
   if (const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary)) {
-    Html body = fmt::format("<h1>Which bandwidth? {}</h1>\n<p><b>{}</b></p>\n", escape(summary.name),
-                            escape(answer->text));
+    Html body =
+        fmt::format("<h1>Which bandwidth? {}</h1>\n<p><b>{}</b></p>\n", escape(summary.name), escape(answer->text));
     body += figures(bandwidth_plots(summary));
     body += bandwidth_table(summary) + soft + runs_of(summary);
     body += folded("In words", sweep_meaning(summary) + mass_study_section(summary.masses));

@@ -13,6 +13,7 @@
 #include "fit/estimators.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/sections.h"
+#include "report/html/folded.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
@@ -246,10 +247,9 @@ std::string headline(const validate::Comparison& comparison) {
     for (std::size_t i = 0; i < column.size(); ++i) rows[i + 1].push_back(column[i]);
   }
   return fmt::format(
-      "Recovered from the images alone by the {}, ± one standard deviation, and in brackets the truth:\n\n{}\n{}{}\n",
-      estimator_name(estimator), text_table(rows, 1),
-      no_constant ? "A truth \"–\": the law of friction in this scenario has no such constant.\n" : "",
-      printable(agreement_of(comparison)));
+      "{}\n\nRecovered from the images alone by the {}, ± one standard deviation, and in brackets the truth:\n\n{}\n{}",
+      printable(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
+      no_constant ? "A truth \"–\": the law of friction in this scenario has no such constant.\n" : "");
 }
 
 /// How far measured positions are off, in a line.

@@ -62,7 +62,7 @@ struct Comparison {
   /// Where the camera does not see all of a motion; set by who filmed it.
   std::size_t outside = 0;               ///< frames with the marker's centre outside the image
   std::vector<std::string> out_of_view;  ///< in words, of each clip with such frames
-  double wall_s = 0.0;  ///< of simulation, rendering and analysis; set by who measures it
+  double wall_s = 0.0;                   ///< of simulation, rendering and analysis; set by who measures it
 };
 
 /// The quantities of one estimator, configuration by configuration: K/m, mu, alpha, v_lim.

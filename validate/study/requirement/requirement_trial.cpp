@@ -163,7 +163,9 @@ RecordedRuns::Outcome RecordedRuns::outcome_of(const Setting& setting, std::uint
   if (options_.before_run) options_.before_run();
   const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
   const MadeTracks made = tracks_of(setting, clean, run, confirm);
-  const auto analyze = [&](core::LineMethod lines) { return analyze_tracks(made, core::MotionOptions{.lines = lines}); };
+  const auto analyze = [&](core::LineMethod lines) {
+    return analyze_tracks(made, core::MotionOptions{.lines = lines});
+  };
   Outcome outcome;
   for (const core::AnalysisResults& by : fit::estimate_each(fit::judged_estimators(), analyze)) {
     const auto quantities = compare_quantities(by, clean.truth);
@@ -215,7 +217,8 @@ Verdict RecordedRuns::judge(std::vector<TargetResult>& results) {
 std::vector<Limit> RecordedRuns::limits() {
   std::vector<Limit> limits;
   const Setting& setting = setting_;
-  const std::uint64_t runs = options_.confirm == Confirm::clips ? std::min(kLeastRendered, options_.runs) : options_.runs;
+  const std::uint64_t runs =
+      options_.confirm == Confirm::clips ? std::min(kLeastRendered, options_.runs) : options_.runs;
   run_on(setting, options_.confirm, runs, done_);
   std::vector<TargetResult> now(options_.targets.size());
   judge_outcomes({done_.begin(), done_.begin() + static_cast<std::ptrdiff_t>(runs)}, options_.targets, now);

@@ -51,9 +51,10 @@ class RecordedRuns {
   Verdict judge_all(std::vector<TargetResult>& results) { return judge(setting_, options_.runs, results); }
 
   /// Limitations that no bound contains, removed one by one, by the same runs (of rendered ones the first
-  /// kLeastRendered): how many times smaller the errors are with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec,
-  /// with the true camera in place of the calibrated one (not of a rational lens, which the analysis cannot write), and
-  /// with the true positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
+  /// kLeastRendered): how many times smaller the errors are with an even clock; and, where clips are rendered, with a
+  /// global shutter, with a lossless codec, with the true camera in place of the calibrated one (not of a rational
+  /// lens, which the analysis cannot write), and with the true positions and the noise that the camera lets one expect
+  /// (no lens, no calibration, no tracker).
   std::vector<Limit> limits();
 
  private:

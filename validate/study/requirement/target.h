@@ -3,7 +3,8 @@
 /// Over n errors e_i, an infinite one for a run without an answer:
 ///
 ///     sd       sqrt(sum e_i² / n): the root mean square error, a bias included
-///     error95  the least of the |e_i| that 95 % of them do not exceed: number ceil(0.95 n) of the sorted ones; of fewer
+///     error95  the least of the |e_i| that 95 % of them do not exceed: number ceil(0.95 n) of the sorted ones; of
+///     fewer
 ///              than 20 errors, which do not know that quantile, 1.96 times their root mean square
 ///     bias     |sum e_i / n|
 ///
